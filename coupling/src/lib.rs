@@ -1,0 +1,1 @@
+//! Exchange of force and motion between the grains and the solid.

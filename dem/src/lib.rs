@@ -1,0 +1,1 @@
+//! Explicit discrete elements for ballasted track: spheres, rigid clumps, walls.

@@ -1,0 +1,1 @@
+//! trackbed: coupled DEM–FEM solver for ballasted railway track.
