@@ -1,0 +1,182 @@
+//! Closest point on a curved 8-node face, by Newton in the two face coordinates.
+//!
+//! The face is x(ξ, η) = Σ Nᵢ(ξ, η) xᵢ with the serendipity functions of the 8-node quadrilateral. The
+//! closest point to `c` minimises g(ξ) = ½ |x(ξ) − c|² over the square [−1, 1]². Newton uses
+//! ∂g/∂ξₐ = (x − c)·x,ₐ and ∂²g/∂ξₐ∂ξᵦ = x,ₐ·x,ᵦ + (x − c)·x,ₐᵦ; where that matrix is not positive definite
+//! the Gauss–Newton part x,ₐ·x,ᵦ takes its place. Coordinates at a bound with the descent direction pointing
+//! outward are held there (projected Newton; Bertsekas, SIAM J. Control Optim. 20(2), 1982), and a step that
+//! does not lower g is halved, so a point outside the face ends on the border: this is the fallback that a
+//! three-dimensional inverse map lacks for a point above the surface.
+//!
+//! Limit: a face folded so strongly that several local minima lie within reach yields the one nearest to the
+//! start.
+
+use trackbed_fem::element::quad8;
+
+/// Distance from the border of the square within which a point counts as lying on the border.
+const BORDER: f64 = 1e-9;
+/// Newton stops when the step in natural coordinates is below this.
+const STEP: f64 = 1e-14;
+const MAX_ITERATIONS: usize = 50;
+
+/// Where the closest point of a face lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// Inside the face.
+    Inside,
+    /// On side 0–3, from corner k to corner k+1.
+    Side(u8),
+    /// On corner 0–3.
+    Corner(u8),
+}
+
+/// Closest point of a face to a given centre.
+#[derive(Clone, Copy, Debug)]
+pub struct Closest {
+    /// Natural coordinates (ξ, η) in [−1, 1]².
+    pub natural: [f64; 2],
+    /// The point itself [m].
+    pub point: [f64; 3],
+    /// Unit normal of the face there, outward for faces ordered as [`trackbed_fem::mesh::Face`].
+    pub normal: [f64; 3],
+    /// Inside, on a side or on a corner.
+    pub location: Location,
+    /// Newton iterations used.
+    pub iterations: usize,
+}
+
+/// Σ Nᵢ(ξ, η) qᵢ of a nodal vector quantity on the face, shape `[8][3]`.
+pub fn interpolate(values: &[[f64; 3]; 8], natural: [f64; 2]) -> [f64; 3] {
+    let n = quad8::shape_functions(natural);
+    let mut out = [0.0; 3];
+    for i in 0..8 {
+        for d in 0..3 {
+            out[d] += n[i] * values[i][d];
+        }
+    }
+    out
+}
+
+/// Closest point of the face with node coordinates `x` [m], shape `[8][3]`, to `centre`, starting from the
+/// natural coordinates `start` (last step's result converges in one or two iterations).
+pub fn closest_point(x: &[[f64; 3]; 8], centre: [f64; 3], start: [f64; 2]) -> Closest {
+    let mut xi = [start[0].clamp(-1.0, 1.0), start[1].clamp(-1.0, 1.0)];
+    let mut iterations = 0;
+    let mut here = Local::at(x, centre, xi);
+    while iterations < MAX_ITERATIONS {
+        iterations += 1;
+        let step = here.projected_step(xi);
+        let mut scale = 1.0;
+        let mut moved = [0.0; 2];
+        loop {
+            let next = [(xi[0] + scale * step[0]).clamp(-1.0, 1.0), (xi[1] + scale * step[1]).clamp(-1.0, 1.0)];
+            let there = Local::at(x, centre, next);
+            // Rounding may raise g by a few ulps at the minimum itself: that still counts as no worse.
+            if there.distance2 <= here.distance2 * (1.0 + 1e-14) {
+                moved = [next[0] - xi[0], next[1] - xi[1]];
+                xi = next;
+                here = there;
+                break;
+            }
+            scale *= 0.5;
+            if scale < 1e-6 {
+                break;
+            }
+        }
+        if moved[0].abs().max(moved[1].abs()) < STEP {
+            break;
+        }
+    }
+    let n = cross(here.tangent[0], here.tangent[1]);
+    let length = dot(n, n).sqrt();
+    Closest {
+        natural: xi,
+        point: here.point,
+        normal: n.map(|c| c / length),
+        location: locate(xi),
+        iterations,
+    }
+}
+
+/// Side or corner on which a natural point lies; sides and corners are counted as the nodes are.
+fn locate(xi: [f64; 2]) -> Location {
+    let low = xi.map(|c| c <= -1.0 + BORDER);
+    let high = xi.map(|c| c >= 1.0 - BORDER);
+    match (low[0], high[0], low[1], high[1]) {
+        (true, _, true, _) => Location::Corner(0),
+        (_, true, true, _) => Location::Corner(1),
+        (_, true, _, true) => Location::Corner(2),
+        (true, _, _, true) => Location::Corner(3),
+        (_, _, true, _) => Location::Side(0),
+        (_, true, _, _) => Location::Side(1),
+        (_, _, _, true) => Location::Side(2),
+        (true, _, _, _) => Location::Side(3),
+        _ => Location::Inside,
+    }
+}
+
+/// The face and the distance function at one natural point.
+struct Local {
+    point: [f64; 3],
+    distance2: f64,
+    tangent: [[f64; 3]; 2],
+    gradient: [f64; 2],
+    metric: [f64; 3],
+    curvature: [f64; 3],
+}
+
+impl Local {
+    fn at(x: &[[f64; 3]; 8], centre: [f64; 3], xi: [f64; 2]) -> Local {
+        let n = quad8::shape_functions(xi);
+        let d1 = quad8::gradients(xi);
+        let d2 = quad8::second_gradients(xi);
+        let mut point = [0.0; 3];
+        let mut tangent = [[0.0; 3]; 2];
+        let mut second = [[0.0; 3]; 3];
+        for i in 0..8 {
+            for d in 0..3 {
+                point[d] += n[i] * x[i][d];
+                tangent[0][d] += d1[i][0] * x[i][d];
+                tangent[1][d] += d1[i][1] * x[i][d];
+                for k in 0..3 {
+                    second[k][d] += d2[i][k] * x[i][d];
+                }
+            }
+        }
+        let r = [point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]];
+        Local {
+            point,
+            distance2: dot(r, r),
+            gradient: [dot(r, tangent[0]), dot(r, tangent[1])],
+            metric: [dot(tangent[0], tangent[0]), dot(tangent[1], tangent[1]), dot(tangent[0], tangent[1])],
+            curvature: [dot(r, second[0]), dot(r, second[1]), dot(r, second[2])],
+            tangent,
+        }
+    }
+
+    /// Newton step with the coordinates held that sit at a bound and want to leave the square.
+    fn projected_step(&self, xi: [f64; 2]) -> [f64; 2] {
+        let g = self.gradient;
+        let held = [0, 1].map(|a| (xi[a] >= 1.0 && g[a] < 0.0) || (xi[a] <= -1.0 && g[a] > 0.0));
+        let full = [0, 1, 2].map(|k| self.metric[k] + self.curvature[k]);
+        match held {
+            [true, true] => [0.0, 0.0],
+            [true, false] => [0.0, -g[1] / if full[1] > 0.0 { full[1] } else { self.metric[1] }],
+            [false, true] => [-g[0] / if full[0] > 0.0 { full[0] } else { self.metric[0] }, 0.0],
+            [false, false] => {
+                let definite = full[0] > 0.0 && full[0] * full[1] - full[2] * full[2] > 0.0;
+                let h = if definite { full } else { self.metric };
+                let det = h[0] * h[1] - h[2] * h[2];
+                [-(h[1] * g[0] - h[2] * g[1]) / det, -(h[0] * g[1] - h[2] * g[0]) / det]
+            }
+        }
+    }
+}
+
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

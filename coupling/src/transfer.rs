@@ -1,0 +1,110 @@
+//! Contact forces become nodal loads: Fᵢ = Nᵢ(ξ, η) F (S2 eq. 19), with the shape functions of the touched
+//! 8-node face at the mapped contact point.
+//!
+//! On a face of a hex20 the functions of the twelve other nodes vanish, so this *is* the 20-node formula.
+//! Σ Nᵢ = 1 keeps the force exactly; Σ Nᵢ xᵢ = x(ξ, η) keeps the moment exactly about the mapped point, which is
+//! where the contact force acts on both partners (seed correction F5). Both sums are formed from the nodal
+//! loads and compared with the contact forces at every exchange.
+
+use crate::face::cross;
+use crate::surface::SolidSurface;
+use trackbed_dem::surface::SurfaceContact;
+use trackbed_fem::element::quad8;
+
+/// Largest deviation between nodal loads and contact forces over all exchanges so far.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct TransferAudit {
+    /// Exchanges with at least one contact.
+    pub exchanges: u64,
+    /// Largest |Σ nodal load − Σ contact force| / Σ |contact force|.
+    pub force: f64,
+    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| / Σ |p||contact force|, about the origin of coordinates.
+    pub moment: f64,
+}
+
+/// Gathers the contact impulses of one window at the nodes of the surface.
+pub struct Transfer {
+    /// Impulse at each surface node [N s]. Shape `[surface nodes]`.
+    impulse: Vec<[f64; 3]>,
+    /// Load at each surface node in the present sub-step [N], zero outside `loaded`.
+    load: Vec<[f64; 3]>,
+    loaded: Vec<u32>,
+}
+
+impl Transfer {
+    /// Empty transfer for a surface.
+    pub fn new(surface: &SolidSurface) -> Transfer {
+        let n = surface.nodes().len();
+        Transfer { impulse: vec![[0.0; 3]; n], load: vec![[0.0; 3]; n], loaded: Vec::with_capacity(n) }
+    }
+
+    /// Forgets the impulses of the last window.
+    pub fn begin_window(&mut self) {
+        self.impulse.fill([0.0; 3]);
+    }
+
+    /// Adds the forces of one sub-step of duration `dt` [s] and audits their sums.
+    pub fn add(
+        &mut self,
+        surface: &SolidSurface,
+        contacts: &[SurfaceContact],
+        dt: f64,
+        audit: &mut TransferAudit,
+    ) {
+        if contacts.is_empty() {
+            return;
+        }
+        let mut force = [0.0; 3];
+        let mut moment = [0.0; 3];
+        let mut force_scale = 0.0;
+        let mut moment_scale = 0.0;
+        for contact in contacts {
+            let n = quad8::shape_functions(contact.local);
+            for (&node, n) in surface.face_nodes(contact.patch).iter().zip(n) {
+                let load = &mut self.load[node as usize];
+                if *load == [0.0; 3] {
+                    self.loaded.push(node);
+                }
+                for d in 0..3 {
+                    load[d] += n * contact.force[d];
+                }
+            }
+            let arm = cross(contact.point, contact.force);
+            for d in 0..3 {
+                force[d] += contact.force[d];
+                moment[d] += arm[d];
+            }
+            force_scale += norm(contact.force);
+            moment_scale += norm(contact.point) * norm(contact.force);
+        }
+        // The nodal loads' own sums, independent of how they came about.
+        for &node in &self.loaded {
+            let load = std::mem::take(&mut self.load[node as usize]);
+            let arm = cross(surface.position(node), load);
+            for d in 0..3 {
+                force[d] -= load[d];
+                moment[d] -= arm[d];
+                self.impulse[node as usize][d] += load[d] * dt;
+            }
+        }
+        self.loaded.clear();
+        audit.exchanges += 1;
+        if force_scale > 0.0 {
+            audit.force = audit.force.max(norm(force) / force_scale);
+            audit.moment = audit.moment.max(norm(moment) / moment_scale.max(f64::MIN_POSITIVE));
+        }
+    }
+
+    /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.
+    pub fn add_mean_load(&self, surface: &SolidSurface, window: f64, load: &mut [f64]) {
+        for (impulse, &node) in self.impulse.iter().zip(surface.nodes()) {
+            for d in 0..3 {
+                load[3 * node as usize + d] += impulse[d] / window;
+            }
+        }
+    }
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
+}

@@ -1,0 +1,81 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Coupled DEM–FEM solver for ballasted railway track.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a scene: fill, settle, load, and write the results.
+    Run(RunArgs),
+    /// Validate a scene without running it, and say what a run would do.
+    Check(CheckArgs),
+    /// Read a mesh: count and measure it, find its faults, or convert it.
+    Mesh {
+        /// What to do with the mesh.
+        #[command(subcommand)]
+        command: MeshCommand,
+    },
+}
+
+/// Arguments of `run`.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
+    /// Folder of the results; default `results/<name of the scene's folder or file>`.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads; default all cores. The results do not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Replace one key of the scene, as key.path=value; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
+    /// Replace one key of the scene, as key.path=value; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// The commands of `mesh`.
+#[derive(Debug, Subcommand)]
+pub enum MeshCommand {
+    /// Counts, sizes, materials, volumes and quality.
+    Info(MeshArgs),
+    /// Faults of the mesh; exit code 2 when there are any.
+    Check(MeshArgs),
+    /// Write the mesh as a VTK file (.vtu).
+    Convert {
+        /// The mesh.
+        #[command(flatten)]
+        mesh: MeshArgs,
+        /// File to write, ending in .vtu.
+        output: PathBuf,
+    },
+}
+
+/// Where a mesh is.
+#[derive(Debug, Args)]
+pub struct MeshArgs {
+    /// Folder with NODECOORD.DAT, ELEMENTNUM.DAT and DOF.DAT, or a scene file whose solid is meant.
+    pub input: PathBuf,
+}

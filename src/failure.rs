@@ -1,0 +1,48 @@
+//! How a command can fail, and with which exit code.
+
+use crate::scene::SceneError;
+use std::fmt;
+
+/// Why a command failed.
+#[derive(Debug)]
+pub enum Failure {
+    /// Bad input: exit code 2. One sentence with file, line, key, found and expected.
+    Input(String),
+    /// Numerical failure: exit code 3. What, where and when.
+    Numerical(String),
+    /// Anything else, such as a full disk: exit code 1.
+    Other(String),
+}
+
+impl Failure {
+    /// The program's exit code.
+    pub fn code(&self) -> u8 {
+        match self {
+            Failure::Input(_) => 2,
+            Failure::Numerical(_) => 3,
+            Failure::Other(_) => 1,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Input(text) | Failure::Numerical(text) | Failure::Other(text) => f.write_str(text),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Failure {
+        Failure::Input(error.to_string())
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Failure {
+        Failure::Other(error.to_string())
+    }
+}

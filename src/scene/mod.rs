@@ -1,0 +1,161 @@
+//! What is written in a scene file: TOML, SI units, unknown keys refused.
+//!
+//! These types hold exactly what the file says; [`crate::model`] resolves them into models. Numbers may carry
+//! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
+//! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
+
+mod document;
+mod error;
+pub mod grains;
+pub mod history;
+pub mod solid;
+pub mod track;
+pub mod units;
+
+pub use document::Document;
+pub use error::SceneError;
+
+use serde::Deserialize;
+use units::{Acceleration, Angle, Length, Quantity, Time};
+
+/// A whole scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// One line that says what the scene is; it heads the summary.
+    #[serde(default)]
+    pub title: String,
+    /// Gravity [m/s²]; default (0, 0, −9.81).
+    #[serde(default = "earth")]
+    pub gravity: [Quantity<Acceleration>; 3],
+    /// Solid part: mesh, materials, loads.
+    pub solid: Option<solid::Solid>,
+    /// Materials of grains, walls and sleeper.
+    #[serde(default)]
+    pub material: Vec<grains::GrainMaterial>,
+    /// Constants of single material pairs, in place of the mixing rules.
+    #[serde(default)]
+    pub contact: Vec<grains::PairContact>,
+    /// Groups of grains.
+    #[serde(default)]
+    pub grains: Vec<grains::Grains>,
+    /// Fixed or moving walls.
+    #[serde(default)]
+    pub walls: Vec<grains::Wall>,
+    /// Gravity deposition before the run proper.
+    pub deposition: Option<grains::Deposition>,
+    /// Sleeper and its load.
+    pub track: Option<track::Track>,
+    /// Exchange between grains and solid; needed when a scene has both.
+    pub coupling: Option<Coupling>,
+    /// Time steps and duration.
+    #[serde(default)]
+    pub time: TimeControl,
+    /// What is written and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// Points whose history is recorded.
+    #[serde(default)]
+    pub probe: Vec<Probe>,
+}
+
+fn earth() -> [Quantity<Acceleration>; 3] {
+    [Quantity::new(0.0), Quantity::new(0.0), Quantity::new(-9.81)]
+}
+
+/// Exchange between grains and solid.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Coupling {
+    /// Steps of the grains per step of the solid, 1–1000; default 10.
+    #[serde(default = "ten")]
+    pub substeps: u32,
+    /// Implicitness of the solid's window step, 0.5–1; 0.5 (default) is Newmark ¼, ½ and conserves energy.
+    #[serde(default = "half")]
+    pub theta: f64,
+    /// Name of the `[[material]]` that grains feel when they touch the solid.
+    pub material: String,
+    /// Direction that the touched faces look to; default up (0, 0, 1).
+    #[serde(default = "up")]
+    pub direction: [f64; 3],
+    /// Largest angle between a face's normal and `direction` [rad]; default 75 degrees.
+    #[serde(default = "steep")]
+    pub max_angle: Quantity<Angle>,
+}
+
+fn ten() -> u32 {
+    10
+}
+fn half() -> f64 {
+    0.5
+}
+fn up() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+fn steep() -> Quantity<Angle> {
+    Quantity::new(75.0_f64.to_radians())
+}
+
+/// Time steps and duration.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeControl {
+    /// Physical time of the run proper [s], deposition not counted. Not needed for a static solid, nor with a
+    /// counted cyclic load, which sets it.
+    pub end: Option<Quantity<Time>>,
+    /// Step of a solid that runs alone [s]. In a coupled run the solid's step is `coupling.substeps` grain steps.
+    pub solid_step: Option<Quantity<Time>>,
+    /// Step of the grains [s]; default: `grain_step_fraction` of the limit.
+    pub grain_step: Option<Quantity<Time>>,
+    /// Fraction of the critical step that the grains take, 0–1; default 0.2.
+    pub grain_step_fraction: Option<f64>,
+    /// Accept a `grain_step` above the limit; default false.
+    #[serde(default)]
+    pub accept_step_above_limit: bool,
+}
+
+/// What a run writes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// Number of frames of the animation over the run proper, 0–100000; default 20. The start is one more.
+    #[serde(default = "twenty")]
+    pub frames: u32,
+    /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
+    /// solid (coupled and solid runs) or of the grains.
+    pub history_interval: Option<Quantity<Time>>,
+    /// Write VTK files (`results.pvd`); default true.
+    #[serde(default = "yes")]
+    pub vtk: bool,
+    /// Write the solid as Tecplot files; default true.
+    #[serde(default = "yes")]
+    pub tecplot: bool,
+    /// Write nodal displacements, reactions and Gauss-point stresses of the last state as CSV; default false.
+    #[serde(default)]
+    pub tables: bool,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Output { frames: 20, history_interval: None, vtk: true, tecplot: true, tables: false }
+    }
+}
+
+fn twenty() -> u32 {
+    20
+}
+fn yes() -> bool {
+    true
+}
+
+/// A node of the solid, by number or by the place nearest to it, whose motion goes to `history.csv`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    /// Name used in the column heads; default `n<number>`.
+    pub name: Option<String>,
+    /// Node number of the mesh.
+    pub node: Option<u32>,
+    /// Place [m]; the nearest node is taken.
+    pub at: Option<[Quantity<Length>; 3]>,
+}

@@ -1,0 +1,89 @@
+//! Sleeper and its load as written in a scene.
+
+use super::units::{Force, Frequency, Length, Mass, Quantity, Time};
+use serde::Deserialize;
+
+/// `[track]`: what stands on the ballast.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Track {
+    /// The sleeper.
+    pub sleeper: Sleeper,
+    /// The load on its seat; without it the sleeper only rests.
+    pub load: Option<SeatLoad>,
+}
+
+/// A sleeper as a rigid box, placed on the settled grains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sleeper {
+    /// Edge lengths in x, y, z [m].
+    pub size: [Quantity<Length>; 3],
+    /// Mass [kg]; of the slice that is modelled.
+    pub mass: Quantity<Mass>,
+    /// Name of its material.
+    pub material: String,
+    /// Place of its centre in x and y [m]; it is lowered onto the highest grain below it.
+    pub centre: [Quantity<Length>; 2],
+    /// Motions that are held: any of "x", "y", "z", "rx", "ry", "rz"; default none.
+    #[serde(default)]
+    pub hold: Vec<Motion>,
+}
+
+/// One rigid-body motion in world axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Translation along x.
+    X,
+    /// Translation along y.
+    Y,
+    /// Translation along z.
+    Z,
+    /// Rotation about x.
+    Rx,
+    /// Rotation about y.
+    Ry,
+    /// Rotation about z.
+    Rz,
+}
+
+/// Cyclic vertical load on the sleeper's top.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SeatLoad {
+    /// Shape of a cycle.
+    pub kind: SeatLoadKind,
+    /// Smallest downward force [N].
+    pub minimum: Quantity<Force>,
+    /// Largest downward force [N].
+    pub maximum: Quantity<Force>,
+    /// Cycles per second [Hz].
+    pub frequency: Quantity<Frequency>,
+    /// Number of cycles.
+    pub cycles: u32,
+    /// Time for the sleeper to come to rest under its own weight before any load [s]; default 0.1 s.
+    #[serde(default = "tenth")]
+    pub rest: Quantity<Time>,
+    /// Time over which the load of the first instant is brought on [s]; default 0.1 s.
+    #[serde(default = "tenth")]
+    pub ramp: Quantity<Time>,
+    /// Points of the sleeper's top that share the load, as offsets in x and y from its centre [m]; default the
+    /// centre.
+    #[serde(default)]
+    pub seats: Vec<[Quantity<Length>; 2]>,
+}
+
+fn tenth() -> Quantity<Time> {
+    Quantity::new(0.1)
+}
+
+/// Shape of one cycle between minimum and maximum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SeatLoadKind {
+    /// Mean plus amplitude times sin 2πft: starts at the mean.
+    Sine,
+    /// Minimum plus range times (1 − cos 2πft)/2: starts and ends at the minimum.
+    Haversine,
+}

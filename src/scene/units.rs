@@ -1,0 +1,146 @@
+//! Quantities of a scene file: a plain number in SI, or a string with a unit such as `"20 MPa"`.
+
+use serde::de::{self, Deserialize, Deserializer, Unexpected, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A physical dimension: the units that a scene may write and the factor of each to SI.
+pub trait Dimension {
+    /// What the quantity is, with an example, for error messages.
+    const EXPECTED: &'static str;
+    /// Accepted units with their factor to SI.
+    const UNITS: &'static [(&'static str, f64)];
+}
+
+/// A number in SI units of dimension `D`.
+pub struct Quantity<D> {
+    /// Value in SI units.
+    pub si: f64,
+    dimension: PhantomData<D>,
+}
+
+impl<D> Quantity<D> {
+    /// A quantity of `si` SI units.
+    pub const fn new(si: f64) -> Quantity<D> {
+        Quantity { si, dimension: PhantomData }
+    }
+}
+
+impl<D> Clone for Quantity<D> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D> Copy for Quantity<D> {}
+
+impl<D> fmt::Debug for Quantity<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.si)
+    }
+}
+
+/// Values of a triple of quantities.
+pub fn vector<D>(v: &[Quantity<D>; 3]) -> [f64; 3] {
+    [v[0].si, v[1].si, v[2].si]
+}
+
+macro_rules! dimensions {
+    ($($(#[$doc:meta])* $name:ident: $expected:literal, [$(($unit:literal, $factor:expr)),*];)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name;
+        impl Dimension for $name {
+            const EXPECTED: &'static str = $expected;
+            const UNITS: &'static [(&'static str, f64)] = &[$(($unit, $factor)),*];
+        }
+    )*};
+}
+
+dimensions! {
+    /// Length [m].
+    Length: "a length in m, such as 0.3 or \"300 mm\"", [("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("km", 1e3)];
+    /// Time [s].
+    Time: "a time in s, such as 0.1 or \"100 ms\"", [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
+    /// Frequency [Hz].
+    Frequency: "a frequency in Hz, such as 10 or \"10 Hz\"", [("Hz", 1.0), ("kHz", 1e3), ("1/s", 1.0)];
+    /// Mass [kg].
+    Mass: "a mass in kg, such as 300 or \"300 kg\"", [("kg", 1.0), ("t", 1e3), ("g", 1e-3)];
+    /// Density [kg/m³].
+    Density: "a density in kg/m3, such as 2000 or \"2 t/m3\"", [("kg/m3", 1.0), ("t/m3", 1e3), ("g/cm3", 1e3)];
+    /// Stress or pressure [Pa].
+    Stress: "a stress in Pa, such as 2e7 or \"20 MPa\"", [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("N/mm2", 1e6), ("kN/m2", 1e3)];
+    /// Force [N].
+    Force: "a force in N, such as 5e4 or \"50 kN\"", [("N", 1.0), ("kN", 1e3), ("MN", 1e6)];
+    /// Stiffness [N/m].
+    Stiffness: "a stiffness in N/m, such as 2e6 or \"2 MN/m\"", [("N/m", 1.0), ("kN/m", 1e3), ("MN/m", 1e6), ("N/mm", 1e3), ("kN/mm", 1e6), ("GN/m", 1e9)];
+    /// Velocity [m/s].
+    Velocity: "a velocity in m/s, such as 0.1 or \"10 cm/s\"", [("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("km/h", 1.0 / 3.6)];
+    /// Acceleration [m/s²].
+    Acceleration: "an acceleration in m/s2, such as -9.81 or \"1 g\"", [("m/s2", 1.0), ("g", 9.806_65)];
+    /// Angular velocity [rad/s].
+    Spin: "an angular velocity in rad/s, such as 1.5", [("rad/s", 1.0), ("1/s", 1.0)];
+    /// Angle [rad].
+    Angle: "an angle in rad, or with its unit such as \"60 deg\"", [("rad", 1.0), ("deg", std::f64::consts::PI / 180.0)];
+    /// Rate [1/s].
+    Rate: "a rate in 1/s, such as 4.2", [("1/s", 1.0)];
+}
+
+impl<'de, D: Dimension> Deserialize<'de> for Quantity<D> {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct QuantityVisitor<D>(PhantomData<D>);
+        impl<D: Dimension> Visitor<'_> for QuantityVisitor<D> {
+            type Value = Quantity<D>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(D::EXPECTED)
+            }
+            fn visit_f64<E: de::Error>(self, v: f64) -> Result<Self::Value, E> {
+                if v.is_finite() {
+                    Ok(Quantity::new(v))
+                } else {
+                    Err(E::invalid_value(Unexpected::Float(v), &self))
+                }
+            }
+            fn visit_i64<E: de::Error>(self, v: i64) -> Result<Self::Value, E> {
+                Ok(Quantity::new(v as f64))
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
+                parse::<D>(text).map(Quantity::new).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+            }
+        }
+        deserializer.deserialize_any(QuantityVisitor(PhantomData))
+    }
+}
+
+/// Number and unit of `text` in SI, or `None` when either is not understood.
+fn parse<D: Dimension>(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (number, unit) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    let value: f64 = number.parse().ok().filter(|v: &f64| v.is_finite())?;
+    let unit = unit.trim();
+    if unit.is_empty() {
+        return Some(value);
+    }
+    D::UNITS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| value * factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_si_and_units_convert() {
+        assert_eq!(parse::<Stress>("20 MPa"), Some(2e7));
+        assert_eq!(parse::<Stress>("2e7"), Some(2e7));
+        assert_eq!(parse::<Velocity>("36 km/h"), Some(10.0));
+        assert_eq!(parse::<Angle>("180 deg"), Some(std::f64::consts::PI));
+    }
+
+    #[test]
+    fn a_unit_of_another_dimension_is_refused() {
+        assert_eq!(parse::<Stress>("20 kg"), None);
+        assert_eq!(parse::<Length>("2 s"), None);
+        assert_eq!(parse::<Length>("wide"), None);
+        assert_eq!(parse::<Length>("nan m"), None);
+    }
+}
