@@ -1,1 +1,3 @@
 //! Explicit discrete elements for ballasted track: spheres, rigid clumps, walls.
+
+pub mod shape;

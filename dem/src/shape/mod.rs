@@ -1,0 +1,3 @@
+//! Shapes of bodies.
+
+pub mod clump;
