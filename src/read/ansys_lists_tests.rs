@@ -1,0 +1,349 @@
+//! Every form that the lists may take, and every fault that they may have.
+
+use std::path::PathBuf;
+
+use super::*;
+
+/// A fresh folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let dir = std::env::temp_dir().join(format!("trackbed_lists_{}_{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    dir
+}
+
+/// Nodes 1–20 and 101–112: two bricks that share a face, numbered as users do, in no order.
+fn brick_nodes() -> String {
+    let mut rows: Vec<String> =
+        (1..=32).map(|i| format!("{} {}.5 {} {}", node(i), i, i * i, -(i as i32))).collect();
+    rows.reverse();
+    rows.join("\n") + "\n"
+}
+
+fn node(i: u32) -> u32 {
+    if i <= 20 { i } else { 80 + i }
+}
+
+fn element_nodes(first: u32) -> String {
+    (first..first + 20).map(|i| node(i).to_string()).collect::<Vec<_>>().join(" ")
+}
+
+fn elements() -> String {
+    format!("7 2 {}\n3 1 {}\n", element_nodes(1), element_nodes(13))
+}
+
+/// Reads lists given as text, from files in a folder of their own.
+fn read(name: &str, nodes: &str, elements: &str, constraints: Option<&str>) -> Result<Lists, String> {
+    read_as(name, nodes, elements, constraints, ListLayout::default())
+}
+
+fn read_as(
+    name: &str,
+    nodes: &str,
+    elements: &str,
+    constraints: Option<&str>,
+    layout: ListLayout,
+) -> Result<Lists, String> {
+    let dir = folder(name);
+    let path = |file: &str| dir.join(file);
+    std::fs::write(path("NODECOORD.DAT"), nodes).unwrap();
+    std::fs::write(path("ELEMENTNUM.DAT"), elements).unwrap();
+    let dof = constraints.map(|text| {
+        std::fs::write(path("DOF.DAT"), text).unwrap();
+        path("DOF.DAT")
+    });
+    let result = read_lists(&path("NODECOORD.DAT"), &path("ELEMENTNUM.DAT"), dof.as_deref(), &layout);
+    std::fs::remove_dir_all(&dir).unwrap();
+    // Messages without the folder, so that they can be compared whole.
+    let prefix = format!("{}{}", dir.display(), std::path::MAIN_SEPARATOR);
+    result
+        .map(|mut lists| {
+            lists.warnings.iter_mut().for_each(|w| *w = w.replace(&prefix, ""));
+            lists
+        })
+        .map_err(|error| error.to_string().replace(&prefix, ""))
+}
+
+fn refused(name: &str, nodes: &str, elements: &str, constraints: Option<&str>) -> String {
+    read(name, nodes, elements, constraints).expect_err("this list has a fault")
+}
+
+#[test]
+fn our_layout() {
+    let lists = read("plain", &brick_nodes(), &elements(), Some("5 1 0.0\n112 UZ -1.5e-3\n2 all\n")).unwrap();
+    let mesh = &lists.mesh;
+    assert_eq!(mesh.node_count(), 32);
+    assert_eq!((mesh.node_ids[0], mesh.node_ids[31]), (112, 1));
+    assert_eq!(mesh.coordinates[30], [2.5, 4.0, -2.0]);
+    assert_eq!(mesh.element_ids, [7, 3]);
+    assert_eq!(mesh.materials, [2, 1]);
+    // Node number 1 is the last of the file, index 31.
+    assert_eq!(mesh.connectivity[0], std::array::from_fn(|n| 31 - n as u32));
+    assert_eq!(mesh.connectivity[1], std::array::from_fn(|n| 19 - n as u32));
+    let expected = [(27, 0, 0.0), (0, 2, -1.5e-3), (30, 0, 0.0), (30, 1, 0.0), (30, 2, 0.0)];
+    let expected = expected.map(|(node, direction, value)| Constraint { node, direction, value });
+    assert_eq!(lists.constraints, expected);
+    assert!(lists.warnings.is_empty());
+}
+
+#[test]
+fn columns_are_recognised_by_count_and_content() {
+    let (a, b) = (element_nodes(1), element_nodes(13));
+    let cases = [
+        ("21_id", format!("7 {a}\n3 {b}\n"), [7, 3], [1, 1], true),
+        ("21_mat", format!("5 {a}\n5 {b}\n"), [1, 2], [5, 5], true),
+        ("20", format!("{a}\n{b}\n"), [1, 2], [1, 1], false),
+        ("26", format!("7 2 1 1 0 1 {a}\n3 4 1 1 0 1 {b}\n"), [7, 3], [2, 4], false),
+    ];
+    for (name, text, ids, materials, guessed) in cases {
+        let lists = read(name, &brick_nodes(), &text, None).unwrap();
+        assert_eq!(lists.mesh.element_ids, ids, "{name}");
+        assert_eq!(lists.mesh.materials, materials, "{name}");
+        assert_eq!(lists.mesh.connectivity[1][0], 19, "{name}");
+        assert_eq!(lists.warnings.len(), usize::from(guessed), "{name}: {:?}", lists.warnings);
+    }
+}
+
+#[test]
+fn the_scene_may_tell_the_columns() {
+    let text = format!("7 {}\n3 {}\n", element_nodes(1), element_nodes(13));
+    let layout = ListLayout { columns: ElementColumns::MaterialNodes, material: 9 };
+    let lists = read_as("told_mat", &brick_nodes(), &text, None, layout).unwrap();
+    assert_eq!((lists.mesh.materials, lists.mesh.element_ids), (vec![7, 3], vec![1, 2]));
+    let layout = ListLayout { columns: ElementColumns::IdNodes, material: 9 };
+    let lists = read_as("told_id", &brick_nodes(), &text, None, layout).unwrap();
+    assert_eq!((lists.mesh.materials, lists.mesh.element_ids), (vec![9, 9], vec![7, 3]));
+    assert!(lists.warnings.is_empty());
+    let layout = ListLayout { columns: ElementColumns::IdMaterialNodes, material: 1 };
+    let error = read_as("told_wrong", &brick_nodes(), &text, None, layout).unwrap_err();
+    let expected = "ELEMENTNUM.DAT:1: columns of an element: found 21, and 42 with the lines up to 2, \
+                    expected 22 (id mat n1…n20)";
+    assert_eq!(error, expected);
+}
+
+#[test]
+fn elements_of_several_lines() {
+    let plain = read("lines_plain", &brick_nodes(), &elements(), None).unwrap();
+    for per_line in [2, 5, 8, 10, 11, 12] {
+        let mut text = String::new();
+        for row in elements().lines() {
+            let fields: Vec<&str> = row.split(' ').collect();
+            for piece in fields.chunks(per_line) {
+                text += &(piece.join("  ") + "\n");
+            }
+        }
+        let split = read(&format!("lines_{per_line}"), &brick_nodes(), &text, None).unwrap();
+        assert_eq!(split, plain, "{per_line} per line");
+    }
+}
+
+#[test]
+fn faults_of_the_node_list() {
+    let bad = |name: &str, from: &str, to: &str| {
+        refused(name, &brick_nodes().replacen(from, to, 1), &elements(), None)
+    };
+    assert_eq!(
+        bad("real", "14.5 196 -14", "14.5 1.9.6 -14"),
+        "NODECOORD.DAT:19: coordinate y: found \"1.9.6\", expected a number"
+    );
+    assert_eq!(
+        bad("nan", "14.5 196 -14", "14.5 196 NaN"),
+        "NODECOORD.DAT:19: coordinate z: found \"NaN\", expected a finite number"
+    );
+    assert_eq!(
+        bad("overflow", "14.5 196", "1e400 196"),
+        "NODECOORD.DAT:19: coordinate x: found \"1e400\", expected a finite number"
+    );
+    assert_eq!(
+        bad("id", "14 14.5", "14.5 14.5"),
+        "NODECOORD.DAT:19: node number: found \"14.5\", expected a whole number of 0 or more"
+    );
+    assert_eq!(
+        bad("width", "14 14.5 196", "14 14.5"),
+        "NODECOORD.DAT:19: columns of a node: found 3, expected 4 (id x y z)"
+    );
+    assert_eq!(
+        bad("twice", "14 14.5", "20 14.5"),
+        "NODECOORD.DAT:19: node 20: found it again after line 13, expected each number once"
+    );
+    assert_eq!(
+        bad("rotated", "14.5 196 -14", "14.5 196 -14 0 30 0"),
+        "NODECOORD.DAT:19: nodal rotation: found 30, expected 0 (global directions)"
+    );
+    let none = "expected at least 20 rows of id x y z";
+    assert_eq!(refused("empty", "", &elements(), None), format!("NODECOORD.DAT: nodes: found none, {none}"));
+    assert_eq!(
+        refused("header", "! only this\nID X Y Z\n", &elements(), None),
+        format!("NODECOORD.DAT: nodes: found none, {none}")
+    );
+}
+
+#[test]
+fn faults_of_the_element_list() {
+    let bad = |name: &str, from: &str, to: &str| {
+        refused(name, &brick_nodes(), &elements().replacen(from, to, 1), None)
+    };
+    assert_eq!(
+        bad("absent", " 111 112\n", " 111 113\n"),
+        "ELEMENTNUM.DAT:2: element 3, node n20: found 113, expected a node of the node list"
+    );
+    assert_eq!(
+        bad("dropped", "8 9 10", "8 0 10"),
+        "ELEMENTNUM.DAT:1: element 7, node n9: found 0, a dropped mid-side node, expected a node of the node list"
+    );
+    assert_eq!(
+        bad("not_whole", "8 9 10", "8 9x 10"),
+        "ELEMENTNUM.DAT:1: element 7, node n9: found \"9x\", expected a whole number of 0 or more"
+    );
+    assert_eq!(
+        bad("material", "7 2 ", "7 -2 "),
+        "ELEMENTNUM.DAT:1: material of element 7: found \"-2\", expected a whole number of 0 or more"
+    );
+    assert_eq!(
+        bad("element_twice", "\n3 1", "\n7 1"),
+        "ELEMENTNUM.DAT:2: element 7: found it again after line 1, expected each number once"
+    );
+    assert_eq!(
+        bad("truncated", " 109 110 111 112\n", "\n"),
+        "ELEMENTNUM.DAT:2: columns of the last element: found 18 and the end of the file (a truncated element), \
+         expected 22 (id mat n1…n20)"
+    );
+    assert_eq!(
+        bad("wide", " 112\n", " 112 5\n"),
+        "ELEMENTNUM.DAT:2: columns of an element: found 23, expected 22 (id mat n1…n20)"
+    );
+    // The first element lacks a node: 22 is still what most lines have.
+    let narrow = elements().replacen(" 20\n", "\n", 1) + &elements().replace("7 2 ", "8 2 ");
+    assert_eq!(
+        refused("narrow", &brick_nodes(), &narrow, None),
+        "ELEMENTNUM.DAT:1: columns of an element: found 21, and 43 with the lines up to 2, expected 22 (id mat n1…n20)"
+    );
+    let none = "ELEMENTNUM.DAT: elements: found none, expected at least one row of id mat n1…n20";
+    assert_eq!(refused("no_elements", &brick_nodes(), "\r\n# nothing\r\n", None), none);
+}
+
+#[test]
+fn degenerate_elements_are_refused_by_name() {
+    // The forms that SOLID186 takes with repeated nodes, in its own order I…B.
+    let forms = [
+        ("wedge", [1, 2, 3, 3, 5, 6, 7, 7, 9, 10, 3, 12, 13, 14, 7, 16, 17, 18, 19, 19], 15, 3),
+        ("pyramid", [1, 2, 3, 4, 5, 5, 5, 5, 9, 10, 11, 12, 5, 5, 5, 5, 17, 18, 19, 20], 13, 5),
+        ("tetrahedron", [1, 2, 3, 3, 5, 5, 5, 5, 9, 10, 3, 12, 5, 5, 5, 5, 17, 18, 19, 19], 10, 3),
+    ];
+    for (name, nodes, distinct, repeated) in forms {
+        let row = nodes.map(|n: u32| n.to_string()).join(" ");
+        let message = refused(name, &brick_nodes(), &format!("4 1 {row}\n"), None);
+        let expected = format!(
+            "ELEMENTNUM.DAT:1: element 4: found node {repeated} more than once ({distinct} different nodes: \
+             a {name}), expected 20 different nodes (wedges, pyramids and tetrahedra are not supported in \
+             this version)"
+        );
+        assert_eq!(message, expected);
+    }
+}
+
+#[test]
+fn faults_of_the_constraint_list() {
+    let bad = |name: &str, text: &str| refused(name, &brick_nodes(), &elements(), Some(text));
+    assert_eq!(
+        bad("dof_absent", "5 1 0\n99 1 0\n"),
+        "DOF.DAT:2: constrained node: found 99, expected a node of the node list"
+    );
+    for (name, direction) in [("rotx", "ROTX"), ("four", "4"), ("zero", "0")] {
+        assert_eq!(
+            bad(name, &format!("5 {direction} 0\n")),
+            format!("DOF.DAT:1: direction: found \"{direction}\", expected 1, 2, 3, UX, UY, UZ or ALL")
+        );
+    }
+    assert_eq!(
+        bad("two_values", "5 UX 0\n6 1 0\n5 1 0.25\n"),
+        "DOF.DAT:3: constraint of node 5 in x: found 0.25 after 0 on line 1, expected one value"
+    );
+    // A decimal comma makes two numbers.
+    assert_eq!(bad("value", "5 1 0,5\n"), "DOF.DAT:1: imaginary part: found 5, expected 0");
+    assert_eq!(
+        bad("value_text", "5 1 o.o\n"),
+        "DOF.DAT:1: prescribed value: found \"o.o\", expected a number"
+    );
+    assert_eq!(
+        bad("dof_width", "5\n"),
+        "DOF.DAT:1: columns of a constraint: found 1, expected 3 (node dir value) or 2 (node dir)"
+    );
+}
+
+#[test]
+fn constraints_given_twice_alike_are_one() {
+    let lists = read("alike", &brick_nodes(), &elements(), Some("NODE LABEL REAL IMAG\n5 ALL\n5 ux 0. 0.\n"))
+        .unwrap();
+    assert_eq!(lists.constraints.len(), 3);
+    let empty = read("no_dof", &brick_nodes(), &elements(), Some("! none\n")).unwrap();
+    assert!(empty.constraints.is_empty());
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let dir = folder("missing");
+    let file = dir.join("NODECOORD.DAT");
+    let error = read_lists(&file, &file, None, &ListLayout::default()).unwrap_err();
+    let expected = format!("{}: node list: found no such file, expected a readable file", file.display());
+    assert_eq!(error.to_string(), expected);
+    let error = read_lists(&dir, &file, None, &ListLayout::default()).unwrap_err();
+    assert!(error.to_string().contains("found that it cannot be read"), "{error}");
+    std::fs::remove_dir_all(&dir).unwrap();
+}
+
+#[test]
+fn unused_nodes_are_a_warning() {
+    let nodes = brick_nodes() + "900 0 0 0\n";
+    let lists = read("unused", &nodes, &elements(), None).unwrap();
+    assert_eq!(lists.warnings, ["NODECOORD.DAT: node 900 belongs to no element"]);
+    let nodes = nodes + "901 0 0 0\n";
+    let lists = read("unused_2", &nodes, &elements(), None).unwrap();
+    assert_eq!(lists.warnings, ["NODECOORD.DAT: 2 nodes belong to no element: 900, 901"]);
+}
+
+/// A block of 480 distorted elements in three materials, with constraints, through every mangling at once: commas, `D` exponents, carriage returns, elements of three lines, headers, a byte order mark.
+#[test]
+fn a_mangled_mesh_is_the_plain_mesh() {
+    let mesh = crate::write::sample::block([10, 6, 8]);
+    let dir = folder("mangled");
+    let constraints: Vec<Constraint> = (0..mesh.node_count() as u32)
+        .flat_map(|node| (0..3).map(move |direction| (node, direction)))
+        .filter(|(node, direction)| (node + u32::from(*direction)).is_multiple_of(4))
+        .map(|(node, direction)| Constraint { node, direction, value: f64::from(node % 3) * 1e-4 })
+        .collect();
+    crate::write::ansys_lists::write_lists(&mesh, &constraints, &dir).unwrap();
+    let path = |name: &str| dir.join(name);
+    let read = || {
+        let (n, e, d) = (path("NODECOORD.DAT"), path("ELEMENTNUM.DAT"), path("DOF.DAT"));
+        read_lists(&n, &e, Some(&d), &ListLayout::default()).unwrap()
+    };
+    let plain = read();
+    assert_eq!(plain.mesh, mesh);
+    assert_eq!(plain.constraints, constraints);
+    assert!(plain.warnings.is_empty());
+
+    for (name, header) in
+        [("NODECOORD.DAT", "NODE  X  Y  Z"), ("ELEMENTNUM.DAT", "ELEM NODES"), ("DOF.DAT", "NODE LABEL REAL")]
+    {
+        let text = std::fs::read_to_string(path(name)).unwrap();
+        let mut mangled = format!("\u{feff}! mangled\r\n{header}\r\n");
+        for row in text.lines() {
+            let fields: Vec<String> = row
+                .split_whitespace()
+                .map(|f| if name == "ELEMENTNUM.DAT" { f.to_string() } else { f.replace('e', "D") })
+                .collect();
+            for piece in fields.chunks(8) {
+                mangled += &format!(" {}\r\n", piece.join(" , "));
+            }
+            mangled += "\r\n";
+        }
+        let mangled = match name {
+            "DOF.DAT" => mangled.replace(" , 1 , ", " , UX , ").replace(" , 3 , ", " , uz , "),
+            _ => mangled,
+        };
+        std::fs::write(path(name), mangled).unwrap();
+    }
+    assert_eq!(read(), plain);
+    std::fs::remove_dir_all(&dir).unwrap();
+}

@@ -1,0 +1,170 @@
+//! The columns of an element list: which there are, and which rows belong to one element.
+//!
+//! An element may take one line or several. The number of columns of an element is the one that divides the
+//! lines of the file into whole elements; the first of 22, 21, 20 and 26 that fits is taken. Where none does,
+//! the message is about the one that most lines have, or else about the one that gets furthest, so that it
+//! names the first damaged element.
+
+use super::ansys_lists::ElementColumns;
+use super::error::ReadError;
+use super::table::{Row, Table};
+
+/// What the columns before the nodes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// Column of the element number.
+    pub id: Option<usize>,
+    /// Column of the material number.
+    pub material: Option<usize>,
+    /// First of the 20 node columns.
+    pub nodes: usize,
+}
+
+const ID_MATERIAL: Columns = Columns { id: Some(0), material: Some(1), nodes: 2 };
+const ID: Columns = Columns { id: Some(0), material: None, nodes: 1 };
+const MATERIAL: Columns = Columns { id: None, material: Some(0), nodes: 1 };
+const NEITHER: Columns = Columns { id: None, material: None, nodes: 0 };
+/// Element, material, type, real constant, coordinate system, section: a listing of ELIST.
+const LISTING: Columns = Columns { id: Some(0), material: Some(1), nodes: 6 };
+
+impl Columns {
+    fn width(self) -> usize {
+        self.nodes + 20
+    }
+
+    fn describe(self) -> &'static str {
+        match (self.id, self.material, self.nodes) {
+            (_, _, 6) => "26 (id mat type real system section n1…n20)",
+            (Some(_), Some(_), _) => "22 (id mat n1…n20)",
+            (Some(_), None, _) => "21 (id n1…n20)",
+            (None, Some(_), _) => "21 (mat n1…n20)",
+            (None, None, _) => "20 (n1…n20)",
+        }
+    }
+}
+
+/// One element: its rows are `first..end` of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// First row.
+    pub first: usize,
+    /// One past its last row.
+    pub end: usize,
+}
+
+/// Splits the table into elements, finding the columns unless `wanted` tells them. Pushes a warning where the
+/// choice rests on a guess.
+pub fn split(
+    table: &Table,
+    wanted: ElementColumns,
+    warnings: &mut Vec<String>,
+) -> Result<(Columns, Vec<Record>), ReadError> {
+    let told = match wanted {
+        ElementColumns::IdMaterialNodes => Some(ID_MATERIAL),
+        ElementColumns::IdNodes => Some(ID),
+        ElementColumns::MaterialNodes => Some(MATERIAL),
+        ElementColumns::Nodes => Some(NEITHER),
+        ElementColumns::Auto => None,
+    };
+    if let Some(columns) = told {
+        let (records, fault) = group(table, columns);
+        return fault.map_or(Ok((columns, records)), Err);
+    }
+    let mut best: Option<(Columns, Vec<Record>, Option<ReadError>)> = None;
+    for columns in [ID_MATERIAL, ID, NEITHER, LISTING] {
+        let (records, fault) = group(table, columns);
+        let rows_used = |records: &[Record]| records.last().map_or(0, |r| r.end);
+        let better = match &best {
+            None => true,
+            Some((_, _, None)) => false,
+            Some((kept, _, Some(_))) if fault.is_some() && usual(table, *kept) => false,
+            Some((_, kept, Some(_))) => {
+                fault.is_none() || usual(table, columns) || rows_used(&records) > rows_used(kept)
+            }
+        };
+        if better {
+            best = Some((columns, records, fault));
+        }
+    }
+    let (mut columns, records, fault) = best.expect("the loop above tries four candidates");
+    if let Some(fault) = fault {
+        return Err(fault);
+    }
+    if columns == ID {
+        columns = id_or_material(table, &records, warnings)?;
+    }
+    Ok((columns, records))
+}
+
+/// Whether most lines have just these columns.
+fn usual(table: &Table, columns: Columns) -> bool {
+    let count = table.rows.iter().filter(|row| row.width() == columns.width()).count();
+    2 * count > table.rows.len()
+}
+
+/// Groups rows into elements of a width; stops at the first fault.
+fn group(table: &Table, columns: Columns) -> (Vec<Record>, Option<ReadError>) {
+    let width = columns.width();
+    let mut records = Vec::with_capacity(table.rows.len());
+    let mut first = 0;
+    while first < table.rows.len() {
+        let (mut end, mut count) = (first, 0);
+        while count < width && end < table.rows.len() {
+            count += table.rows[end].width();
+            end += 1;
+        }
+        if count != width {
+            return (records, Some(wrong_width(table, columns, first, end, count)));
+        }
+        records.push(Record { first, end });
+        first = end;
+    }
+    (records, None)
+}
+
+fn wrong_width(table: &Table, columns: Columns, first: usize, end: usize, count: usize) -> ReadError {
+    let (line, own, expected) = (table.rows[first].line, table.rows[first].width(), columns.describe());
+    let last = count < columns.width();
+    let key = if last { "columns of the last element" } else { "columns of an element" };
+    let found = match (end - first, last) {
+        (1, false) => format!("{own}"),
+        (1, true) => format!("{own} and the end of the file (a truncated element)"),
+        (_, true) => format!("{count} up to the end of the file (a truncated element)"),
+        (_, false) => format!("{own}, and {count} with the lines up to {}", table.rows[end - 1].line),
+    };
+    ReadError::at(&table.file, line, key, found, expected)
+}
+
+/// Of 21 columns the first is a material number where its values repeat (few different ones), and an element
+/// number where they differ.
+fn id_or_material(
+    table: &Table,
+    records: &[Record],
+    warnings: &mut Vec<String>,
+) -> Result<Columns, ReadError> {
+    let mut first: Vec<u32> = Vec::with_capacity(records.len());
+    for record in records {
+        first.push(table.whole(&table.rows[record.first], 0, "element or material number")?);
+    }
+    first.sort_unstable();
+    first.dedup();
+    let (columns, read, other) = if 2 * first.len() > records.len() {
+        (ID, "element number", "material-nodes")
+    } else {
+        (MATERIAL, "material number", "id-nodes")
+    };
+    warnings.push(format!(
+        "{}: 21 columns: the first is read as the {read} ({} different values in {} elements); \
+         columns = \"{other}\" reads it the other way",
+        table.file.display(),
+        first.len(),
+        records.len()
+    ));
+    Ok(columns)
+}
+
+/// The fields of one element with the line of each, in order.
+pub fn fields<'a>(table: &'a Table, record: Record) -> impl Iterator<Item = (usize, &'a str)> + 'a {
+    let rows: &'a [Row] = &table.rows[record.first..record.end];
+    rows.iter().flat_map(move |row| table.fields(row).map(move |field| (row.line, field)))
+}

@@ -1,0 +1,48 @@
+//! The three ANSYS lists in our own layout: the form that `read::ansys_lists` documents.
+
+use std::io::Write;
+use std::path::Path;
+
+use trackbed_fem::mesh::{Constraint, Mesh};
+
+use super::atomic;
+use super::error::{WriteError, check_field};
+
+/// Writes `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT` into the folder `dir`; reading them back gives the
+/// same bits.
+///
+/// # Errors
+/// A coordinate or value that is not finite, and what the system refuses.
+pub fn write_lists(mesh: &Mesh, constraints: &[Constraint], dir: &Path) -> Result<(), WriteError> {
+    let nodes = dir.join("NODECOORD.DAT");
+    check_field(&nodes, "coordinates", mesh.coordinates.as_flattened(), 3, mesh.node_count())?;
+    atomic::write(&nodes, |out| {
+        for (id, [x, y, z]) in mesh.node_ids.iter().zip(&mesh.coordinates) {
+            writeln!(out, "{id:8} {x:24.16e} {y:24.16e} {z:24.16e}").map_err(WriteError::io(&nodes))?;
+        }
+        Ok(())
+    })?;
+
+    let elements = dir.join("ELEMENTNUM.DAT");
+    atomic::write(&elements, |out| {
+        for (e, row) in mesh.connectivity.iter().enumerate() {
+            let mut line = format!("{:8} {:4}", mesh.element_ids[e], mesh.materials[e]);
+            for node in row {
+                line += &format!(" {:7}", mesh.node_ids[*node as usize]);
+            }
+            writeln!(out, "{line}").map_err(WriteError::io(&elements))?;
+        }
+        Ok(())
+    })?;
+
+    let dof = dir.join("DOF.DAT");
+    let values: Vec<f64> = constraints.iter().map(|c| c.value).collect();
+    check_field(&dof, "value", &values, 1, constraints.len())?;
+    atomic::write(&dof, |out| {
+        for c in constraints {
+            let (id, direction, value) = (mesh.node_ids[c.node as usize], c.direction + 1, c.value);
+            writeln!(out, "{id:8} {direction} {value:24.16e}").map_err(WriteError::io(&dof))?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,82 @@
+//! Files that appear whole or not at all.
+//!
+//! The content goes to `NAME.part` in the same folder, is flushed to the disk, and takes the name in one
+//! step, so that a reader never sees half a file and a full disk leaves the last good one.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::error::WriteError;
+
+/// Writes `file` with what `fill` puts out; on any error the old file, or none, is left.
+///
+/// # Errors
+/// What the system refuses, and what `fill` returns.
+pub fn write(
+    file: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    let part = part_name(file);
+    let result =
+        write_part(file, &part, fill).and_then(|()| fs::rename(&part, file).map_err(WriteError::io(file)));
+    if result.is_err() {
+        // The part file may not even exist; its loss is no second error.
+        let _ = fs::remove_file(&part);
+    }
+    result
+}
+
+fn write_part(
+    file: &Path,
+    part: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    let mut out = BufWriter::with_capacity(1 << 16, File::create(part).map_err(WriteError::io(file))?);
+    fill(&mut out)?;
+    let raw = out.into_inner().map_err(|error| WriteError::io(file)(error.into_error()))?;
+    raw.sync_data().map_err(WriteError::io(file))
+}
+
+/// The name under which a file is written.
+fn part_name(file: &Path) -> PathBuf {
+    let mut name = file.as_os_str().to_owned();
+    name.push(".part");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_no_part() {
+        let dir = folder("atomic");
+        let file = dir.join("a.txt");
+        let text = |text: &'static str| {
+            let at = file.clone();
+            move |out: &mut dyn Write| out.write_all(text.as_bytes()).map_err(WriteError::io(&at))
+        };
+        write(&file, text("one")).unwrap();
+        let error = write(&file, |out| {
+            text("half")(out)?;
+            Err(WriteError::format(&file, "enough"))
+        });
+        assert_eq!(error.unwrap_err().to_string(), format!("{}: enough", file.display()));
+        assert_eq!(fs::read_to_string(&file).unwrap(), "one");
+        write(&file, text("two")).unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "two");
+        assert_eq!(fs::read_dir(&dir).unwrap().count(), 1);
+        fs::remove_dir_all(&dir).unwrap();
+    }
+
+    #[test]
+    fn a_missing_folder_is_named() {
+        let dir = folder("atomic_missing");
+        let file = dir.join("no/such/a.txt");
+        let error = write(&file, |_| Ok(())).unwrap_err();
+        assert!(error.to_string().starts_with(&format!("{}: cannot be written", file.display())), "{error}");
+        fs::remove_dir_all(&dir).unwrap();
+    }
+}

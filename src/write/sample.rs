@@ -1,0 +1,84 @@
+//! Meshes and folders for the tests of readers and writers.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use trackbed_fem::mesh::Mesh;
+
+/// A fresh folder for one test.
+pub fn folder(name: &str) -> PathBuf {
+    let dir = std::env::temp_dir().join(format!("trackbed_{}_{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    dir
+}
+
+/// Corners and mid-sides of a hex20 on the lattice of half sides, SOLID186 order.
+const LATTICE: [[usize; 3]; 20] = [
+    [0, 0, 0],
+    [2, 0, 0],
+    [2, 2, 0],
+    [0, 2, 0],
+    [0, 0, 2],
+    [2, 0, 2],
+    [2, 2, 2],
+    [0, 2, 2],
+    [1, 0, 0],
+    [2, 1, 0],
+    [1, 2, 0],
+    [0, 1, 0],
+    [1, 0, 2],
+    [2, 1, 2],
+    [1, 2, 2],
+    [0, 1, 2],
+    [0, 0, 1],
+    [2, 0, 1],
+    [2, 2, 1],
+    [0, 2, 1],
+];
+
+/// A block of `n[0]` x `n[1]` x `n[2]` unit elements in three horizontal layers of material.
+pub fn straight_block(n: [usize; 3]) -> Mesh {
+    mapped_block(n, |p| p)
+}
+
+/// The same with curved edges, and distorted without symmetry.
+pub fn block(n: [usize; 3]) -> Mesh {
+    mapped_block(n, |[x, y, z]| {
+        [
+            x + 0.11 * (1.3 * y + 0.4).sin() + 0.07 * z * z / (1.0 + z),
+            1.2 * y + 0.09 * (1.7 * x + 0.8 * z).cos(),
+            0.8 * z + 0.05 * x * y / (1.0 + x) + 0.06 * (2.1 * x - y).sin(),
+        ]
+    })
+}
+
+fn mapped_block(n: [usize; 3], map: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
+    let mut index: BTreeMap<[usize; 3], u32> = BTreeMap::new();
+    for i in 0..=2 * n[0] {
+        for j in 0..=2 * n[1] {
+            for k in 0..=2 * n[2] {
+                if i % 2 + j % 2 + k % 2 <= 1 {
+                    let next = index.len() as u32;
+                    index.insert([i, j, k], next);
+                }
+            }
+        }
+    }
+    let mut mesh = Mesh::default();
+    for (p, at) in &index {
+        mesh.node_ids.push(3 * at + 7);
+        mesh.coordinates.push(map(p.map(|c| 0.5 * c as f64)));
+    }
+    for k in 0..n[2] {
+        for j in 0..n[1] {
+            for i in 0..n[0] {
+                let nodes = LATTICE.map(|l| index[&[2 * i + l[0], 2 * j + l[1], 2 * k + l[2]]]);
+                mesh.element_ids.push(1000 - mesh.connectivity.len() as u32);
+                mesh.materials.push(1 + (3 * k / n[2]) as u32);
+                mesh.connectivity.push(nodes);
+            }
+        }
+    }
+    mesh
+}

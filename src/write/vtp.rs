@@ -1,0 +1,240 @@
+//! Grains, force chains and walls as VTK poly data (`.vtp`).
+//!
+//! Grains are points: a Glyph of spheres scaled by `radius` shows them. Chains are lines between the partners
+//! of a contact: a Tube by `normal_force` shows them. Walls are polygons.
+
+use std::path::Path;
+
+use vtkio::IOBuffer;
+use vtkio::model::{Attributes, DataSet, PolyDataPiece, VertexNumbers};
+
+use super::error::WriteError;
+use super::vtk::{self, Fields};
+
+/// The grains at one moment: one item per sphere, the spheres of a clump with the `id` of their body.
+/// Every field has the shape `[spheres]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GrainFrame {
+    /// Centre of the sphere [m].
+    pub position: Vec<[f64; 3]>,
+    /// Radius of the sphere [m].
+    pub radius: Vec<f64>,
+    /// Velocity of the centre [m/s].
+    pub velocity: Vec<[f64; 3]>,
+    /// Angular velocity of the body, world axes [rad/s].
+    pub spin: Vec<[f64; 3]>,
+    /// Orientation of the body: quaternion w, x, y, z [1].
+    pub orientation: Vec<[f64; 4]>,
+    /// Number of the body.
+    pub id: Vec<u32>,
+    /// Number of the part (group) that the body belongs to.
+    pub part: Vec<u32>,
+    /// Mean stress of the body, tension positive [Pa].
+    pub mean_stress: Vec<f64>,
+    /// Sum of contact forces on the body [N].
+    pub force: Vec<[f64; 3]>,
+}
+
+/// The contacts at one moment. Every field has the shape `[contacts]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChainFrame {
+    /// Centres of the two partners, or centre and contact point [m].
+    pub ends: Vec<[[f64; 3]; 2]>,
+    /// Normal force, compression positive [N].
+    pub normal_force: Vec<f64>,
+    /// Magnitude of the tangential force [N].
+    pub tangential_force: Vec<f64>,
+    /// Kind of contact, as the run numbers it.
+    pub kind: Vec<u32>,
+}
+
+/// The walls at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallFrame {
+    /// Corner points [m].
+    pub points: Vec<[f64; 3]>,
+    /// Corners of each polygon, as indices of `points`.
+    pub polygons: Vec<Vec<u32>>,
+    /// Number of the wall that each polygon belongs to. Shape `[polygons]`.
+    pub id: Vec<u32>,
+}
+
+/// Writes the grains: point data of the names of [`GrainFrame`].
+///
+/// # Errors
+/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
+    let count = frame.position.len();
+    let mut fields = Fields::new(file, count);
+    fields.scalar("radius", &frame.radius)?;
+    fields.vector("velocity", frame.velocity.as_flattened())?;
+    fields.vector("spin", frame.spin.as_flattened())?;
+    fields.generic("orientation", frame.orientation.as_flattened(), 4)?;
+    fields.ids("id", &frame.id)?;
+    fields.ids("part", &frame.part)?;
+    fields.scalar("mean_stress", &frame.mean_stress)?;
+    fields.vector("force", frame.force.as_flattened())?;
+    let (point, fields_compressible) = fields.finish();
+    let compressed = fields_compressible && [24 * count, 8 * count].into_iter().all(vtk::compressible);
+    let piece = PolyDataPiece {
+        points: vtk::points(file, &frame.position)?,
+        verts: Some(vtk::cells_in_order(count, 1)),
+        data: Attributes { point, cell: Vec::new() },
+        ..empty()
+    };
+    vtk::write(file, DataSet::inline(piece), compressed)
+}
+
+/// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`.
+///
+/// # Errors
+/// As [`write_grains`].
+pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
+    let count = frame.ends.len();
+    let mut fields = Fields::new(file, count);
+    fields.scalar("normal_force", &frame.normal_force)?;
+    fields.scalar("tangential_force", &frame.tangential_force)?;
+    let parts = frame.normal_force.iter().zip(&frame.tangential_force);
+    let magnitude: Vec<f64> = parts.map(|(normal, tangential)| normal.hypot(*tangential)).collect();
+    fields.scalar("magnitude", &magnitude)?;
+    fields.ids("kind", &frame.kind)?;
+    let (cell, fields_compressible) = fields.finish();
+    let geometry = [48 * count, 16 * count, 8 * count];
+    let compressed = fields_compressible && geometry.into_iter().all(vtk::compressible);
+    let piece = PolyDataPiece {
+        points: vtk::points(file, frame.ends.as_flattened())?,
+        lines: Some(vtk::cells_in_order(count, 2)),
+        data: Attributes { point: Vec::new(), cell },
+        ..empty()
+    };
+    vtk::write(file, DataSet::inline(piece), compressed)
+}
+
+/// Writes the walls: cell data `id`.
+///
+/// # Errors
+/// As [`write_grains`]; a polygon of fewer than three corners or with a corner that does not exist.
+pub fn write_walls(file: &Path, frame: &WallFrame) -> Result<(), WriteError> {
+    for (at, polygon) in frame.polygons.iter().enumerate() {
+        if polygon.len() < 3 {
+            let message = format!("polygon {at} has {} corners, expected 3 or more", polygon.len());
+            return Err(WriteError::format(file, message));
+        }
+        if let Some(corner) = polygon.iter().find(|c| **c as usize >= frame.points.len()) {
+            let message = format!("polygon {at} names point {corner}, expected below {}", frame.points.len());
+            return Err(WriteError::format(file, message));
+        }
+    }
+    let mut fields = Fields::new(file, frame.polygons.len());
+    fields.ids("id", &frame.id)?;
+    let (cell, fields_compressible) = fields.finish();
+    let connectivity: Vec<u64> = frame.polygons.iter().flatten().map(|c| u64::from(*c)).collect();
+    let ends = frame.polygons.iter().scan(0, |end, polygon| {
+        *end += polygon.len() as u64;
+        Some(*end)
+    });
+    let offsets: Vec<u64> = ends.collect();
+    let geometry = [24 * frame.points.len(), 8 * connectivity.len(), 8 * offsets.len()];
+    let compressed = fields_compressible && geometry.into_iter().all(vtk::compressible);
+    let piece = PolyDataPiece {
+        points: vtk::points(file, &frame.points)?,
+        polys: Some(VertexNumbers::XML { connectivity, offsets }),
+        data: Attributes { point: Vec::new(), cell },
+        ..empty()
+    };
+    vtk::write(file, DataSet::inline(piece), compressed)
+}
+
+fn empty() -> PolyDataPiece {
+    PolyDataPiece {
+        points: IOBuffer::F64(Vec::new()),
+        verts: None,
+        lines: None,
+        polys: None,
+        strips: None,
+        data: Attributes::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+
+    fn grains(count: usize) -> GrainFrame {
+        let v = |i: usize| [i as f64, 0.5, -1.0];
+        GrainFrame {
+            position: (0..count).map(v).collect(),
+            radius: vec![0.1; count],
+            velocity: (0..count).map(v).collect(),
+            spin: (0..count).map(v).collect(),
+            orientation: vec![[1.0, 0.0, 0.0, 0.0]; count],
+            id: (0..count as u32).collect(),
+            part: vec![2; count],
+            mean_stress: vec![-3.0; count],
+            force: (0..count).map(v).collect(),
+        }
+    }
+
+    #[test]
+    fn a_bad_value_is_named_by_field_and_grain() {
+        let dir = folder("vtp_nan");
+        let file = dir.join("grains.vtp");
+        let mut frame = grains(5);
+        frame.orientation[3][2] = f64::NAN;
+        let error = write_grains(&file, &frame).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!("{}: orientation at index 3 is NaN: not written", file.display())
+        );
+        let mut frame = grains(5);
+        frame.position[4][0] = f64::NEG_INFINITY;
+        let error = write_grains(&file, &frame).unwrap_err();
+        assert!(error.to_string().contains("points at index 4 is -inf"), "{error}");
+        let mut frame = grains(5);
+        frame.id.pop();
+        let error = write_grains(&file, &frame).unwrap_err();
+        assert!(error.to_string().contains("id has 4 values, expected 5"), "{error}");
+        assert!(!file.exists());
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+
+    #[test]
+    fn bad_polygons_are_refused() {
+        let dir = folder("vtp_walls");
+        let file = dir.join("walls.vtp");
+        let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let frame = WallFrame { points: points.clone(), polygons: vec![vec![0, 1, 3]], id: vec![0] };
+        let error = write_walls(&file, &frame).unwrap_err();
+        assert!(error.to_string().contains("polygon 0 names point 3, expected below 3"), "{error}");
+        let frame = WallFrame { points, polygons: vec![vec![0, 1]], id: vec![0] };
+        let error = write_walls(&file, &frame).unwrap_err();
+        assert!(error.to_string().contains("polygon 0 has 2 corners"), "{error}");
+        assert!(!file.exists());
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+
+    #[test]
+    fn chains_hold_the_magnitude_of_both_forces() {
+        let dir = folder("vtp_chains");
+        let file = dir.join("chains.vtp");
+        let frame = ChainFrame {
+            ends: vec![[[0.0; 3], [1.0, 2.0, 3.0]]],
+            normal_force: vec![3.0],
+            tangential_force: vec![4.0],
+            kind: vec![1],
+        };
+        write_chains(&file, &frame).unwrap();
+        let DataSet::PolyData { mut pieces, .. } = vtkio::Vtk::import(&file).unwrap().data else {
+            panic!("not poly data")
+        };
+        let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();
+        assert_eq!(piece.points.into_vec::<f64>().unwrap(), [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
+        let magnitude = piece.data.cell.iter().find_map(|a| match a {
+            vtkio::model::Attribute::DataArray(a) if a.name == "magnitude" => a.data.cast_into::<f64>(),
+            _ => None,
+        });
+        assert_eq!(magnitude.unwrap(), [5.0]);
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+}

@@ -1,0 +1,157 @@
+//! The solid as a VTK unstructured grid (`.vtu`): hex20 cells with the fields of one moment.
+//!
+//! VTK_QUADRATIC_HEXAHEDRON (cell type 25) numbers its nodes as SOLID186 does: corners of the bottom, corners
+//! of the top, mid-sides of the bottom, of the top, uprights. So the connectivity goes out unchanged.
+
+use std::path::Path;
+
+use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
+use vtkio::model::{Attributes, CellType, Cells, DataSet, UnstructuredGridPiece, VertexNumbers};
+
+use super::error::WriteError;
+use super::vtk::{self, Fields};
+
+/// The solid at one moment. Coordinates are those of the undeformed mesh: warp by `displacement` to deform.
+#[derive(Clone, Copy, Debug)]
+pub struct SolidFrame<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// Displacement [m]. Shape `[3 * nodes]`.
+    pub displacement: &'a [f64],
+    /// Velocity [m/s]. Shape `[3 * nodes]`.
+    pub velocity: &'a [f64],
+    /// Stress at the nodes, tension positive: xx, yy, zz, xy, yz, zx [Pa]. Shape `[nodes]`.
+    pub stress: &'a [[f64; 6]],
+    /// Von Mises stress at the nodes [Pa]. Shape `[nodes]`.
+    pub von_mises: &'a [f64],
+    /// Equivalent plastic strain at the nodes [1]. Shape `[nodes]`.
+    pub equivalent_plastic_strain: &'a [f64],
+    /// Yield function at the nodes, negative inside the surface [Pa]. Shape `[nodes]`.
+    pub yield_function: &'a [f64],
+}
+
+/// Writes the solid: point data `displacement`, `velocity`, `stress` (3x3), `von_mises`,
+/// `equivalent_plastic_strain`, `yield_function`, `node_id`; cell data `material`, `element_id`.
+///
+/// # Errors
+/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+pub fn write_solid(file: &Path, frame: &SolidFrame) -> Result<(), WriteError> {
+    let mut fields = Fields::new(file, frame.mesh.node_count());
+    fields.vector("displacement", frame.displacement)?;
+    fields.vector("velocity", frame.velocity)?;
+    fields.tensor("stress", frame.stress)?;
+    fields.scalar("von_mises", frame.von_mises)?;
+    fields.scalar("equivalent_plastic_strain", frame.equivalent_plastic_strain)?;
+    fields.scalar("yield_function", frame.yield_function)?;
+    fields.ids("node_id", &frame.mesh.node_ids)?;
+    write_grid(file, frame.mesh, fields)
+}
+
+/// Writes a mesh alone: point data `node_id` and `constraint` (1 for x, plus 2 for y, plus 4 for z); cell
+/// data `material`, `element_id`.
+///
+/// # Errors
+/// As [`write_solid`].
+pub fn write_mesh(file: &Path, mesh: &Mesh, constraints: &[Constraint]) -> Result<(), WriteError> {
+    let mut mask = vec![0_u32; mesh.node_count()];
+    for constraint in constraints {
+        mask[constraint.node as usize] |= 1 << constraint.direction;
+    }
+    let mut fields = Fields::new(file, mesh.node_count());
+    fields.ids("node_id", &mesh.node_ids)?;
+    fields.ids("constraint", &mask)?;
+    write_grid(file, mesh, fields)
+}
+
+fn write_grid(file: &Path, mesh: &Mesh, point_fields: Fields) -> Result<(), WriteError> {
+    let (nodes, elements) = (mesh.node_count(), mesh.element_count());
+    let mut cell_fields = Fields::new(file, elements);
+    cell_fields.ids("material", &mesh.materials)?;
+    cell_fields.ids("element_id", &mesh.element_ids)?;
+    let (point, points_compressible) = point_fields.finish();
+    let (cell, cells_compressible) = cell_fields.finish();
+    let connectivity: Vec<u64> = mesh.connectivity.iter().flatten().map(|n| u64::from(*n)).collect();
+    let offsets: Vec<u64> = (1..=elements).map(|e| (HEX20_NODES * e) as u64).collect();
+    // Cell types are single bytes, offsets and connectivity of eight.
+    let geometry = [24 * nodes, 8 * connectivity.len(), 8 * elements, elements];
+    let compressed = points_compressible && cells_compressible && geometry.into_iter().all(vtk::compressible);
+    let piece = UnstructuredGridPiece {
+        points: vtk::points(file, &mesh.coordinates)?,
+        cells: Cells {
+            cell_verts: VertexNumbers::XML { connectivity, offsets },
+            types: vec![CellType::QuadraticHexahedron; elements],
+        },
+        data: Attributes { point, cell },
+    };
+    vtk::write(file, DataSet::inline(piece), compressed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample;
+
+    #[test]
+    fn a_field_that_is_not_finite_is_named_and_nothing_written() {
+        let dir = sample::folder("vtu_nan");
+        let file = dir.join("solid.vtu");
+        let mesh = sample::block([2, 1, 1]);
+        let n = mesh.node_count();
+        let (u, stress, scalar) = (vec![0.0; 3 * n], vec![[0.0; 6]; n], vec![0.0; n]);
+        let good = SolidFrame {
+            mesh: &mesh,
+            displacement: &u,
+            velocity: &u,
+            stress: &stress,
+            von_mises: &scalar,
+            equivalent_plastic_strain: &scalar,
+            yield_function: &scalar,
+        };
+        let mut bad = stress.clone();
+        bad[5][4] = f64::NAN;
+        let error = write_solid(&file, &SolidFrame { stress: &bad, ..good }).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}: stress at index 5 is NaN: not written", file.display()));
+        let mut bad = u.clone();
+        bad[3 * 7 + 1] = f64::INFINITY;
+        let error = write_solid(&file, &SolidFrame { velocity: &bad, ..good }).unwrap_err();
+        assert!(error.to_string().contains("velocity at index 7 is inf"), "{error}");
+        let error = write_solid(&file, &SolidFrame { von_mises: &scalar[1..], ..good }).unwrap_err();
+        assert!(error.to_string().contains(&format!("von_mises has {} values", n - 1)), "{error}");
+        assert!(!file.exists());
+        write_solid(&file, &good).unwrap();
+        assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 1);
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+
+    #[test]
+    fn the_file_reads_back_bit_for_bit() {
+        let dir = sample::folder("vtu_back");
+        let file = dir.join("mesh.vtu");
+        let mesh = sample::block([3, 2, 2]);
+        let constraints =
+            [(0, 0), (0, 2), (4, 1)].map(|(node, direction)| Constraint { node, direction, value: 0.0 });
+        write_mesh(&file, &mesh, &constraints).unwrap();
+        let vtk = vtkio::Vtk::import(&file).unwrap();
+        let DataSet::UnstructuredGrid { mut pieces, .. } = vtk.data else { panic!("not a grid") };
+        let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();
+        assert_eq!(piece.points.into_vec::<f64>().unwrap(), mesh.coordinates.as_flattened());
+        assert!(piece.cells.types.iter().all(|t| *t == CellType::QuadraticHexahedron));
+        let (connectivity, _) = piece.cells.cell_verts.into_xml();
+        assert!(
+            connectivity.iter().eq(mesh
+                .connectivity
+                .iter()
+                .flatten()
+                .map(|n| u64::from(*n))
+                .collect::<Vec<_>>()
+                .iter())
+        );
+        let mask = piece.data.point.iter().find_map(|a| match a {
+            vtkio::model::Attribute::DataArray(a) if a.name == "constraint" => a.data.cast_into::<u32>(),
+            _ => None,
+        });
+        let mask = mask.unwrap();
+        assert_eq!((mask[0], mask[1], mask[4]), (5, 0, 2));
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+}
