@@ -1,2 +1,48 @@
 //! Implicit finite elements for ballasted track: 20-node hexahedra, statics and Newmark dynamics.
+//!
+//! A [`model::Model`] is built once from a mesh, materials and supports and never changes; a [`state::State`] is what a
+//! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`window::WindowSolver`]) hold a
+//! factor and scratch. Units are SI throughout. Nodal vectors are flat, index `3 * node + direction`.
+//!
+//! ```
+//! use trackbed_fem::{damping::Rayleigh, element::quadrature::Quadrature, loads, material::elastic::Elastic};
+//! use trackbed_fem::{mesh::{Constraint, Mesh}, model::{Model, ModelInput}, statics};
+//!
+//! // A column of two cubic metres on a fixed base, pressed by 10 kPa from above.
+//! let mesh = Mesh::block([1, 1, 2], [1.0, 1.0, 2.0]);
+//! let constraints = (0..mesh.node_count() as u32)
+//!     .filter(|&n| mesh.coordinates[n as usize][2] == 0.0)
+//!     .flat_map(|node| (0..3).map(move |direction| Constraint { node, direction, value: 0.0 }))
+//!     .collect();
+//! let model = Model::new(ModelInput {
+//!     mesh,
+//!     materials: [(1, Elastic { young: 20e6, poisson: 0.0, density: 2000.0 })].into(),
+//!     quadrature: Quadrature::Gauss3,
+//!     constraints,
+//!     gravity: [0.0, 0.0, -9.81],
+//!     rayleigh: Rayleigh::default(),
+//! })?;
+//! let mut load = vec![0.0; model.dof_count()];
+//! loads::face_pressure(model.mesh(), &model.mesh().face(1, 5), 10e3, &mut load);
+//! let solution = statics::solve(&model, &load)?;
+//! let top = model.mesh().node_count() - 1;
+//! assert!((solution.u[3 * top + 2] + 10e3 * 2.0 / 20e6).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+pub mod assembly;
+pub mod block;
+pub mod damping;
+pub mod element;
+pub mod energy;
+pub mod kinematics;
+pub mod loads;
+pub mod material;
 pub mod mesh;
+pub mod model;
+pub mod newmark;
+pub mod solver;
+pub mod state;
+pub mod statics;
+pub mod stress;
+pub mod supports;
+pub mod window;

@@ -1,5 +1,9 @@
 //! The finite-element mesh: nodes, 20-node hexahedra, and the faces of its surface.
 
+use crate::element::hex20;
+use crate::element::quadrature::GAUSS3;
+use crate::kinematics::{ElementCoordinates, jacobian};
+
 /// Number of nodes of the serendipity hexahedron.
 pub const HEX20_NODES: usize = 20;
 
@@ -89,5 +93,102 @@ impl Mesh {
             .collect();
         faces.sort_unstable_by_key(|f| (f.element, f.side));
         faces
+    }
+}
+
+impl Mesh {
+    /// Coordinates of the nodes of element `element` (index) [m].
+    pub fn element_coordinates(&self, element: usize) -> ElementCoordinates {
+        self.connectivity[element].map(|n| self.coordinates[n as usize])
+    }
+
+    /// Volume of element `element` [m³], by the 3×3×3 rule.
+    pub fn element_volume(&self, element: usize) -> f64 {
+        let x = self.element_coordinates(element);
+        GAUSS3.iter().map(|(xi, w)| w * jacobian(&x, &hex20::gradients(*xi)).1).sum()
+    }
+
+    /// Quality of element `element`: smallest over largest determinant of the Jacobian at the nodes and the 27 Gauss
+    /// points. 1 is a parallelepiped; 0 or below is degenerate or inverted somewhere.
+    pub fn jacobian_ratio(&self, element: usize) -> f64 {
+        let x = self.element_coordinates(element);
+        let points = GAUSS3.iter().map(|p| p.0).chain(hex20::NATURAL);
+        let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), xi| {
+            let det = jacobian(&x, &hex20::gradients(xi)).1;
+            (low.min(det), high.max(det))
+        });
+        low / high.max(-low)
+    }
+
+    /// Smallest and largest coordinates [m] of the nodes; infinite and reversed for an empty mesh.
+    pub fn bounding_box(&self) -> ([f64; 3], [f64; 3]) {
+        self.coordinates.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), c| {
+            (std::array::from_fn(|k| low[k].min(c[k])), std::array::from_fn(|k| high[k].max(c[k])))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::quad8::point_and_area;
+    use crate::element::quadrature::FACE3;
+
+    /// A curved, skewed two-element body: a block whose every node is moved smoothly.
+    fn bent() -> Mesh {
+        let mut mesh = Mesh::block([2, 2, 2], [2.0, 1.0, 1.0]);
+        for c in &mut mesh.coordinates {
+            let [x, y, z] = *c;
+            *c = [x + 0.1 * y * z, y + 0.08 * x * x - 0.05 * z, z + 0.1 * (x * y).sin()];
+        }
+        mesh
+    }
+
+    #[test]
+    fn area_vectors_of_a_closed_surface_add_up_to_zero_and_enclose_the_volume() {
+        let mesh = bent();
+        let (mut sum, mut enclosed, mut area) = ([0.0; 3], 0.0, 0.0);
+        for face in mesh.boundary_faces() {
+            for (xi, w) in FACE3 {
+                let (x, a) = point_and_area(&mesh, &face, xi);
+                for k in 0..3 {
+                    sum[k] += w * a[k];
+                    enclosed += w * a[k] * x[k] / 3.0;
+                }
+                area += w * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt();
+            }
+        }
+        let volume: f64 = (0..mesh.element_count()).map(|e| mesh.element_volume(e)).sum();
+        assert!(sum.iter().all(|s| s.abs() < 1e-13 * area), "{sum:?}");
+        // Outward faces give the volume with a plus sign; the 3×3 rule is exact for x · dA only on flat faces.
+        assert!((enclosed / volume - 1.0).abs() < 1e-3, "{enclosed} {volume}");
+    }
+
+    #[test]
+    fn all_six_faces_of_an_element_point_outward() {
+        let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+        let outward = [[0, 0, -1], [0, -1, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, 1]];
+        for (side, normal) in outward.into_iter().enumerate() {
+            let (_, area) = point_and_area(&mesh, &mesh.face(0, side), [0.3, -0.2]);
+            for k in 0..3 {
+                assert!((area[k] - f64::from(normal[k]) / 4.0).abs() < 1e-15, "side {side}: {area:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn inner_faces_are_not_on_the_boundary() {
+        let faces = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]).boundary_faces();
+        assert_eq!(faces.len(), 10);
+        assert!(faces.iter().all(|f| (f.element, f.side) != (0, 2) && (f.element, f.side) != (1, 4)));
+    }
+
+    #[test]
+    fn quality_sees_an_inverted_element() {
+        let mut mesh = Mesh::block([1, 1, 1], [2.0, 1.0, 3.0]);
+        assert!((mesh.jacobian_ratio(0) - 1.0).abs() < 1e-14 && (mesh.element_volume(0) - 6.0).abs() < 1e-14);
+        mesh.coordinates.iter_mut().for_each(|c| c[0] = -c[0]);
+        assert!(mesh.jacobian_ratio(0) < 0.0);
+        assert_eq!(mesh.bounding_box(), ([-2.0, 0.0, 0.0], [0.0, 1.0, 3.0]));
     }
 }

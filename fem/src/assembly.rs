@@ -1,0 +1,286 @@
+//! Assembly of the global stiffness and mass matrices.
+//!
+//! Both matrices are symmetric and share one pattern over node pairs (p, q), q >= p, stored by rows. A stiffness entry
+//! is a 3×3 block; a mass entry is one number, because inertia does not mix directions: the mass takes a ninth of the
+//! memory and of the time. They cover all dofs, so reactions and prescribed values need nothing more. Equation systems
+//! `k K + m M` on the free dofs are written from them straight into the slots of a lower CSC matrix.
+//!
+//! Determinism: element matrices of a chunk of fixed size are computed side by side, then added in element order by one
+//! thread, so the bits do not depend on the number of threads.
+
+use crate::element::quadrature::Quadrature;
+use crate::kinematics::{gradient_products, mass_matrix, stiffness_block};
+use crate::material::elastic::Elastic;
+use crate::mesh::{HEX20_NODES, Mesh};
+use crate::supports::{CONSTRAINED, Supports};
+use rayon::prelude::*;
+
+/// Elements computed before they are added; fixed, so that nothing depends on the number of threads.
+const CHUNK: usize = 128;
+
+/// Node pairs of an element with a <= b.
+const PAIRS: usize = HEX20_NODES * (HEX20_NODES + 1) / 2;
+
+/// Stiffness and mass over all dofs: the upper half by node pairs.
+#[derive(Clone, Debug)]
+pub struct Matrices {
+    row_start: Vec<usize>,
+    column: Vec<u32>,
+    stiffness: Vec<[f64; 9]>,
+    mass: Vec<f64>,
+}
+
+/// What one element adds: 3×3 stiffness block and mass of each pair.
+type Contribution = Vec<([f64; 9], f64)>;
+
+impl Matrices {
+    /// Assembles both matrices. `material_of` gives the material of an element (by index).
+    pub fn assemble<'m>(
+        mesh: &Mesh,
+        rule: Quadrature,
+        material_of: impl Fn(usize) -> &'m Elastic + Sync,
+    ) -> Matrices {
+        let mut matrices = Matrices::pattern(mesh);
+        let elements: Vec<usize> = (0..mesh.element_count()).collect();
+        for chunk in elements.chunks(CHUNK) {
+            let contributions: Vec<Contribution> =
+                chunk.par_iter().map(|&e| contribution(mesh, e, rule, material_of(e))).collect();
+            for (&e, contribution) in chunk.iter().zip(&contributions) {
+                matrices.add(&mesh.connectivity[e], contribution);
+            }
+        }
+        matrices
+    }
+
+    /// Node pairs that share an element, q >= p, rows and columns ascending.
+    fn pattern(mesh: &Mesh) -> Matrices {
+        let nodes = mesh.node_count();
+        let mut elements_of = vec![Vec::new(); nodes];
+        for (e, connectivity) in mesh.connectivity.iter().enumerate() {
+            for &n in connectivity {
+                elements_of[n as usize].push(e);
+            }
+        }
+        let (mut row_start, mut column) = (vec![0], Vec::new());
+        let mut row = Vec::new();
+        for (p, elements) in elements_of.iter().enumerate() {
+            row.clear();
+            row.push(p as u32);
+            for &e in elements {
+                row.extend(mesh.connectivity[e].iter().filter(|&&q| q as usize > p));
+            }
+            row.sort_unstable();
+            row.dedup();
+            column.extend_from_slice(&row);
+            row_start.push(column.len());
+        }
+        let entries = column.len();
+        Matrices { row_start, column, stiffness: vec![[0.0; 9]; entries], mass: vec![0.0; entries] }
+    }
+
+    fn add(&mut self, nodes: &[u32; HEX20_NODES], contribution: &Contribution) {
+        let mut pair = contribution.iter();
+        for a in 0..HEX20_NODES {
+            for b in a..HEX20_NODES {
+                let Some((block, mass)) = pair.next() else { return };
+                let (p, q) = (nodes[a].min(nodes[b]), nodes[a].max(nodes[b]));
+                let row = self.row_start[p as usize]..self.row_start[p as usize + 1];
+                // The pattern holds every pair of an element, so the search always succeeds.
+                let slot = row.start + self.column[row].partition_point(|&c| c < q);
+                self.mass[slot] += mass;
+                let sum = &mut self.stiffness[slot];
+                for i in 0..3 {
+                    for j in 0..3 {
+                        let transposed = nodes[a] > nodes[b];
+                        sum[3 * i + j] += if transposed { block[3 * j + i] } else { block[3 * i + j] };
+                    }
+                }
+            }
+        }
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.row_start.len() - 1
+    }
+
+    /// Nodes q >= p that share an element with node `p`, ascending, `p` first.
+    pub fn row(&self, p: usize) -> &[u32] {
+        &self.column[self.row_start[p]..self.row_start[p + 1]]
+    }
+
+    /// `y = K x` [N] over all dofs; `x` in m.
+    pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for p in 0..self.node_count() {
+            let row = self.row_start[p]..self.row_start[p + 1];
+            let [x0, x1, x2] = [x[3 * p], x[3 * p + 1], x[3 * p + 2]];
+            let mut sum = [0.0; 3];
+            for (slot, &q) in row.clone().zip(&self.column[row]) {
+                let (k, q) = (&self.stiffness[slot], 3 * q as usize);
+                let v = &x[q..q + 3];
+                sum[0] += k[0] * v[0] + k[1] * v[1] + k[2] * v[2];
+                sum[1] += k[3] * v[0] + k[4] * v[1] + k[5] * v[2];
+                sum[2] += k[6] * v[0] + k[7] * v[1] + k[8] * v[2];
+                if q != 3 * p {
+                    let w = &mut y[q..q + 3];
+                    w[0] += k[0] * x0 + k[3] * x1 + k[6] * x2;
+                    w[1] += k[1] * x0 + k[4] * x1 + k[7] * x2;
+                    w[2] += k[2] * x0 + k[5] * x1 + k[8] * x2;
+                }
+            }
+            for k in 0..3 {
+                y[3 * p + k] += sum[k];
+            }
+        }
+    }
+
+    /// `y = M x` over all dofs: force [N] of an acceleration [m/s²], momentum of a velocity.
+    pub fn mass_times(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for p in 0..self.node_count() {
+            let row = self.row_start[p]..self.row_start[p + 1];
+            let xp = [x[3 * p], x[3 * p + 1], x[3 * p + 2]];
+            let mut sum = [0.0; 3];
+            for (slot, &q) in row.clone().zip(&self.column[row]) {
+                let (m, q) = (self.mass[slot], 3 * q as usize);
+                for k in 0..3 {
+                    sum[k] += m * x[q + k];
+                }
+                if q != 3 * p {
+                    for k in 0..3 {
+                        y[q + k] += m * xp[k];
+                    }
+                }
+            }
+            for k in 0..3 {
+                y[3 * p + k] += sum[k];
+            }
+        }
+    }
+
+    /// Diagonal of the mass matrix by nodes [kg]. Shape `[nodes]`.
+    pub fn mass_diagonal(&self) -> Vec<f64> {
+        self.row_start[..self.node_count()].iter().map(|&slot| self.mass[slot]).collect()
+    }
+
+    /// Visits the lower CSC entries of the free dofs column by column: `visit(row, stiffness, mass)` for each entry,
+    /// `close()` after each column.
+    pub(crate) fn visit_free(
+        &self,
+        supports: &Supports,
+        mut visit: impl FnMut(usize, f64, f64),
+        mut close: impl FnMut(),
+    ) {
+        let index = supports.free_index();
+        for &dof in supports.free() {
+            let (p, i) = (dof as usize / 3, dof as usize % 3);
+            let row = self.row_start[p]..self.row_start[p + 1];
+            for (slot, &q) in row.clone().zip(&self.column[row]) {
+                let q = q as usize;
+                let first = if q == p { i } else { 0 };
+                for j in first..3 {
+                    let equation = index[3 * q + j];
+                    if equation != CONSTRAINED {
+                        let mass = if i == j { self.mass[slot] } else { 0.0 };
+                        visit(equation as usize, self.stiffness[slot][3 * i + j], mass);
+                    }
+                }
+            }
+            close();
+        }
+    }
+}
+
+fn contribution(mesh: &Mesh, element: usize, rule: Quadrature, material: &Elastic) -> Contribution {
+    let coordinates = mesh.element_coordinates(element);
+    let (lambda, mu) = material.lame();
+    let products = gradient_products(&coordinates, rule.points());
+    let mass = mass_matrix(&coordinates, material.density);
+    let mut pairs = Vec::with_capacity(PAIRS);
+    for a in 0..HEX20_NODES {
+        for b in a..HEX20_NODES {
+            pairs.push((stiffness_block(&products, lambda, mu, a, b), mass[a][b]));
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrices(mesh: &Mesh) -> Matrices {
+        let soil = Elastic { young: 5e7, poisson: 0.3, density: 1900.0 };
+        Matrices::assemble(mesh, Quadrature::Gauss3, |_| &soil)
+    }
+
+    #[test]
+    fn rigid_motions_meet_no_stiffness_and_the_right_inertia() {
+        let mut mesh = Mesh::block([2, 2, 1], [2.0, 2.0, 1.0]);
+        for c in &mut mesh.coordinates {
+            *c = [c[0] + 0.1 * c[1] * c[2], c[1] - 0.1 * c[0], c[2] + 0.05 * c[0] * c[1]];
+        }
+        let m = matrices(&mesh);
+        let dofs = 3 * mesh.node_count();
+        let (mut force, mut momentum) = (vec![0.0; dofs], vec![0.0; dofs]);
+        let volume: f64 = (0..mesh.element_count()).map(|e| mesh.element_volume(e)).sum();
+        for motion in 0..6 {
+            let x: Vec<f64> = mesh
+                .coordinates
+                .iter()
+                .flat_map(|c| match motion {
+                    0 => [1.0, 0.0, 0.0],
+                    1 => [0.0, 1.0, 0.0],
+                    2 => [0.0, 0.0, 1.0],
+                    3 => [0.0, -c[2], c[1]],
+                    4 => [c[2], 0.0, -c[0]],
+                    _ => [-c[1], c[0], 0.0],
+                })
+                .collect();
+            m.stiffness_times(&x, &mut force);
+            assert!(force.iter().all(|f| f.abs() < 5e7 * 1e-13), "motion {motion}");
+            if motion < 3 {
+                m.mass_times(&x, &mut momentum);
+                let total: f64 = momentum.iter().skip(motion).step_by(3).sum();
+                assert!((total / (1900.0 * volume) - 1.0).abs() < 1e-13);
+            }
+        }
+    }
+
+    /// The half-stored products and the CSC entries are the same matrix.
+    #[test]
+    fn products_agree_with_the_equation_matrix() {
+        let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
+        let m = matrices(&mesh);
+        let supports = Supports::new(&mesh, &[]).unwrap();
+        let n = 3 * mesh.node_count();
+        let x: Vec<f64> = (0..n).map(|i| (0.7 * i as f64).sin()).collect();
+        let (mut kx, mut mx) = (vec![0.0; n], vec![0.0; n]);
+        m.stiffness_times(&x, &mut kx);
+        m.mass_times(&x, &mut mx);
+        let column = std::cell::Cell::new(0);
+        let visit = |row: usize, k: f64, mass: f64| {
+            kx[row] -= k * x[column.get()];
+            mx[row] -= mass * x[column.get()];
+            if row != column.get() {
+                kx[column.get()] -= k * x[row];
+                mx[column.get()] -= mass * x[row];
+            }
+        };
+        m.visit_free(&supports, visit, || column.set(column.get() + 1));
+        assert!(kx.iter().all(|v| v.abs() < 1e-6) && mx.iter().all(|v| v.abs() < 1e-10));
+    }
+
+    #[test]
+    fn bits_do_not_depend_on_the_number_of_threads() {
+        let mesh = Mesh::block([4, 4, 9], [1.0, 1.0, 2.0]);
+        let bits = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let m = pool.install(|| matrices(&mesh));
+            let k: Vec<u64> = m.stiffness.iter().flatten().map(|v| v.to_bits()).collect();
+            (k, m.mass.iter().map(|v| v.to_bits()).collect::<Vec<_>>())
+        };
+        assert!(bits(1) == bits(2) && bits(1) == bits(3));
+    }
+}

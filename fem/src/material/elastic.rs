@@ -1,0 +1,82 @@
+//! Isotropic linear elasticity (Hooke).
+//!
+//! `sigma = lambda tr(eps) 1 + 2 mu eps`, `lambda = E nu / ((1 + nu)(1 - 2 nu))`, `mu = E / (2 (1 + nu))`.
+//! Source: Timoshenko and Goodier, Theory of Elasticity (1970), section 6. Limits: small strain; nu in (-1, 0.5). Near
+//! 0.5 the displacement element locks under the full rule; the reduced rule is the remedy.
+
+use serde::{Deserialize, Serialize};
+
+/// An isotropic elastic material.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Elastic {
+    /// Young's modulus E [Pa], above 0.
+    pub young: f64,
+    /// Poisson's ratio nu [-], in (-1, 0.5).
+    pub poisson: f64,
+    /// Density [kg/m³]; 0 is accepted where no inertia is needed (statics).
+    pub density: f64,
+}
+
+impl Elastic {
+    /// Lamé's first constant lambda and the shear modulus mu [Pa].
+    pub fn lame(&self) -> (f64, f64) {
+        let (e, nu) = (self.young, self.poisson);
+        (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)))
+    }
+
+    /// Stress [Pa] of a strain (engineering shear).
+    pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
+        let (lambda, mu) = self.lame();
+        let mean = lambda * (strain[0] + strain[1] + strain[2]);
+        [
+            mean + 2.0 * mu * strain[0],
+            mean + 2.0 * mu * strain[1],
+            mean + 2.0 * mu * strain[2],
+            mu * strain[3],
+            mu * strain[4],
+            mu * strain[5],
+        ]
+    }
+
+    /// Speed of the compression wave, `sqrt((lambda + 2 mu) / rho)` [m/s].
+    pub fn compression_wave_speed(&self) -> f64 {
+        let (lambda, mu) = self.lame();
+        ((lambda + 2.0 * mu) / self.density).sqrt()
+    }
+
+    /// What makes the constants unusable, if anything: the name of the constant, its value and what is asked of it.
+    pub fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
+        if !(self.young > 0.0 && self.young.is_finite()) {
+            return Some(("Young's modulus", self.young, "a finite number above 0"));
+        }
+        if !(self.poisson > -1.0 && self.poisson < 0.5) {
+            return Some(("Poisson's ratio", self.poisson, "a number between -1 and 0.5 (both excluded)"));
+        }
+        if !(self.density >= 0.0 && self.density.is_finite()) {
+            return Some(("density", self.density, "a finite number, 0 or above"));
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uniaxial_stress_gives_young_and_poisson_back() {
+        let steel = Elastic { young: 210e9, poisson: 0.3, density: 7850.0 };
+        let s = steel.stress(&[1e-3, -0.3e-3, -0.3e-3, 2e-4, 0.0, -1e-4]);
+        assert!((s[0] - 210e6).abs() < 1e-3 && s[1].abs() < 1e-3 && s[2].abs() < 1e-3);
+        assert!((s[3] - 210e9 / 2.6 * 2e-4).abs() < 1e-3 && s[4] == 0.0 && s[5] < 0.0);
+    }
+
+    #[test]
+    fn unusable_constants_are_named() {
+        let good = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
+        assert!(good.fault().is_none());
+        assert_eq!(Elastic { young: 0.0, ..good }.fault().unwrap().0, "Young's modulus");
+        assert_eq!(Elastic { poisson: 0.5, ..good }.fault().unwrap().0, "Poisson's ratio");
+        assert_eq!(Elastic { density: f64::NAN, ..good }.fault().unwrap().0, "density");
+    }
+}

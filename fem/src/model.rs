@@ -1,0 +1,342 @@
+//! The model: mesh, materials and supports, checked, with the matrices assembled. It never changes during a run.
+
+use crate::assembly::Matrices;
+use crate::damping::Rayleigh;
+use crate::element::hex20;
+use crate::element::quadrature::{GAUSS3, Quadrature};
+use crate::kinematics::jacobian;
+use crate::material::elastic::Elastic;
+use crate::mesh::{Constraint, HEX20_NODES, Mesh};
+use crate::solver::SolveError;
+use crate::solver::cholesky::Analysis;
+use crate::supports::Supports;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+use thiserror::Error;
+
+/// What a model is built from.
+#[derive(Clone, Debug)]
+pub struct ModelInput {
+    /// The mesh [m].
+    pub mesh: Mesh,
+    /// Materials by the number that the mesh uses.
+    pub materials: BTreeMap<u32, Elastic>,
+    /// Rule of the stiffness.
+    pub quadrature: Quadrature,
+    /// Supports and prescribed displacements, constant in time.
+    pub constraints: Vec<Constraint>,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: [f64; 3],
+    /// Damping of the whole body.
+    pub rayleigh: Rayleigh,
+}
+
+/// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs)]
+pub enum ModelError {
+    #[error("the mesh has no {what}")]
+    EmptyMesh { what: &'static str },
+    #[error("the mesh has {found} {what}, expected {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("node {node} has a coordinate that is not a finite number")]
+    Coordinate { node: u32 },
+    #[error("element {element} refers to node index {index}, but the mesh has {nodes} nodes")]
+    NodeRange { element: u32, index: u32, nodes: usize },
+    #[error("element {element} uses node {node} more than once; a hexahedron needs 20 different nodes")]
+    RepeatedNode { element: u32, node: u32 },
+    #[error("node {node} belongs to no element")]
+    UnusedNode { node: u32 },
+    #[error("element {element} has material {material}, which is not defined")]
+    MissingMaterial { element: u32, material: u32 },
+    #[error("material {material}: {constant} is {value}, expected {expected}")]
+    MaterialConstant { material: u32, constant: &'static str, value: f64, expected: &'static str },
+    #[error(
+        "element {element} is inverted or degenerate: the Jacobian determinant is {determinant:.6e} m³ at the Gauss \
+         point {point:?}, expected above 0"
+    )]
+    Inverted { element: u32, point: [f64; 3], determinant: f64 },
+    #[error("constraint {index} names node index {node}, direction {direction}; that dof does not exist")]
+    ConstraintRange { index: usize, node: u32, direction: u8 },
+    #[error("the constraint of node {node} in {direction} has the value {value}, expected a finite number")]
+    ConstraintValue { node: u32, direction: &'static str, value: f64 },
+    #[error("node {node} is given two displacements in {direction}: {first} m and {second} m")]
+    Contradiction { node: u32, direction: &'static str, first: f64, second: f64 },
+    #[error("gravity is {gravity:?}, expected finite numbers")]
+    Gravity { gravity: [f64; 3] },
+    #[error("{name} is {value}, expected a finite number, 0 or above")]
+    Damping { name: &'static str, value: f64 },
+}
+
+/// A checked solid with its matrices.
+#[derive(Debug)]
+pub struct Model {
+    mesh: Mesh,
+    materials: BTreeMap<u32, Elastic>,
+    quadrature: Quadrature,
+    constraints: Vec<Constraint>,
+    gravity: [f64; 3],
+    rayleigh: Rayleigh,
+    supports: Supports,
+    matrices: Matrices,
+    analysis: OnceLock<Arc<Analysis>>,
+}
+
+impl Model {
+    /// Checks the input and assembles the matrices.
+    ///
+    /// # Errors
+    /// See [`ModelError`]: everything that can be known before solving. Whether the body is held is checked by
+    /// [`crate::statics`] alone, because dynamics does not ask for it.
+    pub fn new(input: ModelInput) -> Result<Model, ModelError> {
+        let ModelInput { mesh, materials, quadrature, constraints, gravity, rayleigh } = input;
+        check_mesh(&mesh)?;
+        check_materials(&mesh, &materials)?;
+        check_shape(&mesh, quadrature)?;
+        if gravity.iter().any(|g| !g.is_finite()) {
+            return Err(ModelError::Gravity { gravity });
+        }
+        for (name, value) in [("alpha_m", rayleigh.alpha_m), ("beta_k", rayleigh.beta_k)] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(ModelError::Damping { name, value });
+            }
+        }
+        let supports = Supports::new(&mesh, &constraints)?;
+        let matrices = Matrices::assemble(&mesh, quadrature, |e| &materials[&mesh.materials[e]]);
+        Ok(Model {
+            mesh,
+            materials,
+            quadrature,
+            constraints,
+            gravity,
+            rayleigh,
+            supports,
+            matrices,
+            analysis: OnceLock::new(),
+        })
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The materials by number.
+    pub fn materials(&self) -> &BTreeMap<u32, Elastic> {
+        &self.materials
+    }
+
+    /// The material of element `element` (index).
+    pub fn material(&self, element: usize) -> &Elastic {
+        &self.materials[&self.mesh.materials[element]]
+    }
+
+    /// The rule of the stiffness.
+    pub fn quadrature(&self) -> Quadrature {
+        self.quadrature
+    }
+
+    /// The constraints as given.
+    pub fn constraints(&self) -> &[Constraint] {
+        &self.constraints
+    }
+
+    /// The supports as numbered.
+    pub fn supports(&self) -> &Supports {
+        &self.supports
+    }
+
+    /// The damping constants.
+    pub fn rayleigh(&self) -> Rayleigh {
+        self.rayleigh
+    }
+
+    /// The acceleration of gravity [m/s²].
+    pub fn gravity(&self) -> [f64; 3] {
+        self.gravity
+    }
+
+    /// Number of dofs, `3 * nodes`: the length of every nodal vector.
+    pub fn dof_count(&self) -> usize {
+        3 * self.mesh.node_count()
+    }
+
+    /// Number of dofs that are not constrained: the size of the equation system.
+    pub fn free_dof_count(&self) -> usize {
+        self.supports.free().len()
+    }
+
+    /// The assembled matrices.
+    pub fn matrices(&self) -> &Matrices {
+        &self.matrices
+    }
+
+    /// `y = K x` over all dofs. Shapes `[3 * nodes]`.
+    pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
+        self.matrices.stiffness_times(x, y);
+    }
+
+    /// `y = M x` over all dofs. Shapes `[3 * nodes]`.
+    pub fn mass_times(&self, x: &[f64], y: &mut [f64]) {
+        self.matrices.mass_times(x, y);
+    }
+
+    /// The nodal forces of gravity [N], `M (g, g, …)`: the consistent load `∫ rho N_a g dV`. Shape `[3 * nodes]`.
+    pub fn gravity_load(&self) -> Vec<f64> {
+        let uniform: Vec<f64> = self.gravity.iter().copied().cycle().take(self.dof_count()).collect();
+        let mut load = vec![0.0; self.dof_count()];
+        self.mass_times(&uniform, &mut load);
+        load
+    }
+
+    /// Mass of the whole body [kg].
+    pub fn total_mass(&self) -> f64 {
+        (0..self.mesh.element_count()).map(|e| self.material(e).density * self.mesh.element_volume(e)).sum()
+    }
+
+    /// The ordering and symbolic factorization, made once and shared by all solvers of this model.
+    pub(crate) fn analysis(&self) -> Result<Arc<Analysis>, SolveError> {
+        if let Some(analysis) = self.analysis.get() {
+            return Ok(analysis.clone());
+        }
+        let analysis = Arc::new(Analysis::new(&self.mesh, &self.matrices, &self.supports)?);
+        Ok(self.analysis.get_or_init(|| analysis).clone())
+    }
+}
+
+fn check_mesh(mesh: &Mesh) -> Result<(), ModelError> {
+    let (nodes, elements) = (mesh.node_count(), mesh.element_count());
+    for (what, count) in [("nodes", nodes), ("elements", elements)] {
+        if count == 0 {
+            return Err(ModelError::EmptyMesh { what });
+        }
+    }
+    for (what, found, expected) in [
+        ("node numbers", mesh.node_ids.len(), nodes),
+        ("element numbers", mesh.element_ids.len(), elements),
+        ("element materials", mesh.materials.len(), elements),
+    ] {
+        if found != expected {
+            return Err(ModelError::Length { what, found, expected });
+        }
+    }
+    if let Some(n) = mesh.coordinates.iter().position(|c| c.iter().any(|x| !x.is_finite())) {
+        return Err(ModelError::Coordinate { node: mesh.node_ids[n] });
+    }
+    let mut used = vec![false; nodes];
+    for (e, connectivity) in mesh.connectivity.iter().enumerate() {
+        let element = mesh.element_ids[e];
+        for (a, &n) in connectivity.iter().enumerate() {
+            let Some(used) = used.get_mut(n as usize) else {
+                return Err(ModelError::NodeRange { element, index: n, nodes });
+            };
+            *used = true;
+            if connectivity[..a].contains(&n) {
+                return Err(ModelError::RepeatedNode { element, node: mesh.node_ids[n as usize] });
+            }
+        }
+    }
+    match used.iter().position(|used| !used) {
+        Some(n) => Err(ModelError::UnusedNode { node: mesh.node_ids[n] }),
+        None => Ok(()),
+    }
+}
+
+fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Elastic>) -> Result<(), ModelError> {
+    for (&material, constants) in materials {
+        if let Some((constant, value, expected)) = constants.fault() {
+            return Err(ModelError::MaterialConstant { material, constant, value, expected });
+        }
+    }
+    match mesh.materials.iter().position(|m| !materials.contains_key(m)) {
+        Some(e) => {
+            Err(ModelError::MissingMaterial { element: mesh.element_ids[e], material: mesh.materials[e] })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Every Gauss point of the mass and of the stiffness must have a positive volume.
+fn check_shape(mesh: &Mesh, rule: Quadrature) -> Result<(), ModelError> {
+    let mut points: Vec<([f64; 3], [[f64; 3]; HEX20_NODES])> = Vec::new();
+    points.extend(GAUSS3.iter().map(|p| (p.0, hex20::gradients(p.0))));
+    if rule != Quadrature::Gauss3 {
+        points.extend(rule.points().iter().map(|p| (p.0, hex20::gradients(p.0))));
+    }
+    for e in 0..mesh.element_count() {
+        let x = mesh.element_coordinates(e);
+        for (point, gradients) in &points {
+            let determinant = jacobian(&x, gradients).1;
+            if determinant.is_nan() || determinant <= 0.0 {
+                return Err(ModelError::Inverted {
+                    element: mesh.element_ids[e],
+                    point: *point,
+                    determinant,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn input() -> ModelInput {
+        ModelInput {
+            mesh: Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]),
+            materials: [(1, Elastic { young: 1e7, poisson: 0.3, density: 2000.0 })].into(),
+            quadrature: Quadrature::Gauss3,
+            constraints: Vec::new(),
+            gravity: [0.0, 0.0, -9.81],
+            rayleigh: Rayleigh::default(),
+        }
+    }
+
+    fn refused(change: impl FnOnce(&mut ModelInput)) -> ModelError {
+        let mut input = input();
+        change(&mut input);
+        Model::new(input).expect_err("the model is faulty")
+    }
+
+    #[test]
+    fn faults_are_named() {
+        assert!(matches!(refused(|i| i.mesh = Mesh::default()), ModelError::EmptyMesh { what: "nodes" }));
+        let e = refused(|i| i.mesh.materials[1] = 7);
+        assert_eq!(e, ModelError::MissingMaterial { element: 2, material: 7 });
+        let e = refused(|i| i.materials.get_mut(&1).unwrap().poisson = 0.5);
+        assert!(e.to_string().contains("Poisson's ratio is 0.5"), "{e}");
+        let e = refused(|i| i.mesh.connectivity[1].swap(0, 6));
+        assert!(
+            matches!(e, ModelError::Inverted { element: 2, determinant, .. } if determinant <= 0.0),
+            "{e}"
+        );
+        let e = refused(|i| i.mesh.connectivity[0][3] = i.mesh.connectivity[0][2]);
+        assert!(matches!(e, ModelError::RepeatedNode { element: 1, .. }), "{e}");
+        let e = refused(|i| {
+            i.mesh.coordinates.push([9.0; 3]);
+            i.mesh.node_ids.push(77);
+        });
+        assert_eq!(e, ModelError::UnusedNode { node: 77 });
+        let e = refused(|i| i.mesh.connectivity[0][3] = 99);
+        assert!(matches!(e, ModelError::NodeRange { index: 99, .. }), "{e}");
+        assert!(matches!(
+            refused(|i| i.mesh.coordinates[2][1] = f64::NAN),
+            ModelError::Coordinate { node: 3 }
+        ));
+        assert!(matches!(refused(|i| i.gravity[0] = f64::INFINITY), ModelError::Gravity { .. }));
+        assert!(matches!(refused(|i| i.rayleigh.beta_k = -1.0), ModelError::Damping { name: "beta_k", .. }));
+        assert!(matches!(refused(|i| i.mesh.node_ids.truncate(3)), ModelError::Length { found: 3, .. }));
+    }
+
+    #[test]
+    fn gravity_adds_up_to_the_weight() {
+        let model = Model::new(input()).unwrap();
+        let weight: f64 = model.gravity_load().iter().skip(2).step_by(3).sum();
+        assert!(
+            (weight / (-9.81 * 4000.0) - 1.0).abs() < 1e-14 && (model.total_mass() - 4000.0).abs() < 1e-9
+        );
+        assert_eq!((model.dof_count(), model.free_dof_count()), (96, 96));
+    }
+}

@@ -1,0 +1,52 @@
+//! Solvers of the equation system on the free dofs.
+//!
+//! [`ordering`] numbers the nodes so that the factor stays small, [`cholesky`] factors and solves, and
+//! [`conjugate_gradient`] solves with the mass matrix alone, which needs no factor.
+pub mod cholesky;
+pub mod conjugate_gradient;
+pub mod ordering;
+
+use crate::newmark::NewmarkError;
+use thiserror::Error;
+
+/// A direct solver: numbers in, factor kept, many right-hand sides.
+pub trait LinearSolver {
+    /// Number of equations.
+    fn size(&self) -> usize;
+
+    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    fn solve_in_place(&mut self, x: &mut [f64]);
+}
+
+/// Why equations could not be solved. Numbers of nodes are those of the user's files.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages are the documentation")]
+pub enum SolveError {
+    #[error("the body is not held: node {node} is free to move in {direction}; add supports")]
+    NotHeld { node: u32, direction: &'static str },
+    #[error(
+        "the body is not held: the matrix has no stiffness left at node {node} in {direction} (pivot {pivot:.3e} of the \
+         diagonal); add supports, or use the full rule where elements hang together by an edge or a corner"
+    )]
+    NoStiffness { node: u32, direction: &'static str, pivot: f64 },
+    #[error("the solution misses equilibrium by {residual:.3e} of the load at node {node} in {direction}")]
+    Inaccurate { node: u32, direction: &'static str, residual: f64 },
+    #[error("material {material} has density 0; dynamics needs a mass")]
+    NoMass { material: u32 },
+    #[error("the {what} has {found} values, expected {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what} is not a finite number at node {node} in {direction}, at time {time} s")]
+    NotFinite { what: &'static str, node: u32, direction: &'static str, time: f64 },
+    #[error("the time step is {dt} s, expected a finite number above 0")]
+    TimeStep { dt: f64 },
+    #[error("theta is {theta}, expected 0.5 to 1")]
+    Theta { theta: f64 },
+    #[error(transparent)]
+    Newmark(#[from] NewmarkError),
+    #[error(
+        "the mass matrix could not be solved: {residual:.3e} of the load left after {iterations} iterations"
+    )]
+    MassNotSolved { residual: f64, iterations: usize },
+    #[error("there is not enough memory to factor {equations} equations")]
+    Memory { equations: usize },
+}

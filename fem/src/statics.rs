@@ -1,0 +1,144 @@
+//! Statics: `K u = F` with prescribed displacements, and the reactions `R = K u - F` at the supports.
+//!
+//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 1.6. A body with a free rigid motion
+//! is refused from its geometry before factoring; a mechanism that only the stiffness shows (a hinge, a mode without
+//! stiffness of the reduced rule) is found by its pivot. Each solution is checked against equilibrium and corrected
+//! when rounding shows. Limits: pivots below 1e-13 of the diagonal count as no stiffness, which also refuses meshes
+//! that are so slender or so unlike in stiffness that no digit would be left.
+
+use crate::model::Model;
+use crate::solver::cholesky::Cholesky;
+use crate::solver::{LinearSolver, SolveError};
+use crate::supports::name;
+
+/// Pivot over diagonal below which a dof counts as having no stiffness.
+const NO_STIFFNESS: f64 = 1e-13;
+/// Residual over the largest force above which the solution is corrected by one more solve.
+const IMPROVE: f64 = 1e-13;
+/// Solves at most.
+const CORRECTIONS: usize = 3;
+/// Residual over the largest force above which the solution is refused.
+const REFUSE: f64 = 1e-6;
+
+/// A static solution. Shapes `[3 * nodes]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Static {
+    /// Displacements [m].
+    pub u: Vec<f64>,
+    /// Forces of the supports on the body [N]; 0 at free dofs.
+    pub reactions: Vec<f64>,
+}
+
+/// Holds the factor of the stiffness matrix, for any number of loads.
+pub struct StaticSolver {
+    factor: Cholesky,
+    nodal: Vec<f64>,
+    equations: Vec<f64>,
+}
+
+impl StaticSolver {
+    /// Checks that the body is held, and factors its stiffness.
+    ///
+    /// # Errors
+    /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely.
+    pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
+        let (mesh, supports) = (model.mesh(), model.supports());
+        if let Some((node, direction)) = supports.free_motion(mesh) {
+            let (node, direction) = name(mesh, 3 * node + direction);
+            return Err(SolveError::NotHeld { node, direction });
+        }
+        let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, 1.0, 0.0)?;
+        let weakest = factor.weakest_pivot();
+        if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {
+            let (node, direction) = name(mesh, weakest.dof);
+            return Err(SolveError::NoStiffness { node, direction, pivot: weakest.ratio });
+        }
+        let equations = vec![0.0; model.free_dof_count()];
+        Ok(StaticSolver { factor, nodal: vec![0.0; model.dof_count()], equations })
+    }
+
+    /// Displacements and reactions under `load` [N], shape `[3 * nodes]`, and the prescribed displacements.
+    ///
+    /// # Errors
+    /// A load of the wrong length or with values that are not finite, or a solution that misses equilibrium.
+    pub fn solve(&mut self, model: &Model, load: &[f64]) -> Result<Static, SolveError> {
+        check_load(model, load, 0.0)?;
+        let supports = model.supports();
+        let mut u = vec![0.0; model.dof_count()];
+        for &(dof, value) in supports.fixed() {
+            u[dof as usize] = value;
+        }
+        let mut worst = (0, f64::INFINITY);
+        for _ in 0..CORRECTIONS {
+            worst = self.correct(model, load, &mut u);
+            if worst.1 <= IMPROVE || worst.1.is_nan() {
+                break;
+            }
+        }
+        if worst.1.is_nan() || worst.1 > REFUSE {
+            let (node, direction) = name(model.mesh(), worst.0);
+            return Err(SolveError::Inaccurate { node, direction, residual: worst.1 });
+        }
+        let mut reactions = vec![0.0; u.len()];
+        for &(dof, _) in supports.fixed() {
+            reactions[dof as usize] = self.nodal[dof as usize] - load[dof as usize];
+        }
+        Ok(Static { u, reactions })
+    }
+
+    /// Adds the solution of `K du = F - K u` to u, leaves `K u` behind, and returns the dof and the size of the largest
+    /// residual against the largest force.
+    fn correct(&mut self, model: &Model, load: &[f64], u: &mut [f64]) -> (usize, f64) {
+        let free = model.supports().free();
+        model.stiffness_times(u, &mut self.nodal);
+        for (slot, &dof) in self.equations.iter_mut().zip(free) {
+            *slot = load[dof as usize] - self.nodal[dof as usize];
+        }
+        self.factor.solve_in_place(&mut self.equations);
+        for (du, &dof) in self.equations.iter().zip(free) {
+            u[dof as usize] += du;
+        }
+        model.stiffness_times(u, &mut self.nodal);
+        let size = load.iter().chain(&self.nodal).fold(f64::MIN_POSITIVE, |m, f| m.max(f.abs()));
+        let mut worst = (0, 0.0);
+        for &dof in free {
+            let residual = (load[dof as usize] - self.nodal[dof as usize]).abs() / size;
+            if residual.is_nan() || residual > worst.1 {
+                worst = (dof as usize, residual);
+            }
+        }
+        worst
+    }
+}
+
+/// One static solution: builds a [`StaticSolver`], uses it once.
+///
+/// # Errors
+/// As [`StaticSolver::new`] and [`StaticSolver::solve`].
+pub fn solve(model: &Model, load: &[f64]) -> Result<Static, SolveError> {
+    StaticSolver::new(model)?.solve(model, load)
+}
+
+/// A load must have a finite value for every dof.
+pub(crate) fn check_load(model: &Model, load: &[f64], time: f64) -> Result<(), SolveError> {
+    if load.len() != model.dof_count() {
+        return Err(SolveError::Length { what: "load", found: load.len(), expected: model.dof_count() });
+    }
+    check_finite(model, "the load", load, time)
+}
+
+/// Names the first value that is not finite.
+pub(crate) fn check_finite(
+    model: &Model,
+    what: &'static str,
+    x: &[f64],
+    time: f64,
+) -> Result<(), SolveError> {
+    match x.iter().position(|v| !v.is_finite()) {
+        Some(dof) => {
+            let (node, direction) = name(model.mesh(), dof);
+            Err(SolveError::NotFinite { what, node, direction, time })
+        }
+        None => Ok(()),
+    }
+}

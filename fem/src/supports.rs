@@ -1,0 +1,267 @@
+//! Supports: prescribed displacements, the numbering of the free dofs, and the check that a body is held.
+//!
+//! A dof is `3 * node + direction`. Constrained dofs keep their prescribed value for the whole run and are left out of
+//! the equations; the reaction there is what the equations leave over.
+//!
+//! A body (elements joined by nodes) is held when no rigid motion is compatible with its supports: the six rigid
+//! motions, restricted to the supported dofs, must be linearly independent. That is decided from the geometry alone,
+//! through the eigenvalues of their 6×6 Gram matrix, before anything is factored. Limits: supports gathered within a
+//! millionth of the body's size count as one point; bodies hinged at a shared node or edge are left to the pivots of the
+//! factorization.
+
+use crate::mesh::{Constraint, Mesh};
+use crate::model::ModelError;
+use nalgebra::{Matrix6, Vector6};
+
+/// Names of the directions, for messages.
+pub const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
+
+/// Marks a constrained dof in [`Supports::free_index`].
+pub const CONSTRAINED: u32 = u32::MAX;
+
+/// Ratio of the smallest to the largest eigenvalue below which a rigid motion counts as free: (1e-6)².
+const FREE_MOTION: f64 = 1e-12;
+
+/// The supports of a mesh, checked and numbered.
+#[derive(Clone, Debug)]
+pub struct Supports {
+    fixed: Vec<(u32, f64)>,
+    free: Vec<u32>,
+    free_index: Vec<u32>,
+}
+
+impl Supports {
+    /// Checks and numbers the constraints. Repeated equal constraints are merged.
+    ///
+    /// # Errors
+    /// A node or direction out of range, a value that is not finite, or two different values for one dof.
+    pub fn new(mesh: &Mesh, constraints: &[Constraint]) -> Result<Supports, ModelError> {
+        let mut fixed = Vec::with_capacity(constraints.len());
+        for (index, c) in constraints.iter().enumerate() {
+            if c.node as usize >= mesh.node_count() || c.direction > 2 {
+                return Err(ModelError::ConstraintRange { index, node: c.node, direction: c.direction });
+            }
+            if !c.value.is_finite() {
+                let (node, direction) = name(mesh, 3 * c.node as usize + c.direction as usize);
+                return Err(ModelError::ConstraintValue { node, direction, value: c.value });
+            }
+            fixed.push((3 * c.node + u32::from(c.direction), c.value));
+        }
+        fixed.sort_by_key(|(dof, _)| *dof);
+        for pair in fixed.windows(2) {
+            if pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1 {
+                let (node, direction) = name(mesh, pair[0].0 as usize);
+                return Err(ModelError::Contradiction {
+                    node,
+                    direction,
+                    first: pair[0].1,
+                    second: pair[1].1,
+                });
+            }
+        }
+        fixed.dedup_by_key(|(dof, _)| *dof);
+        let mut free_index = vec![0; 3 * mesh.node_count()];
+        for (dof, _) in &fixed {
+            free_index[*dof as usize] = CONSTRAINED;
+        }
+        let mut free = Vec::with_capacity(free_index.len() - fixed.len());
+        for (dof, slot) in free_index.iter_mut().enumerate() {
+            if *slot != CONSTRAINED {
+                *slot = free.len() as u32;
+                free.push(dof as u32);
+            }
+        }
+        Ok(Supports { fixed, free, free_index })
+    }
+
+    /// Constrained dofs in ascending order, with the prescribed displacement [m].
+    pub fn fixed(&self) -> &[(u32, f64)] {
+        &self.fixed
+    }
+
+    /// Free dofs in ascending order: equation number → dof.
+    pub fn free(&self) -> &[u32] {
+        &self.free
+    }
+
+    /// Dof → equation number, or [`CONSTRAINED`]. Shape `[3 * nodes]`.
+    pub fn free_index(&self) -> &[u32] {
+        &self.free_index
+    }
+
+    /// Takes the entries of the free dofs out of a nodal vector. Shapes `[3 * nodes]` and `[equations]`.
+    pub fn gather(&self, nodal: &[f64], equations: &mut [f64]) {
+        for (e, &dof) in equations.iter_mut().zip(&self.free) {
+            *e = nodal[dof as usize];
+        }
+    }
+
+    /// Puts equation values into the free dofs of a nodal vector; constrained dofs stay as they are.
+    pub fn scatter(&self, equations: &[f64], nodal: &mut [f64]) {
+        for (e, &dof) in equations.iter().zip(&self.free) {
+            nodal[dof as usize] = *e;
+        }
+    }
+
+    /// A node (by index) and direction that the supports leave free to move with a body, if there is one: where the free
+    /// rigid motion is largest.
+    pub fn free_motion(&self, mesh: &Mesh) -> Option<(usize, usize)> {
+        let body = bodies(mesh);
+        let count = body.iter().max().map_or(0, |b| b + 1);
+        let mut members = vec![Vec::new(); count];
+        for (node, &b) in body.iter().enumerate() {
+            members[b].push(node);
+        }
+        members.iter().find_map(|nodes| self.free_motion_of(mesh, nodes))
+    }
+
+    fn free_motion_of(&self, mesh: &Mesh, nodes: &[usize]) -> Option<(usize, usize)> {
+        let mut centre = [0.0; 3];
+        for &n in nodes {
+            for k in 0..3 {
+                centre[k] += mesh.coordinates[n][k] / nodes.len() as f64;
+            }
+        }
+        let offset = |n: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.coordinates[n][k] - centre[k]) };
+        let size = nodes.iter().flat_map(|&n| offset(n)).fold(0.0, |m: f64, v| m.max(v.abs()));
+        // Displacement of a dof under the unit translations and the rotations that move the body's edge by one.
+        let row = |node: usize, direction: usize| -> Vector6<f64> {
+            let r = offset(node).map(|v| v / size);
+            let turn = match direction {
+                0 => [0.0, r[2], -r[1]],
+                1 => [-r[2], 0.0, r[0]],
+                _ => [r[1], -r[0], 0.0],
+            };
+            let mut v = Vector6::new(0.0, 0.0, 0.0, turn[0], turn[1], turn[2]);
+            v[direction] = 1.0;
+            v
+        };
+        let mut gram = Matrix6::zeros();
+        for &n in nodes {
+            for k in 0..3 {
+                if self.free_index[3 * n + k] == CONSTRAINED {
+                    let r = row(n, k);
+                    gram += r * r.transpose();
+                }
+            }
+        }
+        let eigen = gram.symmetric_eigen();
+        let softest = eigen.eigenvalues.imin();
+        if eigen.eigenvalues[softest] > FREE_MOTION * eigen.eigenvalues.max() {
+            return None;
+        }
+        let motion = eigen.eigenvectors.column(softest).into_owned();
+        let mut worst = (0.0, (nodes[0], 0));
+        for &n in nodes {
+            for k in (0..3).filter(|k| self.free_index[3 * n + k] != CONSTRAINED) {
+                let moved = row(n, k).dot(&motion).abs();
+                // A margin, so that rounding does not choose between nodes that move alike.
+                if moved > worst.0 * (1.0 + 1e-9) {
+                    worst = (moved, (n, k));
+                }
+            }
+        }
+        Some(worst.1)
+    }
+}
+
+/// Number (as in the user's files) and direction name of a dof.
+pub(crate) fn name(mesh: &Mesh, dof: usize) -> (u32, &'static str) {
+    (mesh.node_ids[dof / 3], DIRECTIONS[dof % 3])
+}
+
+/// Body number of each node: nodes joined by elements belong together. Numbered in order of their first node.
+fn bodies(mesh: &Mesh) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..mesh.node_count()).collect();
+    fn root(parent: &mut [usize], mut n: usize) -> usize {
+        while parent[n] != n {
+            parent[n] = parent[parent[n]];
+            n = parent[n];
+        }
+        n
+    }
+    for nodes in &mesh.connectivity {
+        let first = root(&mut parent, nodes[0] as usize);
+        let mut low = first;
+        for &n in nodes {
+            let r = root(&mut parent, n as usize);
+            let (small, large) = (low.min(r), low.max(r));
+            parent[large] = small;
+            low = small;
+        }
+    }
+    let mut number = vec![usize::MAX; mesh.node_count()];
+    let mut count = 0;
+    for n in 0..mesh.node_count() {
+        let r = root(&mut parent, n);
+        if r == n {
+            number[n] = count;
+            count += 1;
+        } else {
+            number[n] = number[r];
+        }
+    }
+    number
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_base(mesh: &Mesh, directions: &[u8]) -> Vec<Constraint> {
+        (0..mesh.node_count() as u32)
+            .filter(|&n| mesh.coordinates[n as usize][2] == 0.0)
+            .flat_map(|node| {
+                directions.iter().map(move |&direction| Constraint { node, direction, value: 0.0 })
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_free_rigid_motion_is_found_and_named() {
+        let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
+        let held = Supports::new(&mesh, &on_base(&mesh, &[0, 1, 2])).unwrap();
+        assert_eq!(held.free_motion(&mesh), None);
+        let sliding = Supports::new(&mesh, &on_base(&mesh, &[1, 2])).unwrap();
+        assert_eq!(sliding.free_motion(&mesh).unwrap().1, 0);
+        let none = Supports::new(&mesh, &[]).unwrap();
+        assert!(none.free_motion(&mesh).is_some());
+        // Six constraints placed rightly hold a body; two of them on one line leave a turn.
+        let node = |x: f64, y: f64, z: f64| {
+            mesh.coordinates.iter().position(|c| *c == [x, y, z]).expect("a corner of the block") as u32
+        };
+        let (o, a, b) = (node(0.0, 0.0, 0.0), node(2.0, 0.0, 0.0), node(0.0, 1.0, 0.0));
+        let fix = |list: &[(u32, u8)]| -> Vec<Constraint> {
+            list.iter().map(|&(node, direction)| Constraint { node, direction, value: 0.0 }).collect()
+        };
+        let six = fix(&[(o, 0), (o, 1), (o, 2), (a, 1), (a, 2), (b, 2)]);
+        assert_eq!(Supports::new(&mesh, &six).unwrap().free_motion(&mesh), None);
+        let turn = fix(&[(o, 0), (o, 1), (o, 2), (a, 1), (a, 2), (a, 0)]);
+        assert!(Supports::new(&mesh, &turn).unwrap().free_motion(&mesh).is_some());
+    }
+
+    #[test]
+    fn the_second_body_of_two_is_checked_too() {
+        let mut mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+        let other = Mesh::block([1, 1, 1], [1.0; 3]);
+        mesh.coordinates.extend(other.coordinates.iter().map(|c| [c[0] + 5.0, c[1], c[2] + 1.0]));
+        mesh.node_ids = (1..=40).collect();
+        mesh.connectivity.push(other.connectivity[0].map(|n| n + 20));
+        mesh.element_ids.push(2);
+        mesh.materials.push(1);
+        let supports = Supports::new(&mesh, &on_base(&mesh, &[0, 1, 2])).unwrap();
+        assert!(supports.free_motion(&mesh).unwrap().0 >= 20);
+    }
+
+    #[test]
+    fn contradictions_are_refused_and_repeats_are_merged() {
+        let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+        let c = |value| Constraint { node: 3, direction: 1, value };
+        assert_eq!(Supports::new(&mesh, &[c(0.1), c(0.1)]).unwrap().fixed(), &[(10, 0.1)]);
+        let error = Supports::new(&mesh, &[c(0.1), c(0.2)]).unwrap_err();
+        assert!(matches!(error, ModelError::Contradiction { node: 4, direction: "y", .. }), "{error}");
+        assert!(matches!(Supports::new(&mesh, &[c(f64::NAN)]), Err(ModelError::ConstraintValue { .. })));
+        let far = Constraint { node: 99, direction: 0, value: 0.0 };
+        assert!(matches!(Supports::new(&mesh, &[far]), Err(ModelError::ConstraintRange { index: 0, .. })));
+    }
+}
