@@ -1,0 +1,88 @@
+//! Readers of the tables, random numbers, and small models.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use trackbed_fem::damping::Rayleigh;
+use trackbed_fem::element::quadrature::Quadrature;
+use trackbed_fem::material::elastic::Elastic;
+use trackbed_fem::mesh::{Constraint, Mesh};
+use trackbed_fem::model::{Model, ModelInput};
+
+/// Reproducible numbers in [-1, 1): a linear congruential generator (Knuth's constants).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    pub fn point(&mut self) -> [f64; 3] {
+        [self.next(), self.next(), self.next()]
+    }
+}
+
+/// Numbers of a table, split at commas and blanks; lines that do not start with a number are left out.
+pub fn table(case: &str, file: &str) -> Vec<Vec<f64>> {
+    let path: PathBuf =
+        [env!("CARGO_MANIFEST_DIR"), "..", "tests", "data", "fem", case, file].iter().collect();
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let number = |field: &str| field.parse::<f64>().ok();
+    text.lines()
+        .filter_map(|line| line.split([',', ' ']).filter(|f| !f.is_empty()).map(number).collect())
+        .filter(|row: &Vec<f64>| !row.is_empty())
+        .collect()
+}
+
+/// The mesh and the constraints of a case.
+pub fn read_mesh(case: &str) -> (Mesh, Vec<Constraint>) {
+    let mut mesh = Mesh::default();
+    for row in table(case, "NODECOORD.DAT") {
+        mesh.node_ids.push(row[0] as u32);
+        mesh.coordinates.push([row[1], row[2], row[3]]);
+    }
+    for row in table(case, "ELEMENTNUM.DAT") {
+        mesh.element_ids.push(row[0] as u32);
+        mesh.materials.push(row[1] as u32);
+        mesh.connectivity.push(std::array::from_fn(|a| row[2 + a] as u32 - 1));
+    }
+    let constraints = table(case, "DOF.DAT")
+        .iter()
+        .map(|row| Constraint { node: row[0] as u32 - 1, direction: row[1] as u8 - 1, value: row[2] })
+        .collect();
+    (mesh, constraints)
+}
+
+/// The three soils of the embankment and of the column.
+pub fn soils() -> BTreeMap<u32, Elastic> {
+    let soil = |young, poisson, density| Elastic { young, poisson, density };
+    [(1, soil(60e6, 0.35, 1900.0)), (2, soil(110e6, 0.3, 2000.0)), (3, soil(180e6, 0.25, 2100.0))].into()
+}
+
+/// A model of one material without gravity and damping.
+pub fn model(mesh: Mesh, constraints: Vec<Constraint>, material: Elastic, quadrature: Quadrature) -> Model {
+    Model::new(ModelInput {
+        mesh,
+        materials: [(1, material)].into(),
+        quadrature,
+        constraints,
+        gravity: [0.0; 3],
+        rayleigh: Rayleigh::default(),
+    })
+    .unwrap()
+}
+
+/// Constraints, with value 0, of the given directions at the nodes that `chosen` picks.
+pub fn fix(mesh: &Mesh, directions: &[u8], chosen: impl Fn([f64; 3]) -> bool) -> Vec<Constraint> {
+    (0..mesh.node_count() as u32)
+        .filter(|&n| chosen(mesh.coordinates[n as usize]))
+        .flat_map(|node| directions.iter().map(move |&direction| Constraint { node, direction, value: 0.0 }))
+        .collect()
+}
+
+/// Largest difference over all entries, over the largest size of the second vector.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let size = b.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+    a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / size
+}

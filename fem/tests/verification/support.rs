@@ -1,0 +1,149 @@
+//! Bodies that are not held, prescribed displacements, and extreme numbers.
+
+use crate::common::{fix, model};
+use trackbed_fem::element::quadrature::Quadrature::{Gauss2, Gauss3};
+use trackbed_fem::loads;
+use trackbed_fem::material::elastic::Elastic;
+use trackbed_fem::mesh::{Constraint, Mesh};
+use trackbed_fem::solver::SolveError;
+use trackbed_fem::statics;
+
+const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
+
+#[test]
+fn a_body_that_can_slide_is_refused_with_a_node_and_a_direction() {
+    let mesh = Mesh::block([3, 2, 2], [3.0, 2.0, 2.0]);
+    let constraints = fix(&mesh, &[0, 2], |x| x[2] == 0.0);
+    let model = model(mesh, constraints, SOIL, Gauss3);
+    let error = statics::solve(&model, &vec![0.0; model.dof_count()]).unwrap_err();
+    assert!(matches!(error, SolveError::NotHeld { direction: "y", .. }), "{error}");
+    assert!(error.to_string().starts_with("the body is not held: node "), "{error}");
+}
+
+/// Two blocks that share one edge: geometry holds the pair, only the pivots see the hinge.
+#[test]
+fn a_hinge_is_refused_with_a_node_of_the_loose_part() {
+    let mut mesh = Mesh::block([2, 1, 2], [2.0, 1.0, 2.0]);
+    for list in [&mut mesh.element_ids, &mut mesh.materials] {
+        *list = vec![list[0], list[3]];
+    }
+    mesh.connectivity = vec![mesh.connectivity[0], mesh.connectivity[3]];
+    let mut index = vec![u32::MAX; mesh.node_count()];
+    let mut kept = Vec::new();
+    for node in mesh.connectivity.iter_mut().flatten() {
+        if index[*node as usize] == u32::MAX {
+            index[*node as usize] = kept.len() as u32;
+            kept.push(mesh.coordinates[*node as usize]);
+        }
+        *node = index[*node as usize];
+    }
+    mesh.node_ids = (1..=kept.len() as u32).collect();
+    mesh.coordinates = kept;
+    let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
+    let model = model(mesh, constraints, SOIL, Gauss3);
+    let error = statics::solve(&model, &vec![0.0; model.dof_count()]).unwrap_err();
+    let SolveError::NoStiffness { node, .. } = error else { panic!("{error}") };
+    let x = model.mesh().coordinates[node as usize - 1];
+    assert!(x[0] >= 1.0 && x[2] >= 1.0, "{error}: {x:?}");
+}
+
+/// One element on six single supports: held, but the reduced rule leaves modes without stiffness.
+#[test]
+fn a_mode_without_stiffness_of_the_reduced_rule_is_refused() {
+    let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+    let at = |x: [f64; 3]| mesh.coordinates.iter().position(|c| *c == x).unwrap() as u32;
+    let (o, a, b) = (at([0.0; 3]), at([1.0, 0.0, 0.0]), at([0.0, 1.0, 0.0]));
+    let constraints: Vec<Constraint> = [(o, 0), (o, 1), (o, 2), (a, 1), (a, 2), (b, 2)]
+        .map(|(node, direction)| Constraint { node, direction, value: 0.0 })
+        .to_vec();
+    let solve = |rule| {
+        let model = model(mesh.clone(), constraints.clone(), SOIL, rule);
+        let mut load = vec![0.0; model.dof_count()];
+        loads::face_pressure(model.mesh(), &model.mesh().face(0, 5), 1e3, &mut load);
+        loads::face_pressure(model.mesh(), &model.mesh().face(0, 0), 1e3, &mut load);
+        statics::solve(&model, &load)
+    };
+    let error = solve(Gauss2).unwrap_err();
+    assert!(matches!(error, SolveError::NoStiffness { .. }), "{error}");
+    let top = at([1.0; 3]) as usize;
+    assert!((solve(Gauss3).unwrap().u[3 * top + 2] + 1e3 / 20e6).abs() < 1e-13);
+}
+
+/// A bar stretched by a prescribed displacement: uniform stress, and reactions that balance it.
+#[test]
+fn prescribed_displacement_stretches_a_bar() {
+    let mesh = Mesh::block([4, 1, 1], [4.0, 0.5, 0.5]);
+    let mut constraints = fix(&mesh, &[0], |x| x[0] == 0.0);
+    constraints.extend(fix(&mesh, &[1], |x| x[1] == 0.0));
+    constraints.extend(fix(&mesh, &[2], |x| x[2] == 0.0));
+    constraints.extend(fix(&mesh, &[0], |x| x[0] == 4.0).iter().map(|c| Constraint { value: 2e-3, ..*c }));
+    let model = model(mesh, constraints, SOIL, Gauss2);
+    let solution = statics::solve(&model, &vec![0.0; model.dof_count()]).unwrap();
+    let pull: f64 = (0..model.mesh().node_count())
+        .filter(|&n| model.mesh().coordinates[n][0] == 4.0)
+        .map(|n| solution.reactions[3 * n])
+        .sum();
+    assert!((pull / (20e6 * 5e-4 * 0.25) - 1.0).abs() < 1e-12, "{pull}");
+    let far = model.mesh().node_count() - 1;
+    assert!((solution.u[3 * far + 1] + 0.3 * 5e-4 * 0.5).abs() < 1e-15);
+}
+
+/// Nearly incompressible, unlike stiffness, flat elements, tiny and huge units: each is uniaxial, so exact.
+#[test]
+fn extreme_numbers_are_solved_not_refused() {
+    for (young, poisson, size) in [
+        (20e6, 0.4999, [1.0, 1.0, 1.0]),
+        (20e6, 0.0, [100.0, 100.0, 1.0]),
+        (1e-6, 0.3, [1e-4, 1e-4, 1e-4]),
+        (1e15, 0.3, [1e4, 1e4, 1e4]),
+        (20e6, -0.9, [1.0, 1.0, 50.0]),
+    ] {
+        let mesh = Mesh::block([3, 3, 3], size);
+        let mut constraints = fix(&mesh, &[2], |x| x[2] == 0.0);
+        constraints.extend(fix(&mesh, &[0], |x| x[0] == 0.0));
+        constraints.extend(fix(&mesh, &[1], |x| x[1] == 0.0));
+        let model = model(mesh, constraints, Elastic { young, poisson, density: 1.0 }, Gauss3);
+        let mut load = vec![0.0; model.dof_count()];
+        let pressure = young * 1e-3;
+        for face in model.mesh().boundary_faces().iter().filter(|f| f.side == 5) {
+            loads::face_pressure(model.mesh(), face, pressure, &mut load);
+        }
+        let solution = statics::solve(&model, &load).unwrap();
+        let top = 3 * model.mesh().node_count() - 1;
+        let exact = -1e-3 * size[2];
+        assert!((solution.u[top] / exact - 1.0).abs() < 1e-9, "{young} {poisson}: {}", solution.u[top]);
+    }
+}
+
+/// A stiff plate on ground a million times softer: equilibrium of forces to rounding.
+#[test]
+fn a_million_times_stiffer_plate_on_soft_ground_is_solved() {
+    let mut mesh = Mesh::block([4, 4, 3], [4.0, 4.0, 3.0]);
+    mesh.materials = (0..mesh.element_count()).map(|e| if e < 32 { 1 } else { 2 }).collect();
+    let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
+    let model = trackbed_fem::model::Model::new(trackbed_fem::model::ModelInput {
+        mesh,
+        materials: [(1, Elastic { young: 2e5, ..SOIL }), (2, Elastic { young: 2e11, ..SOIL })].into(),
+        quadrature: Gauss2,
+        constraints,
+        gravity: [0.0, 0.0, -9.81],
+        rayleigh: Default::default(),
+    })
+    .unwrap();
+    let solution = statics::solve(&model, &model.gravity_load()).unwrap();
+    let weight: f64 = solution.reactions.iter().skip(2).step_by(3).sum();
+    assert!((weight / (48.0 * 2000.0 * 9.81) - 1.0).abs() < 1e-7, "{weight}");
+}
+
+#[test]
+fn loads_that_are_not_numbers_or_too_short_are_refused() {
+    let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+    let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
+    let model = model(mesh, constraints, SOIL, Gauss3);
+    let mut load = vec![0.0; model.dof_count()];
+    load[59] = f64::NAN;
+    let error = statics::solve(&model, &load).unwrap_err();
+    assert!(matches!(error, SolveError::NotFinite { node: 20, direction: "z", .. }), "{error}");
+    let error = statics::solve(&model, &load[..4]).unwrap_err();
+    assert!(matches!(error, SolveError::Length { found: 4, expected: 60, .. }), "{error}");
+}
