@@ -102,6 +102,30 @@ mod tests {
     }
 
     #[test]
+    fn shipped_stones_have_sieve_size_one_in_their_own_frame() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../inputs/track/cyclic/stones.toml");
+        let text = std::fs::read_to_string(file).unwrap();
+        // The rows of numbers, stone by stone; the whole form is parsed where scenes are read.
+        let row = |line: &str| {
+            let numbers =
+                line.trim().strip_prefix('[')?.strip_suffix("],")?.split(',').map(|x| x.trim().parse());
+            numbers.collect::<Result<Vec<f64>, _>>().ok()?.try_into().ok()
+        };
+        let stones: Vec<Vec<[f64; 4]>> =
+            text.split("[[stones]]").skip(1).map(|s| s.lines().filter_map(row).collect()).collect();
+        assert_eq!(stones.len(), 6);
+        let named: Vec<(&str, &[[f64; 4]])> = stones.iter().map(|s| ("stone", s.as_slice())).collect();
+        for (clump, spheres) in library(&named).clumps().unwrap().iter().zip(&stones) {
+            assert!((8..=12).contains(&spheres.len()));
+            assert!((clump.sieve_size() - 1.0).abs() < 1e-6, "{}", clump.sieve_size());
+            assert!(
+                clump.spheres.iter().zip(spheres).all(|(a, b)| (0..3).all(|k| (a.0[k] - b[k]).abs() < 1e-5))
+            );
+            assert!((0.3..0.75).contains(&clump.volume));
+        }
+    }
+
+    #[test]
     fn a_bad_stone_is_named() {
         assert_eq!(library(&[]).clumps(), Err(LibraryError::Empty("test".into())));
         let split = [[0.0, 0.0, 0.0, 0.5], [1.5, 0.0, 0.0, 0.5]];
