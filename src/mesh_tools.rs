@@ -1,1 +1,242 @@
-//! Being written.
+//! What the `mesh` commands tell and do: counts and quality, problems, conversion.
+
+mod check;
+mod quality;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
+
+use crate::write::{WriteError, vtu};
+
+pub use check::{Part, Problem, check};
+pub use quality::{Quality, element_quality};
+
+/// A mesh in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeshInfo {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of elements.
+    pub elements: usize,
+    /// Lowest and highest coordinates of the nodes [m]; zero without nodes.
+    pub bounds: [[f64; 3]; 2],
+    /// Volume of all elements [m³].
+    pub volume: f64,
+    /// The materials, by ascending number.
+    pub materials: Vec<MaterialInfo>,
+    /// Scaled Jacobian: 1 for a brick, 0 or below for an element turned inside out somewhere.
+    pub scaled_jacobian: Range,
+    /// Longest over shortest edge, corner to corner; null in JSON where an edge has no length.
+    pub aspect_ratio: Range,
+    /// Number of faces on the surface.
+    pub boundary_faces: usize,
+    /// Number of degrees of freedom with a prescribed displacement.
+    pub constrained_dofs: usize,
+    /// Numbers of nodes in no element.
+    pub unused_nodes: Vec<u32>,
+}
+
+/// One material of a mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialInfo {
+    /// Material number.
+    pub id: u32,
+    /// Number of elements.
+    pub elements: usize,
+    /// Volume [m³].
+    pub volume: f64,
+}
+
+/// Extremes of a measure and the numbers of the elements that have them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// Least value.
+    pub least: f64,
+    /// Number of the element with the least value.
+    pub least_element: u32,
+    /// Greatest value.
+    pub greatest: f64,
+    /// Number of the element with the greatest value.
+    pub greatest_element: u32,
+}
+
+impl Range {
+    /// Extremes of the values of elements in order; the first of equal ones; zeros without elements.
+    fn over(values: impl Iterator<Item = (u32, f64)>) -> Range {
+        let none = Range { least: 0.0, least_element: 0, greatest: 0.0, greatest_element: 0 };
+        values
+            .fold(None, |range: Option<Range>, (id, value)| {
+                let mut range = range.unwrap_or(Range {
+                    least: value,
+                    least_element: id,
+                    greatest: value,
+                    greatest_element: id,
+                });
+                if value < range.least {
+                    (range.least, range.least_element) = (value, id);
+                }
+                if value > range.greatest {
+                    (range.greatest, range.greatest_element) = (value, id);
+                }
+                Some(range)
+            })
+            .unwrap_or(none)
+    }
+}
+
+/// Coordinates of the nodes of an element. Shape `[20][3]` [m].
+fn element_coordinates(mesh: &Mesh, element: usize) -> [[f64; 3]; HEX20_NODES] {
+    mesh.connectivity[element].map(|node| mesh.coordinates[node as usize])
+}
+
+/// Numbers of the nodes that no element has, in node order.
+fn unused_nodes(mesh: &Mesh) -> Vec<u32> {
+    let mut used = vec![false; mesh.node_count()];
+    for node in mesh.connectivity.iter().flatten() {
+        used[*node as usize] = true;
+    }
+    used.iter().zip(&mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect()
+}
+
+/// Counts, sizes and quality of a mesh.
+pub fn info(mesh: &Mesh, constraints: &[Constraint]) -> MeshInfo {
+    let qualities: Vec<Quality> =
+        (0..mesh.element_count()).map(|e| element_quality(&element_coordinates(mesh, e))).collect();
+    let mut materials: BTreeMap<u32, MaterialInfo> = BTreeMap::new();
+    for (id, quality) in mesh.materials.iter().zip(&qualities) {
+        let material = materials.entry(*id).or_insert(MaterialInfo { id: *id, elements: 0, volume: 0.0 });
+        material.elements += 1;
+        material.volume += quality.volume;
+    }
+    let mut bounds = match mesh.coordinates.first() {
+        Some(first) => [*first; 2],
+        None => [[0.0; 3]; 2],
+    };
+    for point in &mesh.coordinates {
+        for axis in 0..3 {
+            bounds[0][axis] = bounds[0][axis].min(point[axis]);
+            bounds[1][axis] = bounds[1][axis].max(point[axis]);
+        }
+    }
+    let mut dofs: Vec<(u32, u8)> = constraints.iter().map(|c| (c.node, c.direction)).collect();
+    dofs.sort_unstable();
+    dofs.dedup();
+    let by_element = |measure: fn(&Quality) -> f64| {
+        Range::over(mesh.element_ids.iter().copied().zip(qualities.iter().map(measure)))
+    };
+    MeshInfo {
+        nodes: mesh.node_count(),
+        elements: mesh.element_count(),
+        bounds,
+        volume: qualities.iter().map(|q| q.volume).sum(),
+        materials: materials.into_values().collect(),
+        scaled_jacobian: by_element(|q| q.scaled_jacobian),
+        aspect_ratio: by_element(|q| q.aspect_ratio),
+        boundary_faces: mesh.boundary_faces().len(),
+        constrained_dofs: dofs.len(),
+        unused_nodes: unused_nodes(mesh),
+    }
+}
+
+impl fmt::Display for MeshInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.bounds;
+        writeln!(f, "nodes             {:>10}", self.nodes)?;
+        writeln!(f, "elements          {:>10}   20-node hexahedra", self.elements)?;
+        writeln!(f, "boundary faces    {:>10}", self.boundary_faces)?;
+        writeln!(f, "constrained dofs  {:>10}", self.constrained_dofs)?;
+        for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+            writeln!(f, "{name}                 {:>10.4} to {:.4} m", low[axis], high[axis])?;
+        }
+        writeln!(f, "volume            {:>10.4} m³", self.volume)?;
+        for m in &self.materials {
+            writeln!(f, "  material {:<6} {:>10.4} m³   {} elements", m.id, m.volume, m.elements)?;
+        }
+        for (name, range) in
+            [("scaled Jacobian", &self.scaled_jacobian), ("aspect ratio", &self.aspect_ratio)]
+        {
+            writeln!(
+                f,
+                "{name:<18}{:>10.4} (element {}) to {:.4} (element {})",
+                range.least, range.least_element, range.greatest, range.greatest_element
+            )?;
+        }
+        if let Some(first) = self.unused_nodes.first() {
+            writeln!(f, "unused nodes      {:>10}   first: {first}", self.unused_nodes.len())?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes a mesh as `.vtu` (see [`vtu::write_mesh`] for its fields).
+///
+/// # Errors
+/// A file name with another ending; what the writer refuses.
+pub fn convert(mesh: &Mesh, constraints: &[Constraint], out: &Path) -> Result<(), WriteError> {
+    if !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtu")) {
+        return Err(WriteError::format(out, "expected a file name that ends with .vtu"));
+    }
+    vtu::write_mesh(out, mesh, constraints)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample;
+
+    #[test]
+    fn a_straight_block_in_numbers() {
+        let mut mesh = sample::straight_block([2, 3, 3]);
+        mesh.node_ids.push(90_000);
+        mesh.coordinates.push([1.0, 1.0, 4.0]);
+        let constraint = |node, direction| Constraint { node, direction, value: 0.0 };
+        let info = info(&mesh, &[constraint(0, 0), constraint(0, 1), constraint(0, 0)]);
+        // Nodes of an nx x ny x nz block: corners plus edges of the lattice.
+        assert_eq!((info.nodes, info.elements), (3 * 4 * 4 + 2 * 16 + 3 * 12 + 3 * 12 + 1, 18));
+        assert_eq!(info.bounds, [[0.0; 3], [2.0, 3.0, 4.0]]);
+        assert!((info.volume - 18.0).abs() < 1e-12);
+        let volumes: Vec<(u32, usize)> = info.materials.iter().map(|m| (m.id, m.elements)).collect();
+        assert_eq!(volumes, [(1, 6), (2, 6), (3, 6)]);
+        assert!(info.materials.iter().all(|m| (m.volume - 6.0).abs() < 1e-12));
+        assert_eq!(info.boundary_faces, 2 * (6 + 6 + 9));
+        assert_eq!(info.constrained_dofs, 2);
+        assert_eq!(info.unused_nodes, [90_000]);
+        assert!((info.scaled_jacobian.least - 1.0).abs() < 1e-12);
+        assert!((info.aspect_ratio.greatest - 1.0).abs() < 1e-12);
+        let text = info.to_string();
+        assert!(text.contains("material 2") && text.contains("unused nodes"), "{text}");
+    }
+
+    #[test]
+    fn the_worst_element_is_named() {
+        let mut mesh = sample::straight_block([3, 1, 1]);
+        // The upper far corner of the second element, number 999, is pulled along x.
+        let corner = mesh.connectivity[1][6] as usize;
+        mesh.coordinates[corner][0] += 0.3;
+        let info = info(&mesh, &[]);
+        assert!(info.scaled_jacobian.least < 0.9);
+        assert!([999, 998].contains(&info.scaled_jacobian.least_element), "{info}");
+        assert!(info.aspect_ratio.greatest > 1.2);
+    }
+
+    #[test]
+    fn an_empty_mesh_has_no_numbers() {
+        let info = info(&Mesh::default(), &[]);
+        assert_eq!((info.nodes, info.volume, info.scaled_jacobian.least), (0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn only_vtu_is_written() {
+        let dir = sample::folder("convert");
+        let mesh = sample::block([1, 1, 1]);
+        let error = convert(&mesh, &[], &dir.join("mesh.msh")).unwrap_err();
+        assert!(error.to_string().ends_with("expected a file name that ends with .vtu"), "{error}");
+        convert(&mesh, &[], &dir.join("mesh.vtu")).unwrap();
+        assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 1);
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+}

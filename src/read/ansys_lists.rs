@@ -28,7 +28,7 @@ use super::table::{self, Row, Table};
 
 /// What the columns of the element list are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub enum ElementColumns {
     /// Recognised by their count; of 21 columns the first is a material where its values repeat.
     #[default]
@@ -62,7 +62,7 @@ impl Default for ListLayout {
 /// What the lists hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lists {
-    /// The mesh; nodes and elements in file order.
+    /// The mesh; nodes and elements in file order, without nodes that belong to no element.
     pub mesh: Mesh,
     /// Constraints in file order, one per node and direction.
     pub constraints: Vec<Constraint>,
@@ -88,7 +88,7 @@ pub fn read_lists(
     if let Some(file) = constraints {
         read_constraints(file, &index, &mut lists)?;
     }
-    warn_of_unused_nodes(nodes, &mut lists);
+    drop_unused_nodes(nodes, &mut lists);
     Ok(lists)
 }
 
@@ -276,24 +276,45 @@ fn directions(table: &Table, row: &Row) -> Result<&'static [u8], ReadError> {
     }
 }
 
-fn warn_of_unused_nodes(file: &Path, lists: &mut Lists) {
-    let mut used = vec![false; lists.mesh.node_count()];
-    for node in lists.mesh.connectivity.iter().flatten() {
+/// Leaves out nodes that belong to no element, with their constraints: they have no stiffness, and meshing
+/// often leaves some behind.
+fn drop_unused_nodes(file: &Path, lists: &mut Lists) {
+    let mesh = &mut lists.mesh;
+    let mut used = vec![false; mesh.node_count()];
+    for node in mesh.connectivity.iter().flatten() {
         used[*node as usize] = true;
     }
     let unused: Vec<u32> =
-        used.iter().zip(&lists.mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect();
-    if let Some(first) = unused.first() {
-        let count = unused.len();
-        let names = unused.iter().take(5).map(u32::to_string).collect::<Vec<_>>().join(", ");
-        let names = if count > 5 { format!("{names}, …") } else { names };
-        let sentence = if count == 1 {
-            format!("node {first} belongs to no element")
-        } else {
-            format!("{count} nodes belong to no element: {names}")
-        };
-        lists.warnings.push(format!("{}: {sentence}", file.display()));
+        used.iter().zip(&mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect();
+    if unused.is_empty() {
+        return;
     }
+    let mut next = 0;
+    let renumbered: Vec<u32> = used
+        .iter()
+        .map(|used| {
+            next += u32::from(*used);
+            next.wrapping_sub(1)
+        })
+        .collect();
+    let mut keep = used.iter();
+    mesh.node_ids.retain(|_| keep.next().copied().unwrap_or(false));
+    let mut keep = used.iter();
+    mesh.coordinates.retain(|_| keep.next().copied().unwrap_or(false));
+    for node in mesh.connectivity.iter_mut().flatten() {
+        *node = renumbered[*node as usize];
+    }
+    lists.constraints.retain(|c| used[c.node as usize]);
+    for constraint in &mut lists.constraints {
+        constraint.node = renumbered[constraint.node as usize];
+    }
+    let shown = unused.iter().take(5).map(u32::to_string).collect::<Vec<_>>().join(", ");
+    let sentence = match unused.len() {
+        1 => format!("node {shown} belongs to no element and is left out"),
+        count if count <= 5 => format!("{count} nodes belong to no element and are left out: {shown}"),
+        count => format!("{count} nodes belong to no element and are left out: {shown}, …"),
+    };
+    lists.warnings.push(format!("{}: {sentence}", file.display()));
 }
 
 #[cfg(test)]

@@ -121,6 +121,36 @@ fn the_scene_may_tell_the_columns() {
     assert_eq!(error, expected);
 }
 
+/// The formats of `inputs/ansys`: whole numbers as F10.0, reals as E26.17, elements on two lines.
+#[test]
+fn lists_as_the_macros_write_them() {
+    let whole = |text: &str| format!("{:>10}", format!("{text}."));
+    let mut nodes = String::new();
+    for row in brick_nodes().lines() {
+        let fields: Vec<&str> = row.split(' ').collect();
+        nodes += &whole(fields[0]);
+        for value in &fields[1..] {
+            let (mantissa, exponent) = (value.parse::<f64>().unwrap() / 1e4, 4);
+            nodes += &format!("{:>26}", format!("{mantissa:.17}E+{exponent:02}"));
+        }
+        nodes += "\n";
+    }
+    let mut two_lines = String::new();
+    for row in elements().lines() {
+        let fields: Vec<String> = row.split(' ').map(whole).collect();
+        two_lines += &format!("{}\n{}\n", fields[..12].concat(), fields[12..].concat());
+    }
+    let dof = "        5.  1.   0.00000000000000000E+00\n      112.  3.  -0.15000000000000000E-02\n";
+    let lists = read("macros", &nodes, &two_lines, Some(dof)).unwrap();
+    let plain = read("macros_plain", &brick_nodes(), &elements(), Some("5 1\n112 3 -1.5e-3\n")).unwrap();
+    assert_eq!(lists.mesh.connectivity, plain.mesh.connectivity);
+    assert_eq!((lists.mesh.node_ids, lists.mesh.element_ids), (plain.mesh.node_ids, plain.mesh.element_ids));
+    assert_eq!(lists.constraints, plain.constraints);
+    for (a, b) in lists.mesh.coordinates.as_flattened().iter().zip(plain.mesh.coordinates.as_flattened()) {
+        assert!((a - b).abs() <= 1e-15 * b.abs(), "{a} {b}");
+    }
+}
+
 #[test]
 fn elements_of_several_lines() {
     let plain = read("lines_plain", &brick_nodes(), &elements(), None).unwrap();
@@ -293,13 +323,18 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
-fn unused_nodes_are_a_warning() {
-    let nodes = brick_nodes() + "900 0 0 0\n";
-    let lists = read("unused", &nodes, &elements(), None).unwrap();
-    assert_eq!(lists.warnings, ["NODECOORD.DAT: node 900 belongs to no element"]);
+fn unused_nodes_are_left_out_with_a_warning() {
+    let plain = read("unused_not", &brick_nodes(), &elements(), Some("112 1 0\n1 ALL\n")).unwrap();
+    // One unused node in front of all others, one behind, both constrained.
+    let nodes = "900 0 0 0\n".to_string() + &brick_nodes();
+    let lists = read("unused", &nodes, &elements(), Some("900 1 0\n112 1 0\n1 ALL\n")).unwrap();
+    assert_eq!(lists.warnings, ["NODECOORD.DAT: node 900 belongs to no element and is left out"]);
+    assert_eq!((lists.mesh, lists.constraints), (plain.mesh.clone(), plain.constraints.clone()));
     let nodes = nodes + "901 0 0 0\n";
-    let lists = read("unused_2", &nodes, &elements(), None).unwrap();
-    assert_eq!(lists.warnings, ["NODECOORD.DAT: 2 nodes belong to no element: 900, 901"]);
+    let lists = read("unused_2", &nodes, &elements(), Some("112 1 0\n1 ALL\n901 ALL\n")).unwrap();
+    let expected = "NODECOORD.DAT: 2 nodes belong to no element and are left out: 900, 901";
+    assert_eq!(lists.warnings, [expected]);
+    assert_eq!((lists.mesh, lists.constraints), (plain.mesh, plain.constraints));
 }
 
 /// A block of 480 distorted elements in three materials, with constraints, through every mangling at once: commas, `D` exponents, carriage returns, elements of three lines, headers, a byte order mark.

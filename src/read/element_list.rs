@@ -149,9 +149,9 @@ fn id_or_material(
     first.sort_unstable();
     first.dedup();
     let (columns, read, other) = if 2 * first.len() > records.len() {
-        (ID, "element number", "material-nodes")
+        (ID, "element number", "material_nodes")
     } else {
-        (MATERIAL, "material number", "id-nodes")
+        (MATERIAL, "material number", "id_nodes")
     };
     warnings.push(format!(
         "{}: 21 columns: the first is read as the {read} ({} different values in {} elements); \

@@ -1,6 +1,5 @@
 //! The three ANSYS lists in our own layout: the form that `read::ansys_lists` documents.
 
-use std::io::Write;
 use std::path::Path;
 
 use trackbed_fem::mesh::{Constraint, Mesh};

@@ -13,6 +13,8 @@ pub(crate) mod sample;
 pub mod svg;
 pub mod tecplot;
 mod vtk;
+#[cfg(test)]
+mod vtk_oracle;
 pub mod vtp;
 pub mod vtu;
 

@@ -1,1 +1,145 @@
-//! Being written.
+//! A time series for ParaView (`.pvd`): which file shows which part at which time.
+//!
+//! The file is written anew, whole, after each frame, so that a run can be watched, and one that was cut short
+//! keeps what it has shown.
+
+use std::path::{Path, PathBuf};
+
+use super::atomic;
+use super::error::WriteError;
+
+/// The list of frames of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    file: PathBuf,
+    frames: Vec<Frame>,
+}
+
+/// One file of the series.
+#[derive(Clone, Debug, PartialEq)]
+struct Frame {
+    time: f64,
+    part: u32,
+    name: String,
+    file: String,
+}
+
+impl Series {
+    /// An empty series that will be `file`. Nothing is written yet.
+    pub fn new(file: &Path) -> Self {
+        Series { file: file.to_path_buf(), frames: Vec::new() }
+    }
+
+    /// Takes up the series of an earlier run, up to the frames at `time` [s] (those of a checkpoint), so that
+    /// later ones are written again. A series that does not exist is empty.
+    ///
+    /// # Errors
+    /// The file cannot be read or is not one of ours.
+    pub fn resume(file: &Path, time: f64) -> Result<Self, WriteError> {
+        let mut series = Series::new(file);
+        let text = match std::fs::read_to_string(file) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(series),
+            text => text.map_err(WriteError::io(file))?,
+        };
+        for row in text.lines().filter(|row| row.trim_start().starts_with("<DataSet")) {
+            let frame = parse(row)
+                .ok_or_else(|| WriteError::format(file, format!("not a row of this program: {row}")))?;
+            if frame.time <= time {
+                series.frames.push(frame);
+            }
+        }
+        Ok(series)
+    }
+
+    /// Adds a file: `part` keeps the parts apart (0 solid, 1 grains, …), `name` is shown for it, `file` is its
+    /// name relative to the series.
+    pub fn push(&mut self, time: f64, part: u32, name: &str, file: &str) {
+        self.frames.push(Frame { time, part, name: name.to_string(), file: file.to_string() });
+    }
+
+    /// Writes the series.
+    ///
+    /// # Errors
+    /// A time that is not finite, and what the system refuses.
+    pub fn write(&self) -> Result<(), WriteError> {
+        if let Some((index, frame)) = self.frames.iter().enumerate().find(|(_, f)| !f.time.is_finite()) {
+            let (file, field) = (self.file.clone(), "time".to_string());
+            return Err(WriteError::NotFinite { file, field, index, value: frame.time });
+        }
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
+        );
+        for Frame { time, part, name, file } in &self.frames {
+            let (name, file) = (escape(name), escape(file));
+            text += &format!(
+                "    <DataSet timestep=\"{time}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>\n"
+            );
+        }
+        text += "  </Collection>\n</VTKFile>\n";
+        atomic::write(&self.file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(&self.file)))
+    }
+}
+
+fn parse(row: &str) -> Option<Frame> {
+    let value = |key: &str| {
+        let start = row.find(&format!(" {key}=\""))? + key.len() + 3;
+        row[start..].split('"').next()
+    };
+    Some(Frame {
+        time: value("timestep")?.parse().ok()?,
+        part: value("part")?.parse().ok()?,
+        name: unescape(value("name")?),
+        file: unescape(value("file")?),
+    })
+}
+
+/// Text as it stands in XML, also inside quotes.
+pub(crate) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// The text of [`escape`].
+pub(crate) fn unescape(text: &str) -> String {
+    text.replace("&quot;", "\"").replace("&gt;", ">").replace("&lt;", "<").replace("&amp;", "&")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+
+    #[test]
+    fn a_series_is_taken_up_again_at_a_time() {
+        let dir = folder("pvd");
+        let file = dir.join("results.pvd");
+        assert_eq!(Series::resume(&file, 1.0).unwrap(), Series::new(&file));
+        let mut series = Series::new(&file);
+        for frame in 0..4 {
+            let time = 0.1 * f64::from(frame);
+            series.push(time, 0, "solid", &format!("solid_{frame}.vtu"));
+            series.push(time, 1, "grains & <chains>", &format!("\"{frame}\".vtp"));
+        }
+        series.write().unwrap();
+        assert_eq!(Series::resume(&file, f64::INFINITY).unwrap(), series);
+        // 0.1 * 3 is above 0.3: times are compared as they are.
+        let cut = Series::resume(&file, 0.2).unwrap();
+        assert_eq!(cut.frames, series.frames[..6]);
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+
+    #[test]
+    fn a_time_that_is_not_finite_is_refused() {
+        let dir = folder("pvd_nan");
+        let file = dir.join("results.pvd");
+        let mut series = Series::new(&file);
+        series.push(0.0, 0, "solid", "a.vtu");
+        series.push(f64::NAN, 0, "solid", "b.vtu");
+        let error = series.write().unwrap_err();
+        assert!(error.to_string().contains("time at index 1 is NaN"), "{error}");
+        assert!(!file.exists());
+        std::fs::write(&file, "<DataSet nonsense/>\n").unwrap();
+        assert!(Series::resume(&file, 1.0).is_err());
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+}

@@ -1,1 +1,288 @@
-//! Being written.
+//! The solid for Tecplot: an ASCII `.dat` file, one zone of eight-node bricks (FEBRICK).
+//!
+//! Tecplot has no 20-node brick. Each hex20 is split into eight bricks about its centre; the points that the
+//! serendipity element lacks, one per face and one per body, are interpolated with its own shape functions:
+//!
+//! - face centre: half the sum of the four mid-sides less a quarter of the sum of the four corners;
+//! - body centre: a quarter of the sum of the twelve mid-sides less a quarter of that of the eight corners.
+//!
+//! `u` and `von_mises` there come from the interpolated displacement and stress; `eps_p`, which the negative
+//! weights of the corners could make negative, is kept at 0 or above.
+//!
+//! Source of the format: Tecplot 360 Data Format Guide, ASCII data, finite-element zones.
+
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::Path;
+
+use trackbed_fem::mesh::{FACE_NODES, HEX20_NODES, Mesh};
+
+use super::atomic;
+use super::error::{WriteError, check_field};
+use super::vtu::SolidFrame;
+
+const VARIABLES: &str = "\"x\" \"y\" \"z\" \"ux\" \"uy\" \"uz\" \"u\" \"sxx\" \"syy\" \"szz\" \"sxy\" \"syz\" \"szx\" \
+     \"von_mises\" \"eps_p\"";
+
+/// Independent values of a point: x y z, ux uy uz, six stresses, equivalent plastic strain.
+type Values = [f64; 13];
+
+/// Local points 0–19 nodes, 20–25 face centres, 26 body centre, of the 3x3x3 lattice; first axis fastest.
+const LATTICE: [usize; 27] =
+    [0, 8, 1, 11, 20, 9, 3, 10, 2, 16, 21, 17, 24, 26, 22, 19, 23, 18, 4, 12, 5, 15, 25, 13, 7, 14, 6];
+
+/// Corners of a small brick on that lattice, relative to its lowest corner, Tecplot's order.
+const BRICK: [usize; 8] = [0, 1, 4, 3, 9, 10, 13, 12];
+
+/// Lowest corners of the eight small bricks.
+const LOWEST: [usize; 8] = [0, 1, 3, 4, 9, 10, 12, 13];
+
+/// Writes the solid at `time` [s] as the zone `zone`; files of one `strand` (1 or more) make a time series.
+///
+/// # Errors
+/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+pub fn write_solid(
+    file: &Path,
+    frame: &SolidFrame,
+    zone: &str,
+    time: f64,
+    strand: u32,
+) -> Result<(), WriteError> {
+    let n = frame.mesh.node_count();
+    check_field(file, "time", &[time], 1, 1)?;
+    check_field(file, "coordinates", frame.mesh.coordinates.as_flattened(), 3, n)?;
+    check_field(file, "displacement", frame.displacement, 3, n)?;
+    check_field(file, "stress", frame.stress.as_flattened(), 6, n)?;
+    check_field(file, "von_mises", frame.von_mises, 1, n)?;
+    check_field(file, "equivalent_plastic_strain", frame.equivalent_plastic_strain, 1, n)?;
+    let (bricks, extra) = split(frame);
+    let zone = zone.replace('"', "'");
+    atomic::write(file, |out| {
+        write_text(out, frame, &zone, time, strand, &bricks, &extra).map_err(WriteError::io(file))
+    })
+}
+
+fn write_text(
+    out: &mut dyn Write,
+    frame: &SolidFrame,
+    zone: &str,
+    time: f64,
+    strand: u32,
+    bricks: &[[usize; 8]],
+    extra: &[Values],
+) -> std::io::Result<()> {
+    let n = frame.mesh.node_count();
+    writeln!(out, "# SI units; coordinates undeformed; stress tension positive.")?;
+    writeln!(
+        out,
+        "# Each 20-node element is split into 8 bricks; points 1 to {n} are the nodes, the rest are"
+    )?;
+    writeln!(out, "# face and body centres, interpolated with the shape functions of the 20-node element.")?;
+    writeln!(out, "TITLE = \"{zone}\"")?;
+    writeln!(out, "VARIABLES = {VARIABLES}")?;
+    writeln!(out, "ZONE T=\"{zone}\", N={}, E={},", n + extra.len(), bricks.len())?;
+    writeln!(out, "DATAPACKING=POINT, ZONETYPE=FEBRICK, STRANDID={strand}, SOLUTIONTIME={time:e}")?;
+    for node in 0..n {
+        write_point(out, &values(frame, node), frame.von_mises[node])?;
+    }
+    for point in extra {
+        write_point(out, point, von_mises(point))?;
+    }
+    for brick in bricks {
+        let line = brick.iter().map(|p| (p + 1).to_string()).collect::<Vec<_>>().join(" ");
+        writeln!(out, "{line}")?;
+    }
+    Ok(())
+}
+
+fn write_point(out: &mut dyn Write, v: &Values, von_mises: f64) -> std::io::Result<()> {
+    let total = (v[3] * v[3] + v[4] * v[4] + v[5] * v[5]).sqrt();
+    let mut line = String::with_capacity(256);
+    for value in v[..6].iter().chain([&total]).chain(&v[6..12]).chain([&von_mises, &v[12]]) {
+        line += &format!("{value:.9e} ");
+    }
+    writeln!(out, "{}", line.trim_end())
+}
+
+fn values(frame: &SolidFrame, node: usize) -> Values {
+    let (x, u, s) = (frame.mesh.coordinates[node], &frame.displacement[3 * node..], frame.stress[node]);
+    let eps = frame.equivalent_plastic_strain[node];
+    [x[0], x[1], x[2], u[0], u[1], u[2], s[0], s[1], s[2], s[3], s[4], s[5], eps]
+}
+
+fn von_mises(v: &Values) -> f64 {
+    let [xx, yy, zz, xy, yz, zx] = [v[6], v[7], v[8], v[9], v[10], v[11]];
+    let deviatoric = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (0.5 * deviatoric + 3.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
+}
+
+/// The small bricks (point indices from 0, nodes first) and the points beyond the nodes. Face centres are
+/// shared by the elements on both sides.
+fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
+    let mesh: &Mesh = frame.mesh;
+    let n = mesh.node_count();
+    let mut extra = Vec::new();
+    let mut centres: HashMap<[u32; 4], usize> = HashMap::new();
+    let mut bricks = Vec::with_capacity(8 * mesh.element_count());
+    for element in &mesh.connectivity {
+        let mut points = [0; 27];
+        for local in 0..HEX20_NODES {
+            points[local] = element[local] as usize;
+        }
+        for (side, face) in FACE_NODES.iter().enumerate() {
+            let mut key = [0, 1, 2, 3].map(|c| element[face[c]]);
+            key.sort_unstable();
+            points[20 + side] = *centres.entry(key).or_insert_with(|| {
+                let corner = |c: &usize| (element[*c] as usize, -0.25);
+                let middle = |m: &usize| (element[*m] as usize, 0.5);
+                extra.push(combine(frame, face[..4].iter().map(corner).chain(face[4..].iter().map(middle))));
+                n + extra.len() - 1
+            });
+        }
+        let weight = |(local, node): (usize, &u32)| (*node as usize, if local < 8 { -0.25 } else { 0.25 });
+        extra.push(combine(frame, element.iter().enumerate().map(weight)));
+        points[26] = n + extra.len() - 1;
+        bricks.extend(LOWEST.map(|low| BRICK.map(|corner| points[LATTICE[low + corner]])));
+    }
+    (bricks, extra)
+}
+
+fn combine(frame: &SolidFrame, weights: impl Iterator<Item = (usize, f64)>) -> Values {
+    let mut sum = [0.0; 13];
+    for (node, weight) in weights {
+        for (s, v) in sum.iter_mut().zip(values(frame, node)) {
+            *s += weight * v;
+        }
+    }
+    sum[12] = sum[12].max(0.0);
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample;
+
+    /// Writes a mesh with smooth fields and returns the header, the points and the bricks of the file.
+    fn written(mesh: &Mesh) -> (Vec<String>, Vec<Vec<f64>>, Vec<[usize; 8]>) {
+        let n = mesh.node_count();
+        let u: Vec<f64> = mesh.coordinates.iter().flat_map(|[x, y, z]| [y * z, x * x, x + y]).collect();
+        let stress: Vec<[f64; 6]> =
+            mesh.coordinates.iter().map(|[x, y, z]| [*x, *y, *z, 1.0, 2.0, x * y]).collect();
+        let scalar = vec![0.5; n];
+        let frame = SolidFrame {
+            mesh,
+            displacement: &u,
+            velocity: &u,
+            stress: &stress,
+            von_mises: &scalar,
+            equivalent_plastic_strain: &scalar,
+            yield_function: &scalar,
+        };
+        let dir = sample::folder(&format!("tecplot_{n}"));
+        let file = dir.join("solid.dat");
+        write_solid(&file, &frame, "track \"A\"", 0.25, 1).unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
+        std::fs::remove_dir_all(&dir).unwrap();
+        let header: Vec<String> = text.lines().take(7).map(String::from).collect();
+        let rows: Vec<Vec<f64>> =
+            text.lines().skip(7).map(|r| r.split(' ').map(|v| v.parse().unwrap()).collect()).collect();
+        let split = rows.iter().position(|r| r.len() == 8).unwrap();
+        let bricks = rows[split..].iter().map(|r| std::array::from_fn(|i| r[i] as usize - 1)).collect();
+        (header, rows[..split].to_vec(), bricks)
+    }
+
+    /// Volume of a brick with straight edges, by the trilinear map at 2x2x2 Gauss points (exact).
+    fn brick_volume(x: [[f64; 3]; 8]) -> f64 {
+        const SIGN: [[f64; 3]; 8] = [
+            [-1.0, -1.0, -1.0],
+            [1.0, -1.0, -1.0],
+            [1.0, 1.0, -1.0],
+            [-1.0, 1.0, -1.0],
+            [-1.0, -1.0, 1.0],
+            [1.0, -1.0, 1.0],
+            [1.0, 1.0, 1.0],
+            [-1.0, 1.0, 1.0],
+        ];
+        let g = 1.0 / 3.0_f64.sqrt();
+        SIGN.iter()
+            .map(|at| {
+                let mut j = [[0.0; 3]; 3];
+                for (s, p) in SIGN.iter().zip(x) {
+                    for a in 0..3 {
+                        let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+                        let d = 0.125 * s[a] * (1.0 + s[b] * g * at[b]) * (1.0 + s[c] * g * at[c]);
+                        (0..3).for_each(|i| j[a][i] += d * p[i]);
+                    }
+                }
+                let cross = |a: [f64; 3], b: [f64; 3]| {
+                    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+                };
+                let c = cross(j[1], j[2]);
+                j[0][0] * c[0] + j[0][1] * c[1] + j[0][2] * c[2]
+            })
+            .sum()
+    }
+
+    #[test]
+    fn the_header_is_tecplots_and_counts_agree() {
+        let mesh = sample::block([2, 1, 1]);
+        let (header, points, bricks) = written(&mesh);
+        // 32 nodes, 11 faces, 2 bodies.
+        assert_eq!((mesh.node_count(), points.len(), bricks.len()), (32, 45, 16));
+        assert_eq!(header[3], "TITLE = \"track 'A'\"");
+        assert_eq!(header[4], format!("VARIABLES = {VARIABLES}"));
+        assert_eq!(header[5], "ZONE T=\"track 'A'\", N=45, E=16,");
+        assert_eq!(header[6], "DATAPACKING=POINT, ZONETYPE=FEBRICK, STRANDID=1, SOLUTIONTIME=2.5e-1");
+        assert!(points.iter().all(|p| p.len() == VARIABLES.split(' ').filter(|v| !v.is_empty()).count()));
+    }
+
+    #[test]
+    fn the_bricks_of_a_straight_mesh_fill_it_and_none_is_turned_over() {
+        let mesh = sample::straight_block([2, 3, 2]);
+        let (_, points, bricks) = written(&mesh);
+        for brick in &bricks {
+            let corners = brick.map(|p| [points[p][0], points[p][1], points[p][2]]);
+            assert!((brick_volume(corners) - 0.125).abs() < 1e-8);
+        }
+        assert_eq!(bricks.len(), 12 * 8);
+    }
+
+    #[test]
+    fn interpolated_points_reproduce_linear_fields_and_derived_values() {
+        let mesh = sample::block([2, 2, 1]);
+        let (_, points, _) = written(&mesh);
+        for p in &points[mesh.node_count()..] {
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-7 * (1.0 + a.abs());
+            assert!(close(p[5], p[0] + p[1]), "uz = x + y");
+            assert!(close(p[7], p[0]) && close(p[8], p[1]) && close(p[9], p[2]) && close(p[10], 1.0));
+            assert!(close(p[6], (p[3] * p[3] + p[4] * p[4] + p[5] * p[5]).sqrt()));
+            let (d1, d2, d3) = (p[7] - p[8], p[8] - p[9], p[9] - p[7]);
+            let shear = p[10] * p[10] + p[11] * p[11] + p[12] * p[12];
+            assert!(close(p[13], (0.5 * (d1 * d1 + d2 * d2 + d3 * d3) + 3.0 * shear).sqrt()));
+            assert!(close(p[14], 0.5));
+        }
+    }
+
+    #[test]
+    fn a_value_that_is_not_finite_is_named() {
+        let mesh = sample::block([1, 1, 1]);
+        let n = mesh.node_count();
+        let (u, mut stress, scalar) = (vec![0.0; 3 * n], vec![[0.0; 6]; n], vec![0.0; n]);
+        stress[2][1] = f64::NAN;
+        let frame = SolidFrame {
+            mesh: &mesh,
+            displacement: &u,
+            velocity: &u,
+            stress: &stress,
+            von_mises: &scalar,
+            equivalent_plastic_strain: &scalar,
+            yield_function: &scalar,
+        };
+        let dir = sample::folder("tecplot_nan");
+        let error = write_solid(&dir.join("solid.dat"), &frame, "a", 0.0, 1).unwrap_err();
+        assert!(error.to_string().contains("stress at index 2 is NaN"), "{error}");
+        assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 0);
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
+}

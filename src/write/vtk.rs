@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use vtkio::IOBuffer;
-use vtkio::model::{Attribute, ByteOrder, DataSet, Version, VertexNumbers, Vtk};
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, DataSet, PolyDataPiece, ScalarType, Version, VertexNumbers, Vtk,
+};
 use vtkio::xml::Compressor;
 
 use super::atomic;
@@ -12,22 +14,17 @@ use super::error::{WriteError, check_field};
 /// zlib level: result fields are noise in their low bits, so higher levels cost time and gain little.
 const LEVEL: u32 = 1;
 
-/// Block in which vtkio compresses [bytes]. It ends every array with a partial block, also where that block
-/// is empty, which VTK then reads as a full one: arrays of whole blocks must stay uncompressed.
-const BLOCK: usize = 32768;
-
 /// Named, checked fields of the points or of the cells of one file.
 pub struct Fields {
     file: PathBuf,
     count: usize,
     list: Vec<Attribute>,
-    compressible: bool,
 }
 
 impl Fields {
     /// Fields of `count` items of `file`.
     pub fn new(file: &Path, count: usize) -> Self {
-        Fields { file: file.to_path_buf(), count, list: Vec::new(), compressible: true }
+        Fields { file: file.to_path_buf(), count, list: Vec::new() }
     }
 
     /// One number per item.
@@ -60,7 +57,6 @@ impl Fields {
             let (file, field) = (self.file.clone(), name.to_string());
             return Err(WriteError::Length { file, field, found: values.len(), expected: self.count });
         }
-        self.compressible &= compressible(4 * values.len());
         self.list.push(Attribute::generic(name, 1).with_data(values.to_vec()));
         Ok(())
     }
@@ -73,20 +69,14 @@ impl Fields {
         attribute: Attribute,
     ) -> Result<(), WriteError> {
         check_field(&self.file, name, values, components, self.count)?;
-        self.compressible &= compressible(8 * values.len());
         self.list.push(attribute.with_data(values.to_vec()));
         Ok(())
     }
 
-    /// The fields, and whether all of them may be compressed.
-    pub fn finish(self) -> (Vec<Attribute>, bool) {
-        (self.list, self.compressible)
+    /// The fields.
+    pub fn finish(self) -> Vec<Attribute> {
+        self.list
     }
-}
-
-/// Whether an array of so many bytes may be compressed (see [`BLOCK`]).
-pub fn compressible(bytes: usize) -> bool {
-    !bytes.is_multiple_of(BLOCK)
 }
 
 /// Cells of `size` points each, numbered on.
@@ -104,16 +94,50 @@ pub fn points(file: &Path, points: &[[f64; 3]]) -> Result<IOBuffer, WriteError> 
     Ok(IOBuffer::F64(flat.to_vec()))
 }
 
-/// Writes a data set to `file`.
-pub fn write(file: &Path, data: DataSet, compressed: bool) -> Result<(), WriteError> {
+/// Writes poly data to `file`.
+pub fn write_poly(file: &Path, piece: PolyDataPiece) -> Result<(), WriteError> {
+    if piece.points.is_empty() { write_empty(file, &piece.data) } else { write(file, piece) }
+}
+
+/// Poly data without points: vtkio leaves out counts of zero, which VTK then misses.
+fn write_empty(file: &Path, data: &Attributes) -> Result<(), WriteError> {
+    let arrays = |list: &[Attribute]| -> String {
+        let one = |attribute: &Attribute| match attribute {
+            Attribute::DataArray(array) => {
+                let kind = if array.data.scalar_type() == ScalarType::U32 { "UInt32" } else { "Float64" };
+                let (name, components) = (&array.name, array.elem.num_comp());
+                format!(
+                    "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+                     format=\"ascii\"></DataArray>\n"
+                )
+            }
+            Attribute::Field { .. } => String::new(),
+        };
+        list.iter().map(one).collect()
+    };
+    let (point, cell) = (arrays(&data.point), arrays(&data.cell));
+    let text = format!(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+         <PolyData>\n<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n\
+         <PointData>\n{point}</PointData>\n<CellData>\n{cell}</CellData>\n\
+         <Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\"></DataArray>\n</Points>\n\
+         </Piece>\n</PolyData>\n</VTKFile>\n"
+    );
+    atomic::write(file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(file)))
+}
+
+/// Writes a data set that is not empty to `file`.
+pub fn write(file: &Path, data: impl Into<DataSet>) -> Result<(), WriteError> {
     let vtk = Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
         byte_order: ByteOrder::LittleEndian,
-        data,
+        data: DataSet::inline(data),
         file_path: None,
     };
-    let (compressor, level) = if compressed { (Compressor::ZLib, LEVEL) } else { (Compressor::None, 0) };
-    let xml = vtk.try_into_xml_format(compressor, level).map_err(|error| WriteError::format(file, error))?;
+    let xml =
+        vtk.try_into_xml_format(Compressor::ZLib, LEVEL).map_err(|error| WriteError::format(file, error))?;
     atomic::write(file, |out| xml.write(out).map_err(|error| WriteError::format(file, error)))
 }

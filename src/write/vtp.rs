@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use vtkio::IOBuffer;
-use vtkio::model::{Attributes, DataSet, PolyDataPiece, VertexNumbers};
+use vtkio::model::{Attributes, PolyDataPiece, VertexNumbers};
 
 use super::error::WriteError;
 use super::vtk::{self, Fields};
@@ -74,15 +74,14 @@ pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
     fields.ids("part", &frame.part)?;
     fields.scalar("mean_stress", &frame.mean_stress)?;
     fields.vector("force", frame.force.as_flattened())?;
-    let (point, fields_compressible) = fields.finish();
-    let compressed = fields_compressible && [24 * count, 8 * count].into_iter().all(vtk::compressible);
+    let point = fields.finish();
     let piece = PolyDataPiece {
         points: vtk::points(file, &frame.position)?,
         verts: Some(vtk::cells_in_order(count, 1)),
         data: Attributes { point, cell: Vec::new() },
         ..empty()
     };
-    vtk::write(file, DataSet::inline(piece), compressed)
+    vtk::write_poly(file, piece)
 }
 
 /// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`.
@@ -98,16 +97,14 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     let magnitude: Vec<f64> = parts.map(|(normal, tangential)| normal.hypot(*tangential)).collect();
     fields.scalar("magnitude", &magnitude)?;
     fields.ids("kind", &frame.kind)?;
-    let (cell, fields_compressible) = fields.finish();
-    let geometry = [48 * count, 16 * count, 8 * count];
-    let compressed = fields_compressible && geometry.into_iter().all(vtk::compressible);
+    let cell = fields.finish();
     let piece = PolyDataPiece {
         points: vtk::points(file, frame.ends.as_flattened())?,
         lines: Some(vtk::cells_in_order(count, 2)),
         data: Attributes { point: Vec::new(), cell },
         ..empty()
     };
-    vtk::write(file, DataSet::inline(piece), compressed)
+    vtk::write_poly(file, piece)
 }
 
 /// Writes the walls: cell data `id`.
@@ -127,22 +124,20 @@ pub fn write_walls(file: &Path, frame: &WallFrame) -> Result<(), WriteError> {
     }
     let mut fields = Fields::new(file, frame.polygons.len());
     fields.ids("id", &frame.id)?;
-    let (cell, fields_compressible) = fields.finish();
+    let cell = fields.finish();
     let connectivity: Vec<u64> = frame.polygons.iter().flatten().map(|c| u64::from(*c)).collect();
     let ends = frame.polygons.iter().scan(0, |end, polygon| {
         *end += polygon.len() as u64;
         Some(*end)
     });
     let offsets: Vec<u64> = ends.collect();
-    let geometry = [24 * frame.points.len(), 8 * connectivity.len(), 8 * offsets.len()];
-    let compressed = fields_compressible && geometry.into_iter().all(vtk::compressible);
     let piece = PolyDataPiece {
         points: vtk::points(file, &frame.points)?,
         polys: Some(VertexNumbers::XML { connectivity, offsets }),
         data: Attributes { point: Vec::new(), cell },
         ..empty()
     };
-    vtk::write(file, DataSet::inline(piece), compressed)
+    vtk::write_poly(file, piece)
 }
 
 fn empty() -> PolyDataPiece {
@@ -158,6 +153,8 @@ fn empty() -> PolyDataPiece {
 
 #[cfg(test)]
 mod tests {
+    use vtkio::model::DataSet;
+
     use super::*;
     use crate::write::sample::folder;
 

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
-use vtkio::model::{Attributes, CellType, Cells, DataSet, UnstructuredGridPiece, VertexNumbers};
+use vtkio::model::{Attributes, CellType, Cells, UnstructuredGridPiece, VertexNumbers};
 
 use super::error::WriteError;
 use super::vtk::{self, Fields};
@@ -64,17 +64,14 @@ pub fn write_mesh(file: &Path, mesh: &Mesh, constraints: &[Constraint]) -> Resul
 }
 
 fn write_grid(file: &Path, mesh: &Mesh, point_fields: Fields) -> Result<(), WriteError> {
-    let (nodes, elements) = (mesh.node_count(), mesh.element_count());
+    let elements = mesh.element_count();
     let mut cell_fields = Fields::new(file, elements);
     cell_fields.ids("material", &mesh.materials)?;
     cell_fields.ids("element_id", &mesh.element_ids)?;
-    let (point, points_compressible) = point_fields.finish();
-    let (cell, cells_compressible) = cell_fields.finish();
+    let point = point_fields.finish();
+    let cell = cell_fields.finish();
     let connectivity: Vec<u64> = mesh.connectivity.iter().flatten().map(|n| u64::from(*n)).collect();
     let offsets: Vec<u64> = (1..=elements).map(|e| (HEX20_NODES * e) as u64).collect();
-    // Cell types are single bytes, offsets and connectivity of eight.
-    let geometry = [24 * nodes, 8 * connectivity.len(), 8 * elements, elements];
-    let compressed = points_compressible && cells_compressible && geometry.into_iter().all(vtk::compressible);
     let piece = UnstructuredGridPiece {
         points: vtk::points(file, &mesh.coordinates)?,
         cells: Cells {
@@ -83,11 +80,13 @@ fn write_grid(file: &Path, mesh: &Mesh, point_fields: Fields) -> Result<(), Writ
         },
         data: Attributes { point, cell },
     };
-    vtk::write(file, DataSet::inline(piece), compressed)
+    vtk::write(file, piece)
 }
 
 #[cfg(test)]
 mod tests {
+    use vtkio::model::DataSet;
+
     use super::*;
     use crate::write::sample;
 

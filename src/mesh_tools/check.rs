@@ -1,0 +1,249 @@
+//! What is wrong with a mesh, beyond what its readers refuse.
+
+use std::collections::HashMap;
+
+use serde::Serialize;
+use trackbed_fem::mesh::{Constraint, Mesh};
+
+use super::{element_coordinates, element_quality, unused_nodes};
+
+/// Nodes nearer than this times the size of the mesh are one point that was meshed twice.
+const COINCIDENT: f64 = 1e-9;
+
+/// Names of the corners of SOLID186.
+const CORNERS: [&str; 8] = ["I", "J", "K", "L", "M", "N", "O", "P"];
+
+/// Something that makes a mesh unfit to compute with, or suspect.
+#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
+#[serde(rename_all = "snake_case", tag = "problem")]
+pub enum Problem {
+    /// No elements at all.
+    #[error("the mesh has no elements")]
+    Empty,
+    /// The Jacobian determinant is not positive.
+    #[error(
+        "element {element} is turned inside out at {place}: the Jacobian determinant is {determinant:e} m³"
+    )]
+    Inverted {
+        /// Number of the element.
+        element: u32,
+        /// The corner or Gauss point where the determinant is least.
+        place: String,
+        /// The determinant there [m³].
+        determinant: f64,
+    },
+    /// Two nodes in one place, so that elements that look joined are not.
+    #[error("nodes {first} and {second} coincide: they are {distance:e} m apart")]
+    Coincident {
+        /// Number of a node.
+        first: u32,
+        /// Number of the other.
+        second: u32,
+        /// Their distance [m].
+        distance: f64,
+    },
+    /// The mesh falls apart into bodies that share no node.
+    #[error("the mesh has {} parts that share no node: {}", parts.len(), name(parts))]
+    Disconnected {
+        /// The parts, in the order of their first elements.
+        parts: Vec<Part>,
+    },
+    /// A body that no constraint holds.
+    #[error("nothing is constrained in the part of {}", name(std::slice::from_ref(part)))]
+    Unconstrained {
+        /// The part.
+        part: Part,
+    },
+    /// Nodes without stiffness.
+    #[error("nodes in no element: {count}, the first is node {first}")]
+    Unused {
+        /// Their number.
+        count: usize,
+        /// Number of the first.
+        first: u32,
+    },
+}
+
+/// Elements that hang together by shared nodes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Part {
+    /// How many elements.
+    pub elements: usize,
+    /// Number of the first of them.
+    pub first_element: u32,
+}
+
+fn name(parts: &[Part]) -> String {
+    let one = |p: &Part| format!("element {} ({} in all)", p.first_element, p.elements);
+    let shown = parts.iter().take(5).map(one).collect::<Vec<_>>().join(", ");
+    if parts.len() > 5 { format!("{shown}, …") } else { shown }
+}
+
+/// The problems of a mesh, in a fixed order; empty when all is well.
+pub fn check(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
+    if mesh.element_count() == 0 {
+        return vec![Problem::Empty];
+    }
+    let mut problems: Vec<Problem> = (0..mesh.element_count()).filter_map(|e| inverted(mesh, e)).collect();
+    problems.extend(coincident(mesh));
+    problems.extend(parts(mesh, constraints));
+    let unused = unused_nodes(mesh);
+    if let Some(&first) = unused.first() {
+        problems.push(Problem::Unused { count: unused.len(), first });
+    }
+    problems
+}
+
+fn inverted(mesh: &Mesh, element: usize) -> Option<Problem> {
+    let quality = element_quality(&element_coordinates(mesh, element));
+    let place = match quality.worst_point.checked_sub(8) {
+        None => format!("corner {}", CORNERS[quality.worst_point]),
+        Some(point) => format!("Gauss point {} of 27", point + 1),
+    };
+    let (element, determinant) = (mesh.element_ids[element], quality.determinant);
+    (determinant <= 0.0).then_some(Problem::Inverted { element, place, determinant })
+}
+
+/// Pairs of coincident nodes. Nodes go into cells somewhat larger than the distance sought; each looks into the
+/// cells that its neighbourhood touches, mostly its own only.
+fn coincident(mesh: &Mesh) -> Vec<Problem> {
+    let extent = (0..3).map(|axis| {
+        let values = mesh.coordinates.iter().map(|x| x[axis]);
+        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+    });
+    let size = extent.fold(0.0, f64::max);
+    if size == 0.0 {
+        return Vec::new();
+    }
+    let (near, side) = (COINCIDENT * size, 1e3 * COINCIDENT * size);
+    let cell = |x: f64| (x / side).floor() as i64;
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut found = Vec::new();
+    for (node, x) in mesh.coordinates.iter().enumerate() {
+        let span = x.map(|c| cell(c - near)..=cell(c + near));
+        for i in span[0].clone() {
+            for j in span[1].clone() {
+                for k in span[2].clone() {
+                    for &other in cells.get(&[i, j, k]).into_iter().flatten() {
+                        let y = mesh.coordinates[other];
+                        let distance = (0..3).map(|a| (x[a] - y[a]).powi(2)).sum::<f64>().sqrt();
+                        if distance <= near {
+                            let (first, second) = (mesh.node_ids[other], mesh.node_ids[node]);
+                            found.push(Problem::Coincident { first, second, distance });
+                        }
+                    }
+                }
+            }
+        }
+        cells.entry(x.map(cell)).or_default().push(node);
+    }
+    found
+}
+
+/// Parts of the mesh by union of the nodes of each element, and which of them nothing holds.
+fn parts(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
+    let mut parent: Vec<usize> = (0..mesh.node_count()).collect();
+    for element in &mesh.connectivity {
+        let first = root(&mut parent, element[0] as usize);
+        for node in &element[1..] {
+            let other = root(&mut parent, *node as usize);
+            parent[other] = first;
+        }
+    }
+    let mut order: Vec<usize> = Vec::new();
+    let mut found: HashMap<usize, Part> = HashMap::new();
+    for (element, id) in mesh.connectivity.iter().zip(&mesh.element_ids) {
+        let at = root(&mut parent, element[0] as usize);
+        let part = found.entry(at).or_insert_with(|| {
+            order.push(at);
+            Part { elements: 0, first_element: *id }
+        });
+        part.elements += 1;
+    }
+    let held: Vec<usize> = constraints.iter().map(|c| root(&mut parent, c.node as usize)).collect();
+    let mut problems = Vec::new();
+    if order.len() > 1 {
+        problems.push(Problem::Disconnected { parts: order.iter().map(|at| found[at].clone()).collect() });
+    }
+    let free = order.iter().filter(|at| !held.contains(at));
+    problems.extend(free.map(|at| Problem::Unconstrained { part: found[at].clone() }));
+    problems
+}
+
+/// The node that stands for the part of `node`; paths are halved on the way.
+fn root(parent: &mut [usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    node
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample;
+
+    fn held(mesh: &Mesh) -> Vec<Constraint> {
+        let node = mesh.connectivity[0][0];
+        vec![Constraint { node, direction: 2, value: 0.0 }]
+    }
+
+    fn sentences(problems: &[Problem]) -> Vec<String> {
+        problems.iter().map(Problem::to_string).collect()
+    }
+
+    #[test]
+    fn a_good_mesh_has_no_problems() {
+        let mesh = sample::block([3, 2, 2]);
+        assert_eq!(check(&mesh, &held(&mesh)), []);
+        assert_eq!(check(&Mesh::default(), &[]), [Problem::Empty]);
+    }
+
+    #[test]
+    fn an_inverted_element_is_named_with_the_place() {
+        let mut mesh = sample::straight_block([2, 1, 1]);
+        let middle = mesh.connectivity[0][8] as usize;
+        mesh.coordinates[middle][0] = 0.2;
+        let found = sentences(&check(&mesh, &held(&mesh)));
+        assert_eq!(found.len(), 1);
+        assert!(found[0].starts_with("element 1000 is turned inside out at corner I: "), "{found:?}");
+    }
+
+    #[test]
+    fn an_unheld_body_and_unused_nodes_are_told() {
+        let mut mesh = sample::block([2, 1, 1]);
+        mesh.node_ids.push(5000);
+        mesh.coordinates.push([9.0; 3]);
+        let expected = [
+            "nothing is constrained in the part of element 1000 (2 in all)",
+            "nodes in no element: 1, the first is node 5000",
+        ];
+        assert_eq!(sentences(&check(&mesh, &[])), expected);
+    }
+
+    #[test]
+    fn a_mesh_in_two_parts_that_touch_without_sharing_nodes() {
+        let mut mesh = sample::straight_block([2, 1, 1]);
+        // The second element gets nodes of its own on the shared face, one of them a little off.
+        let shared: Vec<u32> =
+            mesh.connectivity[1].iter().copied().filter(|n| mesh.connectivity[0].contains(n)).collect();
+        for (copy, node) in shared.iter().enumerate() {
+            let mut x = mesh.coordinates[*node as usize];
+            x[1] += if copy == 0 { 1e-6 } else { 1e-10 };
+            let new = mesh.node_count() as u32;
+            mesh.coordinates.push(x);
+            mesh.node_ids.push(10_000 + copy as u32);
+            mesh.connectivity[1].iter_mut().filter(|n| *n == node).for_each(|n| *n = new);
+        }
+        let problems = check(&mesh, &held(&mesh));
+        let coincident = problems.iter().filter(|p| matches!(p, Problem::Coincident { .. })).count();
+        assert_eq!((shared.len(), coincident), (8, 7));
+        let text = sentences(&problems[7..]);
+        let expected = [
+            "the mesh has 2 parts that share no node: element 1000 (1 in all), element 999 (1 in all)",
+            "nothing is constrained in the part of element 999 (1 in all)",
+        ];
+        assert_eq!(text, expected);
+    }
+}

@@ -1,0 +1,151 @@
+//! Shape of one 20-node hexahedron.
+//!
+//! Scaled Jacobian: the least of det J / (|g1| |g2| |g3|) over the corners and the 27 Gauss points, g the
+//! columns of J = dx/dξ (Knupp 2000 takes the corners only, which misses curved edges). It is 1 for a brick
+//! and not positive for an element that is turned inside out at one of these points.
+//!
+//! Aspect ratio: longest over shortest of the twelve edges, measured from corner to corner.
+//!
+//! Volume: 3x3x3 Gauss points, exact, since det J has degree 5 at most in each natural coordinate.
+
+use trackbed_fem::element::hex20;
+use trackbed_fem::element::quadrature::GAUSS3;
+use trackbed_fem::mesh::HEX20_NODES;
+
+/// Corners of the twelve edges, in the order of the mid-side nodes 9–20.
+const EDGES: [[usize; 2]; 12] =
+    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+
+/// Shape and size of an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// Least scaled Jacobian, at most 1.
+    pub scaled_jacobian: f64,
+    /// Longest over shortest edge, at least 1; infinite where an edge has no length.
+    pub aspect_ratio: f64,
+    /// Volume [m³]; negative for an element numbered inside out.
+    pub volume: f64,
+    /// Least determinant of the Jacobian matrix [m³].
+    pub determinant: f64,
+    /// Where that is: 0–7 the corner I…P, 8–34 the Gauss point less 8.
+    pub worst_point: usize,
+}
+
+/// Shape and size of the element with these nodes, SOLID186 order. Shape `[20][3]` [m].
+pub fn element_quality(x: &[[f64; 3]; HEX20_NODES]) -> Quality {
+    let corners = hex20::NATURAL[..8].iter().map(|xi| (*xi, 0.0));
+    let mut quality = Quality {
+        scaled_jacobian: f64::INFINITY,
+        aspect_ratio: aspect_ratio(x),
+        volume: 0.0,
+        determinant: f64::INFINITY,
+        worst_point: 0,
+    };
+    for (point, (xi, weight)) in corners.chain(GAUSS3).enumerate() {
+        let columns = columns(x, xi);
+        let determinant = determinant(&columns);
+        let size: f64 = columns.iter().map(norm).product();
+        let scaled = if size > 0.0 { determinant / size } else { 0.0 };
+        quality.scaled_jacobian = quality.scaled_jacobian.min(scaled);
+        quality.volume += weight * determinant;
+        if determinant < quality.determinant {
+            (quality.determinant, quality.worst_point) = (determinant, point);
+        }
+    }
+    quality
+}
+
+/// dx/dξ for each natural coordinate ξ.
+fn columns(x: &[[f64; 3]; HEX20_NODES], xi: [f64; 3]) -> [[f64; 3]; 3] {
+    let mut columns = [[0.0; 3]; 3];
+    for (gradient, point) in hex20::gradients(xi).iter().zip(x) {
+        for natural in 0..3 {
+            for axis in 0..3 {
+                columns[natural][axis] += gradient[natural] * point[axis];
+            }
+        }
+    }
+    columns
+}
+
+fn determinant(g: &[[f64; 3]; 3]) -> f64 {
+    let [a, b, c] = g;
+    a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
+fn norm(v: &[f64; 3]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
+}
+
+fn aspect_ratio(x: &[[f64; 3]; HEX20_NODES]) -> f64 {
+    let length = |[a, b]: [usize; 2]| norm(&[0, 1, 2].map(|axis| x[b][axis] - x[a][axis]));
+    let (least, greatest) = EDGES
+        .map(length)
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(l, g), length| (l.min(*length), g.max(*length)));
+    if least > 0.0 { greatest / least } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn brick(size: [f64; 3]) -> [[f64; 3]; HEX20_NODES] {
+        hex20::NATURAL.map(|xi| [0, 1, 2].map(|axis| 0.5 * size[axis] * (1.0 + hex20_axis(xi, axis))))
+    }
+
+    /// Coordinate along x, y, z of a node of a brick whose node I is at the origin, J along x, L along y.
+    fn hex20_axis(xi: [f64; 3], axis: usize) -> f64 {
+        let [i, j, l, m] = [0, 1, 3, 4].map(|n| hex20::NATURAL[n]);
+        let ahead = [j, l, m][axis];
+        // The natural axis in which the neighbour of I differs from I.
+        let natural = (0..3).find(|a| ahead[*a] != i[*a]).unwrap();
+        xi[natural]
+    }
+
+    #[test]
+    fn a_brick() {
+        let quality = element_quality(&brick([2.0, 3.0, 0.5]));
+        assert!((quality.volume - 3.0).abs() < 1e-13);
+        assert!((quality.scaled_jacobian - 1.0).abs() < 1e-13);
+        assert!((quality.aspect_ratio - 6.0).abs() < 1e-13);
+        assert!((quality.determinant - 3.0 / 8.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_sheared_brick_has_the_sine_of_its_angle() {
+        let sheared = brick([1.0; 3]).map(|[x, y, z]| [x + y, y, z]);
+        let quality = element_quality(&sheared);
+        assert!((quality.scaled_jacobian - 0.5_f64.sqrt()).abs() < 1e-13);
+        assert!((quality.volume - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_curved_element_has_the_volume_of_its_curved_body() {
+        // Mid-sides of all four edges along x are raised by h: a parabolic arch, whose volume stays that of
+        // the brick (top and bottom rise alike); raising the top ones alone adds 2/3 h.
+        let h = 0.15;
+        let mut x = brick([1.0; 3]);
+        for (point, [a, b]) in x[8..].iter_mut().zip(EDGES) {
+            if matches!([a, b], [4, 5] | [6, 7]) {
+                point[2] += h;
+            }
+        }
+        assert!((element_quality(&x).volume - (1.0 + 2.0 / 3.0 * h)).abs() < 1e-13);
+    }
+
+    #[test]
+    fn an_element_turned_inside_out_is_found_at_a_corner() {
+        // A mid-side node beyond a quarter of the edge from its corner: det J turns negative at that corner.
+        let mut x = brick([1.0; 3]);
+        x[8][0] = 0.2;
+        let quality = element_quality(&x);
+        assert!(quality.scaled_jacobian < 0.0 && quality.worst_point == 0, "{quality:?}");
+        x[8][0] = 0.3;
+        assert!(element_quality(&x).scaled_jacobian > 0.0);
+        let mirrored = brick([1.0; 3]).map(|[x, y, z]| [x, y, -z]);
+        assert!(element_quality(&mirrored).volume < 0.0);
+    }
+}

@@ -1,0 +1,195 @@
+"""Opens result files with VTK, the reader behind ParaView, and checks what it finds in them.
+
+    python3 tests/vtk_check.py [--volume V] FILE...
+
+FILE is a .pvd, .vtu or .vtp; of a .pvd every file that it lists is checked. Each file must be read without an
+error, hold the arrays of its kind with the right number of components, and hold no number that is not finite.
+Hexahedra must be right side out, by VTK's own shape functions and node order; with --volume, their summed
+volume in every .vtu must be V [m^3] to 1e-9. One line per file; the exit code is 0 only when all pass.
+
+Needs the Python package `vtk`; of it only modules that draw nothing, so that no graphics library is loaded.
+"""
+
+import argparse
+import math
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkQuadraticHexahedron
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+import numpy
+
+QUADRATIC_HEXAHEDRON = 25
+
+# Arrays of each kind of file: where, name, number of components.
+KINDS = {
+    "solid": (
+        [("displacement", 3), ("velocity", 3), ("stress", 9), ("von_mises", 1)]
+        + [("equivalent_plastic_strain", 1), ("yield_function", 1), ("node_id", 1)],
+        [("material", 1), ("element_id", 1)],
+    ),
+    "mesh": ([("node_id", 1), ("constraint", 1)], [("material", 1), ("element_id", 1)]),
+    "grains": (
+        [("radius", 1), ("velocity", 3), ("spin", 3), ("orientation", 4), ("id", 1), ("part", 1)]
+        + [("mean_stress", 1), ("force", 3)],
+        [],
+    ),
+    "chains": ([], [("normal_force", 1), ("tangential_force", 1), ("magnitude", 1), ("kind", 1)]),
+    "walls": ([], [("id", 1)]),
+}
+
+
+class Failure(Exception):
+    """A file that is not what it should be."""
+
+
+def expect(condition, message):
+    if not condition:
+        raise Failure(message)
+
+
+def read(path):
+    """The data set of a file; VTK's own complaints are failures."""
+    reader = vtkXMLUnstructuredGridReader() if path.endswith(".vtu") else vtkXMLPolyDataReader()
+    complaints = []
+    for event in ("ErrorEvent", "WarningEvent"):
+        # VTK hands over the text of the complaint when the observer asks for it so.
+        def observer(_object, _event, text="?"):
+            complaints.append(text)
+
+        observer.CallDataType = "string0"
+        reader.AddObserver(event, observer)
+    expect(reader.CanReadFile(path), "VTK does not take it for a file of this kind")
+    reader.SetFileName(path)
+    reader.Update()
+    expect(not complaints and reader.GetErrorCode() == 0, "; ".join(map(str, complaints)) or "VTK error")
+    return reader.GetOutput()
+
+
+def kind_of(data, path):
+    names = {data.GetPointData().GetArrayName(i) for i in range(data.GetPointData().GetNumberOfArrays())}
+    cells = {data.GetCellData().GetArrayName(i) for i in range(data.GetCellData().GetNumberOfArrays())}
+    if path.endswith(".vtu"):
+        return "solid" if "displacement" in names else "mesh"
+    if "normal_force" in cells:
+        return "chains"
+    return "grains" if "radius" in names else "walls"
+
+
+def check_arrays(attributes, expected, count, where):
+    for name, components in expected:
+        array = attributes.GetArray(name)
+        expect(array is not None, f"no {where} array {name}")
+        found = array.GetNumberOfComponents()
+        expect(found == components, f"{where} array {name} has {found} components, expected {components}")
+        found = array.GetNumberOfTuples()
+        expect(found == count, f"{where} array {name} has {found} tuples, expected {count}")
+    for index in range(attributes.GetNumberOfArrays()):
+        values = vtk_to_numpy(attributes.GetArray(index))
+        expect(numpy.isfinite(values).all(), f"{where} array {attributes.GetArrayName(index)} is not finite")
+
+
+def hexahedron_volume(cell):
+    """Volume by VTK's derivatives at 3 x 3 x 3 Gauss points, which is exact; and the least determinant."""
+    points = vtk_to_numpy(cell.GetPoints().GetData())
+    side = math.sqrt(0.6)
+    rule = [(0.5 * (1 - side), 5 / 18), (0.5, 8 / 18), (0.5 * (1 + side), 5 / 18)]
+    volume, least = 0.0, math.inf
+    derivatives = [0.0] * 60
+    for r, weight_r in rule:
+        for s, weight_s in rule:
+            for t, weight_t in rule:
+                vtkQuadraticHexahedron.InterpolationDerivs([r, s, t], derivatives)
+                jacobian = numpy.array(derivatives).reshape(3, 20) @ points
+                determinant = numpy.linalg.det(jacobian)
+                volume += weight_r * weight_s * weight_t * determinant
+                least = min(least, determinant)
+    return volume, least
+
+
+def check_solid(data, volume):
+    total = 0.0
+    for index in range(data.GetNumberOfCells()):
+        expect(data.GetCellType(index) == QUADRATIC_HEXAHEDRON, f"cell {index} is no quadratic hexahedron")
+        part, least = hexahedron_volume(data.GetCell(index))
+        expect(least > 0.0, f"cell {index} is turned inside out: determinant {least}")
+        total += part
+    if volume is not None:
+        expect(abs(total - volume) <= 1e-9 * abs(volume), f"volume {total!r}, expected {volume!r}")
+    return total
+
+
+def check_file(path, volume):
+    data = read(path)
+    kind = kind_of(data, path)
+    points, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
+    # No contacts at all is a result like any other; no grains or no solid is not.
+    expect(kind == "chains" or (points > 0 and cells > 0), f"{points} points and {cells} cells")
+    if points:
+        expect(numpy.isfinite(vtk_to_numpy(data.GetPoints().GetData())).all(), "a point is not finite")
+    point_arrays, cell_arrays = KINDS[kind]
+    check_arrays(data.GetPointData(), point_arrays, points, "point")
+    check_arrays(data.GetCellData(), cell_arrays, cells, "cell")
+    if kind == "grains":
+        radius, orientation = (vtk_to_numpy(data.GetPointData().GetArray(n)) for n in ("radius", "orientation"))
+        expect((radius > 0.0).all(), "a radius is not positive")
+        expect(numpy.allclose(numpy.linalg.norm(orientation, axis=1), 1.0), "an orientation is no unit quaternion")
+    if kind == "chains":
+        parts = [vtk_to_numpy(data.GetCellData().GetArray(name)) for name, _ in cell_arrays[:3]]
+        expect(numpy.allclose(numpy.hypot(parts[0], parts[1]), parts[2]), "magnitude is not that of its parts")
+    told = f"{kind}: {points} points, {cells} cells"
+    if path.endswith(".vtu"):
+        told += f", volume {check_solid(data, volume):.12g}"
+    return told
+
+
+def frames(path):
+    """The files of a series, with their times checked."""
+    root = ElementTree.parse(path).getroot()
+    expect(root.tag == "VTKFile" and root.get("type") == "Collection", "not a collection")
+    rows = root.findall("./Collection/DataSet")
+    expect(rows, "an empty collection")
+    last = {}
+    for row in rows:
+        time, part = float(row.get("timestep")), row.get("part")
+        expect(math.isfinite(time), f"time {time}")
+        expect(last.get(part, -math.inf) < time, f"part {part}: time {time} after {last.get(part)}")
+        last[part] = time
+        expect(not os.path.isabs(row.get("file")), f"{row.get('file')} is not relative")
+    return [os.path.join(os.path.dirname(path), row.get("file")) for row in rows]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--volume", type=float, help="summed volume of the hexahedra of every .vtu [m^3]")
+    arguments = parser.parse_args()
+    failed = 0
+    queue = list(arguments.files)
+    checked = set()
+    while queue:
+        path = queue.pop(0)
+        if path in checked:
+            continue
+        checked.add(path)
+        try:
+            expect(os.path.isfile(path), "no such file")
+            if path.endswith(".pvd"):
+                listed = frames(path)
+                queue[:0] = listed
+                told = f"series: {len(listed)} files"
+            else:
+                expect(path.endswith((".vtu", ".vtp")), "neither .pvd nor .vtu nor .vtp")
+                told = check_file(path, arguments.volume)
+            print(f"ok   {path}: {told}")
+        except (Failure, ElementTree.ParseError, ValueError) as error:
+            failed += 1
+            print(f"FAIL {path}: {error}")
+    print(f"{len(checked) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
