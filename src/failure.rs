@@ -1,6 +1,6 @@
 //! How a command can fail, and with which exit code.
 
-use crate::scene::SceneError;
+use crate::read::ReadError;
 use std::fmt;
 
 /// Why a command failed.
@@ -35,8 +35,8 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Failure {
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Failure {
         Failure::Input(error.to_string())
     }
 }

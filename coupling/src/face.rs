@@ -180,3 +180,97 @@ pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    const NATURAL: [[f64; 2]; 8] =
+        [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.], [0., -1.], [1., 0.], [0., 1.], [-1., 0.]];
+
+    fn curved_face(random: &mut Random) -> [[f64; 3]; 8] {
+        NATURAL.map(|p| {
+            [p[0] + 0.15 * random.symmetric(), p[1] + 0.15 * random.symmetric(), 0.15 * random.symmetric()]
+        })
+    }
+
+    fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+        let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        dot(r, r).sqrt()
+    }
+
+    /// V0.4: points 0.02 edges off the face, some beyond its border, against a fine scan with local refinement.
+    #[test]
+    fn closest_point_matches_a_fine_scan() {
+        let mut random = Random::new(11);
+        for _ in 0..200 {
+            let x = curved_face(&mut random);
+            let over = [1.1 * random.symmetric(), 1.1 * random.symmetric()];
+            let on = interpolate(&x, over);
+            let centre = [on[0], on[1], on[2] + 0.04];
+            let found = closest_point(&x, centre, [0.0, 0.0]);
+            let mut best = (f64::INFINITY, [0.0; 2]);
+            let mut half = 1.0;
+            let mut middle = [0.0, 0.0];
+            for _ in 0..8 {
+                for i in 0..=40 {
+                    for j in 0..=40 {
+                        let xi = [i, j].map(|k| half * (f64::from(k) / 20.0 - 1.0));
+                        let xi = [(middle[0] + xi[0]).clamp(-1.0, 1.0), (middle[1] + xi[1]).clamp(-1.0, 1.0)];
+                        let d = distance(interpolate(&x, xi), centre);
+                        if d < best.0 {
+                            best = (d, xi);
+                        }
+                    }
+                }
+                middle = best.1;
+                half *= 0.15;
+            }
+            let d = distance(found.point, centre);
+            assert!((d - best.0).abs() < 1e-6 * 2.0, "{d} against {}", best.0);
+        }
+    }
+
+    #[test]
+    fn a_warm_start_gives_the_same_point_in_two_iterations() {
+        let mut random = Random::new(5);
+        for _ in 0..100 {
+            let x = curved_face(&mut random);
+            let on = interpolate(&x, [0.8 * random.symmetric(), 0.8 * random.symmetric()]);
+            let centre = [on[0], on[1], on[2] + 0.05];
+            let cold = closest_point(&x, centre, [0.0, 0.0]);
+            let near = [cold.natural[0] + 1e-4, cold.natural[1] - 1e-4];
+            let warm = closest_point(&x, centre, near);
+            assert!(warm.iterations <= 3, "{} iterations", warm.iterations);
+            assert!(distance(warm.point, cold.point) < 1e-13);
+        }
+    }
+
+    #[test]
+    fn normal_points_out_and_residual_is_along_it() {
+        let mut random = Random::new(17);
+        for _ in 0..100 {
+            let x = curved_face(&mut random);
+            let on = interpolate(&x, [0.7 * random.symmetric(), 0.7 * random.symmetric()]);
+            let found = closest_point(&x, [on[0], on[1], on[2] + 0.03], [0.0, 0.0]);
+            assert_eq!(found.location, Location::Inside);
+            let r = [on[0] - found.point[0], on[1] - found.point[1], on[2] + 0.03 - found.point[2]];
+            assert!(dot(r, found.normal) > 0.0);
+            assert!(dot(cross(r, found.normal), cross(r, found.normal)).sqrt() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn borders_are_named_as_the_nodes_are() {
+        let x = NATURAL.map(|p| [p[0], p[1], 0.0]);
+        let at = |p: [f64; 3]| closest_point(&x, p, [0.0, 0.0]).location;
+        assert_eq!(at([0.3, -1.4, 0.1]), Location::Side(0));
+        assert_eq!(at([1.2, 0.1, 0.1]), Location::Side(1));
+        assert_eq!(at([0.0, 1.5, 0.1]), Location::Side(2));
+        assert_eq!(at([-1.0, 0.2, 0.1]), Location::Side(3));
+        assert_eq!(at([-1.2, -1.2, 0.1]), Location::Corner(0));
+        assert_eq!(at([1.2, 1.1, 0.1]), Location::Corner(2));
+        assert_eq!(at([0.999, 0.1, 0.1]), Location::Inside);
+    }
+}

@@ -83,9 +83,16 @@ impl SolidSurface {
         self.current[node as usize]
     }
 
-    /// Begins a window: nodes at X + (u − reference), moving with `v`. All arrays have shape `[3·nodes]` of the
-    /// solid; `reference` is the displacement of the shape that the mesh file describes.
-    pub fn begin_window(&mut self, mesh: &Mesh, u: &[f64], reference: &[f64], v: &[f64]) {
+    /// Area vector of face `patch` in its present shape, by its corners: outward normal times area [m²].
+    pub fn area_vector(&self, patch: u32) -> [f64; 3] {
+        let x = |k: usize| self.current[self.face_nodes[patch as usize][k] as usize];
+        let diagonal = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+        face::cross(diagonal(x(0), x(2)), diagonal(x(1), x(3))).map(|c| 0.5 * c)
+    }
+
+    /// Begins a window of `duration` [s]: nodes at X + (u − reference), moving with `v`. All arrays have shape
+    /// `[3·nodes]` of the solid; `reference` is the displacement in the shape that the mesh file describes.
+    pub fn begin_window(&mut self, mesh: &Mesh, u: &[f64], reference: &[f64], v: &[f64], duration: f64) {
         let mut fastest = 0.0_f64;
         for (k, &node) in self.nodes.iter().enumerate() {
             let n = node as usize;
@@ -98,6 +105,19 @@ impl SolidSurface {
         // The absolute sum of the eight functions is at most 3 (at the centre: 4 × ¼ + 4 × ½).
         self.max_speed = 3.0 * fastest.sqrt();
         self.current.copy_from_slice(&self.start);
+        // The boxes hold the faces over the whole window: motion is linear in time, so both ends suffice.
+        for (b, f) in self.boxes.iter_mut().zip(&self.face_nodes) {
+            let first = bounds(&f.map(|n| self.start[n as usize]));
+            let last = bounds(&f.map(|n| {
+                let (x, v) = (self.start[n as usize], self.velocity[n as usize]);
+                [x[0] + v[0] * duration, x[1] + v[1] * duration, x[2] + v[2] * duration]
+            }));
+            for d in 0..3 {
+                b.0[d] = first.0[d].min(last.0[d]);
+                b.1[d] = first.1[d].max(last.1[d]);
+            }
+        }
+        self.tree.refit(&self.boxes);
     }
 
     /// Moves the nodes to time `tau` [s] after the start of the window.
@@ -107,14 +127,6 @@ impl SolidSurface {
                 x[d] = x0[d] + v[d] * tau;
             }
         }
-    }
-
-    /// Fits the bounding boxes to the present shape; call before the grains search for neighbours.
-    pub fn refit(&mut self) {
-        for (b, f) in self.boxes.iter_mut().zip(&self.face_nodes) {
-            *b = bounds(&f.map(|n| self.current[n as usize]));
-        }
-        self.tree.refit(&self.boxes);
     }
 
     fn coordinates(&self, patch: u32) -> [[f64; 3]; 8] {

@@ -6,7 +6,7 @@
 //! where the contact force acts on both partners (seed correction F5). Both sums are formed from the nodal
 //! loads and compared with the contact forces at every exchange.
 
-use crate::face::cross;
+use crate::face::{self, cross};
 use crate::surface::SolidSurface;
 use trackbed_dem::surface::SurfaceContact;
 use trackbed_fem::element::quad8;
@@ -29,18 +29,26 @@ pub struct Transfer {
     /// Load at each surface node in the present sub-step [N], zero outside `loaded`.
     load: Vec<[f64; 3]>,
     loaded: Vec<u32>,
+    /// Contact impulse on each face [N s]. Shape `[faces]`.
+    face_impulse: Vec<[f64; 3]>,
 }
 
 impl Transfer {
     /// Empty transfer for a surface.
     pub fn new(surface: &SolidSurface) -> Transfer {
         let n = surface.nodes().len();
-        Transfer { impulse: vec![[0.0; 3]; n], load: vec![[0.0; 3]; n], loaded: Vec::with_capacity(n) }
+        Transfer {
+            impulse: vec![[0.0; 3]; n],
+            load: vec![[0.0; 3]; n],
+            loaded: Vec::with_capacity(n),
+            face_impulse: vec![[0.0; 3]; surface.faces().len()],
+        }
     }
 
     /// Forgets the impulses of the last window.
     pub fn begin_window(&mut self) {
         self.impulse.fill([0.0; 3]);
+        self.face_impulse.fill([0.0; 3]);
     }
 
     /// Adds the forces of one sub-step of duration `dt` [s] and audits their sums.
@@ -73,6 +81,7 @@ impl Transfer {
             for d in 0..3 {
                 force[d] += contact.force[d];
                 moment[d] += arm[d];
+                self.face_impulse[contact.patch as usize][d] += contact.force[d] * dt;
             }
             force_scale += norm(contact.force);
             moment_scale += norm(contact.point) * norm(contact.force);
@@ -93,6 +102,26 @@ impl Transfer {
             audit.force = audit.force.max(norm(force) / force_scale);
             audit.moment = audit.moment.max(norm(moment) / moment_scale.max(f64::MIN_POSITIVE));
         }
+    }
+
+    /// Contact impulse of the window on the whole surface [N s].
+    pub fn total_impulse(&self) -> [f64; 3] {
+        let mut total = [0.0; 3];
+        for impulse in &self.face_impulse {
+            for d in 0..3 {
+                total[d] += impulse[d];
+            }
+        }
+        total
+    }
+
+    /// Largest mean pressure on one face over a window of duration `window` [s]: normal force over area [Pa].
+    pub fn peak_face_pressure(&self, surface: &SolidSurface, window: f64) -> f64 {
+        let pressure = |(impulse, patch): (&[f64; 3], u32)| {
+            let area = surface.area_vector(patch);
+            -face::dot(*impulse, area) / (window * face::dot(area, area))
+        };
+        self.face_impulse.iter().zip(0..).map(pressure).fold(0.0, f64::max)
     }
 
     /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.

@@ -63,7 +63,7 @@ impl Document {
     /// No `=`, or a path through something that is not a table or an array.
     pub fn set(&mut self, assignment: &str) -> Result<(), SceneError> {
         let Some((path, value)) = assignment.split_once('=') else {
-            return Err(SceneError::override_(assignment, assignment, "key.path=value"));
+            return Err(override_error(assignment, assignment, "key.path=value"));
         };
         let (path, value) = (path.trim().to_string(), value.trim().to_string());
         self.apply(self.tree().get_mut(), &path, &value)?;
@@ -96,12 +96,12 @@ impl Document {
                         Some(DeValue::Table(t)) => t,
                         _ => {
                             let expected = format!("an index below {count} after `{key}`");
-                            return Err(SceneError::override_(path, path, &expected));
+                            return Err(override_error(path, path, &expected));
                         }
                     }
                 }
                 _ => {
-                    return Err(SceneError::override_(path, &format!("`{key}`, which is a value"), "a table there"));
+                    return Err(override_error(path, &format!("`{key}`, which is a value"), "a table there"));
                 }
             };
         }
@@ -184,6 +184,17 @@ impl Document {
             array = value.get_ref().as_array();
         }
         if span == (0..0) { None } else { self.line(&span) }
+    }
+}
+
+/// An error in a `--set` argument.
+fn override_error(key: &str, found: &str, expected: &str) -> SceneError {
+    SceneError {
+        file: PathBuf::from("--set"),
+        line: None,
+        key: key.into(),
+        found: found.into(),
+        expected: expected.into(),
     }
 }
 

@@ -5,7 +5,6 @@
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
 mod document;
-mod error;
 pub mod grains;
 pub mod history;
 pub mod solid;
@@ -13,7 +12,8 @@ pub mod track;
 pub mod units;
 
 pub use document::Document;
-pub use error::SceneError;
+/// Bad input in a scene: the same kind of sentence as from a mesh reader.
+pub use crate::read::ReadError as SceneError;
 
 use serde::Deserialize;
 use units::{Acceleration, Angle, Length, Quantity, Time};

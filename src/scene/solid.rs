@@ -2,6 +2,7 @@
 
 use super::history::History;
 use super::units::{Density, Force, Frequency, Length, Quantity, Rate, Stress, Time};
+use crate::read::ListLayout;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -15,9 +16,9 @@ pub struct Solid {
     pub elements: PathBuf,
     /// Constraint list, `node dir value`.
     pub constraints: Option<PathBuf>,
-    /// Columns of the element list before the nodes, where their number alone does not tell.
+    /// Columns of the lists, where their number alone does not tell.
     #[serde(default)]
-    pub element_columns: ElementColumns,
+    pub layout: ListLayout,
     /// Integration rule of the stiffness; default `reduced`.
     #[serde(default)]
     pub integration: Integration,
@@ -34,23 +35,6 @@ pub struct Solid {
     /// Loads on the solid.
     #[serde(default)]
     pub load: Vec<SolidLoad>,
-}
-
-/// What the element list holds before the nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ElementColumns {
-    /// Recognise by the number of columns and their content.
-    #[default]
-    Auto,
-    /// `id mat n1 … n20`.
-    IdMaterial,
-    /// `id n1 … n20`.
-    Id,
-    /// `mat n1 … n20`.
-    Material,
-    /// `n1 … n20`.
-    None,
 }
 
 /// Integration rule of the element stiffness.

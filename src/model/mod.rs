@@ -1,0 +1,187 @@
+//! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
+//! key of the scene was set.
+
+pub mod grains;
+pub mod seat_load;
+pub mod solid;
+mod tables;
+
+use crate::failure::Failure;
+use crate::scene::units::vector;
+use crate::scene::{Document, Scene, SceneError};
+use trackbed_fem::mesh::{Face, Mesh};
+
+/// A resolved scene.
+pub struct Job {
+    /// One line that says what it is.
+    pub title: String,
+    /// The solid.
+    pub solid: Option<solid::SolidPart>,
+    /// The grains.
+    pub grains: Option<grains::GrainsPart>,
+    /// The exchange between them.
+    pub coupling: Option<CouplingPart>,
+    /// Physical time of the run proper [s]; 0 for a static solid.
+    pub end: f64,
+    /// Step of a solid that runs alone [s].
+    pub solid_step: Option<f64>,
+    /// What is written.
+    pub output: crate::scene::Output,
+    /// Observed nodes: (name, node index).
+    pub probes: Vec<(String, usize)>,
+}
+
+/// The exchange, resolved.
+pub struct CouplingPart {
+    /// Steps of the grains per step of the solid.
+    pub substeps: u32,
+    /// Implicitness of the solid's step.
+    pub theta: f64,
+    /// Faces that grains may touch.
+    pub faces: Vec<Face>,
+}
+
+impl Job {
+    /// Resolves a scene.
+    ///
+    /// # Errors
+    /// Bad input: one sentence with file, line, key, found and expected.
+    pub fn new(document: &Document, scene: &Scene) -> Result<Job, Failure> {
+        if scene.solid.is_none() && scene.grains.is_empty() {
+            return Err(document.error("", "neither [solid] nor [[grains]]", "at least one of them").into());
+        }
+        let gravity = vector(&scene.gravity);
+        let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity)).transpose()?;
+        let grains =
+            if scene.grains.is_empty() { None } else { Some(grains::build(document, scene, gravity)?) };
+        if grains.is_none() {
+            for (key, present) in [
+                ("material", !scene.material.is_empty()),
+                ("contact", !scene.contact.is_empty()),
+                ("walls", !scene.walls.is_empty()),
+                ("deposition", scene.deposition.is_some()),
+                ("track", scene.track.is_some()),
+            ] {
+                if present {
+                    return Err(document.error(key, "a table for grains", "[[grains]] beside it, or no such table").into());
+                }
+            }
+        }
+        let coupling = match (&scene.coupling, &solid, &grains) {
+            (Some(c), Some(s), Some(_)) => Some(coupling(document, c, s.model.mesh())?),
+            (Some(_), _, _) => {
+                return Err(document.error("coupling", "only one side", "both [solid] and [[grains]]").into());
+            }
+            (None, Some(_), Some(_)) => {
+                return Err(document.error("coupling", "nothing", "[coupling], since the scene has [solid] and [[grains]]").into());
+            }
+            (None, _, _) => None,
+        };
+        let end = end_time(document, scene, grains.as_ref())?;
+        let solid_step = solid_step(document, scene, end)?;
+        let probes = scene
+            .probe
+            .iter()
+            .enumerate()
+            .map(|(i, p)| probe(document, i, p, solid.as_ref().map(|s| s.model.mesh())))
+            .collect::<Result<Vec<_>, _>>()?;
+        if scene.output.frames > 100_000 {
+            return Err(document.error("output.frames", scene.output.frames.to_string(), "at most 100000").into());
+        }
+        if let Some(interval) = scene.output.history_interval
+            && interval.si <= 0.0
+        {
+            return Err(document.error("output.history_interval", interval.si.to_string(), "a time above 0").into());
+        }
+        let title =
+            if scene.title.is_empty() { document.file().display().to_string() } else { scene.title.clone() };
+        Ok(Job { title, solid, grains, coupling, end, solid_step, output: scene.output.clone(), probes })
+    }
+}
+
+fn coupling(document: &Document, c: &crate::scene::Coupling, mesh: &Mesh) -> Result<CouplingPart, SceneError> {
+    if !(1..=1000).contains(&c.substeps) {
+        return Err(document.error("coupling.substeps", c.substeps.to_string(), "1 to 1000"));
+    }
+    if !(0.5..=1.0).contains(&c.theta) {
+        return Err(document.error("coupling.theta", c.theta.to_string(), "0.5 to 1"));
+    }
+    if c.direction.iter().map(|d| d * d).sum::<f64>() <= 0.0 {
+        return Err(document.error("coupling.direction", "the null vector", "a direction"));
+    }
+    if !(c.max_angle.si > 0.0 && c.max_angle.si <= std::f64::consts::PI) {
+        return Err(document.error("coupling.max_angle", c.max_angle.si.to_string(), "above 0, at most pi"));
+    }
+    let faces = trackbed_coupling::surface::SolidSurface::facing(mesh, c.direction, c.max_angle.si);
+    if faces.is_empty() {
+        return Err(document.error("coupling.direction", "no boundary face that looks this way", "at least one"));
+    }
+    Ok(CouplingPart { substeps: c.substeps, theta: c.theta, faces })
+}
+
+fn end_time(document: &Document, scene: &Scene, grains: Option<&grains::GrainsPart>) -> Result<f64, SceneError> {
+    let counted = grains.and_then(|g| g.load.as_ref()).map(seat_load::CyclicLoad::end);
+    let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(|s| s.dynamics.is_some());
+    match (scene.time.end, counted, dynamic) {
+        (Some(end), _, _) if end.si <= 0.0 => {
+            Err(document.error("time.end", end.si.to_string(), "a time above 0"))
+        }
+        (Some(end), Some(counted), _) if end.si < counted => Err(document.error(
+            "time.end",
+            format!("{} s", end.si),
+            format!("at least {counted} s, when the last load cycle ends"),
+        )),
+        (Some(_), None, false) => {
+            Err(document.error("time.end", "a time", "no such key for a static solid, or [solid.dynamics]"))
+        }
+        (Some(end), _, true) => Ok(end.si),
+        (None, Some(counted), _) => Ok(counted),
+        (None, None, true) => Err(document.error("time.end", "nothing", "the time to simulate")),
+        (_, _, false) => Ok(0.0),
+    }
+}
+
+fn solid_step(document: &Document, scene: &Scene, end: f64) -> Result<Option<f64>, SceneError> {
+    let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
+    match (scene.time.solid_step, alone_and_dynamic) {
+        (Some(step), true) if step.si > 0.0 && step.si <= end => Ok(Some(step.si)),
+        (Some(step), true) => {
+            Err(document.error("time.solid_step", format!("{} s", step.si), format!("above 0, at most {end} s")))
+        }
+        (Some(_), false) if !scene.grains.is_empty() => Err(document.error(
+            "time.solid_step",
+            "a time",
+            "no such key: the solid's step is coupling.substeps grain steps",
+        )),
+        (Some(_), false) => Err(document.error("time.solid_step", "a time", "no such key for a static solid")),
+        (None, true) => Err(document.error("time.solid_step", "nothing", "the step of the solid")),
+        (None, false) => Ok(None),
+    }
+}
+
+fn probe(
+    document: &Document,
+    index: usize,
+    probe: &crate::scene::Probe,
+    mesh: Option<&Mesh>,
+) -> Result<(String, usize), SceneError> {
+    let key = |k: &str| format!("probe.{index}.{k}");
+    let Some(mesh) = mesh else {
+        return Err(document.error(&format!("probe.{index}"), "a probe", "a [solid] whose nodes it can observe"));
+    };
+    let node = match (probe.node, probe.at) {
+        (Some(id), None) => solid::find_node(document, mesh, &key("node"), id)?,
+        (None, Some(at)) => {
+            let at = vector(&at);
+            let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
+            let nearest = mesh.coordinates.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+            nearest.map_or(0, |(i, _)| i)
+        }
+        _ => return Err(document.error(&key("node"), "both or none of `node` and `at`", "one of them")),
+    };
+    let name = probe.name.clone().unwrap_or_else(|| format!("n{}", mesh.node_ids[node]));
+    if name.is_empty() || name.contains([',', '"', '\n']) {
+        return Err(document.error(&key("name"), format!("\"{name}\""), "a name without commas or quotes"));
+    }
+    Ok((name, node))
+}

@@ -1,0 +1,212 @@
+//! `summary.json`: what a run did, how well its accounts close, and what it found.
+
+use crate::failure::Failure;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::transfer::TransferAudit;
+
+/// The content of `summary.json`.
+#[derive(Debug, Default, Serialize)]
+pub struct Summary {
+    /// `"done"`, or what stopped the run.
+    pub status: String,
+    /// Title of the scene.
+    pub title: String,
+    /// Version of the program.
+    pub version: String,
+    /// 64-bit FNV-1a hash of the scene file, its overrides and the files it names, in hexadecimal.
+    pub scene_hash: String,
+    /// Keys overridden on the command line.
+    pub overrides: Vec<String>,
+    /// Threads used; the results do not depend on it.
+    pub threads: usize,
+    /// Largest resident memory [bytes], where the system tells it.
+    pub peak_memory: Option<u64>,
+    /// Stages in order, with seconds of wall time and steps.
+    pub stages: Vec<StageRecord>,
+    /// Sizes of the model.
+    pub model: ModelRecord,
+    /// Energy account of the run proper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<EnergyRecord>,
+    /// Momentum account of the grains in the run proper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub momentum: Option<MomentumRecord>,
+    /// Force and moment across the interface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coupling: Option<CouplingRecord>,
+    /// Static equilibrium of a solid that ran alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub statics: Option<StaticsRecord>,
+    /// Settlement per load cycle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settlement: Option<SettlementRecord>,
+    /// Remarks that do not stop a run.
+    pub warnings: Vec<String>,
+    /// Sources of the models used.
+    pub sources: Vec<&'static str>,
+}
+
+/// One stage of a run.
+#[derive(Debug, Serialize)]
+pub struct StageRecord {
+    /// Name.
+    pub name: String,
+    /// Wall time [s].
+    pub seconds: f64,
+    /// Steps of the grains.
+    pub grain_steps: u64,
+    /// Steps of the solid.
+    pub solid_steps: u64,
+    /// Share of the wall time by part, where it was measured.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub parts: BTreeMap<String, f64>,
+}
+
+/// Sizes of the model.
+#[derive(Debug, Default, Serialize)]
+pub struct ModelRecord {
+    /// Nodes of the solid.
+    pub nodes: usize,
+    /// Elements of the solid.
+    pub elements: usize,
+    /// Unknowns of the solid.
+    pub unknowns: usize,
+    /// Nonzero values of the factor.
+    pub factor_values: usize,
+    /// Bodies (grains and sleeper).
+    pub bodies: usize,
+    /// Spheres that carry the contacts.
+    pub spheres: usize,
+    /// Step of the grains [s].
+    pub grain_step: Option<f64>,
+    /// Limit of that step [s].
+    pub grain_step_limit: Option<f64>,
+    /// What sets the limit.
+    pub grain_step_set_by: Option<String>,
+    /// Step of the solid [s].
+    pub solid_step: Option<f64>,
+    /// Void fraction of the settled bed, where it was measured.
+    pub porosity: Option<f64>,
+    /// Mean number of touching partners per grain at the start of the run proper.
+    pub coordination: Option<f64>,
+}
+
+/// Energy account.
+#[derive(Debug, Serialize)]
+pub struct EnergyRecord {
+    /// Stored energy at the start [J].
+    pub start: Stored,
+    /// Stored energy at the end [J].
+    pub end: Stored,
+    /// Work and dissipation [J].
+    pub spent: Spent,
+    /// Δ stored + dissipated − work [J].
+    pub error: f64,
+    /// Work of the load [J].
+    pub work: f64,
+    /// |error| / |work of the load|; absent without work.
+    pub relative_error: Option<f64>,
+    /// Largest |error| at any row of the history [J].
+    pub largest_error: f64,
+}
+
+/// Momentum account: change of momentum against the impulses of all forces.
+#[derive(Debug, Serialize)]
+pub struct MomentumRecord {
+    /// Largest deviation of linear momentum over the sum of |impulses|.
+    pub linear: f64,
+    /// Largest deviation of angular momentum about the origin over the sum of |angular impulses|.
+    pub angular: f64,
+}
+
+/// Interface audit.
+#[derive(Debug, Serialize)]
+pub struct CouplingRecord {
+    /// Largest relative errors of force and moment over all exchanges.
+    pub transfer: TransferAudit,
+    /// Steps of the grains per step of the solid.
+    pub substeps: u32,
+    /// W = Δt √(Kₙ/m) of the stiffest contact on the lightest surface node.
+    pub stability_number: f64,
+    /// Interface work seen by grains plus that seen by the solid [J], which should vanish.
+    pub interface_work_error: f64,
+    /// How contact forces are transferred.
+    pub transfer_kind: &'static str,
+}
+
+/// Static equilibrium.
+#[derive(Debug, Serialize)]
+pub struct StaticsRecord {
+    /// Sum of all loads [N].
+    pub load: [f64; 3],
+    /// Sum of all reactions [N].
+    pub reaction: [f64; 3],
+    /// |Σ load + Σ reaction| over the sum of their absolute values.
+    pub equilibrium_error: f64,
+    /// Largest displacement [m] and its node number.
+    pub largest_displacement: (f64, u32),
+    /// Strain energy [J].
+    pub strain_energy: f64,
+}
+
+/// Settlement under a cyclic load.
+#[derive(Debug, Serialize)]
+pub struct SettlementRecord {
+    /// Settlement of the sleeper after each cycle [m].
+    pub per_cycle: Vec<f64>,
+    /// Increase of settlement in each cycle [m].
+    pub increments: Vec<f64>,
+    /// Mean increment of the second half of the cycles over that of the first half.
+    pub slowing: Option<f64>,
+}
+
+impl Summary {
+    /// Writes the summary as `summary.json` in `dir`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, dir: &Path) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
+        crate::write::atomic::write(&dir.join("summary.json"), |file| {
+            use std::io::Write;
+            writeln!(file, "{text}")?;
+            Ok(())
+        })
+        .map_err(|e| Failure::Other(e.to_string()))
+    }
+}
+
+/// Largest resident memory of this process so far [bytes], from the system's own account.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+/// 64-bit FNV-1a hash (Fowler, Noll, Vo) of a sequence of texts.
+#[derive(Clone, Copy, Debug)]
+pub struct Hash(u64);
+
+impl Default for Hash {
+    fn default() -> Self {
+        Hash(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hash {
+    /// Takes in some bytes.
+    pub fn add(&mut self, bytes: &[u8]) {
+        for &b in bytes {
+            self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+
+    /// The hash in hexadecimal.
+    pub fn hex(self) -> String {
+        format!("{:016x}", self.0)
+    }
+}
