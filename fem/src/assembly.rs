@@ -164,16 +164,11 @@ impl Matrices {
         self.row_start[..self.node_count()].iter().map(|&slot| self.mass[slot]).collect()
     }
 
-    /// Visits the lower CSC entries of the free dofs column by column: `visit(row, stiffness, mass)` for each entry,
-    /// `close()` after each column.
-    pub(crate) fn visit_free(
-        &self,
-        supports: &Supports,
-        mut visit: impl FnMut(usize, f64, f64),
-        mut close: impl FnMut(),
-    ) {
+    /// Visits the lower half of the equation matrix, column by column, rows ascending:
+    /// `visit(column, row, stiffness, mass)`, column and row being equation numbers. The diagonal entry comes first.
+    pub(crate) fn visit_free(&self, supports: &Supports, mut visit: impl FnMut(usize, usize, f64, f64)) {
         let index = supports.free_index();
-        for &dof in supports.free() {
+        for (column, &dof) in supports.free().iter().enumerate() {
             let (p, i) = (dof as usize / 3, dof as usize % 3);
             let row = self.row_start[p]..self.row_start[p + 1];
             for (slot, &q) in row.clone().zip(&self.column[row]) {
@@ -183,11 +178,10 @@ impl Matrices {
                     let equation = index[3 * q + j];
                     if equation != CONSTRAINED {
                         let mass = if i == j { self.mass[slot] } else { 0.0 };
-                        visit(equation as usize, self.stiffness[slot][3 * i + j], mass);
+                        visit(column, equation as usize, self.stiffness[slot][3 * i + j], mass);
                     }
                 }
             }
-            close();
         }
     }
 }
@@ -259,16 +253,14 @@ mod tests {
         let (mut kx, mut mx) = (vec![0.0; n], vec![0.0; n]);
         m.stiffness_times(&x, &mut kx);
         m.mass_times(&x, &mut mx);
-        let column = std::cell::Cell::new(0);
-        let visit = |row: usize, k: f64, mass: f64| {
-            kx[row] -= k * x[column.get()];
-            mx[row] -= mass * x[column.get()];
-            if row != column.get() {
-                kx[column.get()] -= k * x[row];
-                mx[column.get()] -= mass * x[row];
+        m.visit_free(&supports, |column, row, k, mass| {
+            kx[row] -= k * x[column];
+            mx[row] -= mass * x[column];
+            if row != column {
+                kx[column] -= k * x[row];
+                mx[column] -= mass * x[row];
             }
-        };
-        m.visit_free(&supports, visit, || column.set(column.get() + 1));
+        });
         assert!(kx.iter().all(|v| v.abs() < 1e-6) && mx.iter().all(|v| v.abs() < 1e-10));
     }
 

@@ -33,7 +33,7 @@ pub struct ModelInput {
 
 /// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the messages are the documentation")]
 pub enum ModelError {
     #[error("the mesh has no {what}")]
     EmptyMesh { what: &'static str },

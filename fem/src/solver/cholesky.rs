@@ -43,13 +43,11 @@ impl Analysis {
     /// Only when memory runs out.
     pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
         let equations = supports.free().len();
-        let (mut column_start, mut row) = (vec![0], Vec::new());
-        let rows = std::cell::RefCell::new(&mut row);
-        matrices.visit_free(
-            supports,
-            |r, _, _| rows.borrow_mut().push(r),
-            || column_start.push(rows.borrow().len()),
-        );
+        let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
+        matrices.visit_free(supports, |c, r, _, _| {
+            row.push(r);
+            column_start[c + 1] = row.len();
+        });
         let index = supports.free_index();
         let order: Vec<usize> = nested_dissection(mesh)
             .iter()
@@ -118,7 +116,7 @@ impl Cholesky {
     ) -> Result<Cholesky, SolveError> {
         let equations = analysis.size();
         let mut a = Vec::with_capacity(analysis.row.len());
-        matrices.visit_free(supports, |_, k, m| a.push(stiffness * k + mass * m), || ());
+        matrices.visit_free(supports, |_, _, k, m| a.push(stiffness * k + mass * m));
         let pattern = SymbolicSparseColMatRef::new_checked(
             equations,
             equations,
@@ -198,4 +196,60 @@ fn weakest_pivot(
         }
     }
     weakest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::quadrature::Quadrature;
+    use crate::material::elastic::Elastic;
+    use crate::mesh::Constraint;
+
+    fn block() -> (Mesh, Matrices) {
+        let mesh = Mesh::block([4, 3, 3], [4.0, 3.0, 3.0]);
+        let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
+        let matrices = Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil);
+        (mesh, matrices)
+    }
+
+    #[test]
+    fn the_solution_meets_the_equations() {
+        let (mesh, matrices) = block();
+        let constraint = |node| Constraint { node, direction: 1, value: 0.0 };
+        let supports = Supports::new(&mesh, &[constraint(7), constraint(50)]).unwrap();
+        let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
+        let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, 1e-4, 1.0).unwrap();
+        let n = 3 * mesh.node_count();
+        let exact: Vec<f64> =
+            (0..n).map(|i| if i == 22 || i == 151 { 0.0 } else { (i as f64).cos() }).collect();
+        let (mut kx, mut mx) = (vec![0.0; n], vec![0.0; n]);
+        matrices.stiffness_times(&exact, &mut kx);
+        matrices.mass_times(&exact, &mut mx);
+        let b: Vec<f64> = kx.iter().zip(&mx).map(|(k, m)| 1e-4 * k + m).collect();
+        let mut x = vec![0.0; solver.size()];
+        supports.gather(&b, &mut x);
+        solver.solve_in_place(&mut x);
+        let mut found = vec![0.0; n];
+        supports.scatter(&x, &mut found);
+        assert!(found.iter().zip(&exact).all(|(f, e)| (f - e).abs() < 1e-11));
+    }
+
+    /// A matrix that is not positive: the message leads back through the ordering to the dof.
+    #[test]
+    fn a_pivot_that_is_not_positive_is_named() {
+        let (mesh, matrices) = block();
+        let supports = Supports::new(&mesh, &[]).unwrap();
+        let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
+        let first = supports.free()[analysis.order[0]] as usize;
+        let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, -1.0, 0.0).err().unwrap();
+        let (node, direction) = name(&mesh, first);
+        assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
+    }
+
+    #[test]
+    fn solvers_can_move_between_threads() {
+        fn is_send<T: Send>() {}
+        is_send::<Cholesky>();
+        is_send::<crate::model::Model>();
+    }
 }

@@ -147,3 +147,16 @@ fn loads_that_are_not_numbers_or_too_short_are_refused() {
     let error = statics::solve(&model, &load[..4]).unwrap_err();
     assert!(matches!(error, SolveError::Length { found: 4, expected: 60, .. }), "{error}");
 }
+
+/// Nothing left to solve: every dof prescribed, by a rigid motion. No force is needed but that of the load.
+#[test]
+fn a_wholly_prescribed_body_needs_no_equations() {
+    let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+    let constraints =
+        (0..60).map(|d| Constraint { node: d / 3, direction: (d % 3) as u8, value: 0.5 }).collect();
+    let model = model(mesh, constraints, SOIL, Gauss3);
+    let load: Vec<f64> = (0..60).map(f64::from).collect();
+    let solution = statics::solve(&model, &load).unwrap();
+    assert!(solution.reactions.iter().zip(&load).all(|(r, f)| (r + f).abs() < 1e-6));
+    assert!(solution.u.iter().all(|&u| u == 0.5));
+}
