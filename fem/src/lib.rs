@@ -5,8 +5,7 @@
 //! factor and scratch. Units are SI throughout. Nodal vectors are flat, index `3 * node + direction`.
 //!
 //! ```
-//! use trackbed_fem::{damping::Rayleigh, element::quadrature::Quadrature, loads, material::elastic::Elastic};
-//! use trackbed_fem::{mesh::{Constraint, Mesh}, model::{Model, ModelInput}, statics};
+//! use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh, loads, statics};
 //!
 //! // A column of two cubic metres on a fixed base, pressed by 10 kPa from above.
 //! let mesh = Mesh::block([1, 1, 2], [1.0, 1.0, 2.0]);
@@ -46,3 +45,11 @@ pub mod statics;
 pub mod stress;
 pub mod supports;
 pub mod window;
+
+pub use damping::Rayleigh;
+pub use element::quadrature::Quadrature;
+pub use material::elastic::Elastic;
+pub use mesh::{Constraint, Face, Mesh};
+pub use model::{Model, ModelError, ModelInput};
+pub use solver::SolveError;
+pub use state::{State, StepAudit};

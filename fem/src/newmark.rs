@@ -78,7 +78,11 @@ impl Newmark {
         }
     }
 
-    fn check_range(self) -> Result<(), NewmarkError> {
+    /// Checks only that both parameters are finite and 0 or above; the method may be stable for small steps alone.
+    ///
+    /// # Errors
+    /// [`NewmarkError::Range`].
+    pub fn check_range(self) -> Result<(), NewmarkError> {
         let Newmark { alpha, delta } = self;
         let usable = |x: f64| x >= 0.0 && x.is_finite();
         if usable(alpha) && usable(delta) { Ok(()) } else { Err(NewmarkError::Range { alpha, delta }) }
