@@ -211,6 +211,24 @@ mod tests {
         assert!(text.contains("material 2") && text.contains("unused nodes"), "{text}");
     }
 
+    /// The embankment of the FEM verification: volumes from its drawing (see its `case.json`).
+    #[test]
+    fn an_embankment_in_numbers() {
+        let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/fem/E3_embankment_patch");
+        let list = |name: &str| dir.join(name);
+        let (nodes, elements, dof) = (list("NODECOORD.DAT"), list("ELEMENTNUM.DAT"), list("DOF.DAT"));
+        let lists = crate::read::read_lists(&nodes, &elements, Some(&dof), &Default::default()).unwrap();
+        let info = info(&lists.mesh, &lists.constraints);
+        assert_eq!(info.bounds, [[-10.0, 0.0, -5.0], [10.0, 3.6, 1.7]]);
+        // Subgrade 20 m x 5 m; trapezoids of height 1.2 m and 0.5 m, half widths 4.75, 2.95 and 2.2 m.
+        let volumes = [20.0 * 5.0, (4.75 + 2.95) * 1.2, (2.95 + 2.2) * 0.5].map(|area| 3.6 * area);
+        for (material, volume) in info.materials.iter().zip(volumes) {
+            assert!((material.volume - volume).abs() < 1e-9, "{material:?}, expected {volume}");
+        }
+        assert_eq!((info.constrained_dofs, info.unused_nodes.len()), (1547, 0));
+        assert_eq!(check(&lists.mesh, &lists.constraints), []);
+    }
+
     #[test]
     fn the_worst_element_is_named() {
         let mut mesh = sample::straight_block([3, 1, 1]);

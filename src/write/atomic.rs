@@ -65,6 +65,7 @@ mod tests {
         });
         assert_eq!(error.unwrap_err().to_string(), format!("{}: enough", file.display()));
         assert_eq!(fs::read_to_string(&file).unwrap(), "one");
+        assert_eq!(fs::read_dir(&dir).unwrap().count(), 1, "no part is left");
         write(&file, text("two")).unwrap();
         assert_eq!(fs::read_to_string(&file).unwrap(), "two");
         assert_eq!(fs::read_dir(&dir).unwrap().count(), 1);

@@ -141,3 +141,18 @@ pub fn write(file: &Path, data: impl Into<DataSet>) -> Result<(), WriteError> {
         vtk.try_into_xml_format(Compressor::ZLib, LEVEL).map_err(|error| WriteError::format(file, error))?;
     atomic::write(file, |out| xml.write(out).map_err(|error| WriteError::format(file, error)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_symmetric_tensor_becomes_a_matrix_by_rows() {
+        let mut fields = Fields::new(Path::new("a.vtu"), 1);
+        // xx, yy, zz, xy, yz, zx
+        fields.tensor("stress", &[[11.0, 22.0, 33.0, 12.0, 23.0, 31.0]]).unwrap();
+        let Some(Attribute::DataArray(array)) = fields.finish().pop() else { panic!("no array") };
+        let matrix = [11.0, 12.0, 31.0, 12.0, 22.0, 23.0, 31.0, 23.0, 33.0];
+        assert_eq!(array.data.into_vec::<f64>().unwrap(), matrix);
+    }
+}
