@@ -1,4 +1,28 @@
-//! Explicit discrete elements for ballasted track: spheres, rigid clumps, walls.
+//! Explicit discrete elements for ballasted track: spheres, rigid clumps, blocks, walls.
+//!
+//! A [`model::Model`] is what a run never changes, a [`state::State`] all that it changes, a [`work::Work`] its
+//! scratch; [`step::step`] advances the state. SI units throughout.
 
+mod check;
+pub mod contact;
+pub mod detect;
+pub mod error;
+pub mod input;
 pub mod insert;
+pub mod integrate;
+pub mod ledger;
+pub mod material;
+pub mod measure;
+pub mod model;
+mod order;
+pub mod search;
 pub mod shape;
+pub mod state;
+pub mod step;
+pub mod surface;
+pub mod timestep;
+pub mod wall;
+pub mod work;
+
+/// A vector of three components.
+pub type Vec3 = nalgebra::Vector3<f64>;

@@ -1,0 +1,185 @@
+//! What can go wrong, with the body, pair and time it happened at.
+
+use std::fmt;
+
+/// Why a model cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// A material constant is out of range.
+    #[error("material {material}: {quantity} is {value}; it must {requirement}")]
+    Material {
+        /// Index of the material.
+        material: usize,
+        /// Name of the constant.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+    /// A value of an override is out of range.
+    #[error("contact override {index}: {quantity} is {value}; it must {requirement}")]
+    Override {
+        /// Index of the override.
+        index: usize,
+        /// Name of the constant.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+    /// An index points nowhere.
+    #[error("{owner} {index} names {kind} {found}, but there are {count}")]
+    Index {
+        /// What holds the index: "body", "plane", …
+        owner: &'static str,
+        /// Its own index.
+        index: usize,
+        /// What the index should name.
+        kind: &'static str,
+        /// The index found.
+        found: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A shape is degenerate.
+    #[error("shape {shape}: {problem}")]
+    Shape {
+        /// Index of the shape.
+        shape: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A body's value is out of range.
+    #[error("body {body}: {quantity} is {value}; it must {requirement}")]
+    Body {
+        /// Index of the body.
+        body: usize,
+        /// Name of the value.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+    /// A wall is degenerate.
+    #[error("{wall}: {problem}")]
+    Wall {
+        /// "plane 2", "triangle 7 of surface 0", …
+        wall: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// Two rigid partners may touch.
+    #[error(
+        "{a} and {b} may touch but both are rigid (infinite stiffness); give one a stiffness, or the pair one"
+    )]
+    RigidPair {
+        /// One partner.
+        a: String,
+        /// The other.
+        b: String,
+    },
+    /// The time step is above the stability limit.
+    #[error(
+        "time step {dt} s is above the limit {limit} s, set by {cause}; take a smaller step, or allow it explicitly"
+    )]
+    TimeStep {
+        /// The step asked for [s].
+        dt: f64,
+        /// The limit [s].
+        limit: f64,
+        /// What sets the limit.
+        cause: String,
+    },
+    /// A setting of the run is out of range.
+    #[error("{quantity} is {value}; it must {requirement}")]
+    Setting {
+        /// Name of the setting.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+}
+
+/// One side of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Partner {
+    /// A body (index).
+    Body(usize),
+    /// A plane (index).
+    Plane(usize),
+    /// A triangle (index over all triangle surfaces in order).
+    Triangle(u32),
+    /// A patch of the external surface.
+    Patch(u32),
+}
+
+impl fmt::Display for Partner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Partner::Body(k) => write!(f, "body {k}"),
+            Partner::Plane(k) => write!(f, "plane {k}"),
+            Partner::Triangle(k) => write!(f, "triangle {k}"),
+            Partner::Patch(k) => write!(f, "surface patch {k}"),
+        }
+    }
+}
+
+/// Why a step failed. The state is then not fit to go on from: return to an earlier copy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// Two partners overlap by more than the smaller radius: the time step is too large, the contact too soft,
+    /// or the scene starts with bodies inside each other.
+    #[error("at t = {time} s body {body} and {partner} overlap by {overlap} m, more than {bound} m")]
+    Overlap {
+        /// Time [s].
+        time: f64,
+        /// The body.
+        body: usize,
+        /// What it touches.
+        partner: Partner,
+        /// The overlap [m].
+        overlap: f64,
+        /// The largest overlap that has a meaning [m].
+        bound: f64,
+    },
+    /// A body moves so fast that contacts would be missed, or its velocity is not a number.
+    #[error(
+        "at t = {time} s body {body} moves at {speed} m/s, above the bound {bound} m/s (half the smallest radius per step)"
+    )]
+    Speed {
+        /// Time [s].
+        time: f64,
+        /// The body.
+        body: usize,
+        /// Its speed [m/s].
+        speed: f64,
+        /// The bound [m/s].
+        bound: f64,
+    },
+    /// An applied force names no body, or is not finite.
+    #[error("at t = {time} s applied force {index} (body {body}) names no body or is not finite")]
+    Applied {
+        /// Time [s].
+        time: f64,
+        /// Index of the applied force.
+        index: usize,
+        /// The body it names.
+        body: usize,
+    },
+    /// A surface is given, but the model has no material for it.
+    #[error("a surface is given, but the model names no material for it (surface_material)")]
+    SurfaceMaterial,
+    /// State or work belongs to another model.
+    #[error("the state holds {found} bodies, the model {expected}")]
+    Mismatch {
+        /// Bodies of the model.
+        expected: usize,
+        /// Bodies of the state.
+        found: usize,
+    },
+}

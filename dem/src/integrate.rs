@@ -1,0 +1,4 @@
+//! Integration in time.
+
+pub(crate) mod leapfrog;
+pub mod rotation;

@@ -1,0 +1,106 @@
+//! Rotation of bodies with unlike principal moments.
+//!
+//! The angular momentum L is kept in world axes: torques change it, free rotation does not. The orientation then
+//! follows the implicit midpoint rule for Euler's equations: with Π the momentum in the body frame and
+//! ω = I⁻¹ (Π₀ + Π₁)/2,
+//!
+//! q₁ = q₀ ∘ (1, ω dt/2)/norm,  Π₁ = the same L seen from q₁,
+//!
+//! so that Π₁ − Π₀ = −dt ω × (Π₀ + Π₁)/2. It keeps every quadratic invariant: the kinetic energy as well as |L|,
+//! to rounding, for any step (Simo & Wong, Int. J. Numer. Meth. Engng 31, 1991; Austin, Krishnaprasad & Wang,
+//! J. Comput. Phys. 107, 1993). Second order, no trigonometric function. The implicit equation is solved by fixed
+//! points, each gaining a factor of about ω dt.
+
+use crate::Vec3;
+use nalgebra::{Quaternion, UnitQuaternion};
+
+/// Most iterations; reached only when ω dt is of the order of one, where results have no meaning anyway.
+const ITERATIONS: usize = 60;
+
+/// Orientation after free rotation over `dt` with world angular momentum `momentum` and principal moments `inertia`.
+#[inline]
+pub fn free(
+    orientation: &UnitQuaternion<f64>,
+    momentum: &Vec3,
+    inertia: &Vec3,
+    dt: f64,
+) -> UnitQuaternion<f64> {
+    let start = orientation.inverse_transform_vector(momentum);
+    let half = Vec3::repeat(0.5 * dt).component_div(inertia);
+    // c = ω dt/2; the mid momentum solves Π + c × Π = Π₀.
+    let mut c = start.component_mul(&half);
+    for _ in 0..ITERATIONS {
+        let c2 = c.norm_squared();
+        let mid = (start - c.cross(&start) + c * c.dot(&start)) / (1.0 + c2);
+        let next = mid.component_mul(&half);
+        let change = (next - c).norm_squared();
+        c = next;
+        if change <= 1e-33 * c2 {
+            break;
+        }
+    }
+    normalised(orientation.quaternion() * Quaternion::from_parts(1.0, c))
+}
+
+/// Orientation after turning over `dt` with a constant world spin, of the same order.
+#[inline]
+pub fn steady(orientation: &UnitQuaternion<f64>, spin: &Vec3, dt: f64) -> UnitQuaternion<f64> {
+    normalised(Quaternion::from_parts(1.0, spin * (0.5 * dt)) * orientation.quaternion())
+}
+
+#[inline(always)]
+fn normalised(q: Quaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_normalize(q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spin(q: &UnitQuaternion<f64>, momentum: &Vec3, inertia: &Vec3) -> Vec3 {
+        q * q.inverse_transform_vector(momentum).component_div(inertia)
+    }
+
+    /// Energy and momentum of an asymmetric top, turning near its unstable axis, over a million steps.
+    #[test]
+    fn asymmetric_top_keeps_energy_for_a_million_steps() {
+        let inertia = Vec3::new(1.0, 2.0, 3.0);
+        let momentum = Vec3::new(0.02, 2.0, 0.05);
+        let mut q = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.7);
+        let momentum = q * momentum;
+        let energy = |q: &UnitQuaternion<f64>| 0.5 * momentum.dot(&spin(q, &momentum, &inertia));
+        let start = energy(&q);
+        let (mut worst, mut flips) = (0.0_f64, 0);
+        let mut side = true;
+        for _ in 0..1_000_000 {
+            q = free(&q, &momentum, &inertia, 1e-3);
+            worst = worst.max((energy(&q) / start - 1.0).abs());
+            let up = q.inverse_transform_vector(&momentum).y > 0.0;
+            flips += usize::from(up != side);
+            side = up;
+        }
+        assert!(worst < 1e-12, "energy drift {worst:e}");
+        assert!((q.quaternion().norm() - 1.0).abs() < 1e-14);
+        assert!(flips > 50, "the top must tumble, {flips}");
+    }
+
+    /// Error against a solution with steps a hundred times smaller falls fourfold when the step is halved.
+    #[test]
+    fn second_order() {
+        let inertia = Vec3::new(1.0, 2.0, 3.0);
+        let momentum = Vec3::new(1.0, 2.0, 0.7);
+        let run = |n: usize| {
+            let mut q = UnitQuaternion::identity();
+            for _ in 0..n {
+                q = free(&q, &momentum, &inertia, 4.0 / n as f64);
+            }
+            q
+        };
+        let exact = run(40_000);
+        let errors = [100, 200, 400].map(|n| run(n).angle_to(&exact));
+        for pair in errors.windows(2) {
+            let order = (pair[0] / pair[1]).log2();
+            assert!((order - 2.0).abs() < 0.02, "order {order}");
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Where energy and momentum went: sums over all steps since the start.
+//!
+//! A step at time t carries the bodies from t − dt/2 to t + dt/2, so the sums belong to half steps, as the
+//! velocities do. Work is force × mean of the velocities before and after, which is exactly the change of kinetic
+//! energy in a leapfrog; energy that contacts dissipate uses the speed extrapolated to t, right to second order.
+
+use crate::Vec3;
+use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
+
+/// Impulse and angular impulse about the origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Impulse {
+    /// ∫ F dt [N s].
+    pub linear: Vec3,
+    /// ∫ x × F dt about the origin [N m s].
+    pub angular: Vec3,
+}
+
+impl Impulse {
+    /// Adds the impulse of a force at a point.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, point: &Vec3, impulse: &Vec3) {
+        self.linear += impulse;
+        self.angular += point.cross(impulse);
+    }
+}
+
+impl AddAssign<&Impulse> for Impulse {
+    fn add_assign(&mut self, other: &Impulse) {
+        self.linear += other.linear;
+        self.angular += other.angular;
+    }
+}
+
+/// The ledger. Signs: dissipated energies are positive when lost; works and impulses are what the bodies received.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// Energy lost in dashpots [J].
+    pub dissipated_dashpot: f64,
+    /// Energy lost in sliding [J].
+    pub dissipated_friction: f64,
+    /// Energy taken by local damping [J].
+    pub dissipated_local_damping: f64,
+    /// Work of applied forces [J].
+    pub work_applied: f64,
+    /// Work of moving planes and triangle surfaces on the bodies [J].
+    pub work_walls: f64,
+    /// Work of the external surface's motion on the bodies [J].
+    pub work_surface: f64,
+    /// Work of what keeps fixed motions at their speed [J].
+    pub work_constraints: f64,
+    /// Impulse of gravity.
+    pub gravity: Impulse,
+    /// Impulse of planes and triangle surfaces.
+    pub walls: Impulse,
+    /// Impulse of the external surface.
+    pub surface: Impulse,
+    /// Impulse of applied forces.
+    pub applied: Impulse,
+    /// Impulse of what keeps fixed motions at their speed.
+    pub constraints: Impulse,
+    /// Impulse of local damping.
+    pub local_damping: Impulse,
+}
+
+impl Ledger {
+    /// All energy lost [J].
+    pub fn dissipated(&self) -> f64 {
+        self.dissipated_dashpot + self.dissipated_friction + self.dissipated_local_damping
+    }
+
+    /// All work received from outside, gravity excepted (it has a potential) [J].
+    pub fn work(&self) -> f64 {
+        self.work_applied + self.work_walls + self.work_surface + self.work_constraints
+    }
+
+    /// Sum of all impulses: the change of momentum since the start.
+    pub fn impulse(&self) -> Impulse {
+        let mut sum = self.gravity;
+        for part in [self.walls, self.surface, self.applied, self.constraints, self.local_damping] {
+            sum += &part;
+        }
+        sum
+    }
+}
+
+impl AddAssign<&Ledger> for Ledger {
+    fn add_assign(&mut self, other: &Ledger) {
+        self.dissipated_dashpot += other.dissipated_dashpot;
+        self.dissipated_friction += other.dissipated_friction;
+        self.dissipated_local_damping += other.dissipated_local_damping;
+        self.work_applied += other.work_applied;
+        self.work_walls += other.work_walls;
+        self.work_surface += other.work_surface;
+        self.work_constraints += other.work_constraints;
+        self.gravity += &other.gravity;
+        self.walls += &other.walls;
+        self.surface += &other.surface;
+        self.applied += &other.applied;
+        self.constraints += &other.constraints;
+        self.local_damping += &other.local_damping;
+    }
+}

@@ -1,0 +1,293 @@
+//! The checked, resolved and immutable model: what a run needs and never changes.
+
+use crate::Vec3;
+use crate::contact::linear::Linear;
+use crate::contact::{ContactLaw, PairTable};
+use crate::error::ModelError;
+use crate::input::{ModelInput, Plane, TimeStep};
+use crate::shape::{Shape, cuboid};
+use crate::timestep::{self, DtLimit};
+use crate::wall::triangulated::TriangleWalls;
+use crate::{check, input};
+use nalgebra::UnitQuaternion;
+
+/// Spheres that a block of bodies holds, about. Part of a scene's numbers (it orders sums), so a constant.
+const BLOCK_SPHERES: usize = 1024;
+
+/// What kind of shape a body has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Sphere,
+    Clump,
+    Box,
+}
+
+/// Constants of one body.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub kind: Kind,
+    pub shape: usize,
+    pub scale: f64,
+    pub material: u32,
+    pub part: u32,
+    pub mass: f64,
+    /// Zero when no translation is free: the partner then has the effective mass alone.
+    pub inverse_mass: f64,
+    /// Principal moments [kg m²].
+    pub inertia: Vec3,
+    /// Radius of a sphere about the centre that holds the body [m].
+    pub radius: f64,
+    /// Bits 0–2 translation, 3–5 rotation.
+    pub fixed: u8,
+    pub position: Vec3,
+    pub orientation: UnitQuaternion<f64>,
+    pub velocity: Vec3,
+    pub spin: Vec3,
+}
+
+/// The model. Build it with [`Model::new`].
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) shapes: Vec<Shape>,
+    /// Planes with unit normals.
+    pub(crate) planes: Vec<Plane>,
+    pub(crate) triangles: TriangleWalls,
+    pub(crate) surface_material: Option<u32>,
+    pub(crate) table: PairTable<Linear>,
+    pub(crate) gravity: Vec3,
+    pub(crate) damping: f64,
+    pub(crate) skin: f64,
+    /// Smallest and largest sphere radius [m].
+    pub(crate) radii: (f64, f64),
+    /// Whether any body is a clump or a box.
+    pub(crate) rigid: bool,
+    /// Bodies per block.
+    pub(crate) block: usize,
+    dt: f64,
+    limit: DtLimit,
+}
+
+impl Model {
+    /// Checks and resolves an input.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the first thing that is out of range, points nowhere, or cannot work.
+    pub fn new(input: ModelInput) -> Result<Model, ModelError> {
+        check::input(&input)?;
+        let bodies: Vec<Body> =
+            input.bodies.iter().enumerate().map(|(k, b)| resolve(&input, k, b)).collect::<Result<_, _>>()?;
+        let table = PairTable::<Linear>::new(&input.materials, &input.contacts);
+        let triangles = TriangleWalls::new(&input.triangles)?;
+        check::rigid_pairs(&bodies, &input, &table)?;
+
+        let mut radii = (f64::INFINITY, 0.0_f64);
+        let (mut spheres, mut sum) = (0_usize, 0.0);
+        for body in &bodies {
+            for_members(&input.shapes[body.shape], body.scale, |_, r| {
+                radii = (radii.0.min(r), radii.1.max(r));
+                spheres += 1;
+                sum += r;
+            });
+        }
+        if spheres == 0 {
+            // Boxes alone: a length scale for the search and for the speed bound.
+            let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
+            radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
+        }
+        let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
+        let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
+        let limit = timestep::limit(&bodies, &input, &table, radii.0);
+        let dt = match input.time_step {
+            TimeStep::Auto { fraction } => fraction * limit.dt,
+            TimeStep::Fixed(dt) if dt > limit.dt => {
+                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
+            }
+            TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => dt,
+        };
+        let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
+        Ok(Model {
+            rigid: bodies.iter().any(|b| b.kind != Kind::Sphere),
+            block: (BLOCK_SPHERES * round / spheres.max(1)).clamp(16, BLOCK_SPHERES),
+            bodies,
+            shapes: input.shapes,
+            planes,
+            triangles,
+            surface_material: input.surface_material.map(|m| m as u32),
+            table,
+            gravity: input.gravity,
+            damping: input.damping.map_or(0.0, |d| d.factor),
+            skin: input.skin.unwrap_or(0.2 * mean),
+            radii,
+            dt,
+            limit,
+        })
+    }
+
+    /// The time step [s].
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// The stability limit of the time step and what sets it.
+    pub fn dt_limit(&self) -> &DtLimit {
+        &self.limit
+    }
+
+    /// Number of bodies.
+    pub fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Number of spheres: single ones and members of clumps.
+    pub fn sphere_count(&self) -> usize {
+        (0..self.bodies.len()).map(|b| self.member_count(b) as usize).sum()
+    }
+
+    /// Mass of a body [kg].
+    pub fn mass(&self, body: usize) -> f64 {
+        self.bodies[body].mass
+    }
+
+    /// Principal moments of inertia of a body [kg m²].
+    pub fn inertia(&self, body: usize) -> Vec3 {
+        self.bodies[body].inertia
+    }
+
+    /// Radius of the smallest sphere about its centre of mass that is known to hold the body [m].
+    pub fn radius(&self, body: usize) -> f64 {
+        self.bodies[body].radius
+    }
+
+    /// Group number of a body.
+    pub fn part(&self, body: usize) -> u32 {
+        self.bodies[body].part
+    }
+
+    /// Shape of a body (unscaled).
+    pub fn shape(&self, body: usize) -> &Shape {
+        &self.shapes[self.bodies[body].shape]
+    }
+
+    /// Factor on the lengths of the body's shape.
+    pub fn scale(&self, body: usize) -> f64 {
+        self.bodies[body].scale
+    }
+
+    /// Volume of a body's shape [m³].
+    pub fn volume(&self, body: usize) -> f64 {
+        volume(self.shape(body), self.bodies[body].scale)
+    }
+
+    /// Spheres of a body in its own frame: centre [m] and radius [m]. One for a sphere, none for a box.
+    pub fn members(&self, body: usize) -> Vec<(Vec3, f64)> {
+        let mut members = Vec::new();
+        for_members(self.shape(body), self.bodies[body].scale, |c, r| members.push((c, r)));
+        members
+    }
+
+    /// Number of a body's spheres.
+    pub(crate) fn member_count(&self, body: usize) -> u32 {
+        match self.shape(body) {
+            Shape::Sphere { .. } => 1,
+            Shape::Clump(clump) => clump.spheres.len() as u32,
+            Shape::Box { .. } => 0,
+        }
+    }
+
+    /// Planes, with unit normals.
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// Acceleration of gravity [m/s²].
+    pub fn gravity(&self) -> Vec3 {
+        self.gravity
+    }
+
+    /// Distance beyond touch up to which neighbours are listed [m].
+    pub fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Half sides of a box body, scaled [m].
+    pub(crate) fn half(&self, body: usize) -> Vec3 {
+        match self.shape(body) {
+            Shape::Box { half } => Vec3::from(*half) * self.bodies[body].scale,
+            _ => Vec3::zeros(),
+        }
+    }
+
+    /// Constants of the contact of a body with a material.
+    #[inline(always)]
+    pub(crate) fn law(&self, a: u32, b: u32) -> &Linear {
+        self.table.get(a, b)
+    }
+
+    /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates.
+    pub fn contact_stiffness(&self, a: usize, b: usize) -> (f64, f64) {
+        let law = self.table.get(a as u32, b as u32);
+        (law.stiffness(0.0, 1.0), law.damping_ratio)
+    }
+}
+
+/// Calls `f` with centre and radius of each sphere of a shape.
+pub(crate) fn for_members(shape: &Shape, scale: f64, mut f: impl FnMut(Vec3, f64)) {
+    match shape {
+        Shape::Sphere { radius } => f(Vec3::zeros(), radius * scale),
+        Shape::Clump(clump) => clump.spheres.iter().for_each(|(c, r)| f(Vec3::from(*c) * scale, r * scale)),
+        Shape::Box { .. } => {}
+    }
+}
+
+fn volume(shape: &Shape, scale: f64) -> f64 {
+    let unit = match shape {
+        Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+        Shape::Clump(clump) => clump.volume,
+        Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
+    };
+    unit * scale.powi(3)
+}
+
+fn resolve(input: &ModelInput, index: usize, b: &input::BodyInput) -> Result<Body, ModelError> {
+    let shape = &input.shapes[b.shape];
+    let volume = volume(shape, b.scale);
+    let mass = b.mass.unwrap_or(input.materials[b.material].density * volume);
+    let positive = |quantity, value: f64| {
+        let requirement = "be positive and finite";
+        let error = ModelError::Body { body: index, quantity, value, requirement };
+        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(error) }
+    };
+    positive("mass", mass)?;
+    let mut radius = 0.0_f64;
+    for_members(shape, b.scale, |c, r| radius = radius.max(c.norm() + r));
+    let (kind, inertia) = match shape {
+        Shape::Sphere { .. } => (Kind::Sphere, Vec3::repeat(0.4 * mass * radius * radius)),
+        Shape::Clump(clump) => {
+            (Kind::Clump, Vec3::from(clump.inertia) * (b.scale * b.scale * mass / clump.volume))
+        }
+        Shape::Box { half } => {
+            let half = Vec3::from(*half) * b.scale;
+            radius = half.norm();
+            (Kind::Box, cuboid::inertia(&half) * mass)
+        }
+    };
+    positive("moment of inertia", inertia.min())?;
+    let bits = b.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
+    Ok(Body {
+        kind,
+        shape: b.shape,
+        scale: b.scale,
+        material: b.material as u32,
+        part: b.part,
+        mass,
+        inverse_mass: if bits & 7 == 7 { 0.0 } else { 1.0 / mass },
+        inertia,
+        radius,
+        fixed: bits,
+        position: b.position,
+        orientation: b.orientation,
+        velocity: b.velocity,
+        spin: b.spin,
+    })
+}

@@ -1,0 +1,158 @@
+//! The order of bodies in memory: blocks of neighbours, and rows within a block.
+//!
+//! The bodies are halved again and again across the longest side of their bounds, at multiples of the block size,
+//! so that every block but the last holds equally many and is about as long as wide. Within a block they lie in
+//! the order of cells (z, then y, then x), which the processor's prefetcher likes better than space-filling
+//! curves. Boxes come last, in a block of their own. The order sets the order of sums, hence the last bits of a
+//! run; it depends on the positions alone.
+
+use crate::Vec3;
+use crate::contact::History;
+use crate::model::{Kind, Model};
+use crate::state::{Block, CrossPair, Pair, PatchPair, PlanePair, State};
+
+/// Steps between two sortings.
+pub(crate) const EVERY: u64 = 5000;
+
+/// Numbers of the bodies of each block.
+pub(crate) fn blocks(model: &Model, positions: &[Vec3]) -> Vec<Vec<u32>> {
+    let of_kind = |boxes: bool| -> Vec<u32> {
+        (0..positions.len() as u32)
+            .filter(|&b| (model.bodies[b as usize].kind == Kind::Box) == boxes)
+            .collect()
+    };
+    let mut round = of_kind(false);
+    let mut out = Vec::new();
+    if !round.is_empty() {
+        let size = round.iter().map(|&b| model.bodies[b as usize].radius).sum::<f64>() / round.len() as f64;
+        halve(&mut round, positions, model.block, 2.0 * size, &mut out);
+    }
+    let boxes = of_kind(true);
+    if !boxes.is_empty() {
+        out.push(boxes);
+    }
+    out
+}
+
+fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &mut Vec<Vec<u32>>) {
+    let count = bodies.len().div_ceil(size);
+    let at = |b: u32, d: usize| positions[b as usize][d];
+    if count <= 1 {
+        bodies.sort_by_cached_key(|&b| [2, 1, 0].map(|d| (at(b, d) / cell).floor() as i64));
+        out.push(bodies.to_vec());
+        return;
+    }
+    let (lo, hi) =
+        bodies.iter().fold((Vec3::repeat(f64::INFINITY), Vec3::repeat(-f64::INFINITY)), |(lo, hi), &b| {
+            (lo.inf(&positions[b as usize]), hi.sup(&positions[b as usize]))
+        });
+    let axis = (hi - lo).imax();
+    let middle = count / 2 * size;
+    // Ties by number, so that the result does not depend on the order that the bodies come in.
+    bodies.sort_unstable_by(|&a, &b| at(a, axis).total_cmp(&at(b, axis)).then(a.cmp(&b)));
+    let (left, right) = bodies.split_at_mut(middle);
+    halve(left, positions, size, cell, out);
+    halve(right, positions, size, cell, out);
+}
+
+/// Sorts a state anew; contacts go along with their bodies.
+pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
+    let members: Vec<u32> = (0..positions.len()).map(|b| model.member_count(b)).collect();
+    let old = std::mem::take(&mut state.blocks);
+    let (cross, boxed) = (std::mem::take(&mut state.cross), std::mem::take(&mut state.boxed));
+    let old_places = state.places.clone();
+
+    // Old sphere → body and member.
+    let named: Vec<Vec<[u32; 2]>> = old
+        .iter()
+        .map(|block| {
+            block.bodies.iter().flat_map(|&b| (0..members[b as usize]).map(move |m| [b, m])).collect()
+        })
+        .collect();
+
+    for bodies in blocks(model, positions) {
+        let mut block = Block::default();
+        for &body in &bodies {
+            let [b, k] = old_places[body as usize];
+            let (from, k) = (&old[b as usize], k as usize);
+            block.centre.push(from.centre[k]);
+            block.velocity.push(from.velocity[k]);
+            block.spin.push(from.spin[k]);
+            if let Some(r) = from.rotation.get(k) {
+                block.rotation.push(*r);
+            }
+        }
+        block.bodies = bodies;
+        state.blocks.push(block);
+    }
+    state.cross.resize_with(state.blocks.len(), Vec::new);
+    state.boxed.resize_with(state.blocks.len(), Vec::new);
+    state.number(model);
+
+    // First sphere of each body within its new block.
+    let mut first = vec![0_u32; positions.len()];
+    for block in &state.blocks {
+        let mut next = 0;
+        for &b in &block.bodies {
+            first[b as usize] = next;
+            next += members[b as usize];
+        }
+    }
+    let places = state.places.clone();
+    let new = |[body, member]: [u32; 2]| (places[body as usize][0], first[body as usize] + member);
+
+    let mut file = |a: (u32, u32), b: (u32, u32), history: History| {
+        // The spring is that of the first against the second.
+        let turned = History { spring: -history.spring, ..history };
+        let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
+        if a.0 == b.0 {
+            state.blocks[a.0 as usize].pairs.push(Pair { i: a.1, j: b.1, history });
+        } else {
+            state.cross[a.0 as usize].push(CrossPair { i: a.1, block: b.0, j: b.1, history });
+        }
+    };
+    for (block, names) in old.iter().zip(&named) {
+        for p in &block.pairs {
+            file(new(names[p.i as usize]), new(names[p.j as usize]), p.history);
+        }
+    }
+    for (b, pairs) in cross.iter().enumerate() {
+        for p in pairs {
+            file(new(named[b][p.i as usize]), new(named[p.block as usize][p.j as usize]), p.history);
+        }
+    }
+    for (b, pairs) in boxed.iter().enumerate() {
+        for p in pairs {
+            let (block, i) = new(named[b][p.i as usize]);
+            let box_body = old[p.block as usize].bodies[p.j as usize];
+            let [box_block, j] = places[box_body as usize];
+            state.boxed[block as usize].push(CrossPair { i, block: box_block, j, history: p.history });
+        }
+    }
+    for (block, names) in old.iter().zip(&named) {
+        for p in &block.planes {
+            // A block of boxes keeps its corners: boxes never change places among themselves.
+            let (b, i) = match names.get(p.i as usize) {
+                Some(&name) => new(name),
+                None => (state.blocks.len() as u32 - 1, p.i),
+            };
+            state.blocks[b as usize].planes.push(PlanePair { i, ..*p });
+        }
+        for (from, pick) in [(&block.triangles, true), (&block.surface, false)] {
+            for p in from {
+                let (b, i) = new(names[p.i as usize]);
+                let to = &mut state.blocks[b as usize];
+                (if pick { &mut to.triangles } else { &mut to.surface }).push(PatchPair { i, ..*p });
+            }
+        }
+    }
+    for block in &mut state.blocks {
+        block.pairs.sort_unstable_by_key(|p| (p.i, p.j));
+        block.planes.sort_unstable_by_key(|p| (p.i, p.plane));
+        block.triangles.sort_unstable_by_key(|p| (p.i, p.patch));
+        block.surface.sort_unstable_by_key(|p| (p.i, p.patch));
+    }
+    state.cross.iter_mut().for_each(|c| c.sort_unstable_by_key(|p| (p.i, p.block, p.j)));
+    state.boxed.iter_mut().for_each(|c| c.sort_unstable_by_key(|p| (p.i, p.block, p.j)));
+    state.stale = true;
+}

@@ -1,0 +1,192 @@
+//! Candidates: everything within the skin of touching, found by cells and trees. Valid until motion has used the
+//! skin up, which `near.rs` checks against the positions kept here.
+
+use crate::Vec3;
+use crate::model::{Kind, Model};
+use crate::shape::cuboid;
+use crate::state::{Block, Lanes, State, xyz};
+use crate::surface::Surface;
+use crate::work::{BlockWork, Work};
+use rayon::prelude::*;
+
+/// Centre and radius of each sphere of a block.
+#[inline(always)]
+pub(crate) fn spheres<'a>(block: &'a Block, work: &'a BlockWork, rigid: bool) -> &'a [Lanes] {
+    if rigid { &work.spheres } else { &block.centre }
+}
+
+/// Finds all candidates anew.
+pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
+    let Work { blocks, points, names, cells, parallel, .. } = &mut *work;
+    points.clear();
+    names.clear();
+    for (b, (block, w)) in state.blocks.iter().zip(blocks.iter()).enumerate() {
+        let own = spheres(block, w, model.rigid);
+        points.extend_from_slice(&own[..w.owner.len()]);
+        names.extend((0..w.owner.len() as u32).map(|k| [b as u32, k]));
+    }
+    cells.build(points, model.radii, model.skin);
+
+    let triangles = model.triangles.moved(&state.triangles);
+    let boxes = boxes(model, state);
+    let (points, names, cells) = (&*points, &*names, &*cells);
+    // First sphere of each block among all points.
+    let first: Vec<u32> = blocks
+        .iter()
+        .scan(0, |next, w| {
+            let first = *next;
+            *next += w.owner.len() as u32;
+            Some(first)
+        })
+        .collect();
+    let owners: Vec<u32> = blocks.iter().flat_map(|w| w.owner.iter().copied()).collect();
+    let body = |point: u32| {
+        let [block, _] = names[point as usize];
+        (block, owners[point as usize])
+    };
+    let still = |(block, place): (u32, u32)| state.blocks[block as usize].velocity[place as usize][3] == 0.0;
+
+    let one = |(b, w): (usize, &mut BlockWork)| {
+        let block = &state.blocks[b];
+        w.candidates.clear();
+        w.cross.clear();
+        w.boxed.clear();
+        w.planes.clear();
+        w.reference.clear();
+        for i in 0..w.owner.len() as u32 {
+            let global = first[b] + i;
+            let p = &points[global as usize];
+            w.reference.push(xyz(p));
+            let me = body(global);
+            let fixed = still(me);
+            w.row.clear();
+            cells.near(p, model.skin, |j| {
+                let q = &points[j as usize];
+                let reach = p[3] + q[3] + model.skin;
+                if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
+                    let other = body(j);
+                    if other != me && !(fixed && still(other)) {
+                        w.row.push(j);
+                    }
+                }
+            });
+            w.row.sort_unstable();
+            for &j in &w.row {
+                let [block_j, j] = names[j as usize];
+                if block_j == b as u32 {
+                    w.candidates.push([i, j]);
+                } else {
+                    w.cross.push([i, block_j, j]);
+                }
+            }
+            for bx in &boxes {
+                let local = bx.orientation.inverse_transform_vector(&(xyz(p) - bx.centre));
+                let distance = cuboid::closest_point(&bx.half, &local).2;
+                if distance < p[3] + model.skin && !(fixed && bx.still) {
+                    w.boxed.push([i, bx.block, bx.place]);
+                }
+            }
+            if !fixed {
+                for (k, plane) in model.planes.iter().enumerate() {
+                    let origin = plane.point + state.planes[k].offset;
+                    if (xyz(p) - origin).dot(&plane.normal) < p[3] + model.skin {
+                        w.planes.push([i, k as u32]);
+                    }
+                }
+            }
+        }
+        // Boxes touch planes with their corners: few enough to try them all.
+        if w.kind.first() == Some(&Kind::Box) {
+            for (k, lanes) in block.velocity.iter().enumerate() {
+                if lanes[3] > 0.0 {
+                    let corners = 8 * k as u32..8 * (k as u32 + 1);
+                    w.planes
+                        .extend(corners.flat_map(|c| (0..model.planes.len() as u32).map(move |p| [c, p])));
+                }
+            }
+        }
+        let own = &points[first[b] as usize..first[b] as usize + w.owner.len()];
+        let free = |i: u32| block.velocity[w.owner[i as usize] as usize][3] > 0.0;
+        patches(&triangles, own, model.skin, free, &mut w.row, &mut w.triangles);
+        patches(surface, own, model.skin, free, &mut w.row, &mut w.surface);
+    };
+    if *parallel {
+        blocks.par_iter_mut().enumerate().for_each(one);
+    } else {
+        blocks.iter_mut().enumerate().for_each(one);
+    }
+
+    // Corners of boxes count as points that move.
+    for bx in &boxes {
+        let w = &mut work.blocks[bx.block as usize];
+        w.reference.extend((0..8).map(|k| bx.centre + bx.orientation * cuboid::corner(&bx.half, k)));
+    }
+    work.wall_reference.clear();
+    work.wall_reference.extend(state.planes.iter().chain(&state.triangles).map(|m| m.offset));
+    work.surface_drift = 0.0;
+    work.listed = true;
+    work.searches += 1;
+}
+
+struct BoxBody {
+    block: u32,
+    place: u32,
+    centre: Vec3,
+    orientation: nalgebra::UnitQuaternion<f64>,
+    half: Vec3,
+    still: bool,
+}
+
+fn boxes(model: &Model, state: &State) -> Vec<BoxBody> {
+    let mut out = Vec::new();
+    for (b, block) in state.blocks.iter().enumerate() {
+        for (k, &body) in block.bodies.iter().enumerate() {
+            if model.bodies[body as usize].kind == Kind::Box {
+                out.push(BoxBody {
+                    block: b as u32,
+                    place: k as u32,
+                    centre: xyz(&block.centre[k]),
+                    orientation: block.rotation[k].orientation,
+                    half: model.half(body as usize),
+                    still: block.velocity[k][3] == 0.0,
+                });
+            }
+        }
+    }
+    out
+}
+
+/// Patches near each free sphere of a block; none at all is told from one query for the whole block.
+fn patches<S: Surface>(
+    surface: &S,
+    spheres: &[Lanes],
+    skin: f64,
+    free: impl Fn(u32) -> bool,
+    row: &mut Vec<u32>,
+    out: &mut Vec<[u32; 2]>,
+) {
+    out.clear();
+    if surface.is_empty() || spheres.is_empty() {
+        return;
+    }
+    let bounds = |p: &Lanes| {
+        let reach = p[3] + skin;
+        ([p[0] - reach, p[1] - reach, p[2] - reach], [p[0] + reach, p[1] + reach, p[2] + reach])
+    };
+    let all = spheres.iter().map(bounds).fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |a, b| {
+        ([0, 1, 2].map(|d| a.0[d].min(b.0[d])), [0, 1, 2].map(|d| a.1[d].max(b.1[d])))
+    });
+    row.clear();
+    surface.candidates(all.0, all.1, row);
+    if row.is_empty() {
+        return;
+    }
+    for (i, p) in spheres.iter().enumerate() {
+        if free(i as u32) {
+            row.clear();
+            let (lo, hi) = bounds(p);
+            surface.candidates(lo, hi, row);
+            out.extend(row.iter().map(|&patch| [i as u32, patch]));
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! The near list: candidates that touch or are within a small reach of it, with the memory of their contacts.
+//!
+//! It is made from the candidates whenever motion may have used its reach up, by a bound on the speeds; the
+//! candidates themselves are searched anew when true displacements no longer leave room for the near list's
+//! reach. Pairs are kept in the order of their spheres, and pairs that do not touch add nothing to any sum, so
+//! neither the skin nor the reach nor the moment of a search changes a bit of the result.
+
+use crate::contact::History;
+use crate::model::Model;
+use crate::search::candidates::{self, spheres};
+use crate::shape::cuboid;
+use crate::state::{Block, CrossPair, Pair, PatchPair, PlanePair, State, xyz};
+use crate::surface::Surface;
+use crate::work::{BlockWork, Gather, Work};
+use rayon::prelude::*;
+
+/// Makes the near list anew when it is due. `surface_speed` is the bound of the external surface [m/s].
+pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+    let due = (2.0 * state.drift).max(state.drift + state.wall_drift) > state.near;
+    if !due && !state.stale {
+        return;
+    }
+    if due {
+        // A reach that lasts for some ten steps costs least.
+        if state.lasted < 6 {
+            state.near = (1.5 * state.near).min(0.5 * model.skin);
+        } else if state.lasted > 60 {
+            state.near = (state.near / 1.2).max(0.02 * model.skin);
+        }
+    }
+    work.surface_drift += state.wall_drift;
+    if state.stale || !work.listed || !candidates_hold(model, state, work) {
+        candidates::search(model, state, work, surface);
+    }
+    make(model, state, work, surface);
+    state.drift = 0.0;
+    state.wall_drift = 0.0;
+    state.lasted = 0;
+    state.stale = false;
+    work.refreshes += 1;
+}
+
+/// Whether every pair within the near reach now was within the skin when the candidates were found.
+fn candidates_hold(model: &Model, state: &State, work: &Work) -> bool {
+    let moved2 = state.blocks.iter().zip(&work.blocks).map(|(block, w)| {
+        let own = spheres(block, w, model.rigid);
+        let mut most =
+            own.iter().zip(&w.reference).map(|(p, x)| (xyz(p) - x).norm_squared()).fold(0.0, f64::max);
+        let corners = &w.reference[w.owner.len()..];
+        for (k, eight) in corners.chunks_exact(8).enumerate() {
+            let (x, q) = (xyz(&block.centre[k]), &block.rotation[k].orientation);
+            for (c, old) in eight.iter().enumerate() {
+                most = most.max((x + q * cuboid::corner(&w.half[k], c) - old).norm_squared());
+            }
+        }
+        most
+    });
+    let moved = moved2.fold(0.0, f64::max).sqrt();
+    let walls = state.planes.iter().chain(&state.triangles).zip(&work.wall_reference);
+    let wall = walls.map(|(m, x)| (m.offset - x).norm()).fold(work.surface_drift, f64::max);
+    (2.0 * moved).max(moved + wall) + state.near <= model.skin
+}
+
+fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+    let State { blocks, cross, boxed, planes, triangles, near, .. } = &mut *state;
+    let (near, planes, motion) = (*near, &*planes, &*triangles);
+    let parallel = work.parallel;
+
+    // Contacts between blocks read positions of other blocks, so they come first and only read them.
+    let (all, scratch) = (&*blocks, &work.blocks);
+    let between = |(b, (cross, boxed)): (usize, (&mut Vec<CrossPair>, &mut Vec<CrossPair>))| {
+        let own = spheres(&all[b], &scratch[b], model.rigid);
+        let close = |c: &&[u32; 3]| {
+            let p = &own[c[0] as usize];
+            let q = &spheres(&all[c[1] as usize], &scratch[c[1] as usize], model.rigid)[c[2] as usize];
+            let reach = p[3] + q[3] + near;
+            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+        };
+        merge(cross, scratch[b].cross.iter().filter(close).copied());
+        let close = |c: &&[u32; 3]| {
+            let p = &own[c[0] as usize];
+            let (block, k) = (&all[c[1] as usize], c[2] as usize);
+            let local =
+                block.rotation[k].orientation.inverse_transform_vector(&(xyz(p) - xyz(&block.centre[k])));
+            cuboid::closest_point(&scratch[c[1] as usize].half[k], &local).2 < p[3] + near
+        };
+        merge(boxed, scratch[b].boxed.iter().filter(close).copied());
+    };
+    let within = |(block, w): (&mut Block, &mut BlockWork)| {
+        let Block { centre, pairs, planes: plane_pairs, triangles, surface: surface_pairs, .. } = block;
+        let own = if model.rigid { &w.spheres[..] } else { &centre[..] };
+        let close = |c: &&[u32; 2]| {
+            let (p, q) = (&own[c[0] as usize], &own[c[1] as usize]);
+            let reach = p[3] + q[3] + near;
+            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+        };
+        merge(pairs, w.candidates.iter().filter(close).copied());
+        let close = |c: &&[u32; 2]| {
+            let plane = &model.planes[c[1] as usize];
+            // Corners of boxes have no sphere here and are kept always.
+            !planes[c[1] as usize].open
+                && own.get(c[0] as usize).is_none_or(|p| {
+                    (xyz(p) - plane.point - planes[c[1] as usize].offset).dot(&plane.normal) < p[3] + near
+                })
+        };
+        merge(plane_pairs, w.planes.iter().filter(close).copied());
+        let walls = model.triangles.moved(motion);
+        make_patches(&walls, own, near, &w.triangles, &mut w.patches, triangles);
+        make_patches(surface, own, near, &w.surface, &mut w.patches, surface_pairs);
+    };
+    if parallel {
+        cross.par_iter_mut().zip(boxed.par_iter_mut()).enumerate().for_each(between);
+        blocks.par_iter_mut().zip(work.blocks.par_iter_mut()).for_each(within);
+    } else {
+        cross.iter_mut().zip(boxed.iter_mut()).enumerate().for_each(between);
+        blocks.iter_mut().zip(work.blocks.iter_mut()).for_each(within);
+    }
+    link(state, work);
+}
+
+/// A pair that can be matched with its former self.
+trait Keyed<const N: usize>: Copy {
+    fn key(&self) -> [u32; N];
+    fn history(&self) -> History;
+    fn new(key: [u32; N], history: History) -> Self;
+}
+
+impl Keyed<2> for Pair {
+    fn key(&self) -> [u32; 2] {
+        [self.i, self.j]
+    }
+    fn history(&self) -> History {
+        self.history
+    }
+    fn new([i, j]: [u32; 2], history: History) -> Pair {
+        Pair { i, j, history }
+    }
+}
+
+impl Keyed<2> for PlanePair {
+    fn key(&self) -> [u32; 2] {
+        [self.i, self.plane]
+    }
+    fn history(&self) -> History {
+        self.history
+    }
+    fn new([i, plane]: [u32; 2], history: History) -> PlanePair {
+        PlanePair { i, plane, history }
+    }
+}
+
+impl Keyed<3> for CrossPair {
+    fn key(&self) -> [u32; 3] {
+        [self.i, self.block, self.j]
+    }
+    fn history(&self) -> History {
+        self.history
+    }
+    fn new([i, block, j]: [u32; 3], history: History) -> CrossPair {
+        CrossPair { i, block, j, history }
+    }
+}
+
+/// Replaces a list by new pairs in ascending order, keeping the memory of those that were there. Works in place:
+/// the new list is appended behind the old one, which then goes.
+fn merge<const N: usize, P: Keyed<N>>(list: &mut Vec<P>, keys: impl Iterator<Item = [u32; N]>) {
+    let old = list.len();
+    let mut k = 0;
+    for key in keys {
+        while k < old && list[k].key() < key {
+            k += 1;
+        }
+        let history = if k < old && list[k].key() == key { list[k].history() } else { History::NONE };
+        list.push(P::new(key, history));
+    }
+    list.drain(..old);
+}
+
+/// As [`merge`], for patches; contacts that go on are kept even if their patch is out of reach by now, so that the
+/// patch the sphere has moved on to can take their memory over.
+fn make_patches<S: Surface>(
+    surface: &S,
+    spheres: &[crate::state::Lanes],
+    near: f64,
+    candidates: &[[u32; 2]],
+    fresh: &mut Vec<PatchPair>,
+    list: &mut Vec<PatchPair>,
+) {
+    fresh.clear();
+    let mut k = 0;
+    for &[i, patch] in candidates {
+        while k < list.len() && (list[k].i, list[k].patch) < (i, patch) {
+            fresh.extend((!list[k].history.is_fresh()).then_some(list[k]));
+            k += 1;
+        }
+        let mut pair = PatchPair {
+            i,
+            patch,
+            local: [0.0; 2],
+            point: crate::Vec3::zeros(),
+            normal: crate::Vec3::zeros(),
+            history: History::NONE,
+        };
+        let mut known = false;
+        if k < list.len() && (list[k].i, list[k].patch) == (i, patch) {
+            pair = list[k];
+            known = !pair.history.is_fresh();
+            k += 1;
+        }
+        let p = &spheres[i as usize];
+        let closest = surface.closest_point(patch, [p[0], p[1], p[2]], pair.local);
+        let distance = (crate::Vec3::from(closest.point) - xyz(p)).norm();
+        if known || distance < p[3] + near {
+            pair.local = closest.local;
+            fresh.push(pair);
+        }
+    }
+    fresh.extend(list[k..].iter().filter(|p| !p.history.is_fresh()));
+    std::mem::swap(list, fresh);
+}
+
+/// Gives each contact between blocks its slot and each body the list of slots it gathers, in one fixed order.
+pub(crate) fn link(state: &State, work: &mut Work) {
+    work.blocks.iter_mut().for_each(|w| w.gather.clear());
+    for b in 0..state.blocks.len() {
+        let (cross, boxed) = (&state.cross[b], &state.boxed[b]);
+        work.cross[b].slots.clear();
+        work.cross[b].slots.resize(cross.len() + boxed.len(), Default::default());
+        for (slot, pair) in cross.iter().chain(boxed).enumerate() {
+            let (block, slot) = (b as u32, slot as u32);
+            let place = work.blocks[b].owner[pair.i as usize];
+            work.blocks[b].gather.push(Gather { place, block, slot, sign: 1.0 });
+            let other = &mut work.blocks[pair.block as usize];
+            let place = if (slot as usize) < cross.len() { other.owner[pair.j as usize] } else { pair.j };
+            other.gather.push(Gather { place, block, slot, sign: -1.0 });
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! What changes during a run, and all of it: a checkpoint of the state continues bit for bit.
+//!
+//! Bodies live in blocks of neighbours (`order.rs`), so that most contacts stay within a block and memory is read
+//! in runs. Their numbers towards the user are those of the input; [`State::position`] and its like translate.
+//!
+//! Positions are those of `time`; velocities and spins those half a step earlier (leapfrog). Contact memory lies
+//! beside the pairs of the near list, which is therefore part of the state.
+
+use crate::Vec3;
+use crate::contact::History;
+use crate::ledger::Ledger;
+use crate::model::Model;
+use crate::order;
+use crate::wall::triangulated::WallMotion;
+use nalgebra::UnitQuaternion;
+use serde::{Deserialize, Serialize};
+
+/// Four numbers loaded as one.
+pub(crate) type Lanes = [f64; 4];
+
+/// Orientation and angular momentum of a body that is not a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Rotation {
+    /// Body frame to world.
+    pub orientation: UnitQuaternion<f64>,
+    /// Angular momentum about the centre, world axes, half a step ago [kg m²/s].
+    pub momentum: Vec3,
+}
+
+/// Two spheres of one block that touch or nearly do.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Pair {
+    pub i: u32,
+    pub j: u32,
+    pub history: History,
+}
+
+/// A sphere of this block with a sphere (or a box) of another.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct CrossPair {
+    pub i: u32,
+    pub block: u32,
+    pub j: u32,
+    pub history: History,
+}
+
+/// A sphere, or a corner of a box, with a plane.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct PlanePair {
+    pub i: u32,
+    pub plane: u32,
+    pub history: History,
+}
+
+/// A sphere with a patch of a surface.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct PatchPair {
+    pub i: u32,
+    pub patch: u32,
+    pub local: [f64; 2],
+    /// Where the patch was touched last, and the normal there.
+    pub point: Vec3,
+    pub normal: Vec3,
+    pub history: History,
+}
+
+/// A block of neighbouring bodies with the contacts that only it sees.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Block {
+    /// Number of each body in the input.
+    pub bodies: Vec<u32>,
+    /// Position and radius (of a sphere; bounding otherwise).
+    pub centre: Vec<Lanes>,
+    /// Velocity and inverse mass.
+    pub velocity: Vec<Lanes>,
+    /// Spin and material index.
+    pub spin: Vec<Lanes>,
+    /// Empty in scenes of single spheres only.
+    pub rotation: Vec<Rotation>,
+    pub pairs: Vec<Pair>,
+    pub planes: Vec<PlanePair>,
+    pub triangles: Vec<PatchPair>,
+    pub surface: Vec<PatchPair>,
+}
+
+/// The state. Build it with [`State::new`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct State {
+    /// Time of the positions [s].
+    pub time: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// Sums of work, dissipation and impulse since the start.
+    pub ledger: Ledger,
+    /// Block and place of each body.
+    pub(crate) places: Vec<[u32; 2]>,
+    pub(crate) blocks: Vec<Block>,
+    /// Sphere–sphere contacts between blocks, by the block of their first sphere.
+    pub(crate) cross: Vec<Vec<CrossPair>>,
+    /// Sphere–box contacts, by the block of the sphere.
+    pub(crate) boxed: Vec<Vec<CrossPair>>,
+    pub(crate) planes: Vec<WallMotion>,
+    pub(crate) triangles: Vec<WallMotion>,
+    /// Reach of the near list beyond touch [m], how much of it motion has used up, and the steps it has lasted.
+    pub(crate) near: f64,
+    pub(crate) drift: f64,
+    pub(crate) wall_drift: f64,
+    pub(crate) lasted: u32,
+    /// Whether the near list must be made anew.
+    pub(crate) stale: bool,
+}
+
+#[inline(always)]
+pub(crate) fn xyz(lanes: &Lanes) -> Vec3 {
+    Vec3::new(lanes[0], lanes[1], lanes[2])
+}
+
+#[inline(always)]
+pub(crate) fn set_xyz(lanes: &mut Lanes, v: &Vec3) {
+    lanes[0] = v.x;
+    lanes[1] = v.y;
+    lanes[2] = v.z;
+}
+
+/// World angular velocity from the angular momentum.
+#[inline(always)]
+pub(crate) fn spin_of(rotation: &Rotation, inertia: &Vec3) -> Vec3 {
+    rotation.orientation
+        * rotation.orientation.inverse_transform_vector(&rotation.momentum).component_div(inertia)
+}
+
+impl State {
+    /// The start: positions and velocities as given, at time 0.
+    ///
+    /// The leapfrog's velocities at −dt/2 are the given ones less half a step of gravity. A contact or applied
+    /// force already there at time 0 acts with its first full kick, a shift of half a step in time.
+    pub fn new(model: &Model) -> State {
+        let mut state = State {
+            time: 0.0,
+            steps: 0,
+            ledger: Ledger::default(),
+            places: Vec::new(),
+            blocks: Vec::new(),
+            cross: Vec::new(),
+            boxed: Vec::new(),
+            planes: model
+                .planes
+                .iter()
+                .map(|p| WallMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false })
+                .collect(),
+            triangles: model.triangles.motion(),
+            near: 0.1 * model.skin,
+            drift: 0.0,
+            wall_drift: 0.0,
+            lasted: 0,
+            stale: true,
+        };
+        let positions: Vec<Vec3> = model.bodies.iter().map(|b| b.position).collect();
+        for members in order::blocks(model, &positions) {
+            let mut block = Block::default();
+            for &body in &members {
+                let b = &model.bodies[body as usize];
+                let c = b.position;
+                block.centre.push([c.x, c.y, c.z, b.radius]);
+                block.velocity.push([0.0, 0.0, 0.0, b.inverse_mass]);
+                block.spin.push([0.0, 0.0, 0.0, f64::from(b.material)]);
+                if model.rigid {
+                    block.rotation.push(Rotation { orientation: b.orientation, momentum: Vec3::zeros() });
+                }
+            }
+            block.bodies = members;
+            state.blocks.push(block);
+        }
+        state.cross.resize_with(state.blocks.len(), Vec::new);
+        state.boxed.resize_with(state.blocks.len(), Vec::new);
+        state.number(model);
+        for (k, b) in model.bodies.iter().enumerate() {
+            let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
+            state.set_velocity(model, k, b.velocity - kick * (0.5 * model.dt()), b.spin);
+        }
+        state
+    }
+
+    /// Writes down where each body is.
+    pub(crate) fn number(&mut self, model: &Model) {
+        self.places.resize(model.bodies.len(), [0; 2]);
+        for (b, block) in self.blocks.iter().enumerate() {
+            for (k, &body) in block.bodies.iter().enumerate() {
+                self.places[body as usize] = [b as u32, k as u32];
+            }
+        }
+    }
+
+    fn place(&self, body: usize) -> (&Block, usize) {
+        let [b, k] = self.places[body];
+        (&self.blocks[b as usize], k as usize)
+    }
+
+    /// Centre of mass of a body [m].
+    pub fn position(&self, body: usize) -> Vec3 {
+        let (block, k) = self.place(body);
+        xyz(&block.centre[k])
+    }
+
+    /// Velocity of a body's centre half a step before `time` [m/s].
+    pub fn velocity(&self, body: usize) -> Vec3 {
+        let (block, k) = self.place(body);
+        xyz(&block.velocity[k])
+    }
+
+    /// Angular velocity of a body in world axes, half a step before `time` [rad/s].
+    pub fn spin(&self, body: usize) -> Vec3 {
+        let (block, k) = self.place(body);
+        xyz(&block.spin[k])
+    }
+
+    /// Orientation of a body (body frame to world). Single spheres do not track theirs: the starting one.
+    pub fn orientation(&self, model: &Model, body: usize) -> UnitQuaternion<f64> {
+        let (block, k) = self.place(body);
+        block.rotation.get(k).map_or(model.bodies[body].orientation, |r| r.orientation)
+    }
+
+    /// Sets a body's velocity [m/s] and spin [rad/s] as of half a step before `time`. Fixed rotations of clumps
+    /// and boxes keep the spin of the input. The change is not in the ledger.
+    pub fn set_velocity(&mut self, model: &Model, body: usize, velocity: Vec3, spin: Vec3) {
+        let [b, k] = self.places[body];
+        let block = &mut self.blocks[b as usize];
+        let k = k as usize;
+        set_xyz(&mut block.velocity[k], &velocity);
+        set_xyz(&mut block.spin[k], &spin);
+        if let Some(r) = block.rotation.get_mut(k) {
+            let local = r.orientation.inverse_transform_vector(&spin);
+            r.momentum = r.orientation * local.component_mul(&model.bodies[body].inertia);
+        }
+    }
+
+    /// Spheres of a body in the world: centre [m] and radius [m]. One for a sphere, none for a box.
+    pub fn spheres(&self, model: &Model, body: usize) -> Vec<(Vec3, f64)> {
+        let (x, q) = (self.position(body), self.orientation(model, body));
+        model.members(body).into_iter().map(|(c, r)| (x + q * c, r)).collect()
+    }
+
+    /// Position of plane `plane`: the point given, moved along [m].
+    pub fn plane_point(&self, model: &Model, plane: usize) -> Vec3 {
+        model.planes[plane].point + self.planes[plane].offset
+    }
+
+    /// Gives a plane another velocity [m/s].
+    pub fn set_plane_velocity(&mut self, plane: usize, velocity: Vec3) {
+        self.planes[plane].velocity = velocity;
+    }
+
+    /// Opens a plane (grains pass) or closes it again.
+    pub fn open_plane(&mut self, plane: usize, open: bool) {
+        self.planes[plane].open = open;
+        self.stale = true;
+    }
+
+    /// Displacement of a triangle surface since the start [m].
+    pub fn triangles_offset(&self, surface: usize) -> Vec3 {
+        self.triangles[surface].offset
+    }
+
+    /// Gives a triangle surface another velocity [m/s].
+    pub fn set_triangles_velocity(&mut self, surface: usize, velocity: Vec3) {
+        self.triangles[surface].velocity = velocity;
+    }
+
+    /// Opens a triangle surface (grains pass) or closes it again.
+    pub fn open_triangles(&mut self, surface: usize, open: bool) {
+        self.triangles[surface].open = open;
+        self.stale = true;
+    }
+
+    /// Has the neighbours searched anew before the next step: call it when the external surface has moved
+    /// otherwise than its [`max_speed`](crate::surface::Surface::max_speed) tells.
+    pub fn forget_neighbours(&mut self) {
+        self.stale = true;
+    }
+
+    /// Puts the bodies into blocks of present neighbours and carries the contacts along. Done every
+    /// `order::EVERY` steps: by count, so that a restart does not change when.
+    pub(crate) fn reorder(&mut self, model: &Model) {
+        let positions: Vec<Vec3> = (0..self.places.len()).map(|b| self.position(b)).collect();
+        order::reorder(self, model, &positions);
+    }
+}

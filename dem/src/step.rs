@@ -1,0 +1,206 @@
+//! One step of the grains: search when due, contacts, integration.
+
+use crate::Vec3;
+use crate::contact::{pass, patches};
+use crate::error::{Partner, StepError};
+use crate::input::AppliedForce;
+use crate::integrate::leapfrog;
+use crate::ledger::Ledger;
+use crate::model::Model;
+use crate::order;
+use crate::search::near;
+use crate::state::{Block, CrossPair, State, xyz};
+use crate::surface::Surface;
+use crate::work::{Applied, BlockWork, CrossWork, Failure, Work};
+use rayon::prelude::*;
+
+/// Advances `state` by one step of [`Model::dt`].
+///
+/// `surface` is a surface that another crate owns ([`NoSurface`](crate::surface::NoSurface) for none), as it is at
+/// the state's time; its contacts are then in [`Work::surface_contacts`]. `applied` forces act during this step.
+///
+/// The result has the same bits whatever the number of threads, and whether or not `work` is new.
+///
+/// # Errors
+/// [`StepError`] names the body, its partner and the time when an overlap or a speed leaves the range in which the
+/// method has a meaning. The state is then not fit to go on from.
+pub fn step<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+    applied: &[AppliedForce],
+) -> Result<(), StepError> {
+    if state.places.len() != model.bodies.len() || work.blocks.len() != state.blocks.len() {
+        return Err(StepError::Mismatch { expected: model.bodies.len(), found: state.places.len() });
+    }
+    if !surface.is_empty() && model.surface_material.is_none() {
+        return Err(StepError::SurfaceMaterial);
+    }
+    if state.steps > 0 && state.steps % order::EVERY == 0 {
+        state.reorder(model);
+        work.arrange(model, state);
+    }
+    place_loads(model, state, work, applied)?;
+    near::update(model, state, work, surface);
+    if model.rigid {
+        contacts_and_motion::<S, true>(model, state, work, surface);
+    } else {
+        contacts_and_motion::<S, false>(model, state, work, surface);
+    }
+    collect(model, state, work, surface.max_speed())
+}
+
+fn contacts_and_motion<S: Surface, const RIGID: bool>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+) {
+    let dt = model.dt();
+    let laws = &model.table;
+    let State { blocks, cross, boxed, planes, triangles, .. } = state;
+    let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
+
+    // Contacts between blocks: they read any block, and write slots.
+    let (all, scratch) = (&*blocks, &*works);
+    let between = |(b, ((pairs, boxed), out)): (
+        usize,
+        ((&mut Vec<CrossPair>, &mut Vec<CrossPair>), &mut CrossWork),
+    )| {
+        pass::cross::<_, RIGID>(laws, all, scratch, b, (pairs, boxed), out, dt);
+    };
+    if *parallel {
+        cross
+            .par_iter_mut()
+            .zip(boxed.par_iter_mut())
+            .zip(slots.par_iter_mut())
+            .enumerate()
+            .for_each(between);
+    } else {
+        cross.iter_mut().zip(boxed.iter_mut()).zip(slots.iter_mut()).enumerate().for_each(between);
+    }
+
+    // All else concerns one block at a time.
+    let (slots, applied) = (&*slots, &**applied);
+    let walls = model.triangles.moved(triangles);
+    let surface_material = model.surface_material.unwrap_or(0);
+    let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
+        w.ledger = Ledger::default();
+        w.failure = None;
+        w.contacts.clear();
+        w.force.fill(Vec3::zeros());
+        w.torque.fill(Vec3::zeros());
+        pass::gather(block, w, slots);
+        pass::interior::<_, RIGID>(laws, block, w, dt);
+        pass::planes::<_, RIGID>(model, laws, planes, block, w, dt);
+        if !block.triangles.is_empty() {
+            let mut list = std::mem::take(&mut block.triangles);
+            let material = |patch| model.triangles.material(patch);
+            let done = patches::contacts::<_, _, RIGID>(
+                laws,
+                &walls,
+                material,
+                Partner::Triangle,
+                &mut list,
+                block,
+                w,
+                false,
+                dt,
+            );
+            w.ledger.work_walls += done.work;
+            w.ledger.walls += &done.impulse;
+            block.triangles = list;
+        }
+        if !block.surface.is_empty() {
+            let mut list = std::mem::take(&mut block.surface);
+            let done = patches::contacts::<_, _, RIGID>(
+                laws,
+                surface,
+                |_| surface_material,
+                Partner::Patch,
+                &mut list,
+                block,
+                w,
+                true,
+                dt,
+            );
+            w.ledger.work_surface += done.work;
+            w.ledger.surface += &done.impulse;
+            block.surface = list;
+        }
+        let from = applied.partition_point(|a| (a.block as usize) < b);
+        let to = applied.partition_point(|a| a.block as usize <= b);
+        leapfrog::advance::<RIGID>(model, block, w, &applied[from..to], dt);
+    };
+    if *parallel {
+        blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().for_each(within);
+    } else {
+        blocks.iter_mut().zip(works.iter_mut()).enumerate().for_each(within);
+    }
+}
+
+/// Brings the applied forces into block order.
+fn place_loads(
+    model: &Model,
+    state: &State,
+    work: &mut Work,
+    applied: &[AppliedForce],
+) -> Result<(), StepError> {
+    work.applied.clear();
+    for (index, a) in applied.iter().enumerate() {
+        if a.body >= model.bodies.len() || !a.force.iter().chain(a.point.iter()).all(|x| x.is_finite()) {
+            return Err(StepError::Applied { time: state.time, index, body: a.body });
+        }
+        let [block, place] = state.places[a.body];
+        let centre = xyz(&state.blocks[block as usize].centre[place as usize]);
+        work.applied.push(Applied {
+            block,
+            place,
+            force: a.force,
+            torque: (a.point - centre).cross(&a.force),
+        });
+    }
+    // Stable: forces on one body add up in the order given.
+    work.applied.sort_by_key(|a| (a.block, a.place));
+    Ok(())
+}
+
+/// Adds up what the blocks report, in block order, and moves on in time.
+fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64) -> Result<(), StepError> {
+    let dt = model.dt();
+    let mut fastest = 0.0_f64;
+    let mut failure = None;
+    work.surface_contacts.clear();
+    let mut sum = Ledger::default();
+    for (w, cross) in work.blocks.iter().zip(&work.cross) {
+        sum += &w.ledger;
+        sum.dissipated_dashpot += cross.dashpot;
+        sum.dissipated_friction += cross.friction;
+        fastest = fastest.max(w.fastest);
+        failure = failure.or(cross.failure).or(w.failure);
+        work.surface_contacts.extend_from_slice(&w.contacts);
+    }
+    state.ledger += &sum;
+    let time = state.time;
+    let walls = state.planes.iter_mut().chain(&mut state.triangles);
+    let mut wall_speed = surface_speed;
+    for wall in walls {
+        wall.offset += wall.velocity * dt;
+        wall_speed = wall_speed.max(wall.velocity.norm());
+    }
+    state.drift += fastest * dt;
+    state.wall_drift += wall_speed * dt;
+    state.lasted = state.lasted.saturating_add(1);
+    state.steps += 1;
+    state.time = time + dt;
+    match failure {
+        None => Ok(()),
+        Some(Failure::Overlap { body, partner, overlap, bound }) => {
+            Err(StepError::Overlap { time, body: body as usize, partner, overlap, bound })
+        }
+        Some(Failure::Speed { body, speed, bound }) => {
+            Err(StepError::Speed { time, body: body as usize, speed, bound })
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Surfaces made of patches: triangle walls of this crate, and surfaces that another crate owns and moves
+//! (the deformed faces of a solid). One mechanism serves both.
+
+/// What of its patch a closest point lies on. Edge and vertex numbers are unique within the surface and shared
+/// by neighbouring patches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// The inside of the patch.
+    Face,
+    /// An edge.
+    Edge(u32),
+    /// A vertex.
+    Vertex(u32),
+}
+
+/// The point of a patch that is closest to a given one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchPoint {
+    /// The closest point [m].
+    pub point: [f64; 3],
+    /// Outward unit normal of the patch there.
+    pub normal: [f64; 3],
+    /// Velocity of the surface there [m/s].
+    pub velocity: [f64; 3],
+    /// The patch's own coordinates of the point.
+    pub local: [f64; 2],
+    /// Where on the patch it lies.
+    pub feature: Feature,
+}
+
+/// A surface that grains may touch.
+pub trait Surface: Sync {
+    /// Appends the patches whose bounding box meets the box `[lo, hi]` to `out`, in ascending order.
+    fn candidates(&self, lo: [f64; 3], hi: [f64; 3], out: &mut Vec<u32>);
+
+    /// Closest point of `patch` to `centre`. `local` is a start for iterations, usually the result of the step
+    /// before; it must not change the result beyond rounding.
+    fn closest_point(&self, patch: u32, centre: [f64; 3], local: [f64; 2]) -> PatchPoint;
+
+    /// Bound on the speed of any point of the surface [m/s].
+    fn max_speed(&self) -> f64;
+
+    /// Whether grains are on the outward side only: their centres may then lie below the surface and are still
+    /// pushed outward. Otherwise the normal points from the closest point to the centre.
+    fn one_sided(&self) -> bool;
+
+    /// Whether there is nothing to touch.
+    fn is_empty(&self) -> bool {
+        false
+    }
+}
+
+/// No surface at all.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoSurface;
+
+impl Surface for NoSurface {
+    fn candidates(&self, _: [f64; 3], _: [f64; 3], _: &mut Vec<u32>) {}
+
+    fn closest_point(&self, _: u32, centre: [f64; 3], local: [f64; 2]) -> PatchPoint {
+        let (normal, velocity) = ([0.0, 0.0, 1.0], [0.0; 3]);
+        PatchPoint { point: centre, normal, velocity, local, feature: Feature::Face }
+    }
+
+    fn max_speed(&self) -> f64 {
+        0.0
+    }
+
+    fn one_sided(&self) -> bool {
+        false
+    }
+
+    fn is_empty(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,124 @@
+//! Stability limit of the time step.
+//!
+//! A body of mass m held by contacts of stiffness K on all sides, its neighbours moving against it, swings at most
+//! at ω² = s K (1/m + r²/I), where s counts the contacts that act in one direction (twice, for the neighbours'
+//! motion: Gershgorin's bound) and r²/I is for a contact off the centre. With the dashpot's velocity extrapolated
+//! to the full step (see `contact/linear.rs`) the leapfrog is stable for
+//!
+//! (ω dt)² + 8 ζ' ω dt < 4,  so  ω dt < √(4 + 16 ζ'²) − 4 ζ',
+//!
+//! ζ' = ζ √(s/2) the damping ratio of the body in all its contacts. (At the limit the fastest root of
+//! z³ + (Ω² + 3b/2 − 2) z² + (1 − 2b) z + b/2, b = 2ζ'Ω, is −1.)
+//!
+//! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
+//! it with more than one member), and for a box as many of the smallest spheres as its largest side can hold.
+//! Limits: linear contacts; very unlike sizes, where one large body has more contacts than s, are on the safe side
+//! because its mass grows faster than their number.
+
+use crate::contact::linear::Linear;
+use crate::contact::{ContactLaw, PairTable};
+use crate::input::ModelInput;
+use crate::model::{Body, Kind};
+use crate::shape::Shape;
+use std::fmt;
+
+/// The limit and its cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DtLimit {
+    /// Largest stable step [s]; 1e-4 s when no body can move.
+    pub dt: f64,
+    /// The body that sets it.
+    pub body: usize,
+    /// The material index of the partner that is stiffest for it.
+    pub partner: usize,
+    /// Stiffness of that contact [N/m].
+    pub stiffness: f64,
+    /// Effective mass of the body at its outermost contact [kg].
+    pub mass: f64,
+}
+
+impl fmt::Display for DtLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
+            self.body, self.mass, self.partner, self.stiffness
+        )
+    }
+}
+
+/// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
+pub(crate) fn limit(bodies: &[Body], input: &ModelInput, table: &PairTable<Linear>, r_min: f64) -> DtLimit {
+    let partners = partners(bodies, input);
+    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0 };
+    let mut found = false;
+    for (k, body) in bodies.iter().enumerate() {
+        if body.fixed == 0b11_1111 {
+            continue;
+        }
+        let shape = &input.shapes[body.shape];
+        let softness = compliance(body, shape);
+        let sides = match shape {
+            Shape::Sphere { .. } => 12.0,
+            Shape::Clump(_) => 24.0,
+            Shape::Box { half } => {
+                let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
+                2.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
+            }
+        };
+        for &partner in &partners {
+            let law = table.get(body.material, partner as u32);
+            let stiffness = law.stiffness(0.0, 1.0);
+            if !stiffness.is_finite() {
+                continue;
+            }
+            // A sphere's tangential spring turns it as well: 1/m + r²/I = 3.5/m.
+            let own = if body.kind == Kind::Sphere {
+                stiffness.max(3.5 * law.tangential) / body.mass
+            } else {
+                stiffness.max(law.tangential) * softness
+            };
+            let zeta = law.damping_ratio * f64::sqrt(0.5 * sides);
+            let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
+            let dt = bound / (sides * own).sqrt();
+            if !found || dt < least.dt {
+                found = true;
+                least = DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own };
+            }
+        }
+    }
+    least
+}
+
+/// Materials that something to touch is made of, ascending.
+fn partners(bodies: &[Body], input: &ModelInput) -> Vec<usize> {
+    let mut used = vec![false; input.materials.len()];
+    bodies.iter().for_each(|b| used[b.material as usize] = true);
+    input.planes.iter().for_each(|p| used[p.material] = true);
+    input.triangles.iter().for_each(|t| used[t.material] = true);
+    input.surface_material.into_iter().for_each(|m| used[m] = true);
+    (0..used.len()).filter(|&m| used[m]).collect()
+}
+
+/// 1/m + max over the principal axes of (largest distance from the axis)²/I [1/kg].
+fn compliance(body: &Body, shape: &Shape) -> f64 {
+    let mut reach2 = [0.0_f64; 3];
+    match shape {
+        Shape::Sphere { .. } => {}
+        Shape::Clump(clump) => {
+            for (c, r) in &clump.spheres {
+                for k in 0..3 {
+                    let (p, q) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+                    reach2[k] = reach2[k].max((p.hypot(q) + r).powi(2));
+                }
+            }
+        }
+        Shape::Box { half } => {
+            for k in 0..3 {
+                reach2[k] = half[(k + 1) % 3].powi(2) + half[(k + 2) % 3].powi(2);
+            }
+        }
+    }
+    let turn = (0..3).map(|k| reach2[k] * body.scale * body.scale / body.inertia[k]).fold(0.0, f64::max);
+    1.0 / body.mass + turn
+}

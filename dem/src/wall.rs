@@ -1,0 +1,3 @@
+//! Walls of triangles.
+
+pub mod triangulated;

@@ -1,0 +1,279 @@
+//! Scratch of the step: never saved, made anew from a state at any time without changing a bit of what follows.
+
+use crate::Vec3;
+use crate::contact::patches::Touch;
+use crate::error::Partner;
+use crate::ledger::Ledger;
+use crate::model::{Kind, Model, for_members};
+use crate::search::cells::Cells;
+use crate::state::{Lanes, PatchPair, State, xyz};
+
+/// A contact with the external surface in the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceContact {
+    /// Sphere of the body, from 0.
+    pub sphere: u32,
+    /// Body.
+    pub body: u32,
+    /// Patch of the surface.
+    pub patch: u32,
+    /// Patch coordinates of the contact point.
+    pub local: [f64; 2],
+    /// Contact point [m].
+    pub point: [f64; 3],
+    /// Force on the surface [N].
+    pub force: [f64; 3],
+    /// Overlap [m].
+    pub overlap: f64,
+}
+
+/// Force on the first partner of a contact between blocks, and where it acts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Slot {
+    pub force: Vec3,
+    pub point: Vec3,
+}
+
+/// One body's share in a slot.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gather {
+    pub place: u32,
+    pub block: u32,
+    pub slot: u32,
+    /// +1 for the first partner, −1 for the second.
+    pub sign: f64,
+}
+
+/// A failure that a block met; place is that of the body within the block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Failure {
+    Overlap { body: u32, partner: Partner, overlap: f64, bound: f64 },
+    Speed { body: u32, speed: f64, bound: f64 },
+}
+
+/// Contacts of a block with others: their forces, what they dissipated, and the first failure.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CrossWork {
+    pub slots: Vec<Slot>,
+    pub dashpot: f64,
+    pub friction: f64,
+    pub failure: Option<Failure>,
+}
+
+/// Scratch of one block.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BlockWork {
+    // Constants of the bodies, in block order.
+    pub kind: Vec<Kind>,
+    pub mass: Vec<f64>,
+    pub inertia: Vec<Vec3>,
+    pub inverse_inertia: Vec<f64>,
+    pub reach: Vec<f64>,
+    pub fixed: Vec<u8>,
+    /// Half sides of boxes; empty in scenes without.
+    pub half: Vec<Vec3>,
+    /// First sphere of each body, and one past the last.
+    pub first: Vec<u32>,
+
+    // Spheres: place of the body, centre in the body frame and radius, and the same in the world.
+    pub owner: Vec<u32>,
+    pub local: Vec<Lanes>,
+    pub spheres: Vec<Lanes>,
+
+    // Candidates, valid while no sphere has moved further than the skin allows.
+    pub reference: Vec<Vec3>,
+    pub candidates: Vec<[u32; 2]>,
+    pub cross: Vec<[u32; 3]>,
+    pub boxed: Vec<[u32; 3]>,
+    pub planes: Vec<[u32; 2]>,
+    pub triangles: Vec<[u32; 2]>,
+    pub surface: Vec<[u32; 2]>,
+
+    // The step.
+    pub gather: Vec<Gather>,
+    pub force: Vec<Vec3>,
+    pub torque: Vec<Vec3>,
+    pub contacts: Vec<SurfaceContact>,
+    pub ledger: Ledger,
+    pub fastest: f64,
+    pub failure: Option<Failure>,
+    pub row: Vec<u32>,
+    pub patches: Vec<PatchPair>,
+    pub touches: Vec<Touch>,
+}
+
+/// A force applied to a body in this step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Applied {
+    pub block: u32,
+    pub place: u32,
+    pub force: Vec3,
+    pub torque: Vec3,
+}
+
+/// The scratch. Build it with [`Work::new`] for one state; it follows that state from then on.
+#[derive(Clone, Debug)]
+pub struct Work {
+    pub(crate) blocks: Vec<BlockWork>,
+    pub(crate) cross: Vec<CrossWork>,
+    pub(crate) applied: Vec<Applied>,
+    pub(crate) surface_contacts: Vec<SurfaceContact>,
+    pub(crate) cells: Cells,
+    pub(crate) points: Vec<Lanes>,
+    pub(crate) names: Vec<[u32; 2]>,
+    /// Whether the candidates exist, and where walls were when they were found.
+    pub(crate) listed: bool,
+    pub(crate) wall_reference: Vec<Vec3>,
+    pub(crate) surface_drift: f64,
+    pub(crate) searches: u64,
+    pub(crate) refreshes: u64,
+    /// Whether blocks are shared among threads.
+    pub(crate) parallel: bool,
+}
+
+/// Spheres below which sharing the work costs more than it saves. Both ways give the same bits.
+const PARALLEL: usize = 2500;
+
+impl Work {
+    /// Scratch for a state.
+    pub fn new(model: &Model, state: &State) -> Work {
+        let mut work = Work {
+            blocks: Vec::new(),
+            cross: Vec::new(),
+            applied: Vec::new(),
+            surface_contacts: Vec::new(),
+            cells: Cells::default(),
+            points: Vec::new(),
+            names: Vec::new(),
+            listed: false,
+            wall_reference: Vec::new(),
+            surface_drift: 0.0,
+            searches: 0,
+            refreshes: 0,
+            parallel: model.sphere_count() >= PARALLEL,
+        };
+        work.arrange(model, state);
+        work
+    }
+
+    /// Lays the constants out in the state's present order.
+    pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
+        self.listed = false;
+        self.blocks.resize_with(state.blocks.len(), BlockWork::default);
+        self.cross.resize_with(state.blocks.len(), CrossWork::default);
+        for (w, block) in self.blocks.iter_mut().zip(&state.blocks) {
+            w.arrange(model, &block.bodies);
+            if model.rigid {
+                w.spheres.resize(w.local.len(), [0.0; 4]);
+                for k in 0..block.bodies.len() {
+                    w.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);
+                }
+            }
+        }
+        crate::search::near::link(state, self);
+    }
+
+    /// Contacts with the external surface in the last step, by block, then sphere, then patch.
+    pub fn surface_contacts(&self) -> &[SurfaceContact] {
+        &self.surface_contacts
+    }
+
+    /// Sum of the contact forces on a body in the last step [N].
+    pub fn contact_force(&self, state: &State, body: usize) -> Vec3 {
+        let [b, k] = state.places[body];
+        self.blocks[b as usize].force.get(k as usize).copied().unwrap_or_default()
+    }
+
+    /// Sum of the contact torques on a body about its centre in the last step [N m].
+    pub fn contact_torque(&self, state: &State, body: usize) -> Vec3 {
+        let [b, k] = state.places[body];
+        self.blocks[b as usize].torque.get(k as usize).copied().unwrap_or_default()
+    }
+
+    /// How often candidates were searched and how often the near list was made from them.
+    pub fn rebuilds(&self) -> (u64, u64) {
+        (self.searches, self.refreshes)
+    }
+
+    /// Bytes that the scratch holds.
+    pub fn bytes(&self) -> usize {
+        fn of<T>(v: &Vec<T>) -> usize {
+            v.capacity() * size_of::<T>()
+        }
+        let blocks: usize = self
+            .blocks
+            .iter()
+            .map(|w| {
+                of(&w.mass)
+                    + of(&w.inertia)
+                    + of(&w.inverse_inertia)
+                    + of(&w.owner)
+                    + of(&w.local)
+                    + of(&w.spheres)
+                    + of(&w.reference)
+                    + of(&w.candidates)
+                    + of(&w.cross)
+                    + of(&w.gather)
+                    + of(&w.force)
+                    + of(&w.torque)
+            })
+            .sum();
+        blocks + of(&self.points) + of(&self.names) + self.cross.iter().map(|c| of(&c.slots)).sum::<usize>()
+    }
+}
+
+impl BlockWork {
+    fn arrange(&mut self, model: &Model, bodies: &[u32]) {
+        self.kind.clear();
+        self.mass.clear();
+        self.inertia.clear();
+        self.inverse_inertia.clear();
+        self.reach.clear();
+        self.fixed.clear();
+        self.half.clear();
+        self.first.clear();
+        self.owner.clear();
+        self.local.clear();
+        for (k, &body) in bodies.iter().enumerate() {
+            let b = &model.bodies[body as usize];
+            self.kind.push(b.kind);
+            self.mass.push(b.mass);
+            self.inverse_inertia.push(1.0 / b.inertia.x);
+            self.fixed.push(b.fixed);
+            self.first.push(self.owner.len() as u32);
+            if model.rigid {
+                self.inertia.push(b.inertia);
+                self.reach.push(if b.kind == Kind::Sphere { 0.0 } else { b.radius });
+                self.half.push(model.half(body as usize));
+            }
+            for_members(&model.shapes[b.shape], b.scale, |c, r| {
+                self.owner.push(k as u32);
+                if model.rigid {
+                    self.local.push([c.x, c.y, c.z, r]);
+                }
+            });
+        }
+        self.first.push(self.owner.len() as u32);
+        self.force.clear();
+        self.force.resize(bodies.len(), Vec3::zeros());
+        self.torque.clear();
+        self.torque.resize(bodies.len(), Vec3::zeros());
+    }
+
+    /// Puts the spheres of a body where its centre and orientation say.
+    #[inline(always)]
+    pub(crate) fn place_spheres(
+        &mut self,
+        k: usize,
+        centre: &Lanes,
+        orientation: &nalgebra::UnitQuaternion<f64>,
+    ) {
+        let x = xyz(centre);
+        let turn = orientation.to_rotation_matrix();
+        for s in self.first[k] as usize..self.first[k + 1] as usize {
+            let local = &self.local[s];
+            let p = x + turn * xyz(local);
+            self.spheres[s] = [p.x, p.y, p.z, local[3]];
+        }
+    }
+}
