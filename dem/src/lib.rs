@@ -24,5 +24,14 @@ pub mod timestep;
 pub mod wall;
 pub mod work;
 
+pub use error::{ModelError, Partner, StepError};
+pub use input::{AppliedForce, BodyInput, LocalDamping, ModelInput, Plane, TimeStep, TriangleSurface};
+pub use material::{Material, PairOverride};
+pub use model::Model;
+pub use shape::Shape;
+pub use state::State;
+pub use step::step;
+pub use work::Work;
+
 /// A vector of three components.
 pub type Vec3 = nalgebra::Vector3<f64>;

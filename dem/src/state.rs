@@ -58,9 +58,11 @@ pub(crate) struct PatchPair {
     pub i: u32,
     pub patch: u32,
     pub local: [f64; 2],
-    /// Where the patch was touched last, and the normal there.
+    /// Where the patch was touched last, the normal, the patch's velocity and the overlap there.
     pub point: Vec3,
     pub normal: Vec3,
+    pub velocity: Vec3,
+    pub overlap: f64,
     pub history: History,
 }
 

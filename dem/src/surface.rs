@@ -28,6 +28,25 @@ pub struct PatchPoint {
     pub feature: Feature,
 }
 
+/// A contact with the external surface in the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceContact {
+    /// Sphere of the body, from 0.
+    pub sphere: u32,
+    /// Body.
+    pub body: u32,
+    /// Patch of the surface.
+    pub patch: u32,
+    /// Patch coordinates of the contact point.
+    pub local: [f64; 2],
+    /// Contact point [m].
+    pub point: [f64; 3],
+    /// Force on the surface [N].
+    pub force: [f64; 3],
+    /// Overlap [m].
+    pub overlap: f64,
+}
+
 /// A surface that grains may touch.
 pub trait Surface: Sync {
     /// Appends the patches whose bounding box meets the box `[lo, hi]` to `out`, in ascending order.

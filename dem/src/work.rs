@@ -7,25 +7,7 @@ use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::cells::Cells;
 use crate::state::{Lanes, PatchPair, State, xyz};
-
-/// A contact with the external surface in the last step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceContact {
-    /// Sphere of the body, from 0.
-    pub sphere: u32,
-    /// Body.
-    pub body: u32,
-    /// Patch of the surface.
-    pub patch: u32,
-    /// Patch coordinates of the contact point.
-    pub local: [f64; 2],
-    /// Contact point [m].
-    pub point: [f64; 3],
-    /// Force on the surface [N].
-    pub force: [f64; 3],
-    /// Overlap [m].
-    pub overlap: f64,
-}
+use crate::surface::SurfaceContact;
 
 /// Force on the first partner of a contact between blocks, and where it acts.
 #[derive(Clone, Copy, Debug, Default)]

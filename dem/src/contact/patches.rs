@@ -16,8 +16,8 @@ use crate::Vec3;
 use crate::error::Partner;
 use crate::ledger::Impulse;
 use crate::state::{Block, Lanes, PatchPair, xyz};
-use crate::surface::{Feature, PatchPoint, Surface};
-use crate::work::{BlockWork, Failure, SurfaceContact};
+use crate::surface::{Feature, PatchPoint, Surface, SurfaceContact};
+use crate::work::{BlockWork, Failure};
 
 /// Points closer than this fraction of the radius are one.
 const SAME: f64 = 1e-6;
@@ -43,13 +43,7 @@ pub(crate) struct Touch {
 }
 
 /// Finds which of the patches `pairs` (all of one sphere at `x`) count. Results are appended to `out`.
-pub(crate) fn touches<S: Surface>(
-    surface: &S,
-    x: &Vec3,
-    r: f64,
-    pairs: &mut [PatchPair],
-    out: &mut Vec<Touch>,
-) {
+fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], out: &mut Vec<Touch>) {
     let first = out.len();
     for (entry, pair) in pairs.iter_mut().enumerate() {
         let closest = surface.closest_point(pair.patch, (*x).into(), pair.local);
@@ -147,6 +141,8 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             let f = law.respond(mass, g, &(ma.at_point() - wall), &mut pair.history, dt);
             pair.point = g.point;
             pair.normal = g.normal;
+            pair.velocity = wall;
+            pair.overlap = g.overlap;
             w.ledger.dissipated_dashpot += f.dashpot;
             w.ledger.dissipated_friction += f.friction;
             exchange.work += f.force.dot(&wall) * dt;

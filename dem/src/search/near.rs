@@ -199,6 +199,8 @@ fn make_patches<S: Surface>(
             local: [0.0; 2],
             point: crate::Vec3::zeros(),
             normal: crate::Vec3::zeros(),
+            velocity: crate::Vec3::zeros(),
+            overlap: 0.0,
             history: History::NONE,
         };
         let mut known = false;

@@ -1,0 +1,231 @@
+//! Contacts as they are now, for force chains and coordination numbers.
+
+use crate::Vec3;
+use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass, patches};
+use crate::detect;
+use crate::error::Partner;
+use crate::model::{Kind, Model};
+use crate::shape::cuboid;
+use crate::state::{Block, Lanes, PatchPair, State, xyz};
+
+/// One contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRecord {
+    /// The body the force is given for.
+    pub a: usize,
+    /// What it touches.
+    pub b: Partner,
+    /// Where [m].
+    pub point: Vec3,
+    /// Unit normal, from b to a.
+    pub normal: Vec3,
+    /// Overlap [m].
+    pub overlap: f64,
+    /// Normal force, pressure positive [N].
+    pub normal_force: f64,
+    /// Whole force on a [N].
+    pub force: Vec3,
+}
+
+/// One contact as [`visit`] sees it.
+pub(crate) struct Visited<'a> {
+    pub body: u32,
+    pub partner: Partner,
+    pub geometry: ContactGeometry,
+    /// Velocity of the body relative to the partner at the contact point [m/s].
+    pub velocity: Vec3,
+    /// Effective mass [kg].
+    pub mass: f64,
+    pub history: &'a History,
+    pub law: &'a crate::contact::linear::Linear,
+}
+
+/// Bodies as they are, or moved back in time by `back` seconds.
+struct Snapshot {
+    blocks: Vec<Block>,
+    spheres: Vec<Vec<Lanes>>,
+    owners: Vec<Vec<u32>>,
+    back: f64,
+}
+
+impl Snapshot {
+    fn new(model: &Model, state: &State, back: f64) -> Snapshot {
+        let mut blocks = state.blocks.clone();
+        let mut spheres = Vec::new();
+        let mut owners = Vec::new();
+        for block in &mut blocks {
+            let (mut own, mut owner) = (Vec::new(), Vec::new());
+            for (k, &body) in block.bodies.iter().enumerate() {
+                let x = xyz(&block.centre[k]) - xyz(&block.velocity[k]) * back;
+                block.centre[k] = [x.x, x.y, x.z, block.centre[k][3]];
+                let mut turn = nalgebra::UnitQuaternion::identity();
+                if let Some(r) = block.rotation.get_mut(k) {
+                    let spin = xyz(&block.spin[k]);
+                    r.orientation = crate::integrate::rotation::steady(&r.orientation, &spin, -back);
+                    turn = r.orientation;
+                }
+                for (c, r) in model.members(body as usize) {
+                    let p = x + turn * c;
+                    own.push([p.x, p.y, p.z, r]);
+                    owner.push(k as u32);
+                }
+            }
+            spheres.push(own);
+            owners.push(owner);
+        }
+        Snapshot { blocks, spheres, owners, back }
+    }
+}
+
+/// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
+pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&Visited<'_>)) {
+    let now = Snapshot::new(model, state, back);
+    for b in 0..now.blocks.len() {
+        let block = &now.blocks[b];
+        let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History| {
+            let second = &now.blocks[other as usize];
+            let p = &now.spheres[b][i as usize];
+            let a = now.owners[b][i as usize] as usize;
+            let (c, touch) = if boxed {
+                let (x, q) = (xyz(&second.centre[j as usize]), &second.rotation[j as usize].orientation);
+                let half = model.half(second.bodies[j as usize] as usize);
+                (j as usize, detect::sphere_box(&xyz(p), p[3], &x, q, &half))
+            } else {
+                let q = &now.spheres[other as usize][j as usize];
+                let c = now.owners[other as usize][j as usize] as usize;
+                (c, detect::sphere_sphere(&xyz(p), p[3], &xyz(q), q[3]))
+            };
+            if let Some(geometry) = touch {
+                let (ma, mb) =
+                    (pass::motion(block, a, &geometry.point), pass::motion(second, c, &geometry.point));
+                f(&Visited {
+                    body: block.bodies[a],
+                    partner: Partner::Body(second.bodies[c] as usize),
+                    geometry,
+                    velocity: ma.at_point() - mb.at_point(),
+                    mass: 1.0 / (block.velocity[a][3] + second.velocity[c][3]),
+                    history,
+                    law: model.law(block.spin[a][3] as u32, second.spin[c][3] as u32),
+                });
+            }
+        };
+        block.pairs.iter().for_each(|p| pair(p.i, b as u32, p.j, false, &p.history));
+        state.cross[b].iter().for_each(|p| pair(p.i, p.block, p.j, false, &p.history));
+        state.boxed[b].iter().for_each(|p| pair(p.i, p.block, p.j, true, &p.history));
+        planes(model, state, &now, b, &mut f);
+        for pair in &block.triangles {
+            let material = model.triangles.material(pair.patch);
+            patch(model, &now, b, pair, material, Partner::Triangle(pair.patch), &mut f);
+        }
+        for pair in &block.surface {
+            let material = model.surface_material.unwrap_or(0);
+            patch(model, &now, b, pair, material, Partner::Patch(pair.patch), &mut f);
+        }
+    }
+}
+
+fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
+    let block = &now.blocks[b];
+    for pair in &block.planes {
+        let (i, k) = (pair.i as usize, pair.plane as usize);
+        let (plane, wall) = (&model.planes[k], &state.planes[k]);
+        let boxes = model.bodies[block.bodies[0] as usize].kind == Kind::Box;
+        let (a, x, r) = if boxes {
+            let a = i / 8;
+            let half = model.half(block.bodies[a] as usize);
+            let corner = block.rotation[a].orientation * cuboid::corner(&half, i % 8);
+            (a, xyz(&block.centre[a]) + corner, 0.0)
+        } else {
+            let p = &now.spheres[b][i];
+            (now.owners[b][i] as usize, xyz(p), p[3])
+        };
+        let origin = plane.point + wall.offset - wall.velocity * now.back;
+        if let Some(geometry) = detect::sphere_plane(&x, r, &origin, &plane.normal) {
+            f(&Visited {
+                body: block.bodies[a],
+                partner: Partner::Plane(k),
+                geometry,
+                velocity: pass::motion(block, a, &geometry.point).at_point() - wall.velocity,
+                mass: 1.0 / block.velocity[a][3],
+                history: &pair.history,
+                law: model.law(block.spin[a][3] as u32, plane.material as u32),
+            });
+        }
+    }
+}
+
+/// A contact with a patch: the geometry of the last step, its overlap brought to the time asked for.
+fn patch(
+    model: &Model,
+    now: &Snapshot,
+    b: usize,
+    pair: &PatchPair,
+    material: u32,
+    partner: Partner,
+    f: &mut impl FnMut(&Visited<'_>),
+) {
+    if pair.history.is_fresh() {
+        return;
+    }
+    let block = &now.blocks[b];
+    let a = now.owners[b][pair.i as usize] as usize;
+    let velocity = pass::motion(block, a, &pair.point).at_point() - pair.velocity;
+    let overlap = pair.overlap - velocity.dot(&pair.normal) * (model.dt() - now.back);
+    if overlap > 0.0 {
+        let radius = now.spheres[b][pair.i as usize][3];
+        f(&Visited {
+            body: block.bodies[a],
+            partner,
+            geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
+            velocity,
+            mass: 1.0 / block.velocity[a][3],
+            history: &pair.history,
+            law: model.law(block.spin[a][3] as u32, material),
+        });
+    }
+}
+
+/// All contacts, with the forces that the next step will find; block by block, in a fixed order.
+pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
+    let mut out = Vec::new();
+    visit(model, state, 0.0, |c| {
+        let mut history = *c.history;
+        let ContactForce { force, normal, .. } =
+            c.law.respond(c.mass, &c.geometry, &c.velocity, &mut history, model.dt());
+        out.push(ContactRecord {
+            a: c.body as usize,
+            b: c.partner,
+            point: c.geometry.point,
+            normal: c.geometry.normal,
+            overlap: c.geometry.overlap,
+            normal_force: normal,
+            force,
+        });
+    });
+    out
+}
+
+/// Coordination number: contacts that carry a force, per body that is free to move; a contact between two bodies
+/// counts for both. Several contacts of one pair of clumps count as many. Zero without free bodies.
+pub fn coordination(model: &Model, state: &State) -> f64 {
+    let free = |body: usize| model.bodies[body].inverse_mass > 0.0;
+    let count: usize = contacts(model, state)
+        .iter()
+        .filter(|c| c.normal_force > 0.0)
+        .map(|c| usize::from(free(c.a)) + usize::from(matches!(c.b, Partner::Body(b) if free(b))))
+        .sum();
+    let bodies = (0..model.body_count()).filter(|&b| free(b)).count();
+    if bodies == 0 { 0.0 } else { count as f64 / bodies as f64 }
+}
+
+/// Sum of the contact forces on each body [N]. Shape `[bodies]`.
+pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
+    let mut sum = vec![Vec3::zeros(); model.body_count()];
+    for c in contacts(model, state) {
+        sum[c.a] += c.force;
+        if let Partner::Body(b) = c.b {
+            sum[b] -= c.force;
+        }
+    }
+    sum
+}

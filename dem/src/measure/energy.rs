@@ -1,0 +1,87 @@
+//! Energies and momentum at the last half step.
+
+use super::contacts::visit;
+use crate::Vec3;
+use crate::contact::ContactLaw;
+use crate::ledger::Impulse;
+use crate::model::Model;
+use crate::state::{State, xyz};
+
+/// Energies of all bodies and contacts [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// ½ m v².
+    pub kinetic_translation: f64,
+    /// ½ ω·I ω.
+    pub kinetic_rotation: f64,
+    /// Normal springs.
+    pub elastic_normal: f64,
+    /// Tangential springs.
+    pub elastic_tangential: f64,
+    /// −m g·x, zero at the origin.
+    pub gravity: f64,
+}
+
+impl Energies {
+    /// Kinetic energy.
+    pub fn kinetic(&self) -> f64 {
+        self.kinetic_translation + self.kinetic_rotation
+    }
+
+    /// Energy in springs.
+    pub fn elastic(&self) -> f64 {
+        self.elastic_normal + self.elastic_tangential
+    }
+
+    /// All of it. This less [`Ledger::work`](crate::ledger::Ledger::work) plus
+    /// [`Ledger::dissipated`](crate::ledger::Ledger::dissipated) is constant to second order in dt.
+    pub fn total(&self) -> f64 {
+        self.kinetic() + self.elastic() + self.gravity
+    }
+}
+
+/// Energies at the last half step: exact functions of the state. Bodies that are wholly fixed count with the
+/// kinetic energy of their prescribed motion.
+pub fn energies(model: &Model, state: &State) -> Energies {
+    let mut e = Energies::default();
+    let back = 0.5 * model.dt();
+    for block in &state.blocks {
+        for (k, &body) in block.bodies.iter().enumerate() {
+            let b = &model.bodies[body as usize];
+            let (v, w) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
+            e.kinetic_translation += 0.5 * b.mass * v.norm_squared();
+            e.kinetic_rotation += match block.rotation.get(k) {
+                Some(r) if b.kind != crate::model::Kind::Sphere => 0.5 * w.dot(&r.momentum),
+                _ => 0.5 * b.inertia.x * w.norm_squared(),
+            };
+            e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
+        }
+    }
+    visit(model, state, back, |c| {
+        // The spring belongs to the last full step: half a step of sliding brings it to the half step.
+        let n = &c.geometry.normal;
+        let slip = c.velocity - n * c.velocity.dot(n);
+        let spring = if c.history.is_fresh() { Vec3::zeros() } else { c.history.spring + slip * back };
+        let (normal, tangential) = c.law.stored(c.geometry.overlap, c.geometry.radius, &spring);
+        e.elastic_normal += normal;
+        e.elastic_tangential += tangential;
+    });
+    e
+}
+
+/// Momentum [kg m/s] and angular momentum about the origin [kg m²/s] at the last half step. With
+/// [`Ledger::impulse`](crate::ledger::Ledger::impulse) they balance to rounding.
+pub fn momentum(model: &Model, state: &State) -> Impulse {
+    let mut sum = Impulse::default();
+    for block in &state.blocks {
+        for (k, &body) in block.bodies.iter().enumerate() {
+            let b = &model.bodies[body as usize];
+            sum.add(&xyz(&block.centre[k]), &(xyz(&block.velocity[k]) * b.mass));
+            sum.angular += match block.rotation.get(k) {
+                Some(r) if b.kind != crate::model::Kind::Sphere => r.momentum,
+                _ => xyz(&block.spin[k]) * b.inertia.x,
+            };
+        }
+    }
+    sum
+}
