@@ -10,16 +10,12 @@ use crate::supports::CONSTRAINED;
 
 /// Kinetic energy [J].
 pub fn kinetic(model: &Model, state: &State) -> f64 {
-    let mut product = vec![0.0; state.v.len()];
-    model.mass_times(&state.v, &mut product);
-    half_dot(&state.v, &product)
+    0.5 * model.matrices().mass_form(&state.v)
 }
 
 /// Strain energy [J].
 pub fn strain(model: &Model, state: &State) -> f64 {
-    let mut product = vec![0.0; state.u.len()];
-    model.stiffness_times(&state.u, &mut product);
-    half_dot(&state.u, &product)
+    0.5 * model.matrices().stiffness_form(&state.u)
 }
 
 /// Linear momentum [N s] and angular momentum about the origin [N m s].
@@ -49,8 +45,4 @@ pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     model.mass_times(&moved, &mut inertia);
     let index = model.supports().free_index();
     (0..n).map(|d| if index[d] == CONSTRAINED { elastic[d] + inertia[d] - load[d] } else { 0.0 }).collect()
-}
-
-fn half_dot(a: &[f64], b: &[f64]) -> f64 {
-    0.5 * a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()
 }

@@ -117,28 +117,25 @@ impl WindowSolver {
         Ok(audit)
     }
 
-    /// Work, damping and numerical dissipation; expects du in `work`. Products that a term does not need are left out.
+    /// Work, damping and numerical dissipation; expects du in `work`. Forms that a term does not need are left out.
     fn audit(&mut self, model: &Model, old: &State, mean_load: &[f64]) -> StepAudit {
-        let (dt, c) = (self.dt, model.rayleigh());
+        let (dt, c, matrices) = (self.dt, model.rayleigh(), model.matrices());
         let excess = self.theta - 0.5;
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let mut audit = StepAudit { external_work: dot(mean_load, &self.work), ..StepAudit::default() };
+        let external_work = mean_load.iter().zip(&self.work).map(|(f, du)| f * du).sum();
+        let mut audit = StepAudit { external_work, ..StepAudit::default() };
         if c.beta_k > 0.0 || excess > 0.0 {
-            model.stiffness_times(&self.work, &mut self.product);
-            let strain = dot(&self.work, &self.product);
+            let strain = matrices.stiffness_form(&self.work);
             audit.damping_dissipation += c.beta_k * strain / dt;
             audit.numerical_dissipation += excess * strain;
         }
         if c.alpha_m > 0.0 {
-            model.mass_times(&self.work, &mut self.product);
-            audit.damping_dissipation += c.alpha_m * dot(&self.work, &self.product) / dt;
+            audit.damping_dissipation += c.alpha_m * matrices.mass_form(&self.work) / dt;
         }
         if excess > 0.0 {
             for d in 0..old.v.len() {
                 self.work[d] = self.next.v[d] - old.v[d];
             }
-            model.mass_times(&self.work, &mut self.product);
-            audit.numerical_dissipation += excess * dot(&self.work, &self.product);
+            audit.numerical_dissipation += excess * matrices.mass_form(&self.work);
         }
         audit
     }

@@ -4,9 +4,10 @@
 //! exact for polynomials of degree 2n - 1 per axis.
 //!
 //! Limits for the 20-node hexahedron: the 27-point rule has full rank and passes the patch test on curved elements.
-//! The 8-point rule ("reduced", softer and usually nearer to the exact solution) leaves six modes of a *single*
-//! element without stiffness; neighbours or supports remove them in practice, and a static solve names the node
-//! where they do not.
+//! The 8-point rule ("reduced", softer and usually nearer to the exact solution) leaves modes without stiffness in a
+//! single element, and in a straight row of elements that is one element wide and one deep, even when its end is
+//! clamped; from two elements in one direction on, a clamped side removes them. A static solve names the node where such
+//! a mode is left.
 
 use serde::{Deserialize, Serialize};
 

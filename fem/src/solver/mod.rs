@@ -25,8 +25,8 @@ pub enum SolveError {
     #[error("the body is not held: node {node} is free to move in {direction}; add supports")]
     NotHeld { node: u32, direction: &'static str },
     #[error(
-        "the body is not held: the matrix has no stiffness left at node {node} in {direction} (pivot {pivot:.3e} of the \
-         diagonal); add supports, or use the full rule where elements hang together by an edge or a corner"
+        "the body is not held: no stiffness is left at node {node} in {direction} (pivot {pivot:.3e} of the diagonal); add \
+         supports, join elements by whole faces, and use the full rule where a row of elements is one element wide"
     )]
     NoStiffness { node: u32, direction: &'static str, pivot: f64 },
     #[error("the solution misses equilibrium by {residual:.3e} of the load at node {node} in {direction}")]
