@@ -46,3 +46,12 @@ impl From<std::io::Error> for Failure {
         Failure::Other(error.to_string())
     }
 }
+
+impl From<crate::write::WriteError> for Failure {
+    fn from(error: crate::write::WriteError) -> Failure {
+        match error {
+            crate::write::WriteError::NotFinite { .. } => Failure::Numerical(error.to_string()),
+            _ => Failure::Other(error.to_string()),
+        }
+    }
+}

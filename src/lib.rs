@@ -1,8 +1,15 @@
 //! trackbed: coupled DEM–FEM solver for ballasted railway track.
 //!
-//! Data flows one way: a scene file ([`scene`]) is resolved into models, the run loop ([`run`]) steps them,
-//! and writers ([`mod@write`]) put the results on disk.
+//! Data flows one way: a scene file ([`scene`]) is resolved into models ([`model`]), the run loop ([`mod@run`]) steps
+//! them, and writers ([`mod@write`]) put the results on disk.
 
+pub mod cli;
+pub mod commands;
+pub mod failure;
 pub mod mesh_tools;
+pub mod model;
+mod progress;
 pub mod read;
+pub mod run;
+pub mod scene;
 pub mod write;

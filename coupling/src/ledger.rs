@@ -45,7 +45,7 @@ impl Stored {
 pub struct Spent {
     /// Work of applied loads on grains and sleeper.
     pub applied_work: f64,
-    /// Work of moving walls on grains.
+    /// Work of moving walls, and of what holds motions fixed, on grains.
     pub wall_work: f64,
     /// Work of the loads on the solid other than contact and gravity.
     pub solid_load_work: f64,

@@ -20,11 +20,12 @@ use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
+use trackbed_fem::solver::SolveError;
 
 /// The two models and how they are joined.
-pub struct Model {
+pub struct Model<'a> {
     /// The solid.
-    pub solid: fem::Model,
+    pub solid: &'a fem::model::Model,
     /// The grains.
     pub grains: dem::Model,
     /// Steps of the grains per window.
@@ -37,7 +38,7 @@ pub struct Model {
     pub reference: Vec<f64>,
 }
 
-impl Model {
+impl Model<'_> {
     /// Length of a window [s].
     pub fn window(&self) -> f64 {
         self.grains.dt() * f64::from(self.substeps)
@@ -48,7 +49,7 @@ impl Model {
 #[derive(Clone, Serialize, Deserialize)]
 pub struct State {
     /// Displacement, velocity of the solid.
-    pub solid: fem::State,
+    pub solid: fem::state::State,
     /// Grains and their contact memory.
     pub grains: dem::State,
     /// Largest errors of force and moment across the interface so far.
@@ -84,13 +85,13 @@ pub enum StepError {
         /// Time of the failure [s].
         time: f64,
         /// What failed.
-        source: fem::SolveError,
+        source: SolveError,
     },
 }
 
 impl State {
     /// The start of a run: solid and grains as given.
-    pub fn new(solid: fem::State, grains: dem::State) -> State {
+    pub fn new(solid: fem::state::State, grains: dem::State) -> State {
         State { solid, grains, audit: TransferAudit::default(), spent: Spent::default() }
     }
 }
@@ -100,13 +101,13 @@ impl Work {
     ///
     /// # Errors
     /// The matrix cannot be factored.
-    pub fn new(model: &Model, state: &State, surface: SolidSurface) -> Result<Work, fem::SolveError> {
+    pub fn new(model: &Model<'_>, state: &State, surface: SolidSurface) -> Result<Work, SolveError> {
         let n = 3 * model.solid.mesh().node_count();
         Ok(Work {
             grains: dem::Work::new(&model.grains, &state.grains),
             transfer: Transfer::new(&surface),
             surface,
-            solver: fem::window::WindowSolver::new(&model.solid, model.theta, model.window())?,
+            solver: fem::window::WindowSolver::new(model.solid, model.theta, model.window())?,
             load: vec![0.0; n],
             contact_load: vec![0.0; n],
             other_load: vec![0.0; n],
@@ -132,7 +133,7 @@ impl Work {
 /// # Errors
 /// The grains or the solid cannot make the step; `state` is then not fit to go on from.
 pub fn step(
-    model: &Model,
+    model: &Model<'_>,
     state: &mut State,
     work: &mut Work,
     mut applied: impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
@@ -166,7 +167,7 @@ pub fn step(
     let time = solid.time;
     let step = work
         .solver
-        .step(&model.solid, solid, &work.load)
+        .step(model.solid, solid, &work.load)
         .map_err(|source| StepError::Solid { time, source })?;
     for i in 0..other.len() {
         let du = solid.u[i] - work.before[i];
@@ -179,41 +180,79 @@ pub fn step(
 }
 
 /// Energy stored in the system now.
-pub fn stored(model: &Model, state: &State, work: &Work) -> Stored {
-    let grains = dem::measure::energies(&model.grains, &state.grains, &work.grains);
+pub fn stored(model: &Model<'_>, state: &State) -> Stored {
+    let grains = dem::measure::energies(&model.grains, &state.grains);
     Stored {
         grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
         contact_springs: grains.elastic_normal + grains.elastic_tangential,
         grains_gravity: grains.gravity,
-        solid_kinetic: fem::energy::kinetic(&model.solid, &state.solid),
-        solid_strain: fem::energy::strain(&model.solid, &state.solid),
+        solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
+        solid_strain: fem::energy::strain(model.solid, &state.solid),
         solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
     }
 }
 
 /// Work and dissipation of both sides since the start.
 pub fn spent(state: &State) -> Spent {
-    let grains = &state.grains.ledger;
+    let solid = &state.spent;
     Spent {
-        applied_work: grains.work_applied,
-        wall_work: grains.work_walls,
-        dashpot: grains.dissipated_dashpot,
-        friction: grains.dissipated_friction,
-        local_damping: grains.dissipated_local_damping,
-        surface_on_grains: grains.work_surface,
-        ..state.spent
+        solid_load_work: solid.solid_load_work,
+        rayleigh: solid.rayleigh,
+        numerical: solid.numerical,
+        contacts_on_solid: solid.contacts_on_solid,
+        ..spent_by_grains(&state.grains)
     }
 }
 
-/// Stability number W = Δt √(Kₙ/m) of the exchange: window, stiffest contact of a grain with the surface [N/m], and
-/// the lightest surface point, a corner node's share 0.018 of the lightest touched element's mass (consistent mass;
-/// two-mass study). Damped contacts need W below about 1.
-pub fn stability_number(model: &Model, surface: &SolidSurface, stiffness: f64) -> f64 {
+/// The grains' share of [`spent`].
+pub fn spent_by_grains(grains: &dem::State) -> Spent {
+    let ledger = &grains.ledger;
+    Spent {
+        applied_work: ledger.work_applied,
+        wall_work: ledger.work_walls + ledger.work_constraints,
+        dashpot: ledger.dissipated_dashpot,
+        friction: ledger.dissipated_friction,
+        local_damping: ledger.dissipated_local_damping,
+        surface_on_grains: ledger.work_surface,
+        ..Spent::default()
+    }
+}
+
+/// Nodal load on the solid of grains that lie on its undeformed surface [N], shape `[3·nodes]`: what the solid
+/// carries when a run begins.
+///
+/// # Errors
+/// The grains cannot make a step.
+pub fn resting_load(
+    grains: &dem::Model,
+    surface: &mut SolidSurface,
+    mesh: &fem::mesh::Mesh,
+) -> Result<Vec<f64>, dem::StepError> {
+    let mut state = dem::State::new(grains);
+    let mut work = dem::Work::new(grains, &state);
+    let zero = vec![0.0; 3 * mesh.node_count()];
+    surface.begin_window(mesh, &zero, &zero, &zero, grains.dt());
+    dem::step(grains, &mut state, &mut work, &*surface, &[])?;
+    let mut transfer = Transfer::new(surface);
+    transfer.add(surface, work.surface_contacts(), grains.dt(), &mut TransferAudit::default());
+    let mut load = zero;
+    transfer.add_mean_load(surface, grains.dt(), &mut load);
+    Ok(load)
+}
+
+/// Masses of the elements that `faces` belong to [kg].
+pub fn face_masses(solid: &fem::model::Model, faces: &[fem::mesh::Face]) -> impl Iterator<Item = f64> {
+    faces.iter().map(|f| {
+        let element = f.element as usize;
+        solid.material(element).density * solid.mesh().element_volume(element)
+    })
+}
+
+/// Stability number W = Δt √(Kₙ/m) of the exchange: window Δt [s], stiffest contact of a grain with the surface
+/// [N/m], and the lightest surface node, a corner with the share 0.018 of the lightest of the touched elements'
+/// `masses` [kg] (consistent mass; two-mass study). Damped contacts need W below about 1.
+pub fn stability(window: f64, stiffness: f64, masses: impl Iterator<Item = f64>) -> f64 {
     const CORNER_SHARE: f64 = 0.018;
-    let lightest = surface
-        .faces()
-        .iter()
-        .map(|f| model.solid.element_mass(f.element as usize))
-        .fold(f64::INFINITY, f64::min);
-    model.window() * (stiffness / (CORNER_SHARE * lightest)).sqrt()
+    let lightest = masses.fold(f64::INFINITY, f64::min);
+    window * (stiffness / (CORNER_SHARE * lightest)).sqrt()
 }

@@ -83,6 +83,11 @@ impl SolidSurface {
         self.current[node as usize]
     }
 
+    /// Height of the highest node [m].
+    pub fn highest(&self) -> f64 {
+        self.current.iter().map(|x| x[2]).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Area vector of face `patch` in its present shape, by its corners: outward normal times area [m²].
     pub fn area_vector(&self, patch: u32) -> [f64; 3] {
         let x = |k: usize| self.current[self.face_nodes[patch as usize][k] as usize];

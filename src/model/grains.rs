@@ -11,7 +11,7 @@ use nalgebra::UnitQuaternion;
 use trackbed_dem::insert::place;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
-    BodyInput, LocalDamping, Material, ModelInput, PairOverride, Plane, TimeStep, TriangleSurface, Vec3,
+    BodyInput, LocalDamping, Material, Model, ModelInput, PairOverride, Plane, TimeStep, TriangleSurface, Vec3,
 };
 
 /// The grains, ready to build models of.
@@ -101,6 +101,12 @@ impl GrainsPart {
             skin: None,
             damping: None,
         }
+    }
+
+    /// Stiffest contact of a grain or sleeper with the solid's surface [N/m].
+    pub fn stiffest_surface_contact(&self, model: &Model) -> f64 {
+        let Some(surface) = self.surface_material else { return 0.0 };
+        self.grain_materials.iter().map(|&m| model.contact_stiffness(m, surface).0).fold(0.0, f64::max)
     }
 
     /// Planes, for the pictures of the walls.
@@ -363,7 +369,7 @@ fn add_group(
     let radii: Vec<f64> = scale
         .iter()
         .enumerate()
-        .map(|(i, s)| s * part.shapes[first + i % unit_scale.len()].bounding_radius())
+        .map(|(i, s)| s * bounding_radius(&part.shapes[first + i % unit_scale.len()]))
         .collect();
     let high = [fill.high[0].si, fill.high[1].si];
     let placed = place::place_loose(vector(&fill.low), high, &radii, group.seed)
@@ -372,6 +378,15 @@ fn add_group(
         part.bodies.push(body(first + i % unit_scale.len(), scale[i], place.position, place.orientation));
     }
     Ok(())
+}
+
+/// Radius about the centre of mass that holds a grain of scale 1 [m].
+fn bounding_radius(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Sphere { radius } => *radius,
+        Shape::Clump(clump) => clump.bounding_radius(),
+        Shape::Box { half } => half.iter().map(|h| h * h).sum::<f64>().sqrt(),
+    }
 }
 
 fn add_wall(

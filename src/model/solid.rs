@@ -7,16 +7,20 @@ use crate::scene::solid::{Integration, Rayleigh, Solid, SolidLoad, SolidLoadKind
 use crate::scene::units::vector;
 use crate::scene::{Document, SceneError};
 use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
 use trackbed_coupling::{face, inverse_map};
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
+use trackbed_fem::solver::SolveError;
 
 /// The solid, ready to run.
 pub struct SolidPart {
     /// Checked model.
-    pub model: fem::Model,
+    pub model: fem::model::Model,
     /// Nodal loads other than gravity, each with its course in time.
     pub loads: Vec<NodalLoad>,
+    /// File of the constraints, for messages.
+    pub constraint_file: PathBuf,
     /// Newmark's method, for a solid that runs alone and dynamically.
     pub newmark: Option<fem::newmark::Newmark>,
     /// Names of the materials by number, for reports.
@@ -33,15 +37,36 @@ pub struct NodalLoad {
     pub function: TimeFunction,
 }
 
-impl SolidPart {
-    /// Adds all loads at time `t` [s] to `load`, shape `[3·nodes]`.
-    pub fn add_loads(&self, t: f64, load: &mut [f64]) {
-        for l in &self.loads {
-            let factor = l.function.factor(t);
-            for &(dof, value) in &l.entries {
+impl NodalLoad {
+    /// Adds the load at time `t` [s] to `load`, shape `[3·nodes]`.
+    pub fn add(&self, t: f64, load: &mut [f64]) {
+        let factor = self.function.factor(t);
+        if factor != 0.0 {
+            for &(dof, value) in &self.entries {
                 load[dof] += factor * value;
             }
         }
+    }
+}
+
+impl SolidPart {
+    /// A failure of a solver: bad input when the model cannot be solved by anyone, else numerical.
+    pub fn failure(&self, error: &SolveError) -> Failure {
+        let file = self.constraint_file.display();
+        match error {
+            SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => {
+                Failure::Input(format!("{file}: constraints: found too few ({error}), expected a body that is held"))
+            }
+            SolveError::Newmark(_) | SolveError::TimeStep { .. } | SolveError::Theta { .. } => {
+                Failure::Input(error.to_string())
+            }
+            _ => Failure::Numerical(format!("solid: {error}")),
+        }
+    }
+
+    /// Adds all loads at time `t` [s] to `load`, shape `[3·nodes]`.
+    pub fn add_loads(&self, t: f64, load: &mut [f64]) {
+        self.loads.iter().for_each(|l| l.add(t, load));
     }
 }
 
@@ -73,7 +98,7 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         check(document, &key("young"), m.young.si, m.young.si > 0.0, "a modulus above 0")?;
         check(document, &key("poisson"), m.poisson, m.poisson > -1.0 && m.poisson < 0.5, "above -1 and below 0.5")?;
         check(document, &key("density"), m.density.si, m.density.si > 0.0, "a density above 0")?;
-        let elastic = fem::Elastic { young: m.young.si, poisson: m.poisson, density: m.density.si };
+        let elastic = fem::material::elastic::Elastic { young: m.young.si, poisson: m.poisson, density: m.density.si };
         if materials.insert(m.id, elastic).is_some() {
             return Err(document.error(&key("id"), format!("material {} again", m.id), "each number once").into());
         }
@@ -87,8 +112,8 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         }
     }
     let quadrature = match solid.integration {
-        Integration::Reduced => fem::Quadrature::Gauss2,
-        Integration::Full => fem::Quadrature::Gauss3,
+        Integration::Reduced => fem::element::quadrature::Quadrature::Gauss2,
+        Integration::Full => fem::element::quadrature::Quadrature::Gauss3,
     };
     let loads = solid
         .load
@@ -98,12 +123,16 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         .collect::<Result<Vec<_>, _>>()?;
     let newmark = match &solid.dynamics {
         None => None,
-        Some(d) => Some(
-            fem::newmark::Newmark::new(d.alpha, d.delta, d.accept_conditional_stability)
-                .map_err(|e| document.error("solid.dynamics", e.to_string(), "unconditionally stable constants"))?,
-        ),
+        Some(d) => {
+            let method = fem::newmark::Newmark { alpha: d.alpha, delta: d.delta };
+            // Their range is checked in any case when the solver is made.
+            if !d.accept_conditional_stability {
+                method.check().map_err(|e| document.error("solid.dynamics", e.to_string(), "stable constants"))?;
+            }
+            Some(method)
+        }
     };
-    let model = fem::Model::new(fem::ModelInput {
+    let model = fem::model::Model::new(fem::model::ModelInput {
         mesh: lists.mesh,
         materials,
         quadrature,
@@ -112,18 +141,19 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
     })
     .map_err(|e| Failure::Input(format!("{}: {e}", document.resolve(&solid.elements).display())))?;
-    Ok(SolidPart { model, loads, newmark, material_names, warnings: lists.warnings })
+    let constraint_file = document.resolve(solid.constraints.as_deref().unwrap_or(&solid.elements));
+    Ok(SolidPart { model, loads, newmark, constraint_file, material_names, warnings: lists.warnings })
 }
 
 fn check(document: &Document, key: &str, value: f64, good: bool, expected: &str) -> Result<(), SceneError> {
     if good { Ok(()) } else { Err(document.error(key, value.to_string(), expected)) }
 }
 
-fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::Rayleigh, SceneError> {
-    let Some(r) = rayleigh else { return Ok(fem::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
+fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::damping::Rayleigh, SceneError> {
+    let Some(r) = rayleigh else { return Ok(fem::damping::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
     let result = match (r.alpha_m, r.beta_k, r.damping_ratio, r.frequencies) {
         (alpha, beta, None, None) => {
-            fem::Rayleigh { alpha_m: alpha.map_or(0.0, |a| a.si), beta_k: beta.map_or(0.0, |b| b.si) }
+            fem::damping::Rayleigh { alpha_m: alpha.map_or(0.0, |a| a.si), beta_k: beta.map_or(0.0, |b| b.si) }
         }
         (None, None, Some(ratio), Some([f1, f2])) => {
             check(document, "solid.rayleigh.damping_ratio", ratio, (0.0..1.0).contains(&ratio), "0 or more, below 1")?;
@@ -132,7 +162,8 @@ fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::Ray
                 let found = format!("{} and {} Hz", f1.si, f2.si);
                 return Err(document.error("solid.rayleigh.frequencies", found, "two rising positive frequencies"));
             }
-            fem::Rayleigh::from_frequencies(ratio, f1.si, f2.si)
+            fem::damping::Rayleigh::from_frequencies([f1.si, f2.si], [ratio, ratio])
+                .map_err(|e| document.error("solid.rayleigh", e.to_string(), "other frequencies"))?
         }
         _ => {
             return Err(document.error(

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use crate::write::WriteError;
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::transfer::TransferAudit;
@@ -170,12 +171,48 @@ impl Summary {
     /// The file cannot be written.
     pub fn write(&self, dir: &Path) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
-        crate::write::atomic::write(&dir.join("summary.json"), |file| {
-            use std::io::Write;
-            writeln!(file, "{text}")?;
-            Ok(())
-        })
-        .map_err(|e| Failure::Other(e.to_string()))
+        let file = dir.join("summary.json");
+        crate::write::atomic::write(&file, |out| {
+            writeln!(out, "{text}").map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+        Ok(())
+    }
+
+    /// What a user wants to see when a run has ended.
+    pub fn report(&self) -> String {
+        let mut lines = Vec::new();
+        for stage in &self.stages {
+            lines.push(format!(
+                "{}: {:.1} s, {} grain steps, {} solid steps",
+                stage.name, stage.seconds, stage.grain_steps, stage.solid_steps
+            ));
+        }
+        if let Some(s) = &self.statics {
+            let (u, node) = s.largest_displacement;
+            lines.push(format!("largest displacement {u:.6e} m at node {node}"));
+            lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
+        }
+        if let Some(e) = &self.energy {
+            let relative = e.relative_error.map_or(String::new(), |r| format!(" ({:.3} % of it)", 100.0 * r));
+            lines.push(format!("work {:.6} J, energy error {:.2e} J{relative}", e.work, e.error));
+        }
+        if let Some(m) = &self.momentum {
+            lines.push(format!("momentum error {:.1e}, angular {:.1e} (relative to the impulses)", m.linear, m.angular));
+        }
+        if let Some(c) = &self.coupling {
+            lines.push(format!(
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}",
+                c.transfer.force, c.transfer.moment, c.stability_number
+            ));
+        }
+        if let Some(s) = &self.settlement {
+            let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
+            lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
+        }
+        for warning in &self.warnings {
+            lines.push(format!("note: {warning}"));
+        }
+        lines.join("\n") + "\n"
     }
 }
 

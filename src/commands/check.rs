@@ -1,0 +1,66 @@
+//! `trackbed check`: reads and resolves everything that a run would, runs nothing, and says what would happen.
+
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::scene::{Document, Scene};
+use std::fmt::Write;
+use std::path::Path;
+use trackbed_dem as dem;
+
+/// Validates a scene; the text says what a run of it would do.
+///
+/// # Errors
+/// The same bad input that a run would refuse.
+pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
+    let mut document = Document::open(scene)?;
+    for assignment in set {
+        document.set(assignment)?;
+    }
+    let parsed: Scene = document.read()?;
+    let job = Job::new(&document, &parsed)?;
+    let mut text = format!("{}\n", job.title);
+    let mut line = |t: String| writeln!(text, "  {t}").expect("writing to a string does not fail");
+    if let Some(solid) = &job.solid {
+        let mesh = solid.model.mesh();
+        line(format!(
+            "solid: {} nodes, {} elements, {} unknowns, {:?} rule, {:.3e} kg",
+            mesh.node_count(),
+            mesh.element_count(),
+            solid.model.free_dof_count(),
+            solid.model.quadrature(),
+            solid.model.total_mass(),
+        ));
+        for (id, name) in &solid.material_names {
+            line(format!("  material {id}: {name}"));
+        }
+        for warning in &solid.warnings {
+            line(format!("  note: {warning}"));
+        }
+    }
+    if let Some(grains) = &job.grains {
+        let model = dem::Model::new(grains.input(grains.bodies.clone()))
+            .map_err(|e| Failure::Input(format!("{}: grains: {e}", document.file().display())))?;
+        line(format!("grains: {} bodies with {} spheres", model.body_count(), model.sphere_count()));
+        line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
+        if let Some(d) = &grains.deposition {
+            line(format!("  settling: at most {} s, {:.0} steps", d.max_time, d.max_time / model.dt()));
+        }
+        line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
+        if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
+            let window = model.dt() * f64::from(coupling.substeps);
+            let stiffness = grains.stiffest_surface_contact(&model);
+            let masses = trackbed_coupling::step::face_masses(&solid.model, &coupling.faces);
+            let w = trackbed_coupling::step::stability(window, stiffness, masses);
+            line(format!(
+                "coupling: {} faces, {} grain steps per window of {window:.4e} s, stability number W = {w:.3}",
+                coupling.faces.len(),
+                coupling.substeps,
+            ));
+        }
+    } else if let Some(step) = job.solid_step {
+        line(format!("dynamics: {} s in {:.0} steps of {step} s", job.end, job.end / step));
+    } else {
+        line("statics: one solve".into());
+    }
+    Ok(text)
+}

@@ -1,0 +1,146 @@
+//! What the writers show, taken from a running system.
+
+use super::system::{GrainsView, SolidView};
+use crate::failure::Failure;
+use crate::model::grains::GrainsPart;
+use crate::write::{self, ChainFrame, GrainFrame, SolidFrame, WallFrame};
+use std::path::Path;
+use trackbed_dem as dem;
+use trackbed_dem::shape::Shape;
+use trackbed_fem::stress;
+
+/// Yield function of a material without a yield surface: inside by definition.
+const NO_YIELD_SURFACE: f64 = -1.0;
+
+/// Writes the solid as VTK and, if asked, as Tecplot.
+///
+/// # Errors
+/// A file cannot be written, or a field is not finite.
+pub fn write_solid(view: SolidView<'_>, vtu: Option<&Path>, tecplot: Option<(&Path, f64)>) -> Result<(), Failure> {
+    let mesh = view.model.mesh();
+    let stress = stress::nodal(view.model, &view.state.u);
+    let von_mises: Vec<f64> = stress.iter().map(stress::von_mises).collect();
+    let frame = SolidFrame {
+        mesh,
+        displacement: &view.state.u,
+        velocity: &view.state.v,
+        stress: &stress,
+        von_mises: &von_mises,
+        equivalent_plastic_strain: &vec![0.0; mesh.node_count()],
+        yield_function: &vec![NO_YIELD_SURFACE; mesh.node_count()],
+    };
+    if let Some(file) = vtu {
+        write::vtu::write_solid(file, &frame)?;
+    }
+    if let Some((file, time)) = tecplot {
+        write::tecplot::write_solid(file, &frame, "solid", time, 1)?;
+    }
+    Ok(())
+}
+
+/// The grains: one point per sphere.
+pub fn grains(view: GrainsView<'_>) -> GrainFrame {
+    let stress = dem::measure::mean_stress(view.model, view.state);
+    let force = dem::measure::contact_forces(view.model, view.state);
+    let mut frame = GrainFrame::default();
+    for body in 0..view.model.body_count() {
+        let q = view.state.orientation(view.model, body);
+        let (x, v, w) = (view.state.position(body), view.state.velocity(body), view.state.spin(body));
+        for (centre, radius) in view.state.spheres(view.model, body) {
+            frame.position.push(centre.into());
+            frame.radius.push(radius);
+            frame.velocity.push((v + w.cross(&(centre - x))).into());
+            frame.spin.push(w.into());
+            frame.orientation.push([q.w, q.i, q.j, q.k]);
+            frame.id.push(body as u32);
+            frame.part.push(view.model.part(body));
+            frame.mean_stress.push((stress[body][0] + stress[body][1] + stress[body][2]) / 3.0);
+            frame.force.push(force[body].into());
+        }
+    }
+    frame
+}
+
+/// Force chains: a line from partner to partner for each contact that carries force.
+pub fn chains(view: GrainsView<'_>) -> ChainFrame {
+    let mut frame = ChainFrame::default();
+    for c in dem::measure::contacts(view.model, view.state) {
+        let first = view.state.position(c.a);
+        let second = match c.b {
+            dem::Partner::Body(b) => view.state.position(b),
+            _ => c.point,
+        };
+        let tangential = c.force - c.normal * c.force.dot(&c.normal);
+        frame.ends.push([first.into(), second.into()]);
+        frame.normal_force.push(c.normal_force);
+        frame.tangential_force.push(tangential.norm());
+        frame.kind.push(match c.b {
+            dem::Partner::Body(_) => 0,
+            dem::Partner::Plane(_) => 1,
+            dem::Partner::Triangle(_) => 2,
+            dem::Partner::Patch(_) => 3,
+        });
+    }
+    frame
+}
+
+/// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
+pub fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
+    let mut frame = WallFrame::default();
+    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| {
+        let first = frame.points.len() as u32;
+        frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
+        for polygon in polygons {
+            frame.polygons.push(polygon.iter().map(|v| v + first).collect());
+            frame.id.push(id);
+        }
+    };
+    let (centre, half) = extent(view);
+    let mut id = 0;
+    for (i, plane) in part.planes().iter().enumerate() {
+        let normal = plane.normal.normalize();
+        let point = view.state.plane_point(view.model, i);
+        let middle = centre - normal * (centre - point).dot(&normal);
+        let helper = if normal.x.abs() < 0.9 { dem::Vec3::x() } else { dem::Vec3::y() };
+        let (u, v) = (normal.cross(&helper).normalize(), normal.cross(&normal.cross(&helper)).normalize());
+        let corner = |a: f64, b: f64| middle + (u * a + v * b) * half;
+        add(id, &[corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)], &[&[0, 1, 2, 3]]);
+        id += 1;
+    }
+    for (i, surface) in part.triangles().iter().enumerate() {
+        let offset = view.state.triangles_offset(i);
+        let points: Vec<dem::Vec3> = surface.vertices.iter().map(|p| p + offset).collect();
+        let polygons: Vec<&[u32]> = surface.triangles.iter().map(|t| t.as_slice()).collect();
+        add(id, &points, &polygons);
+        id += 1;
+    }
+    for body in 0..view.model.body_count() {
+        if let Shape::Box { half } = view.model.shape(body) {
+            let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
+            let corners: Vec<dem::Vec3> = (0..8)
+                .map(|c| {
+                    let sign = |bit: usize| if c >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                    x + q * dem::Vec3::new(sign(0) * half[0], sign(1) * half[1], sign(2) * half[2])
+                })
+                .collect();
+            let sides: [&[u32]; 6] =
+                [&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]];
+            add(id, &corners, &sides);
+            id += 1;
+        }
+    }
+    frame
+}
+
+/// Middle of the grains and half the largest side of the box around them [m].
+fn extent(view: GrainsView<'_>) -> (dem::Vec3, f64) {
+    let mut low = dem::Vec3::repeat(f64::INFINITY);
+    let mut high = dem::Vec3::repeat(f64::NEG_INFINITY);
+    for body in 0..view.model.body_count() {
+        let x = view.state.position(body);
+        let r = dem::Vec3::repeat(view.model.radius(body));
+        low = low.inf(&(x - r));
+        high = high.sup(&(x + r));
+    }
+    (0.5 * (low + high), 0.5 * (high - low).max())
+}

@@ -1,0 +1,284 @@
+//! What a run leaves while it goes: `history.csv`, `cycles.csv`, frames for ParaView and Tecplot, and at the end the
+//! settlement curve.
+
+use super::cycles::{Cycle, CycleRecorder};
+use super::frames;
+use super::system::System;
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::write;
+use crate::write::csv::{Column, History};
+use std::fs;
+use std::path::{Path, PathBuf};
+use trackbed_coupling::ledger::Balance;
+
+/// The files of one run.
+pub struct Recorder<'a> {
+    job: &'a Job,
+    dir: PathBuf,
+    series: write::pvd::Series,
+    frame: usize,
+    history: History,
+    cycles_file: Option<History>,
+    cycles: Option<CycleRecorder>,
+    balance: Balance,
+    /// Largest |energy error| at any row [J].
+    pub largest_error: f64,
+    /// Settlement of the sleeper since the run began against time, for the plot.
+    settlement: Vec<[f64; 2]>,
+    first_height: Option<f64>,
+}
+
+/// Place, load and tilt of the sleeper at one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Sleeper {
+    /// Body of the sleeper.
+    pub body: usize,
+    /// Downward load [N].
+    pub load: f64,
+}
+
+impl<'a> Recorder<'a> {
+    /// Starts the files of a run in `dir`; frames of an earlier run there are removed.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn start<S: System>(job: &'a Job, dir: &Path, system: &S, sleeper: Option<Sleeper>) -> Result<Self, Failure> {
+        let mut columns = vec![Column::new("time", "s")];
+        let vector = |columns: &mut Vec<Column>, name: &str, unit: &str| {
+            for d in ["x", "y", "z"] {
+                columns.push(Column::new(format!("{name}_{d}"), unit));
+            }
+        };
+        if sleeper.is_some() {
+            columns.push(Column::new("load", "N"));
+            vector(&mut columns, "sleeper", "m");
+            columns.push(Column::new("sleeper_tilt", "rad"));
+        }
+        if system.grains().is_some() && system.solid().is_some() {
+            vector(&mut columns, "contact_force_on_solid", "N");
+            columns.push(Column::new("peak_formation_pressure", "Pa"));
+        }
+        for name in ENERGY_COLUMNS {
+            columns.push(Column::new(name, "J"));
+        }
+        for (name, _) in &job.probes {
+            vector(&mut columns, &format!("{name}_u"), "m");
+            vector(&mut columns, &format!("{name}_v"), "m/s");
+        }
+        let history = History::create(&dir.join("history.csv"), columns)?;
+        let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
+        let cycles_file = load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns())).transpose()?;
+        let stored = system.stored();
+        Ok(Recorder {
+            job,
+            dir: dir.to_path_buf(),
+            series: write::pvd::Series::new(&dir.join("results.pvd")),
+            frame: 0,
+            history,
+            cycles_file,
+            cycles: load.map(CycleRecorder::new),
+            balance: Balance { start: stored, now: stored, spent: system.spent() },
+            largest_error: 0.0,
+            settlement: Vec::new(),
+            first_height: None,
+        })
+    }
+
+    /// Adds a row to the history.
+    ///
+    /// # Errors
+    /// A value is not finite, or the disk refuses.
+    pub fn row<S: System>(&mut self, time: f64, system: &S, sleeper: Option<Sleeper>) -> Result<(), Failure> {
+        let mut row = vec![time];
+        if let (Some(s), Some(g)) = (sleeper, system.grains()) {
+            let x = g.state.position(s.body);
+            let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
+            row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
+            let first = *self.first_height.get_or_insert(x.z);
+            self.settlement.push([time, 1e3 * (first - x.z)]);
+        }
+        if system.grains().is_some() && system.solid().is_some() {
+            row.extend(system.contact_force());
+            row.push(system.peak_pressure());
+        }
+        self.balance.now = system.stored();
+        self.balance.spent = system.spent();
+        let (now, spent) = (&self.balance.now, &self.balance.spent);
+        let error = self.balance.error();
+        self.largest_error = self.largest_error.max(error.abs());
+        row.extend([
+            now.grains_kinetic,
+            now.contact_springs,
+            now.grains_gravity,
+            now.solid_kinetic,
+            now.solid_strain,
+            now.solid_gravity,
+            spent.work(),
+            spent.dashpot,
+            spent.friction,
+            spent.rayleigh + spent.numerical,
+            spent.interface(),
+            error,
+        ]);
+        if let Some(solid) = system.solid() {
+            for &(_, node) in &self.job.probes {
+                row.extend_from_slice(&solid.state.u[3 * node..3 * node + 3]);
+                row.extend_from_slice(&solid.state.v[3 * node..3 * node + 3]);
+            }
+        }
+        self.history.row(&row)?;
+        Ok(())
+    }
+
+    /// Follows the load cycles; call after every window.
+    ///
+    /// # Errors
+    /// A value is not finite, or the disk refuses.
+    pub fn follow<S: System>(&mut self, time: f64, system: &S, sleeper: Option<Sleeper>) -> Result<Option<Cycle>, Failure> {
+        let (Some(cycles), Some(s), Some(g)) = (&mut self.cycles, sleeper, system.grains()) else { return Ok(None) };
+        let height = g.state.position(s.body).z;
+        let work = g.state.ledger.work_applied;
+        let done = cycles.record(time, system.window(), height, s.load, work, system.peak_pressure());
+        if let (Some(c), Some(file)) = (done, &mut self.cycles_file) {
+            file.row(&[
+                f64::from(c.number),
+                c.settlement,
+                c.resilient_deflection,
+                c.secant_stiffness,
+                c.dissipated_energy,
+                c.peak_formation_pressure,
+            ])?;
+        }
+        Ok(done)
+    }
+
+    /// Writes a frame of the animation.
+    ///
+    /// # Errors
+    /// A field is not finite, or the disk refuses.
+    pub fn frame<S: System>(&mut self, time: f64, system: &S) -> Result<(), Failure> {
+        let k = self.frame;
+        let vtk = self.job.output.vtk;
+        if let Some(solid) = system.solid() {
+            let name = format!("frames/solid_{k:05}.vtu");
+            let vtu = self.dir.join(&name);
+            let dat = self.dir.join(format!("tecplot/solid_{k:05}.dat"));
+            let tecplot = self.job.output.tecplot.then_some((dat.as_path(), time));
+            frames::write_solid(solid, vtk.then_some(vtu.as_path()), tecplot)?;
+            self.series.push(time, 0, "solid", &name);
+        }
+        if let (Some(view), Some(part), true) = (system.grains(), &self.job.grains, vtk) {
+            let name = |kind: &str| format!("frames/{kind}_{k:05}.vtp");
+            write::vtp::write_grains(&self.dir.join(name("grains")), &frames::grains(view))?;
+            write::vtp::write_chains(&self.dir.join(name("chains")), &frames::chains(view))?;
+            self.series.push(time, 1, "grains", &name("grains"));
+            self.series.push(time, 2, "force chains", &name("chains"));
+            let walls = frames::walls(view, part);
+            if !walls.polygons.is_empty() {
+                write::vtp::write_walls(&self.dir.join(name("walls")), &walls)?;
+                self.series.push(time, 3, "walls and sleeper", &name("walls"));
+            }
+        }
+        if vtk {
+            self.series.write()?;
+        }
+        self.frame += 1;
+        Ok(())
+    }
+
+    /// Energy account as of the last row.
+    pub fn balance(&self) -> &Balance {
+        &self.balance
+    }
+
+    /// Finished load cycles.
+    pub fn cycles(&self) -> &[Cycle] {
+        self.cycles.as_ref().map_or(&[], |c| &c.done)
+    }
+
+    /// Draws the settlement curves.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn plot_settlement(&self) -> Result<(), Failure> {
+        let cycles = self.cycles();
+        if !self.settlement.is_empty() {
+            write::svg::LinePlot {
+                title: format!("{}: lowering of the sleeper", self.job.title),
+                x_label: "time [s]".into(),
+                y_label: "lowering [mm]".into(),
+                series: vec![write::svg::Series { name: "sleeper".into(), points: self.settlement.clone() }],
+            }
+            .write(&self.dir.join("sleeper.svg"))?;
+        }
+        if !cycles.is_empty() {
+            let points = |f: fn(&Cycle) -> f64| cycles.iter().map(|c| [f64::from(c.number), 1e3 * f(c)]).collect();
+            write::svg::LinePlot {
+                title: format!("{}: settlement", self.job.title),
+                x_label: "load cycle".into(),
+                y_label: "[mm]".into(),
+                series: vec![
+                    write::svg::Series { name: "settlement".into(), points: points(|c| c.settlement) },
+                    write::svg::Series { name: "resilient deflection".into(), points: points(|c| c.resilient_deflection) },
+                ],
+            }
+            .write(&self.dir.join("settlement.svg"))?;
+        }
+        Ok(())
+    }
+}
+
+const ENERGY_COLUMNS: [&str; 12] = [
+    "grains_kinetic",
+    "contact_springs",
+    "grains_gravity",
+    "solid_kinetic",
+    "solid_strain",
+    "solid_gravity",
+    "work",
+    "dissipated_dashpot",
+    "dissipated_friction",
+    "dissipated_solid",
+    "interface_error",
+    "energy_error",
+];
+
+fn cycle_columns() -> Vec<Column> {
+    [
+        ("cycle", ""),
+        ("settlement", "m"),
+        ("resilient_deflection", "m"),
+        ("secant_stiffness", "N/m"),
+        ("dissipated_energy", "J"),
+        ("peak_formation_pressure", "Pa"),
+    ]
+    .map(|(name, unit)| Column::new(name, unit))
+    .to_vec()
+}
+
+/// Makes the folder of the results; frames that an earlier run left there are removed, so that no frame of another
+/// run is taken for one of this.
+///
+/// # Errors
+/// The folder cannot be made or cleaned.
+pub fn prepare(dir: &Path, output: &crate::scene::Output) -> Result<(), Failure> {
+    let fail = |e: std::io::Error| Failure::Other(format!("{}: {e}", dir.display()));
+    fs::create_dir_all(dir).map_err(fail)?;
+    for (sub, wanted) in [("frames", output.vtk), ("tecplot", output.tecplot)] {
+        let folder = dir.join(sub);
+        if folder.is_dir() {
+            for entry in fs::read_dir(&folder).map_err(fail)? {
+                let path = entry.map_err(fail)?.path();
+                let ours = path.extension().is_some_and(|e| ["vtu", "vtp", "dat"].iter().any(|k| e == *k));
+                if ours {
+                    fs::remove_file(&path).map_err(fail)?;
+                }
+            }
+        }
+        if wanted {
+            fs::create_dir_all(&folder).map_err(fail)?;
+        }
+    }
+    Ok(())
+}
