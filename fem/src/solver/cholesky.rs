@@ -246,6 +246,43 @@ mod tests {
         assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
     }
 
+    /// A plain dense factorization in the same order finds the same smallest pivot, at the same dof.
+    #[test]
+    fn the_weakest_pivot_is_found_and_named() {
+        let mesh = Mesh::block([1, 1, 2], [1.0, 1.0, 2.0]);
+        let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
+        let matrices = Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil);
+        let constraint = Constraint { node: 9, direction: 2, value: 0.0 };
+        let supports = Supports::new(&mesh, &[constraint]).unwrap();
+        let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
+        let n = analysis.size();
+        let mut position = vec![0; n];
+        analysis.order.iter().enumerate().for_each(|(i, &e)| position[e] = i);
+        let mut a = vec![vec![0.0; n]; n];
+        matrices.visit_free(&supports, |c, r, k, m| {
+            let (c, r) = (position[c], position[r]);
+            a[c][r] = k + 1e3 * m;
+            a[r][c] = a[c][r];
+        });
+        let diagonal: Vec<f64> = (0..n).map(|i| a[i][i]).collect();
+        let mut least = (f64::INFINITY, 0);
+        for p in 0..n {
+            if a[p][p] / diagonal[p] < least.0 {
+                least = (a[p][p] / diagonal[p], p);
+            }
+            for r in p + 1..n {
+                let factor = a[r][p] / a[p][p];
+                for c in p + 1..n {
+                    a[r][c] -= factor * a[p][c];
+                }
+            }
+        }
+        let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, 1.0, 1e3).unwrap();
+        let found = solver.weakest_pivot();
+        assert!((found.ratio / least.0 - 1.0).abs() < 1e-9, "{found:?} {least:?}");
+        assert_eq!(found.dof, supports.free()[analysis.order[least.1]] as usize);
+    }
+
     #[test]
     fn solvers_can_move_between_threads() {
         fn is_send<T: Send>() {}
