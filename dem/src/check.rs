@@ -112,7 +112,7 @@ fn bodies(input: &ModelInput) -> Result<(), ModelError> {
                 return Err(error(quantity, value, "be finite"));
             }
         }
-        if !((b.orientation.norm() - 1.0).abs() < 1e-6) {
+        if (b.orientation.norm() - 1.0).abs() > 1e-6 || b.orientation.norm().is_nan() {
             return Err(error("norm of the orientation", b.orientation.norm(), "be 1"));
         }
     }

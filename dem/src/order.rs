@@ -9,7 +9,7 @@
 use crate::Vec3;
 use crate::contact::History;
 use crate::model::{Kind, Model};
-use crate::state::{Block, CrossPair, Pair, PatchPair, PlanePair, State};
+use crate::state::{Block, Cross, CrossPair, Pair, PatchPair, PlanePair, State};
 
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
@@ -59,7 +59,7 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
 pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     let members: Vec<u32> = (0..positions.len()).map(|b| model.member_count(b)).collect();
     let old = std::mem::take(&mut state.blocks);
-    let (cross, boxed) = (std::mem::take(&mut state.cross), std::mem::take(&mut state.boxed));
+    let cross = std::mem::take(&mut state.cross);
     let old_places = state.places.clone();
 
     // Old sphere → body and member.
@@ -85,8 +85,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         block.bodies = bodies;
         state.blocks.push(block);
     }
-    state.cross.resize_with(state.blocks.len(), Vec::new);
-    state.boxed.resize_with(state.blocks.len(), Vec::new);
+    state.cross.resize_with(state.blocks.len(), Cross::default);
     state.number(model);
 
     // First sphere of each body within its new block.
@@ -108,7 +107,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         if a.0 == b.0 {
             state.blocks[a.0 as usize].pairs.push(Pair { i: a.1, j: b.1, history });
         } else {
-            state.cross[a.0 as usize].push(CrossPair { i: a.1, block: b.0, j: b.1, history });
+            state.cross[a.0 as usize].spheres.push(CrossPair { i: a.1, block: b.0, j: b.1, history });
         }
     };
     for (block, names) in old.iter().zip(&named) {
@@ -117,16 +116,16 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         }
     }
     for (b, pairs) in cross.iter().enumerate() {
-        for p in pairs {
+        for p in &pairs.spheres {
             file(new(named[b][p.i as usize]), new(named[p.block as usize][p.j as usize]), p.history);
         }
     }
-    for (b, pairs) in boxed.iter().enumerate() {
-        for p in pairs {
+    for (b, pairs) in cross.iter().enumerate() {
+        for p in &pairs.boxes {
             let (block, i) = new(named[b][p.i as usize]);
             let box_body = old[p.block as usize].bodies[p.j as usize];
             let [box_block, j] = places[box_body as usize];
-            state.boxed[block as usize].push(CrossPair { i, block: box_block, j, history: p.history });
+            state.cross[block as usize].boxes.push(CrossPair { i, block: box_block, j, history: p.history });
         }
     }
     for (block, names) in old.iter().zip(&named) {
@@ -152,7 +151,9 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         block.triangles.sort_unstable_by_key(|p| (p.i, p.patch));
         block.surface.sort_unstable_by_key(|p| (p.i, p.patch));
     }
-    state.cross.iter_mut().for_each(|c| c.sort_unstable_by_key(|p| (p.i, p.block, p.j)));
-    state.boxed.iter_mut().for_each(|c| c.sort_unstable_by_key(|p| (p.i, p.block, p.j)));
+    for cross in &mut state.cross {
+        cross.spheres.sort_unstable_by_key(|p| (p.i, p.block, p.j));
+        cross.boxes.sort_unstable_by_key(|p| (p.i, p.block, p.j));
+    }
     state.stale = true;
 }

@@ -44,6 +44,13 @@ pub(crate) struct CrossPair {
     pub history: History,
 }
 
+/// Contacts of a block's spheres with bodies of other blocks.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Cross {
+    pub spheres: Vec<CrossPair>,
+    pub boxes: Vec<CrossPair>,
+}
+
 /// A sphere, or a corner of a box, with a plane.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct PlanePair {
@@ -97,10 +104,8 @@ pub struct State {
     /// Block and place of each body.
     pub(crate) places: Vec<[u32; 2]>,
     pub(crate) blocks: Vec<Block>,
-    /// Sphere–sphere contacts between blocks, by the block of their first sphere.
-    pub(crate) cross: Vec<Vec<CrossPair>>,
-    /// Sphere–box contacts, by the block of the sphere.
-    pub(crate) boxed: Vec<Vec<CrossPair>>,
+    /// Contacts between blocks, by the block of their first sphere.
+    pub(crate) cross: Vec<Cross>,
     pub(crate) planes: Vec<WallMotion>,
     pub(crate) triangles: Vec<WallMotion>,
     /// Reach of the near list beyond touch [m], how much of it motion has used up, and the steps it has lasted.
@@ -144,7 +149,6 @@ impl State {
             places: Vec::new(),
             blocks: Vec::new(),
             cross: Vec::new(),
-            boxed: Vec::new(),
             planes: model
                 .planes
                 .iter()
@@ -173,8 +177,7 @@ impl State {
             block.bodies = members;
             state.blocks.push(block);
         }
-        state.cross.resize_with(state.blocks.len(), Vec::new);
-        state.boxed.resize_with(state.blocks.len(), Vec::new);
+        state.cross.resize_with(state.blocks.len(), Cross::default);
         state.number(model);
         for (k, b) in model.bodies.iter().enumerate() {
             let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });

@@ -9,7 +9,7 @@ use crate::ledger::Ledger;
 use crate::model::Model;
 use crate::order;
 use crate::search::near;
-use crate::state::{Block, CrossPair, State, xyz};
+use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Work};
 use rayon::prelude::*;
@@ -37,7 +37,7 @@ pub fn step<S: Surface>(
     if !surface.is_empty() && model.surface_material.is_none() {
         return Err(StepError::SurfaceMaterial);
     }
-    if state.steps > 0 && state.steps % order::EVERY == 0 {
+    if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
         state.reorder(model);
         work.arrange(model, state);
     }
@@ -59,26 +59,18 @@ fn contacts_and_motion<S: Surface, const RIGID: bool>(
 ) {
     let dt = model.dt();
     let laws = &model.table;
-    let State { blocks, cross, boxed, planes, triangles, .. } = state;
+    let State { blocks, cross, planes, triangles, .. } = state;
     let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
-    let between = |(b, ((pairs, boxed), out)): (
-        usize,
-        ((&mut Vec<CrossPair>, &mut Vec<CrossPair>), &mut CrossWork),
-    )| {
-        pass::cross::<_, RIGID>(laws, all, scratch, b, (pairs, boxed), out, dt);
+    let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossWork))| {
+        pass::cross::<_, RIGID>(laws, all, scratch, b, pairs, out, dt);
     };
     if *parallel {
-        cross
-            .par_iter_mut()
-            .zip(boxed.par_iter_mut())
-            .zip(slots.par_iter_mut())
-            .enumerate()
-            .for_each(between);
+        cross.par_iter_mut().zip(slots.par_iter_mut()).enumerate().for_each(between);
     } else {
-        cross.iter_mut().zip(boxed.iter_mut()).zip(slots.iter_mut()).enumerate().for_each(between);
+        cross.iter_mut().zip(slots.iter_mut()).enumerate().for_each(between);
     }
 
     // All else concerns one block at a time.

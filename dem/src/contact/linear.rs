@@ -44,7 +44,15 @@ pub struct Linear {
 
 /// 2xy/(x + y), also for infinite values.
 fn harmonic(x: f64, y: f64) -> f64 {
-    if x == 0.0 || y == 0.0 { 0.0 } else { 2.0 / (1.0 / x + 1.0 / y) }
+    if x.is_infinite() {
+        2.0 * y
+    } else if y.is_infinite() {
+        2.0 * x
+    } else if x + y > 0.0 {
+        2.0 * x * y / (x + y)
+    } else {
+        0.0
+    }
 }
 
 impl ContactLaw for Linear {
@@ -80,8 +88,10 @@ impl ContactLaw for Linear {
 
         // `now`: approach speed at this instant; `part`: share of the last step with contact; `weight`: of the dashpot.
         let (now, part, weight) = if history.is_fresh() {
-            let part = if rate > 0.0 { (geometry.overlap / (rate * dt)).min(1.0) } else { 0.5 };
-            (rate, part, part + 0.5)
+            // Far above 1: the contact is there from the start of the run, not from within this step.
+            let since = if rate > 0.0 { geometry.overlap / (rate * dt) } else { f64::INFINITY };
+            let part = since.min(1.0);
+            (rate, part, if since < 1.5 { part + 0.5 } else { 1.0 })
         } else {
             (1.5 * rate - 0.5 * history.rate, 1.0, 1.0)
         };

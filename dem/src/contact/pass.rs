@@ -8,7 +8,7 @@ use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::search::candidates::spheres;
 use crate::shape::cuboid;
-use crate::state::{Block, CrossPair, Lanes, xyz};
+use crate::state::{Block, Cross, Lanes, xyz};
 use crate::wall::triangulated::WallMotion;
 use crate::work::{BlockWork, CrossWork, Failure, Slot};
 
@@ -79,7 +79,7 @@ pub(crate) fn interior<L: ContactLaw, const RIGID: bool>(
         w.torque[a] += ma.arm.cross(&f.force);
         w.torque[b] -= mb.arm.cross(&f.force);
         let bound = p[3].min(q[3]);
-        if !(g.overlap <= bound) && w.failure.is_none() {
+        if g.overlap > bound && w.failure.is_none() {
             let partner = Partner::Body(block_ref.bodies[b] as usize);
             w.failure =
                 Some(Failure::Overlap { body: block_ref.bodies[a], partner, overlap: g.overlap, bound });
@@ -96,14 +96,13 @@ pub(crate) fn cross<L: ContactLaw, const RIGID: bool>(
     blocks: &[Block],
     works: &[BlockWork],
     b: usize,
-    lists: (&mut [CrossPair], &mut [CrossPair]),
+    lists: &mut Cross,
     out: &mut CrossWork,
     dt: f64,
 ) {
     (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
-    let (pairs, boxed) = lists;
-    let boxes_from = pairs.len();
-    for (slot, pair) in pairs.iter_mut().chain(boxed).enumerate() {
+    let boxes_from = lists.spheres.len();
+    for (slot, pair) in lists.spheres.iter_mut().chain(&mut lists.boxes).enumerate() {
         let (mine, other) = (&blocks[b], &blocks[pair.block as usize]);
         let (wa, wb) = (&works[b], &works[pair.block as usize]);
         let i = pair.i as usize;
@@ -132,7 +131,7 @@ pub(crate) fn cross<L: ContactLaw, const RIGID: bool>(
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         out.slots[slot] = Slot { force: f.force, point: g.point };
-        if !(g.overlap <= bound) && out.failure.is_none() {
+        if g.overlap > bound && out.failure.is_none() {
             let partner = Partner::Body(other.bodies[body_b] as usize);
             out.failure = Some(Failure::Overlap { body: mine.bodies[a], partner, overlap: g.overlap, bound });
         }
@@ -189,7 +188,7 @@ pub(crate) fn planes<L: ContactLaw, const RIGID: bool>(
         w.ledger.walls.add(&g.point, &(f.force * dt));
         w.force[a] += f.force;
         w.torque[a] += ma.arm.cross(&f.force);
-        if !(g.overlap <= bound) && w.failure.is_none() {
+        if g.overlap > bound && w.failure.is_none() {
             let partner = Partner::Plane(pair.plane as usize);
             w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap: g.overlap, bound });
         }

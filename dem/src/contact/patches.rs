@@ -51,7 +51,7 @@ fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], o
         let (point, outward) = (Vec3::from(closest.point), Vec3::from(closest.normal));
         let offset = x - point;
         let distance = offset.norm();
-        if !(distance < r) {
+        if distance >= r {
             continue;
         }
         let behind = surface.one_sided() && offset.dot(&outward) < 0.0;
@@ -130,7 +130,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             let passed = !pair.history.is_fresh() && pair.normal.dot(&g.normal) < -0.5;
             let overlap = if passed { 2.0 * r - g.overlap } else { g.overlap };
             let bound = if surface.one_sided() { 2.0 * r } else { r };
-            if (passed || !(overlap <= bound)) && w.failure.is_none() {
+            if (passed || overlap > bound) && w.failure.is_none() {
                 let partner = partner(pair.patch);
                 w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
             }

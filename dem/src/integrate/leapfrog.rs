@@ -53,7 +53,7 @@ pub(crate) fn advance<const RIGID: bool>(
             w.place_spheres(k, &centre, &q);
         }
         // Also catches a velocity that is not a number, which no maximum would show.
-        if !(speed2 <= bound * bound) && w.failure.is_none() {
+        if (speed2.is_nan() || speed2 > bound * bound) && w.failure.is_none() {
             w.failure = Some(Failure::Speed { body: block.bodies[k], speed: speed2.sqrt(), bound });
         }
         fastest2 = fastest2.max(speed2);

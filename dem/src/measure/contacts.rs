@@ -1,7 +1,7 @@
 //! Contacts as they are now, for force chains and coordination numbers.
 
 use crate::Vec3;
-use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass, patches};
+use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass};
 use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
@@ -110,8 +110,8 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             }
         };
         block.pairs.iter().for_each(|p| pair(p.i, b as u32, p.j, false, &p.history));
-        state.cross[b].iter().for_each(|p| pair(p.i, p.block, p.j, false, &p.history));
-        state.boxed[b].iter().for_each(|p| pair(p.i, p.block, p.j, true, &p.history));
+        state.cross[b].spheres.iter().for_each(|p| pair(p.i, p.block, p.j, false, &p.history));
+        state.cross[b].boxes.iter().for_each(|p| pair(p.i, p.block, p.j, true, &p.history));
         planes(model, state, &now, b, &mut f);
         for pair in &block.triangles {
             let material = model.triangles.material(pair.patch);

@@ -9,7 +9,7 @@ use crate::contact::History;
 use crate::model::Model;
 use crate::search::candidates::{self, spheres};
 use crate::shape::cuboid;
-use crate::state::{Block, CrossPair, Pair, PatchPair, PlanePair, State, xyz};
+use crate::state::{Block, Cross, CrossPair, Pair, PatchPair, PlanePair, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Gather, Work};
 use rayon::prelude::*;
@@ -62,13 +62,13 @@ fn candidates_hold(model: &Model, state: &State, work: &Work) -> bool {
 }
 
 fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let State { blocks, cross, boxed, planes, triangles, near, .. } = &mut *state;
+    let State { blocks, cross, planes, triangles, near, .. } = &mut *state;
     let (near, planes, motion) = (*near, &*planes, &*triangles);
     let parallel = work.parallel;
 
     // Contacts between blocks read positions of other blocks, so they come first and only read them.
     let (all, scratch) = (&*blocks, &work.blocks);
-    let between = |(b, (cross, boxed)): (usize, (&mut Vec<CrossPair>, &mut Vec<CrossPair>))| {
+    let between = |(b, cross): (usize, &mut Cross)| {
         let own = spheres(&all[b], &scratch[b], model.rigid);
         let close = |c: &&[u32; 3]| {
             let p = &own[c[0] as usize];
@@ -76,7 +76,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
             let reach = p[3] + q[3] + near;
             (xyz(p) - xyz(q)).norm_squared() < reach * reach
         };
-        merge(cross, scratch[b].cross.iter().filter(close).copied());
+        merge(&mut cross.spheres, scratch[b].cross.iter().filter(close).copied());
         let close = |c: &&[u32; 3]| {
             let p = &own[c[0] as usize];
             let (block, k) = (&all[c[1] as usize], c[2] as usize);
@@ -84,7 +84,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
                 block.rotation[k].orientation.inverse_transform_vector(&(xyz(p) - xyz(&block.centre[k])));
             cuboid::closest_point(&scratch[c[1] as usize].half[k], &local).2 < p[3] + near
         };
-        merge(boxed, scratch[b].boxed.iter().filter(close).copied());
+        merge(&mut cross.boxes, scratch[b].boxed.iter().filter(close).copied());
     };
     let within = |(block, w): (&mut Block, &mut BlockWork)| {
         let Block { centre, pairs, planes: plane_pairs, triangles, surface: surface_pairs, .. } = block;
@@ -109,10 +109,10 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         make_patches(surface, own, near, &w.surface, &mut w.patches, surface_pairs);
     };
     if parallel {
-        cross.par_iter_mut().zip(boxed.par_iter_mut()).enumerate().for_each(between);
+        cross.par_iter_mut().enumerate().for_each(between);
         blocks.par_iter_mut().zip(work.blocks.par_iter_mut()).for_each(within);
     } else {
-        cross.iter_mut().zip(boxed.iter_mut()).enumerate().for_each(between);
+        cross.iter_mut().enumerate().for_each(between);
         blocks.iter_mut().zip(work.blocks.iter_mut()).for_each(within);
     }
     link(state, work);
@@ -225,7 +225,7 @@ fn make_patches<S: Surface>(
 pub(crate) fn link(state: &State, work: &mut Work) {
     work.blocks.iter_mut().for_each(|w| w.gather.clear());
     for b in 0..state.blocks.len() {
-        let (cross, boxed) = (&state.cross[b], &state.boxed[b]);
+        let (cross, boxed) = (&state.cross[b].spheres, &state.cross[b].boxes);
         work.cross[b].slots.clear();
         work.cross[b].slots.resize(cross.len() + boxed.len(), Default::default());
         for (slot, pair) in cross.iter().chain(boxed).enumerate() {

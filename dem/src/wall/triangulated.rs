@@ -74,7 +74,7 @@ impl TriangleWalls {
                 if !longest2.is_finite() {
                     return Err(error("it has a vertex that is not finite"));
                 }
-                if !(area.norm() > FLATTEST * longest2) {
+                if area.norm() <= FLATTEST * longest2 {
                     return Err(error("it has no area"));
                 }
                 let number = |key: [u32; 2]| keys.partition_point(|k| *k < key) as u32 + edge_base;

@@ -1,0 +1,11 @@
+//! The engine against closed forms, balances, and itself.
+
+mod balance;
+mod determinism;
+mod friction;
+mod impact;
+mod order;
+mod refusals;
+mod scene;
+mod seams;
+mod walls;

@@ -1,0 +1,151 @@
+//! Triangle surfaces: no seam may be felt.
+
+use crate::scene::{Random, Run, plane, sphere, stone, weightless};
+use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TriangleSurface, Vec3, measure};
+
+fn on_triangles(vertices: &[[f64; 3]], triangles: &[[u32; 3]], body: BodyInput) -> ModelInput {
+    let mut input = weightless(Material { stiffness: 1e6, tangential_damping_ratio: 0.3, ..stone() });
+    input.triangles.push(TriangleSurface {
+        vertices: vertices.iter().map(|&v| v.into()).collect(),
+        triangles: triangles.to_vec(),
+        ..TriangleSurface::default()
+    });
+    input.bodies.push(body);
+    input
+}
+
+/// A rough floor of many triangles of random shape, vertices shared or not: the same motion as on a plane, to
+/// rounding, sliding and rolling over all its seams, for a sphere and for a clump.
+#[test]
+fn triangulated_floor_is_a_plane() {
+    let mut random = Random::new(5);
+    let n = 8;
+    let pitch = 0.02;
+    let mut vertices = Vec::new();
+    for j in 0..=n {
+        for i in 0..=n {
+            let mut shift = || (random.unit() - 0.5) * 0.6 * pitch;
+            vertices.push([
+                (f64::from(i) - 1.0) * pitch + shift(),
+                (f64::from(j) - 4.0) * pitch + shift(),
+                0.0,
+            ]);
+        }
+    }
+    let at = |i: i32, j: i32| (j * (n + 1) + i) as u32;
+    let mut triangles = Vec::new();
+    for j in 0..n {
+        for i in 0..n {
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            triangles.extend(if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[b, a, d], [b, c, d]] });
+        }
+    }
+    let soup_vertices: Vec<[f64; 3]> =
+        triangles.iter().flat_map(|t| t.iter().map(|&v| vertices[v as usize])).collect();
+    let soup_triangles: Vec<[u32; 3]> =
+        (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+
+    let ball = BodyInput {
+        spin: Vec3::new(0.0, 0.0, 15.0),
+        ..sphere(Vec3::new(0.0, 0.001, 0.0099), Vec3::new(0.5, 0.013, 0.0))
+    };
+    let stone = BodyInput { shape: 1, position: Vec3::new(0.0, 0.0, 0.02), ..ball.clone() };
+    for body in [ball, stone] {
+        let prepare = |mut input: ModelInput| {
+            input.shapes.push(Shape::Clump(crate::scene::clump()));
+            input.gravity = Vec3::new(0.0, 0.0, -9.81);
+            Run::new(input)
+        };
+        let mut flat = on_triangles(&[], &[], body.clone());
+        flat.triangles.clear();
+        flat.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        let mut reference = prepare(flat);
+        let mut runs = [(&vertices, &triangles), (&soup_vertices, &soup_triangles)]
+            .map(|(v, t)| prepare(on_triangles(v, t, body.clone())));
+        // Contact by contact the difference is rounding; a tumbling clump doubles it with each bounce.
+        let bounce = if body.shape == 0 { 1e-10 } else { 1e-6 };
+        let mut forces = 0.0_f64;
+        while reference.state.time < 0.2 {
+            reference.step();
+            let force = reference.work.contact_force(&reference.state, 0);
+            forces = forces.max(force.norm());
+            for run in &mut runs {
+                run.step();
+                let difference = (run.work.contact_force(&run.state, 0) - force).norm();
+                assert!(difference <= bounce * forces, "t {}: {difference:e}", run.state.time);
+                assert!((run.state.position(0) - reference.state.position(0)).norm() < bounce);
+            }
+        }
+        assert!(
+            reference.state.position(0).x > 0.05,
+            "it must cross seams, x {}",
+            reference.state.position(0).x
+        );
+    }
+}
+
+fn contact_count(vertices: &[[f64; 3]], triangles: &[[u32; 3]], centre: Vec3) -> (usize, Vec3) {
+    let mut run = Run::new(on_triangles(vertices, triangles, sphere(centre, Vec3::zeros())));
+    run.step();
+    let contacts = measure::contacts(&run.model, &run.state);
+    (contacts.len(), run.work.contact_force(&run.state, 0))
+}
+
+/// A ridge, touched on its edge, counts once and pushes straight up; a valley counts both sides.
+#[test]
+fn ridge_counts_once_and_valley_twice() {
+    let roof = |h: f64| {
+        [
+            [-0.1, -0.1, 0.0],
+            [-0.1, 0.1, 0.0],
+            [0.0, 0.1, h],
+            [0.0, -0.1, h],
+            [0.1, -0.1, 0.0],
+            [0.1, 0.1, 0.0],
+        ]
+    };
+    let triangles = [[0, 1, 2], [0, 2, 3], [3, 2, 5], [3, 5, 4]];
+    let overlap = 1e-4;
+    let (count, force) = contact_count(&roof(0.05), &triangles, Vec3::new(0.0, 0.013, 0.05 + 0.01 - overlap));
+    assert_eq!(count, 1);
+    assert!((force - Vec3::new(0.0, 0.0, 1e6 * overlap)).norm() < 1e-6, "{force}");
+
+    let slope = (0.05_f64 / 0.1).atan();
+    let height = (0.01 - overlap) / slope.cos();
+    let (count, force) = contact_count(&roof(-0.05), &triangles, Vec3::new(0.0, 0.013, -0.05 + height));
+    assert_eq!(count, 2);
+    assert!((force.z - 2.0 * 1e6 * overlap * slope.cos()).abs() < 1e-6 && force.x.abs() < 1e-6, "{force}");
+}
+
+/// The tip of a pyramid counts once, the corner of a room three times, the diagonal of a square once.
+#[test]
+fn corners_and_diagonals() {
+    let base = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
+    let with_tip = |h: f64| [base[0], base[1], base[2], base[3], [0.0, 0.0, h]];
+    let sides = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+    let (count, force) = contact_count(&with_tip(0.1), &sides, Vec3::new(0.0, 0.0, 0.1099));
+    assert_eq!(count, 1);
+    assert!((force - Vec3::new(0.0, 0.0, 100.0)).norm() < 1e-6, "{force}");
+    for centre in [[0.0, 0.0], [0.05, 0.05], [0.03, -0.03], [0.0, 0.05], [0.02, 0.071]] {
+        let (count, force) = contact_count(&with_tip(0.0), &sides, Vec3::new(centre[0], centre[1], 0.0099));
+        assert_eq!(count, 1, "{centre:?}");
+        assert!((force - Vec3::new(0.0, 0.0, 100.0)).norm() < 1e-6, "{force}");
+    }
+    let room = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]];
+    let walls = [[0, 1, 2], [0, 2, 3], [0, 3, 1]];
+    let (count, force) = contact_count(&room, &walls, Vec3::repeat(0.0099));
+    assert_eq!(count, 3);
+    assert!((force - Vec3::repeat(100.0)).norm() < 1e-6, "{force}");
+}
+
+/// From below the same triangles push down: two-sided.
+#[test]
+fn both_sides_push() {
+    let square = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
+    for side in [1.0, -1.0] {
+        let centre = Vec3::new(0.01, 0.02, side * 0.0099);
+        let (count, force) = contact_count(&square, &[[0, 1, 2], [0, 2, 3]], centre);
+        assert_eq!(count, 1);
+        assert!((force - Vec3::new(0.0, 0.0, side * 100.0)).norm() < 1e-6, "{force}");
+    }
+}
