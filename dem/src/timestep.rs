@@ -11,7 +11,9 @@
 //! z³ + (Ω² + 3b/2 − 2) z² + (1 − 2b) z + b/2, b = 2ζ'Ω, is −1.)
 //!
 //! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
-//! it with more than one member), and for a box as many of the smallest spheres as its largest side can hold.
+//! it with more than one member), and for a box twice as many as neighbours of the smallest bounding radius find
+//! room on its largest side, two contacts each. Contacts on a clump may all lie far out, so its r² is the largest;
+//! those on the side of a box are spread over it, so its r² is the mean over the side.
 //! Limits: linear contacts; very unlike sizes, where one large body has more contacts than s, are on the safe side
 //! because its mass grows faster than their number.
 
@@ -50,6 +52,12 @@ impl fmt::Display for DtLimit {
 /// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
 pub(crate) fn limit(bodies: &[Body], input: &ModelInput, table: &PairTable<Linear>, r_min: f64) -> DtLimit {
     let partners = partners(bodies, input);
+    let r_min = bodies
+        .iter()
+        .filter(|b| b.kind != Kind::Box)
+        .map(|b| b.radius)
+        .fold(f64::INFINITY, f64::min)
+        .clamp(r_min, f64::MAX);
     let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0 };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
@@ -63,7 +71,7 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, table: &PairTable<Linea
             Shape::Clump(_) => 24.0,
             Shape::Box { half } => {
                 let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
-                2.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
+                4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
             }
         };
         for &partner in &partners {
@@ -100,7 +108,7 @@ fn partners(bodies: &[Body], input: &ModelInput) -> Vec<usize> {
     (0..used.len()).filter(|&m| used[m]).collect()
 }
 
-/// 1/m + max over the principal axes of (largest distance from the axis)²/I [1/kg].
+/// 1/m + max over the principal axes of (distance of contacts from the axis)²/I [1/kg].
 fn compliance(body: &Body, shape: &Shape) -> f64 {
     let mut reach2 = [0.0_f64; 3];
     match shape {
@@ -115,7 +123,9 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
         }
         Shape::Box { half } => {
             for k in 0..3 {
-                reach2[k] = half[(k + 1) % 3].powi(2) + half[(k + 2) % 3].powi(2);
+                let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
+                // Contacts spread over a side have a third of the squared half length along it, all of it across.
+                reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
             }
         }
     }

@@ -265,7 +265,7 @@ fn time_step(document: &Document, time: &TimeControl) -> Result<TimeStep, SceneE
                 let key = "time.accept_step_above_limit";
                 return Err(document.error(key, "true", "a `grain_step` that it accepts"));
             }
-            let fraction = fraction.unwrap_or(0.2);
+            let fraction = fraction.unwrap_or(0.9);
             check(document, "time.grain_step_fraction", Some(fraction), |f| f > 0.0 && f <= 1.0, "above 0, at most 1")?;
             Ok(TimeStep::Auto { fraction })
         }

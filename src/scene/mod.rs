@@ -107,7 +107,7 @@ pub struct TimeControl {
     pub solid_step: Option<Quantity<Time>>,
     /// Step of the grains [s]; default: `grain_step_fraction` of the limit.
     pub grain_step: Option<Quantity<Time>>,
-    /// Fraction of the critical step that the grains take, 0–1; default 0.2.
+    /// Fraction of the stability limit that the grains take, 0–1; default 0.9 (the limit is a safe bound).
     pub grain_step_fraction: Option<f64>,
     /// Accept a `grain_step` above the limit; default false.
     #[serde(default)]
