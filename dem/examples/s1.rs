@@ -8,7 +8,14 @@ use trackbed_dem::{
     BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, Vec3, Work, measure,
 };
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+type Outcome = Result<(), Box<dyn std::error::Error + Send + Sync>>;
+
+fn main() -> Outcome {
+    // Inside the pool from the start: no hand-over per step.
+    rayon::ThreadPoolBuilder::new().build()?.install(run)
+}
+
+fn run() -> Outcome {
     let mut args = std::env::args().skip(1);
     let path = args.next().ok_or("name a CSV file of x, y, z, r")?;
     let steps: u32 = args.next().map_or(Ok(1000), |s| s.parse())?;

@@ -15,7 +15,8 @@ pub fn sphere_sphere(xa: &Vec3, ra: f64, xb: &Vec3, rb: f64) -> Option<ContactGe
         return None;
     }
     let distance = distance2.sqrt();
-    let normal = if distance > 0.0 { between / distance } else { Vec3::z() };
+    // distance/distance² rather than 1/distance: the division need not wait for the root.
+    let normal = if distance > 0.0 { between * (distance * (1.0 / distance2)) } else { Vec3::z() };
     let overlap = reach - distance;
     let point = xa - normal * (ra - 0.5 * overlap);
     Some(ContactGeometry { point, normal, overlap, radius: ra * rb / reach })

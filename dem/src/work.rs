@@ -176,32 +176,6 @@ impl Work {
     pub fn rebuilds(&self) -> (u64, u64) {
         (self.searches, self.refreshes)
     }
-
-    /// Bytes that the scratch holds.
-    pub fn bytes(&self) -> usize {
-        fn of<T>(v: &Vec<T>) -> usize {
-            v.capacity() * size_of::<T>()
-        }
-        let blocks: usize = self
-            .blocks
-            .iter()
-            .map(|w| {
-                of(&w.mass)
-                    + of(&w.inertia)
-                    + of(&w.inverse_inertia)
-                    + of(&w.owner)
-                    + of(&w.local)
-                    + of(&w.spheres)
-                    + of(&w.reference)
-                    + of(&w.candidates)
-                    + of(&w.cross)
-                    + of(&w.gather)
-                    + of(&w.force)
-                    + of(&w.torque)
-            })
-            .sum();
-        blocks + of(&self.points) + of(&self.names) + self.cross.iter().map(|c| of(&c.slots)).sum::<usize>()
-    }
 }
 
 impl BlockWork {

@@ -8,7 +8,7 @@ use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::search::candidates::spheres;
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, Lanes, xyz};
+use crate::state::{Block, Cross, Lanes, Pair, xyz};
 use crate::wall::triangulated::WallMotion;
 use crate::work::{BlockWork, CrossWork, Failure, Slot};
 
@@ -56,21 +56,83 @@ pub(crate) fn interior<L: ContactLaw, const RIGID: bool>(
     dt: f64,
 ) {
     let mut pairs = std::mem::take(&mut block.pairs);
-    let block_ref = &*block;
-    let own = if RIGID { &w.spheres[..] } else { &block_ref.centre[..] };
+    if RIGID {
+        members(laws, block, w, &mut pairs, dt);
+    } else {
+        lone_spheres(laws, block, w, &mut pairs, dt);
+    }
+    block.pairs = pairs;
+}
+
+/// Spheres that are bodies of their own. Levers lie along the normal, which leaves one cross product for the
+/// velocity and one for both torques.
+fn lone_spheres<L: ContactLaw>(
+    laws: &PairTable<L>,
+    block: &Block,
+    w: &mut BlockWork,
+    pairs: &mut [Pair],
+    dt: f64,
+) {
+    let n = block.centre.len();
+    let (centre, velocity, spin) = (&block.centre[..n], &block.velocity[..n], &block.spin[..n]);
+    let (force, torque) = (&mut w.force[..n], &mut w.torque[..n]);
+    // Most blocks hold one material: then no look-up per pair.
+    let first = spin.first().map_or(0.0, |s| s[3]);
+    let single = spin.iter().all(|s| s[3] == first).then(|| *laws.get(first as u32, first as u32));
+    let law = |a: usize, b: usize| single.unwrap_or_else(|| *laws.get(spin[a][3] as u32, spin[b][3] as u32));
     let (mut dashpot, mut friction) = (0.0, 0.0);
-    for pair in &mut pairs {
-        let (i, j) = (pair.i as usize, pair.j as usize);
-        let (p, q) = (&own[i], &own[j]);
-        let (a, b) = if RIGID { (w.owner[i] as usize, w.owner[j] as usize) } else { (i, j) };
+    for pair in pairs {
+        let (a, b) = (pair.i as usize, pair.j as usize);
+        let (p, q) = (&centre[a], &centre[b]);
         let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &xyz(q), q[3]) else {
             if !pair.history.is_fresh() {
-                let law = laws.get(block_ref.spin[a][3] as u32, block_ref.spin[b][3] as u32);
+                friction += law(a, b).release(&mut pair.history);
+            }
+            continue;
+        };
+        let (la, lb) = (p[3] - 0.5 * g.overlap, q[3] - 0.5 * g.overlap);
+        let (va, vb) = (&velocity[a], &velocity[b]);
+        let turning = xyz(&spin[a]) * la + xyz(&spin[b]) * lb;
+        let relative = xyz(va) - xyz(vb) + g.normal.cross(&turning);
+        let f = law(a, b).respond(1.0 / (va[3] + vb[3]), &g, &relative, &mut pair.history, dt);
+        dashpot += f.dashpot;
+        friction += f.friction;
+        force[a] += f.force;
+        force[b] -= f.force;
+        let moment = f.force.cross(&g.normal);
+        torque[a] += moment * la;
+        torque[b] += moment * lb;
+        let bound = p[3].min(q[3]);
+        if g.overlap > bound && w.failure.is_none() {
+            let partner = Partner::Body(block.bodies[b] as usize);
+            w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap: g.overlap, bound });
+        }
+    }
+    w.ledger.dissipated_dashpot += dashpot;
+    w.ledger.dissipated_friction += friction;
+}
+
+/// Member spheres of clumps, and single spheres among them.
+fn members<L: ContactLaw>(
+    laws: &PairTable<L>,
+    block: &Block,
+    w: &mut BlockWork,
+    pairs: &mut [Pair],
+    dt: f64,
+) {
+    let (mut dashpot, mut friction) = (0.0, 0.0);
+    for pair in pairs {
+        let (i, j) = (pair.i as usize, pair.j as usize);
+        let (p, q) = (&w.spheres[i], &w.spheres[j]);
+        let (a, b) = (w.owner[i] as usize, w.owner[j] as usize);
+        let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &xyz(q), q[3]) else {
+            if !pair.history.is_fresh() {
+                let law = laws.get(block.spin[a][3] as u32, block.spin[b][3] as u32);
                 friction += law.release(&mut pair.history);
             }
             continue;
         };
-        let (ma, mb) = (motion(block_ref, a, &g.point), motion(block_ref, b, &g.point));
+        let (ma, mb) = (motion(block, a, &g.point), motion(block, b, &g.point));
         let f = between(laws, &g, &ma, &mb, &mut pair.history, dt);
         dashpot += f.dashpot;
         friction += f.friction;
@@ -80,14 +142,12 @@ pub(crate) fn interior<L: ContactLaw, const RIGID: bool>(
         w.torque[b] -= mb.arm.cross(&f.force);
         let bound = p[3].min(q[3]);
         if g.overlap > bound && w.failure.is_none() {
-            let partner = Partner::Body(block_ref.bodies[b] as usize);
-            w.failure =
-                Some(Failure::Overlap { body: block_ref.bodies[a], partner, overlap: g.overlap, bound });
+            let partner = Partner::Body(block.bodies[b] as usize);
+            w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap: g.overlap, bound });
         }
     }
     w.ledger.dissipated_dashpot += dashpot;
     w.ledger.dissipated_friction += friction;
-    block.pairs = pairs;
 }
 
 /// Contacts of block `b`'s spheres with spheres and boxes elsewhere: forces go to slots.

@@ -17,7 +17,8 @@ fn refused(change: impl FnOnce(&mut ModelInput)) -> ModelError {
 
 #[test]
 fn materials_out_of_range() {
-    let cases: [(&str, fn(&mut Material)); 6] = [
+    type Change = fn(&mut Material);
+    let cases: [(&str, Change); 6] = [
         ("density", |m| m.density = 0.0),
         ("stiffness", |m| m.stiffness = -1.0),
         ("friction", |m| m.friction = -0.1),
