@@ -1,0 +1,12 @@
+//! The tests of the whole program: each runs the binary as a user would, on scene files, and judges what it says and
+//! what it leaves on disk.
+
+mod suite {
+    mod bad_input;
+    mod cli;
+    mod determinism;
+    mod fem_cases;
+    mod scenes;
+    mod summary;
+    pub mod support;
+}
