@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::model::Job;
+use crate::model::grains::refused;
 use crate::scene::{Document, Scene};
 use std::fmt::Write;
 use std::path::Path;
@@ -39,7 +40,7 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
     }
     if let Some(grains) = &job.grains {
         let model = dem::Model::new(grains.input(grains.bodies.clone()))
-            .map_err(|e| Failure::Input(format!("{}: grains: {e}", document.file().display())))?;
+            .map_err(|e| refused(&document, &e))?;
         line(format!("grains: {} bodies with {} spheres", model.body_count(), model.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
         if let Some(d) = &grains.deposition {

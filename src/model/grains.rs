@@ -11,7 +11,7 @@ use nalgebra::UnitQuaternion;
 use trackbed_dem::insert::place;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
-    BodyInput, LocalDamping, Material, Model, ModelInput, PairOverride, Plane, TimeStep, TriangleSurface, Vec3,
+    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, TriangleSurface, Vec3,
 };
 
 /// The grains, ready to build models of.
@@ -211,6 +211,24 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     Ok(part)
 }
 
+/// What is wrong with the grains as a whole, which shows only when their model is made.
+pub fn refused(document: &Document, error: &ModelError) -> SceneError {
+    match error {
+        ModelError::TimeStep { dt, limit, cause } => {
+            let expected = format!("at most {limit:.6e} s, set by {cause}, or `accept_step_above_limit = true`");
+            document.error("time.grain_step", format!("{dt} s"), expected)
+        }
+        ModelError::RigidPair { a, b } => {
+            let found = format!("no stiffness for {a} against {b}, which may touch");
+            document.error("material", found, "`stiffness` for one of their materials, or for the pair")
+        }
+        ModelError::Wall { wall, problem } => {
+            document.error("walls", format!("{wall}: {problem}"), "walls with an area")
+        }
+        other => document.error("grains", other.to_string(), "grains and walls that make a model"),
+    }
+}
+
 fn check(
     document: &Document,
     key: &str,
@@ -219,7 +237,7 @@ fn check(
     expected: &str,
 ) -> Result<(), SceneError> {
     match value {
-        Some(v) if !good(v) => Err(document.error(key, v.to_string(), expected)),
+        Some(v) if !(v.is_finite() && good(v)) => Err(document.error(key, v.to_string(), expected)),
         _ => Ok(()),
     }
 }
@@ -323,6 +341,9 @@ fn add_group(
             (_, Some(file)) => tables::packing(&document.resolve(file))?,
             _ => Vec::new(),
         };
+        if spheres.is_empty() {
+            return Err(document.error(&key("spheres"), "none", "at least one sphere").into());
+        }
         let shape = part.shapes.len();
         part.shapes.push(Shape::Sphere { radius: 1.0 });
         part.bodies.extend(spheres.iter().map(|(c, r)| body(shape, *r, Vec3::from(*c), UnitQuaternion::identity())));

@@ -48,7 +48,7 @@ impl Job {
     /// Bad input: one sentence with file, line, key, found and expected.
     pub fn new(document: &Document, scene: &Scene) -> Result<Job, Failure> {
         if scene.solid.is_none() && scene.grains.is_empty() {
-            return Err(document.error("", "neither [solid] nor [[grains]]", "at least one of them").into());
+            return Err(document.error("scene", "neither [solid] nor [[grains]]", "at least one of them").into());
         }
         let gravity = vector(&scene.gravity);
         let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity)).transpose()?;

@@ -7,7 +7,7 @@ use crate::scene::solid::{Integration, Rayleigh, Solid, SolidLoad, SolidLoadKind
 use crate::scene::units::vector;
 use crate::scene::{Document, SceneError};
 use std::collections::{BTreeMap, HashMap};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use trackbed_coupling::{face, inverse_map};
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
@@ -125,10 +125,8 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         None => None,
         Some(d) => {
             let method = fem::newmark::Newmark { alpha: d.alpha, delta: d.delta };
-            // Their range is checked in any case when the solver is made.
-            if !d.accept_conditional_stability {
-                method.check().map_err(|e| document.error("solid.dynamics", e.to_string(), "stable constants"))?;
-            }
+            let checked = if d.accept_conditional_stability { method.check_range() } else { method.check() };
+            checked.map_err(|e| document.error("solid.dynamics", e.to_string(), "stable constants"))?;
             Some(method)
         }
     };
@@ -140,9 +138,22 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         gravity: if solid.gravity { gravity } else { [0.0; 3] },
         rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
     })
-    .map_err(|e| Failure::Input(format!("{}: {e}", document.resolve(&solid.elements).display())))?;
+    .map_err(|e| refused(&document.resolve(&solid.elements), &e))?;
     let constraint_file = document.resolve(solid.constraints.as_deref().unwrap_or(&solid.elements));
     Ok(SolidPart { model, loads, newmark, constraint_file, material_names, warnings: lists.warnings })
+}
+
+/// What is wrong with the mesh, which shows only when its model is made.
+fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
+    let (key, found, expected) = match error {
+        fem::ModelError::Inverted { element, point: [xi, eta, zeta], determinant } => (
+            format!("element {element}"),
+            format!("a Jacobian determinant of {determinant:.6e} m3 at ({xi:.2}, {eta:.2}, {zeta:.2}): inverted or flat"),
+            "a determinant above 0",
+        ),
+        other => ("mesh".into(), other.to_string(), "a mesh that makes a model"),
+    };
+    SceneError { file: elements.to_path_buf(), line: None, key, found, expected: expected.into() }
 }
 
 fn check(document: &Document, key: &str, value: f64, good: bool, expected: &str) -> Result<(), SceneError> {
@@ -153,6 +164,10 @@ fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::dam
     let Some(r) = rayleigh else { return Ok(fem::damping::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
     let result = match (r.alpha_m, r.beta_k, r.damping_ratio, r.frequencies) {
         (alpha, beta, None, None) => {
+            for (name, value) in [("alpha_m", alpha.map(|a| a.si)), ("beta_k", beta.map(|b| b.si))] {
+                let value = value.unwrap_or(0.0);
+                check(document, &format!("solid.rayleigh.{name}"), value, value >= 0.0, "0 or more")?;
+            }
             fem::damping::Rayleigh { alpha_m: alpha.map_or(0.0, |a| a.si), beta_k: beta.map_or(0.0, |b| b.si) }
         }
         (None, None, Some(ratio), Some([f1, f2])) => {

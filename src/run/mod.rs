@@ -11,7 +11,7 @@ pub use cycles::{Cycle, CycleRecorder};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
-use crate::model::grains::{DepositionPlan, GrainsPart};
+use crate::model::grains::{DepositionPlan, GrainsPart, refused};
 use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
@@ -61,7 +61,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
             threads: rayon::current_num_threads(),
             ..Summary::default()
         };
-        let stage = Stage { job: &job, dir: &dir, quiet: options.quiet };
+        let stage = Stage { document: &document, job: &job, dir: &dir, quiet: options.quiet };
         let result = stage.run(&mut summary);
         summary.peak_memory = peak_memory();
         match &result {
@@ -127,6 +127,7 @@ fn hash(document: &Document, scene: &Scene) -> String {
 
 /// One run in progress.
 struct Stage<'a> {
+    document: &'a Document,
     job: &'a Job,
     dir: &'a Path,
     quiet: bool,
@@ -166,7 +167,7 @@ impl Stage<'_> {
             },
             (None, Some(grains), _) => {
                 let deposited = self.deposit(grains, None, summary)?;
-                let bodies = self.with_sleeper(grains, deposited, None);
+                let bodies = self.with_sleeper(grains, deposited, None)?;
                 let model = self.grain_model(grains.input(bodies), summary)?;
                 let mut system = GrainsSystem::new(model);
                 self.prepare()?;
@@ -175,7 +176,7 @@ impl Stage<'_> {
             (Some(solid), Some(grains), Some(plan)) => {
                 let surface = SolidSurface::new(solid.model.mesh(), plan.faces.clone());
                 let deposited = self.deposit(grains, Some(&surface), summary)?;
-                let bodies = self.with_sleeper(grains, deposited, Some(&surface));
+                let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
                 let model = self.grain_model(grains.input(bodies), summary)?;
                 let mut system = self.couple(solid, model, plan, surface, summary)?;
                 self.prepare()?;
@@ -198,7 +199,7 @@ impl Stage<'_> {
     }
 
     fn grain_model(&self, input: dem::ModelInput, summary: &mut Summary) -> Result<dem::Model, Failure> {
-        let model = dem::Model::new(input).map_err(|e| Failure::Input(format!("grains: {e}")))?;
+        let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());
@@ -215,7 +216,8 @@ impl Stage<'_> {
         summary: &mut Summary,
     ) -> Result<Vec<BodyInput>, Failure> {
         let Some(plan) = &grains.deposition else { return Ok(grains.bodies.clone()) };
-        let model = dem::Model::new(grains.deposition_input(plan)).map_err(|e| Failure::Input(format!("grains: {e}")))?;
+        let input = grains.deposition_input(plan);
+        let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
         let mut state = dem::State::new(&model);
         let mut work = dem::Work::new(&model, &state);
         let progress = Progress::start("settling", plan.max_time, self.quiet);
@@ -258,7 +260,7 @@ impl Stage<'_> {
             parts: Default::default(),
         });
         if bodies.is_empty() {
-            return Err(Failure::Input("deposition.level: found no grain below it, expected at least one".into()));
+            return Err(self.document.error("deposition.level", "no grain below it", "at least one").into());
         }
         Ok(bodies)
     }
@@ -269,9 +271,9 @@ impl Stage<'_> {
         grains: &GrainsPart,
         mut bodies: Vec<BodyInput>,
         surface: Option<&SolidSurface>,
-    ) -> Vec<BodyInput> {
-        let Some(plan) = &grains.sleeper else { return bodies };
-        let model = dem::Model::new(grains.input(bodies.clone())).expect("the bodies made a model before");
+    ) -> Result<Vec<BodyInput>, Failure> {
+        let Some(plan) = &grains.sleeper else { return Ok(bodies) };
+        let model = dem::Model::new(grains.input(bodies.clone())).map_err(|e| refused(self.document, &e))?;
         let state = dem::State::new(&model);
         let mut top = f64::NEG_INFINITY;
         for body in 0..model.body_count() {
@@ -288,7 +290,7 @@ impl Stage<'_> {
             top = surface.map_or(0.0, |s| s.highest());
         }
         bodies.push(grains.sleeper_body(plan, top + plan.half[2]));
-        bodies
+        Ok(bodies)
     }
 
     /// Joins grains and solid. The solid starts in static equilibrium with its weight and the grains that rest on

@@ -25,9 +25,9 @@ impl Document {
         let text = std::fs::read_to_string(file).map_err(|e| SceneError {
             file: file.to_path_buf(),
             line: None,
-            key: String::new(),
+            key: "file".into(),
             found: e.to_string(),
-            expected: "a readable scene file".into(),
+            expected: "a readable file".into(),
         })?;
         Document::parse(file, text)
     }
@@ -37,12 +37,16 @@ impl Document {
     /// # Errors
     /// The text is not TOML.
     pub fn parse(file: &Path, text: String) -> Result<Document, SceneError> {
-        DeTable::parse(&text).map_err(|e| SceneError {
-            file: file.to_path_buf(),
-            line: e.span().map(|s| line_of(&text, s.start)),
-            key: String::new(),
-            found: e.message().lines().collect::<Vec<_>>().join(", "),
-            expected: "valid TOML".into(),
+        DeTable::parse(&text).map_err(|e| {
+            let message = e.message().lines().collect::<Vec<_>>().join(", ");
+            let (found, expected) = message.split_once(", expected ").unwrap_or((&message, "valid TOML"));
+            SceneError {
+                file: file.to_path_buf(),
+                line: e.span().map(|s| line_of(&text, s.start)),
+                key: "syntax".into(),
+                found: found.into(),
+                expected: expected.into(),
+            }
         })?;
         Ok(Document { file: file.to_path_buf(), text, overrides: Vec::new() })
     }
@@ -128,8 +132,9 @@ impl Document {
 
     /// An error about the key at `path` (such as `solid.material.0.poisson`), with its line.
     pub fn error(&self, path: &str, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
+        let overridden = self.overrides.iter().any(|(key, _)| key == path);
         SceneError {
-            file: self.file.clone(),
+            file: if overridden { PathBuf::from("--set") } else { self.file.clone() },
             line: self.locate(path),
             key: path.to_string(),
             found: found.into(),
