@@ -1,0 +1,48 @@
+//! Assembly: checks, pattern, stiffness and consistent mass of blocks of 20-node bricks (`Model::new`), in elements
+//! per second of wall time (divan's `item/s`). Arguments: elements along each side of the cube, threads. `full` is the
+//! 27-point rule of the stiffness, `reduced` the 8-point rule; the mass always takes 27 points.
+//!
+//! `cargo bench --bench assembly` (about 15 s).
+
+#[path = "common/watch.rs"]
+mod watch;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use trackbed_fem::{Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh};
+
+fn main() {
+    divan::main();
+    watch::print_remarks();
+}
+
+#[divan::bench(args = [(8, 1), (8, 2), (16, 1), (16, 2)], sample_count = 20, sample_size = 1, max_time = 3)]
+fn full(bencher: Bencher<'_, '_>, (side, threads): (usize, usize)) {
+    assemble(bencher, side, threads, Quadrature::Gauss3);
+}
+
+#[divan::bench(args = [(8, 1), (8, 2), (16, 1), (16, 2)], sample_count = 20, sample_size = 1, max_time = 3)]
+fn reduced(bencher: Bencher<'_, '_>, (side, threads): (usize, usize)) {
+    assemble(bencher, side, threads, Quadrature::Gauss2);
+}
+
+fn assemble(bencher: Bencher<'_, '_>, side: usize, threads: usize, quadrature: Quadrature) {
+    let input = ModelInput {
+        mesh: Mesh::block([side; 3], [1.0; 3]),
+        materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 })].into(),
+        quadrature,
+        constraints: Vec::new(),
+        gravity: [0.0; 3],
+        rayleigh: Rayleigh::default(),
+    };
+    let pool = watch::pool(threads);
+    let (mut watch, mut elements) = (watch::Watch::default(), 0);
+    bencher.counter(ItemsCount::new(side.pow(3))).with_inputs(|| input.clone()).bench_local_values(|input| {
+        elements += input.mesh.element_count();
+        watch.time(|| pool.install(|| Model::new(input).expect("a block is a model")))
+    });
+    watch::remark(format!(
+        "{quadrature:?}, {side}³ elements, {threads} threads: {:.1} k elements per processor second",
+        elements as f64 / watch.cpu / 1e3
+    ));
+}

@@ -1,0 +1,51 @@
+//! Wall and processor time, thread pools, and remarks that are printed below divan's table.
+
+use std::sync::Mutex;
+use std::time::Instant;
+
+static REMARKS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Keeps a line for [`print_remarks`].
+pub fn remark(line: String) {
+    REMARKS.lock().expect("no benchmark panicked").push(line);
+}
+
+/// Prints what was remarked, in order.
+pub fn print_remarks() {
+    for line in REMARKS.lock().expect("no benchmark panicked").drain(..) {
+        println!("{line}");
+    }
+}
+
+/// A pool of its own for each number of threads.
+pub fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
+}
+
+/// Sums wall and processor seconds of some work. Processor time is the figure to trust on a shared machine.
+#[derive(Default)]
+pub struct Watch {
+    pub wall: f64,
+    /// Of all threads; zero where the system does not tell (it needs Linux).
+    pub cpu: f64,
+}
+
+impl Watch {
+    pub fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let (wall, cpu) = (Instant::now(), cpu_seconds());
+        let result = work();
+        self.wall += wall.elapsed().as_secs_f64();
+        self.cpu += cpu_seconds() - cpu;
+        result
+    }
+}
+
+/// Processor seconds of all threads so far.
+fn cpu_seconds() -> f64 {
+    let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
+        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        text.split(' ').next()?.parse().ok()
+    };
+    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    tasks.filter_map(nanoseconds).sum::<f64>() * 1e-9
+}

@@ -1,0 +1,171 @@
+//! The coupled step: grains on an elastic block of 20-node bricks, in windows per second of wall time (divan's
+//! `item/s`); a window is 10 steps of the grains and one of the solid. Below the table: milliseconds of each part in a
+//! window, and simulated seconds per second.
+//!
+//! `cargo bench --bench coupled` (about 20 s).
+//!
+//! * `settling`: 1,000 spheres (radius up to 45 mm) fall in a box 1 m wide onto a block of 1 × 1 × 0.5 m, 4 × 4 × 4
+//!   elements, 425 nodes, clamped at its base; 0.5 s, the whole run. Grain step 2e-5 s, window 2e-4 s, restitution 0.3,
+//!   friction 0.5; block E 20 MPa, nu 0.3, 1800 kg/m³, stiffness-proportional damping 1e-4 s. Stiffness 3e5 N/m: a
+//!   Hertz contact of E 100 MPa, nu 0.2 is about as stiff in impacts of 1 m/s.
+//! * `clumps`: a settled bed of 1,000 clumps of 10 spheres, 0.4 m wide, on a block of 0.4 × 0.4 × 0.2 m, 4 × 4 × 4
+//!   elements of the same material; one and two threads. (The spheres are too few to be shared among threads.)
+//!
+//! To compare with Kratos (PyPI `KratosDEMApplication` and `KratosDemStructuresCouplingApplication` with what they
+//! need): `settling` with the spheres of `data/falling_1k.csv`, Hertz contacts of E 100 MPa and nu 0.2, the block as
+//! 8 × 8 × 4 cells of six 4-node tetrahedra (405 nodes), 10 grain steps per step of the solid, one thread, processor
+//! time.
+
+#[path = "common/bed.rs"]
+mod bed;
+#[path = "common/watch.rs"]
+mod watch;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use std::cell::Cell;
+use std::time::Instant;
+use trackbed_coupling::step::{self, Model, State, Work};
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_coupling::transfer::{Transfer, TransferAudit};
+use trackbed_dem::{Material, ModelInput, Shape, TimeStep};
+use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, Rayleigh};
+use watch::Watch;
+
+/// Grain steps per window.
+const SUBSTEPS: u32 = 10;
+
+fn main() {
+    divan::main();
+    watch::print_remarks();
+}
+
+#[divan::bench(sample_count = 1, sample_size = 1)]
+fn settling(bencher: Bencher<'_, '_>) {
+    let input = ModelInput {
+        materials: vec![Material { density: 2650.0, stiffness: 3e5, restitution: 0.3, ..bed::stone() }],
+        shapes: vec![Shape::Sphere { radius: 1.0 }],
+        bodies: bed::spheres("falling_1k.csv"),
+        ..ModelInput::default()
+    };
+    run(bencher, "settling", 1, input, [1.0, 0.5], [0, 2500]);
+}
+
+#[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
+fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
+    let (shape, bodies) = bed::clumps();
+    let input =
+        ModelInput { materials: vec![bed::stone()], shapes: vec![shape], bodies, ..ModelInput::default() };
+    run(bencher, "clumps", threads, input, [0.4, 0.2], [50, 20]);
+}
+
+/// A block with its top at z = 0.
+fn block([width, height]: [f64; 2]) -> trackbed_fem::Model {
+    let mut mesh = Mesh::block([4; 3], [width, width, height]);
+    mesh.coordinates.iter_mut().for_each(|x| x[2] -= height);
+    let constraints = (0..mesh.node_count() as u32)
+        .filter(|&i| mesh.coordinates[i as usize][2] == -height)
+        .flat_map(|node| (0..3).map(move |direction| Constraint { node, direction, value: 0.0 }))
+        .collect();
+    trackbed_fem::Model::new(trackbed_fem::ModelInput {
+        mesh,
+        materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 1800.0 })].into(),
+        quadrature: Quadrature::Gauss3,
+        constraints,
+        gravity: [0.0; 3],
+        rayleigh: Rayleigh { alpha_m: 0.0, beta_k: 1e-4 },
+    })
+    .expect("a block is a model")
+}
+
+/// Seconds in the parts of the windows so far.
+#[derive(Default)]
+struct Split {
+    grains: f64,
+    transfer: f64,
+    solid: f64,
+    windows: u32,
+}
+
+/// Times `windows` windows at a stretch, after some that do not count.
+fn run(
+    bencher: Bencher<'_, '_>,
+    name: &str,
+    threads: usize,
+    mut input: ModelInput,
+    size: [f64; 2],
+    [before, windows]: [u32; 2],
+) {
+    let solid = block(size);
+    input.planes = bed::walls(size[0]);
+    input.surface_material = Some(0);
+    input.time_step = TimeStep::Fixed(2e-5);
+    let zero = vec![0.0; solid.dof_count()];
+    let model = Model {
+        solid: &solid,
+        grains: trackbed_dem::Model::new(input).expect("the grains are a model"),
+        substeps: SUBSTEPS,
+        theta: 0.5,
+        dead_load: zero.clone(),
+        reference: zero,
+    };
+    let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 1.3);
+    let surface = SolidSurface::new(solid.mesh(), faces);
+    let mut state = State::new(trackbed_fem::State::new(&solid), trackbed_dem::State::new(&model.grains));
+    let mut work = Work::new(&model, &state, surface).expect("the solid's matrix can be factored");
+
+    let pool = watch::pool(threads);
+    let mut split = Split::default();
+    pool.install(|| (0..before).for_each(|_| window(&model, &mut state, &mut work, &mut Split::default())));
+    let mut watch = Watch::default();
+    bencher.counter(ItemsCount::new(windows)).bench_local(|| {
+        watch.time(|| {
+            pool.install(|| (0..windows).for_each(|_| window(&model, &mut state, &mut work, &mut split)));
+        });
+    });
+    let per_window = |seconds: f64| 1e3 * seconds / f64::from(split.windows);
+    let simulated = model.window() * f64::from(split.windows);
+    watch::remark(format!(
+        "{name}, {threads} threads, {} windows: grains {:.3} ms, transfer {:.3} ms, solid {:.3} ms per window; {:.4} \
+         simulated seconds per second, {:.4} per processor second; {} contacts with the solid at the end",
+        split.windows,
+        per_window(split.grains),
+        per_window(split.transfer),
+        per_window(split.solid),
+        simulated / watch.wall,
+        simulated / watch.cpu,
+        work.grains.surface_contacts().len(),
+    ));
+}
+
+/// One window. The step asks for applied forces before each grain step and for loads before the solid's step: there
+/// the clock is read. Every tenth window one more exchange is made apart, to tell it from the grains' own time.
+fn window(model: &Model<'_>, state: &mut State, work: &mut Work, split: &mut Split) {
+    let (moved, loaded) = (Cell::new(None), Cell::new(None));
+    let start = Instant::now();
+    step::step(
+        model,
+        state,
+        work,
+        |_, _, _| moved.set(moved.get().or_else(|| Some(Instant::now()))),
+        |_, _| loaded.set(Some(Instant::now())),
+    )
+    .expect("the step is stable");
+    let end = Instant::now();
+    let (moved, loaded) =
+        (moved.get().expect("grains were stepped"), loaded.get().expect("the solid was stepped"));
+    split.grains += (loaded - moved).as_secs_f64();
+    split.transfer += (moved - start).as_secs_f64();
+    split.solid += (end - loaded).as_secs_f64();
+    split.windows += 1;
+    if split.windows.is_multiple_of(10) {
+        let mut transfer = Transfer::new(&work.surface);
+        let dt = model.grains.dt();
+        let start = Instant::now();
+        work.surface.advance(f64::from(SUBSTEPS - 1) * dt);
+        transfer.add(&work.surface, work.grains.surface_contacts(), dt, &mut TransferAudit::default());
+        let exchange = 10.0 * f64::from(SUBSTEPS) * start.elapsed().as_secs_f64();
+        split.grains -= exchange;
+        split.transfer += exchange;
+    }
+}
