@@ -69,7 +69,8 @@ pub fn closest_point(x: &[[f64; 3]; 8], centre: [f64; 3], start: [f64; 2]) -> Cl
         let mut scale = 1.0;
         let mut moved = [0.0; 2];
         loop {
-            let next = [(xi[0] + scale * step[0]).clamp(-1.0, 1.0), (xi[1] + scale * step[1]).clamp(-1.0, 1.0)];
+            let next =
+                [(xi[0] + scale * step[0]).clamp(-1.0, 1.0), (xi[1] + scale * step[1]).clamp(-1.0, 1.0)];
             let there = Local::at(x, centre, next);
             // Rounding may raise g by a few ulps at the minimum itself: that still counts as no worse.
             if there.distance2 <= here.distance2 * (1.0 + 1e-14) {

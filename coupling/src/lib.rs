@@ -9,6 +9,6 @@ pub mod inverse_map;
 pub mod ledger;
 pub mod step;
 pub mod surface;
-pub mod transfer;
 #[cfg(test)]
 mod testing;
+pub mod transfer;

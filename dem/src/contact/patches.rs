@@ -7,8 +7,13 @@
 //! vertex numbers.
 //!
 //! A contact that moves on to another patch takes its memory along: matched by patch first, else with the nearest
-//! contact of that sphere that has just ended and has a similar normal. Where two patches meet at a hollow angle
-//! both count, as two walls do; within the overlap's width of a very blunt hollow seam the stiffness is doubled.
+//! contact of that sphere that has just ended and has a similar normal.
+//!
+//! Where two patches meet at a hollow angle both count, as two walls do, unless their normals differ by less than
+//! ten degrees: such a seam stands for a smooth surface (the faces of a solid are only C0, and a load bends every
+//! seam below it hollow), where counting each patch would double the stiffness near the seam and, as the bend comes
+//! and goes, pump energy into the contact. Of such contacts the deepest counts; its overlap is the largest of all
+//! and so continuous, and the force keeps a potential.
 
 use super::pass::motion;
 use super::{ContactGeometry, ContactLaw, History, PairTable};
@@ -21,6 +26,8 @@ use crate::work::{BlockWork, Failure};
 
 /// Points closer than this fraction of the radius are one.
 const SAME: f64 = 1e-6;
+/// Least cosine between the normals of contacts that are one contact with a smooth surface: ten degrees.
+const SMOOTH: f64 = 0.984_807_753_012_208;
 /// Least cosine between the normals of a contact before and after it moves on to another patch.
 const SIMILAR: f64 = 0.9;
 
@@ -89,6 +96,20 @@ fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], o
         }
         // Behind the outer rim of a one-sided surface is beside it, not below it.
         found[k].counts = counts && !(on_rim && found[k].behind && !shared);
+    }
+    keep_deepest(found);
+}
+
+/// Of contacts whose normals differ little keeps the deepest, the first of equals.
+fn keep_deepest(found: &mut [Touch]) {
+    for k in 0..found.len() {
+        for m in 0..k {
+            let (first, second) = (&found[m], &found[k]);
+            if first.counts && second.counts && first.geometry.normal.dot(&second.geometry.normal) > SMOOTH {
+                let loser = if second.geometry.overlap > first.geometry.overlap { m } else { k };
+                found[loser].counts = false;
+            }
+        }
     }
 }
 

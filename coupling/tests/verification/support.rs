@@ -1,0 +1,193 @@
+//! Blocks, spheres and quasi-static solutions that the problems share.
+
+use trackbed_coupling::step;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_coupling::transfer::{Transfer, TransferAudit};
+use trackbed_dem as dem;
+use trackbed_dem::Vec3;
+use trackbed_dem::surface::{Surface, SurfaceContact};
+use trackbed_fem as fem;
+use trackbed_fem::{Constraint, Mesh};
+
+/// How the sides and base of a block are held.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Held {
+    /// Base clamped, sides free.
+    Base,
+    /// Base clamped, rollers on the four sides.
+    BaseAndSides,
+    /// Not at all.
+    Free,
+}
+
+/// Block B: 1 × 1 × 0.5 m with its top at z = 0, E = 20 MPa, ν = 0.3, m × m × m/2 elements, full rule.
+pub fn block_b(m: usize, held: Held, rayleigh: fem::Rayleigh) -> fem::Model {
+    block([m, m, m / 2], [1.0, 1.0, 0.5], 20e6, 0.3, 2000.0, held, rayleigh)
+}
+
+/// A block of elements with its top at z = 0 and one corner of the base at x = y = 0.
+pub fn block(
+    counts: [usize; 3],
+    size: [f64; 3],
+    young: f64,
+    poisson: f64,
+    density: f64,
+    held: Held,
+    rayleigh: fem::Rayleigh,
+) -> fem::Model {
+    let mut mesh = Mesh::block(counts, size);
+    for x in &mut mesh.coordinates {
+        x[2] -= size[2];
+    }
+    model(mesh, size, young, poisson, density, held, rayleigh)
+}
+
+/// A model on a mesh that fills a block, perhaps with another inner shape.
+pub fn model(
+    mesh: Mesh,
+    size: [f64; 3],
+    young: f64,
+    poisson: f64,
+    density: f64,
+    held: Held,
+    rayleigh: fem::Rayleigh,
+) -> fem::Model {
+    let mut constraints = Vec::new();
+    for (n, x) in mesh.coordinates.iter().enumerate() {
+        let mut hold = |direction: u8| constraints.push(Constraint { node: n as u32, direction, value: 0.0 });
+        let base = (x[2] + size[2]).abs() < 1e-9;
+        if base && held != Held::Free {
+            (0..3).for_each(&mut hold);
+        } else if held == Held::BaseAndSides {
+            for d in 0..2 {
+                if x[d].abs() < 1e-9 || (x[d] - size[d]).abs() < 1e-9 {
+                    hold(d as u8);
+                }
+            }
+        }
+    }
+    fem::Model::new(fem::ModelInput {
+        mesh,
+        materials: [(1, fem::Elastic { young, poisson, density })].into(),
+        quadrature: fem::Quadrature::Gauss3,
+        constraints,
+        gravity: [0.0; 3],
+        rayleigh,
+    })
+    .expect("a valid block")
+}
+
+/// The upward faces of a model as a surface.
+pub fn top(model: &fem::Model) -> SolidSurface {
+    SolidSurface::new(model.mesh(), SolidSurface::facing(model.mesh(), [0.0, 0.0, 1.0], 0.3))
+}
+
+/// The contact that a sphere with its centre at `centre` and a force `force` on the surface makes: the nearest patch.
+pub fn contact(surface: &SolidSurface, centre: [f64; 3], force: [f64; 3]) -> SurfaceContact {
+    let mut patches = Vec::new();
+    surface.candidates(centre.map(|c| c - 0.2), centre.map(|c| c + 0.2), &mut patches);
+    let distance = |p: [f64; 3]| (0..3).map(|d| (p[d] - centre[d]).powi(2)).sum::<f64>();
+    let nearest = patches
+        .iter()
+        .map(|&patch| (patch, surface.closest_point(patch, centre, [0.0; 2])))
+        .min_by(|a, b| distance(a.1.point).total_cmp(&distance(b.1.point)))
+        .expect("a patch within 0.2 m");
+    SurfaceContact {
+        sphere: 0,
+        body: 0,
+        patch: nearest.0,
+        local: nearest.1.local,
+        point: nearest.1.point,
+        force,
+        overlap: 0.0,
+    }
+}
+
+/// Nodal load of contacts, shape `[3·nodes]`, with the audit of its sums.
+pub fn nodal_load(
+    model: &fem::Model,
+    surface: &SolidSurface,
+    contacts: &[SurfaceContact],
+) -> (Vec<f64>, TransferAudit) {
+    let mut transfer = Transfer::new(surface);
+    let mut audit = TransferAudit::default();
+    let mut load = vec![0.0; model.dof_count()];
+    transfer.add(surface, contacts, 1.0, &mut audit);
+    transfer.add_mean_load(surface, 1.0, &mut load);
+    (load, audit)
+}
+
+/// Vertical displacement of the solid under a contact: Σ N(ξ) u at the contact point [m].
+pub fn deflection(surface: &SolidSurface, contact: &SurfaceContact, u: &[f64]) -> f64 {
+    let n = fem::element::quad8::shape_functions(contact.local);
+    surface
+        .face_nodes(contact.patch)
+        .iter()
+        .zip(n)
+        .map(|(&k, n)| n * u[3 * surface.nodes()[k as usize] as usize + 2])
+        .sum()
+}
+
+/// Area mean of the vertical displacement of the whole top [m].
+pub fn mean_top(model: &fem::Model, surface: &SolidSurface, u: &[f64]) -> f64 {
+    let mut weights = vec![0.0; model.dof_count()];
+    for face in surface.faces() {
+        fem::loads::face_traction(model.mesh(), face, [0.0, 0.0, 1.0], &mut weights);
+    }
+    let area: f64 = weights.iter().sum();
+    weights.iter().zip(u).map(|(w, u)| w * u).sum::<f64>() / area
+}
+
+/// One elastic material for spheres and surface: contact stiffness [N/m], friction, restitution.
+pub fn material(density: f64, stiffness: f64, friction: f64, restitution: f64) -> dem::Material {
+    dem::Material {
+        density,
+        stiffness,
+        tangential_ratio: 0.5,
+        tangential_damping_ratio: 0.0,
+        friction,
+        restitution,
+    }
+}
+
+/// A coupled system of a solid and spheres, at rest in the solid's unloaded shape.
+pub struct Coupled<'a> {
+    pub model: step::Model<'a>,
+    pub state: step::State,
+    pub work: step::Work,
+}
+
+impl<'a> Coupled<'a> {
+    pub fn new(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) -> Coupled<'a> {
+        let n = solid.dof_count();
+        let model = step::Model {
+            solid,
+            grains: dem::Model::new(grains).expect("valid grains"),
+            substeps,
+            theta: 0.5,
+            dead_load: vec![0.0; n],
+            reference: vec![0.0; n],
+        };
+        let state = step::State::new(fem::State::new(solid), dem::State::new(&model.grains));
+        let work = step::Work::new(&model, &state, top(solid)).expect("a solid that can be factored");
+        Coupled { model, state, work }
+    }
+
+    /// One window with the given forces on bodies.
+    pub fn step(&mut self, applied: &[(usize, [f64; 3])]) {
+        step::step(
+            &self.model,
+            &mut self.state,
+            &mut self.work,
+            |_, grains, out| {
+                out.extend(applied.iter().map(|&(body, force)| dem::AppliedForce {
+                    body,
+                    force: Vec3::from(force),
+                    point: grains.position(body),
+                }));
+            },
+            |_, _| {},
+        )
+        .expect("a step without failure");
+    }
+}

@@ -1,0 +1,100 @@
+//! V0.5 and V0.6: nodal loads of a point force on the surface.
+
+use crate::support::*;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem::surface::{Surface, SurfaceContact};
+use trackbed_fem::{Mesh, Rayleigh};
+
+/// A block whose top nodes are moved about, so that faces are distorted and curved.
+fn rough_block() -> trackbed_fem::Model {
+    let size = [0.6, 0.6, 0.3];
+    let mut mesh = Mesh::block([3, 3, 2], size);
+    let wave = |a: f64, b: f64| (7.3 * a + 3.1 * b).sin();
+    for x in &mut mesh.coordinates {
+        x[2] -= size[2];
+        if x[2] > -1e-9 {
+            let (a, b) = (x[0], x[1]);
+            x[0] += 0.012 * wave(11.0 * b, 5.0 * a);
+            x[1] += 0.012 * wave(13.0 * a, 7.0 * b);
+            x[2] += 0.010 * wave(9.0 * a + 1.0, 11.0 * b);
+        }
+    }
+    model(mesh, size, 20e6, 0.3, 2000.0, Held::Free, Rayleigh::default())
+}
+
+fn at(surface: &SolidSurface, patch: u32, local: [f64; 2], force: [f64; 3]) -> SurfaceContact {
+    let x = surface.face_nodes(patch).map(|n| surface.position(n));
+    let point = trackbed_coupling::face::interpolate(&x, local);
+    SurfaceContact { sphere: 0, body: 0, patch, local, point, force, overlap: 0.0 }
+}
+
+/// V0.6: Σ Fᵢ = F and Σ xᵢ × Fᵢ = p × F to 1e-13, and only nodes of the face are loaded.
+#[test]
+fn force_and_moment_are_kept_to_rounding() {
+    let model = rough_block();
+    let surface = top(&model);
+    let mut worst = (0.0_f64, 0.0_f64);
+    for k in 0..1000 {
+        let t = f64::from(k);
+        let local = [(0.917 * t).sin(), (1.313 * t).cos()];
+        let force = [30.0 * (0.3 * t).sin(), 20.0 * (0.7 * t).cos(), -100.0];
+        let patch = k % surface.faces().len() as u32;
+        let (load, audit) = nodal_load(&model, &surface, &[at(&surface, patch, local, force)]);
+        worst = (worst.0.max(audit.force), worst.1.max(audit.moment));
+        let sum = load.iter().skip(2).step_by(3).sum::<f64>();
+        assert!((sum - force[2]).abs() < 1e-13 * 100.0);
+        let face = surface.faces()[patch as usize];
+        for (n, l) in load.chunks(3).enumerate() {
+            assert!(l == [0.0; 3] || face.nodes.contains(&(n as u32)));
+        }
+    }
+    println!("largest error of force {:.1e}, of moment {:.1e}", worst.0, worst.1);
+    assert!(worst.0 < 1e-13 && worst.1 < 1e-13);
+}
+
+/// The audit sees a load put on the wrong node: a contact point that is not where the coordinates say.
+#[test]
+fn the_audit_sees_a_moment_error() {
+    let model = rough_block();
+    let surface = top(&model);
+    let mut wrong = at(&surface, 0, [0.2, 0.3], [0.0, 0.0, -100.0]);
+    wrong.point[0] += 1e-3;
+    let (_, audit) = nodal_load(&model, &surface, &[wrong]);
+    assert!(audit.force < 1e-13 && audit.moment > 1e-4, "{audit:?}");
+}
+
+/// V0.5: a point on an edge or a corner shared by two or four faces gives the same nodal loads from each, to 1e-14 F.
+#[test]
+fn shared_edges_and_corners_give_the_same_loads_from_every_side() {
+    let model = rough_block();
+    let surface = top(&model);
+    let force = [10.0, -5.0, -100.0];
+    let mut shared = 0;
+    for (a, fa) in surface.faces().iter().enumerate() {
+        for side in 0..4 {
+            for s in [-1.0, -0.6, 0.0, 0.37, 1.0] {
+                let local = [[s, -1.0], [1.0, s], [-s, 1.0], [-1.0, -s]][side];
+                let here = at(&surface, a as u32, local, force);
+                let (load, _) = nodal_load(&model, &surface, &[here]);
+                for (b, fb) in surface.faces().iter().enumerate() {
+                    let neighbour = b != a && fb.nodes.contains(&fa.nodes[4 + side]);
+                    let corner = s.abs() == 1.0 && {
+                        let k = if s < 0.0 { side } else { (side + 1) % 4 };
+                        b != a && fb.nodes.contains(&fa.nodes[k])
+                    };
+                    if !(neighbour || corner) {
+                        continue;
+                    }
+                    let there = surface.closest_point(b as u32, here.point, [0.0; 2]);
+                    let (other, _) =
+                        nodal_load(&model, &surface, &[at(&surface, b as u32, there.local, force)]);
+                    let difference = load.iter().zip(&other).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+                    // The border's coordinate comes from Newton: its rounding is the rounding of the loads.
+                    assert!(difference < 1e-13 * 100.0, "faces {a}, {b}: {difference:e}");
+                    shared += 1;
+                }
+            }
+        }
+    }
+    assert!(shared > 100, "{shared} shared points");
+}
