@@ -157,3 +157,87 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     }
     state.stale = true;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Partner;
+    use crate::input::{BodyInput, ModelInput, Plane, TimeStep};
+    use crate::material::Material;
+    use crate::measure;
+    use crate::shape::Shape;
+    use crate::shape::clump::Clump;
+    use crate::surface::NoSurface;
+    use crate::work::Work;
+
+    /// Every contact keeps its force when the bodies are sorted anew, whichever of its two bodies comes first.
+    #[test]
+    fn contacts_survive_a_new_order() {
+        let material = Material {
+            density: 2600.0,
+            stiffness: 1e5,
+            tangential_ratio: 0.5,
+            tangential_damping_ratio: 0.0,
+            friction: 0.5,
+            restitution: 0.5,
+        };
+        let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
+        let mut input = ModelInput {
+            materials: vec![material],
+            time_step: TimeStep::Auto { fraction: 0.5 },
+            shapes: vec![
+                Shape::Clump(dumbbell),
+                Shape::Sphere { radius: 0.011 },
+                Shape::Box { half: [0.09, 0.09, 0.01] },
+            ],
+            ..ModelInput::default()
+        };
+        let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
+        for d in [Vec3::x(), Vec3::y()] {
+            input.planes.extend([wall(Vec3::zeros(), d), wall(d * 0.2, -d)]);
+        }
+        input.planes.push(wall(Vec3::zeros(), Vec3::z()));
+        for k in 0..1500_usize {
+            let cell = Vec3::new((k % 7) as f64 + 0.5, (k / 7 % 7) as f64 + 0.5, (k / 49) as f64 + 0.6);
+            let push = Vec3::new((k as f64 * 1.7).sin(), (k as f64 * 2.9).cos(), -1.0);
+            let (position, velocity) = (cell * 0.028, push * 0.5);
+            input.bodies.push(BodyInput { shape: k % 2, position, velocity, ..BodyInput::default() });
+        }
+        let position = Vec3::new(0.1, 0.1, 0.9);
+        input.bodies.push(BodyInput { shape: 2, position, ..BodyInput::default() });
+        let model = Model::new(input).unwrap();
+        let mut state = State::new(&model);
+        let mut work = Work::new(&model, &state);
+        assert!(state.blocks.len() > 2);
+        while state.steps < 3 * EVERY {
+            crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
+        }
+        // A contact between two bodies as seen by the one with the lower number.
+        let forces = |state: &State| {
+            let mut swapped = 0;
+            let mut list: Vec<_> = measure::contacts(&model, state)
+                .iter()
+                .map(|c| match c.b {
+                    Partner::Body(b) if b < c.a => {
+                        swapped += 1;
+                        ((b, c.a, 0), -c.force)
+                    }
+                    Partner::Body(b) => ((c.a, b, 0), c.force),
+                    Partner::Plane(p) => ((c.a, 0, p + 1), c.force),
+                    _ => ((c.a, 0, 0), c.force),
+                })
+                .collect();
+            list.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.norm().total_cmp(&y.1.norm())));
+            (list, swapped)
+        };
+        let (before, first) = forces(&state);
+        state.reorder(&model);
+        let (after, second) = forces(&state);
+        assert!(before.len() > 200 && first != second, "{} {first} {second}", before.len());
+        assert_eq!(before.len(), after.len());
+        for (x, y) in before.iter().zip(&after) {
+            assert_eq!(x.0, y.0);
+            assert!((x.1 - y.1).norm() < 1e-9 * (1.0 + x.1.norm()), "{x:?} {y:?}");
+        }
+    }
+}
