@@ -2,7 +2,7 @@
 //! per second of wall time (divan's `item/s`). Arguments: elements along each side of the cube, threads. `full` is the
 //! 27-point rule of the stiffness, `reduced` the 8-point rule; the mass always takes 27 points.
 //!
-//! `cargo bench --bench assembly` (about 15 s).
+//! `cargo bench --bench assembly` (about 10 s).
 
 #[path = "common/watch.rs"]
 mod watch;

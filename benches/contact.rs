@@ -1,9 +1,8 @@
 //! The contact loop: whole steps of settled beds (search, contacts, walls, integration), in bodies × steps per second
 //! of wall time (divan's `item/s`), on one and two threads. Below the table: contacts, rebuilt lists, and the rate per
-//! second of processor time, the figure to compare on a shared machine. `memory` copies state and scratch of the bed
-//! of spheres: `alloc` over 10,000 is what one sphere takes.
+//! second of processor time, the figure to compare on a shared machine.
 //!
-//! `cargo bench --bench contact` (about 10 s); `cargo bench --bench contact -- spheres` for one of them.
+//! `cargo bench --bench contact` (about 8 s); `cargo bench --bench contact -- spheres` for one of them.
 //!
 //! * `spheres`: 10,000 spheres, radius 9 to 11 mm, in a box 0.42 m wide, open at the top; K = 1e5 N/m, tangential 2/7
 //!   of it with history, restitution 0.5 without tangential damping, friction 0.5, density 2600 kg/m³, step 2e-5 s.
@@ -18,17 +17,16 @@
 
 #[path = "common/bed.rs"]
 mod bed;
+#[path = "common/grains.rs"]
+mod grains;
 #[path = "common/watch.rs"]
 mod watch;
 
+use bed::Bed;
+use divan::Bencher;
 use divan::counter::ItemsCount;
-use divan::{AllocProfiler, Bencher};
-use trackbed_dem::surface::NoSurface;
-use trackbed_dem::{Model, ModelInput, Plane, Shape, State, TimeStep, Vec3, Work, measure};
+use trackbed_dem::measure;
 use watch::Watch;
-
-#[global_allocator]
-static ALLOCATOR: AllocProfiler = AllocProfiler::system();
 
 fn main() {
     divan::main();
@@ -43,57 +41,6 @@ fn spheres(bencher: Bencher<'_, '_>, threads: usize) {
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
     advance(bencher, "clumps", threads, Bed::clumps(), 100);
-}
-
-#[divan::bench(sample_count = 10, sample_size = 1)]
-fn memory(bencher: Bencher<'_, '_>) {
-    let bed = Bed::spheres();
-    bencher.bench_local(|| (bed.state.clone(), bed.work.clone()));
-}
-
-/// A bed and the steps that bring it to rest.
-struct Bed {
-    model: Model,
-    state: State,
-    work: Work,
-}
-
-impl Bed {
-    fn spheres() -> Bed {
-        let input = ModelInput {
-            shapes: vec![Shape::Sphere { radius: 1.0 }],
-            bodies: bed::spheres("s1_10k.csv"),
-            ..ModelInput::default()
-        };
-        Bed::at_rest(input, 0.42, 300)
-    }
-
-    fn clumps() -> Bed {
-        let (shape, bodies) = bed::clumps();
-        Bed::at_rest(ModelInput { shapes: vec![shape], bodies, ..ModelInput::default() }, 0.4, 500)
-    }
-
-    /// In a box; `steps` build the contacts' memory up, which the tables do not hold.
-    fn at_rest(mut input: ModelInput, width: f64, steps: u32) -> Bed {
-        input.materials = vec![bed::stone()];
-        input.time_step = TimeStep::Fixed(2e-5);
-        input.planes = bed::walls(width);
-        let floor = Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0, velocity: Vec3::zeros() };
-        input.planes.push(floor);
-        let model = Model::new(input).expect("the bed is a model");
-        let state = State::new(&model);
-        let work = Work::new(&model, &state);
-        let mut bed = Bed { model, state, work };
-        bed.advance(steps);
-        bed
-    }
-
-    fn advance(&mut self, steps: u32) {
-        for _ in 0..steps {
-            trackbed_dem::step(&self.model, &mut self.state, &mut self.work, &NoSurface, &[])
-                .expect("a settled bed stays settled");
-        }
-    }
 }
 
 fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, steps: u32) {

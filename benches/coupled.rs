@@ -2,7 +2,7 @@
 //! `item/s`); a window is 10 steps of the grains and one of the solid. Below the table: milliseconds of each part in a
 //! window, and simulated seconds per second.
 //!
-//! `cargo bench --bench coupled` (about 20 s).
+//! `cargo bench --bench coupled` (about 6 s).
 //!
 //! * `settling`: 1,000 spheres (radius up to 45 mm) fall in a box 1 m wide onto a block of 1 × 1 × 0.5 m, 4 × 4 × 4
 //!   elements, 425 nodes, clamped at its base; 0.5 s, the whole run. Grain step 2e-5 s, window 2e-4 s, restitution 0.3,
@@ -16,8 +16,8 @@
 //! 8 × 8 × 4 cells of six 4-node tetrahedra (405 nodes), 10 grain steps per step of the solid, one thread, processor
 //! time.
 
-#[path = "common/bed.rs"]
-mod bed;
+#[path = "common/grains.rs"]
+mod grains;
 #[path = "common/watch.rs"]
 mod watch;
 
@@ -43,9 +43,9 @@ fn main() {
 #[divan::bench(sample_count = 1, sample_size = 1)]
 fn settling(bencher: Bencher<'_, '_>) {
     let input = ModelInput {
-        materials: vec![Material { density: 2650.0, stiffness: 3e5, restitution: 0.3, ..bed::stone() }],
+        materials: vec![Material { density: 2650.0, stiffness: 3e5, restitution: 0.3, ..grains::stone() }],
         shapes: vec![Shape::Sphere { radius: 1.0 }],
-        bodies: bed::spheres("falling_1k.csv"),
+        bodies: grains::spheres("falling_1k.csv"),
         ..ModelInput::default()
     };
     run(bencher, "settling", 1, input, [1.0, 0.5], [0, 2500]);
@@ -53,9 +53,9 @@ fn settling(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
-    let (shape, bodies) = bed::clumps();
+    let (shape, bodies) = grains::clumps();
     let input =
-        ModelInput { materials: vec![bed::stone()], shapes: vec![shape], bodies, ..ModelInput::default() };
+        ModelInput { materials: vec![grains::stone()], shapes: vec![shape], bodies, ..ModelInput::default() };
     run(bencher, "clumps", threads, input, [0.4, 0.2], [50, 20]);
 }
 
@@ -97,7 +97,7 @@ fn run(
     [before, windows]: [u32; 2],
 ) {
     let solid = block(size);
-    input.planes = bed::walls(size[0]);
+    input.planes = grains::walls(size[0]);
     input.surface_material = Some(0);
     input.time_step = TimeStep::Fixed(2e-5);
     let zero = vec![0.0; solid.dof_count()];
@@ -117,18 +117,22 @@ fn run(
     let pool = watch::pool(threads);
     let mut split = Split::default();
     pool.install(|| (0..before).for_each(|_| window(&model, &mut state, &mut work, &mut Split::default())));
+    let lists = work.grains.rebuilds();
     let mut watch = Watch::default();
     bencher.counter(ItemsCount::new(windows)).bench_local(|| {
         watch.time(|| {
             pool.install(|| (0..windows).for_each(|_| window(&model, &mut state, &mut work, &mut split)));
         });
     });
+    let after = work.grains.rebuilds();
     let per_window = |seconds: f64| 1e3 * seconds / f64::from(split.windows);
     let simulated = model.window() * f64::from(split.windows);
     watch::remark(format!(
-        "{name}, {threads} threads, {} windows: grains {:.3} ms, transfer {:.3} ms, solid {:.3} ms per window; {:.4} \
+        "{name}, {threads} threads, {} windows, {} searches, {} near lists: grains {:.3} ms, transfer {:.3} ms, solid {:.3} ms per window; {:.4} \
          simulated seconds per second, {:.4} per processor second; {} contacts with the solid at the end",
         split.windows,
+        after.0 - lists.0,
+        after.1 - lists.1,
         per_window(split.grains),
         per_window(split.transfer),
         per_window(split.solid),

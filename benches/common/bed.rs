@@ -1,60 +1,52 @@
-//! Beds of grains from `benches/data`, and what they lie in.
+//! The settled beds that are stepped.
 
-use std::path::Path;
-use trackbed_dem::{Material, Plane, Vec3};
+use crate::grains;
+use trackbed_dem::surface::NoSurface;
+use trackbed_dem::{Model, ModelInput, Plane, Shape, State, TimeStep, Vec3, Work};
 
-/// The numbers of a table, without its comments and its line of names.
-pub fn table(name: &str) -> Vec<Vec<f64>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data").join(name);
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let row = |line: &str| line.split(',').map(|v| v.parse().ok()).collect::<Option<Vec<f64>>>();
-    text.lines().filter(|l| !l.starts_with('#')).skip(1).map(|l| row(l).expect("a row of numbers")).collect()
+/// A bed in a box with a floor, open at the top.
+pub struct Bed {
+    pub model: Model,
+    pub state: State,
+    pub work: Work,
 }
 
-/// The grains of the peers' scenes: K = 1e5 N/m for a pair, and for a wall of the same material.
-pub fn stone() -> Material {
-    Material {
-        density: 2600.0,
-        stiffness: 1e5,
-        tangential_ratio: 2.0 / 7.0,
-        tangential_damping_ratio: 0.0,
-        friction: 0.5,
-        restitution: 0.5,
+impl Bed {
+    /// 10,000 spheres.
+    pub fn spheres() -> Bed {
+        let input = ModelInput {
+            shapes: vec![Shape::Sphere { radius: 1.0 }],
+            bodies: grains::spheres("s1_10k.csv"),
+            ..ModelInput::default()
+        };
+        Bed::at_rest(input, 0.42, 300)
     }
-}
 
-/// Four walls around x, y in [0, width].
-pub fn walls(width: f64) -> Vec<Plane> {
-    let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
-    let far = Vec3::repeat(width);
-    vec![
-        wall(Vec3::zeros(), Vec3::x()),
-        wall(Vec3::zeros(), Vec3::y()),
-        wall(far, -Vec3::x()),
-        wall(far, -Vec3::y()),
-    ]
-}
+    /// 1,000 clumps of ten spheres.
+    pub fn clumps() -> Bed {
+        let (shape, bodies) = grains::clumps();
+        Bed::at_rest(ModelInput { shapes: vec![shape], bodies, ..ModelInput::default() }, 0.4, 500)
+    }
 
-/// The bed of 1,000 clumps of ten spheres in a box 0.4 m wide: its shape and bodies.
-pub fn clumps() -> (trackbed_dem::Shape, Vec<trackbed_dem::BodyInput>) {
-    let spheres: Vec<_> = table("s2_clump.csv").iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
-    let clump = trackbed_dem::shape::clump::Clump::from_spheres(&spheres).expect("the spheres make a clump");
-    let body = |row: &Vec<f64>| trackbed_dem::BodyInput {
-        position: Vec3::new(row[0], row[1], row[2]),
-        orientation: nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(
-            row[3], row[4], row[5], row[6],
-        )),
-        ..Default::default()
-    };
-    (trackbed_dem::Shape::Clump(clump), table("s2_1k.csv").iter().map(body).collect())
-}
+    /// `steps` build the contacts' memory up, which the tables do not hold.
+    fn at_rest(mut input: ModelInput, width: f64, steps: u32) -> Bed {
+        input.materials = vec![grains::stone()];
+        input.time_step = TimeStep::Fixed(2e-5);
+        input.planes = grains::walls(width);
+        let floor = Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0, velocity: Vec3::zeros() };
+        input.planes.push(floor);
+        let model = Model::new(input).expect("the bed is a model");
+        let state = State::new(&model);
+        let work = Work::new(&model, &state);
+        let mut bed = Bed { model, state, work };
+        bed.advance(steps);
+        bed
+    }
 
-/// A body of the unit sphere for each row x, y, z, r of a table.
-pub fn spheres(name: &str) -> Vec<trackbed_dem::BodyInput> {
-    let body = |row: &Vec<f64>| trackbed_dem::BodyInput {
-        position: Vec3::new(row[0], row[1], row[2]),
-        scale: row[3],
-        ..Default::default()
-    };
-    table(name).iter().map(body).collect()
+    pub fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            trackbed_dem::step(&self.model, &mut self.state, &mut self.work, &NoSurface, &[])
+                .expect("a settled bed stays settled");
+        }
+    }
 }

@@ -17,9 +17,10 @@ pub fn print_remarks() {
     }
 }
 
-/// A pool of its own for each number of threads.
-pub fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
+/// A pool of so many threads. It is never dropped, so that its threads' time stays in [`Watch`]'s account.
+pub fn pool(threads: usize) -> &'static rayon::ThreadPool {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+    Box::leak(Box::new(pool))
 }
 
 /// Sums wall and processor seconds of some work. Processor time is the figure to trust on a shared machine.
