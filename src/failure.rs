@@ -23,6 +23,15 @@ impl Failure {
             Failure::Other(_) => 1,
         }
     }
+
+    /// The same; a numerical failure also says that it happened at `time` [s].
+    #[must_use]
+    pub fn at(self, time: f64) -> Failure {
+        match self {
+            Failure::Numerical(text) => Failure::Numerical(format!("at t = {time:.6e} s: {text}")),
+            other => other,
+        }
+    }
 }
 
 impl fmt::Display for Failure {

@@ -403,10 +403,10 @@ impl Stage<'_> {
                 progress.message(format!("cycle {}: settlement {:.3} mm", cycle.number, 1e3 * cycle.settlement));
             }
             if k % every == 0 || k == windows {
-                recorder.row(time, system, at(time))?;
+                recorder.row(time, system, at(time)).map_err(|e| e.at(time))?;
             }
             if frames > 0 && k * frames >= next_frame * windows {
-                recorder.frame(time, system)?;
+                recorder.frame(time, system).map_err(|e| e.at(time))?;
                 next_frame += 1;
             }
             progress.at(k as f64);

@@ -98,7 +98,10 @@ impl Good {
             assert_eq!(outcome.stdout, "");
         }
         assert!(!self.folder.join("fresh").exists(), "a refused run leaves nothing");
-        assert!(snapshot(&self.folder.join("earlier")) == self.earlier, "results of the earlier run have changed");
+        assert!(
+            snapshot(&self.folder.join("earlier")) == self.earlier,
+            "results of the earlier run have changed"
+        );
         if self.check_sees_it {
             let mut arguments = vec!["check".to_string(), scene.display().to_string()];
             self.set.iter().for_each(|s| arguments.extend(["--set".to_string(), s.to_string()]));
@@ -139,7 +142,9 @@ fn scene_that_is_no_text() {
 
 #[test]
 fn missing_list() {
-    solid().without(ELEMENTS).refused("ELEMENTNUM.DAT: element list: found no such file, expected a readable file");
+    solid()
+        .without(ELEMENTS)
+        .refused("ELEMENTNUM.DAT: element list: found no such file, expected a readable file");
 }
 
 #[test]
@@ -234,12 +239,16 @@ fn node_list_of_comments() {
 
 #[test]
 fn unreadable_number() {
-    solid().field(NODES, 7, 2, "0.5O").refused("NODECOORD.DAT:7: coordinate y: found \"0.5O\", expected a number");
+    solid()
+        .field(NODES, 7, 2, "0.5O")
+        .refused("NODECOORD.DAT:7: coordinate y: found \"0.5O\", expected a number");
 }
 
 #[test]
 fn coordinate_that_is_not_a_number() {
-    solid().field(NODES, 7, 2, "NaN").refused("NODECOORD.DAT:7: coordinate y: found \"NaN\", expected a finite number");
+    solid()
+        .field(NODES, 7, 2, "NaN")
+        .refused("NODECOORD.DAT:7: coordinate y: found \"NaN\", expected a finite number");
 }
 
 #[test]
@@ -298,7 +307,9 @@ fn body_held_at_one_node() {
 
 #[test]
 fn bad_toml() {
-    solid().scene("[solid]\n", "[solid\n").refused("scene.toml:3: syntax: found unclosed table, expected `]`");
+    solid()
+        .scene("[solid]\n", "[solid\n")
+        .refused("scene.toml:3: syntax: found unclosed table, expected `]`");
 }
 
 #[test]
@@ -310,9 +321,9 @@ fn key_given_twice() {
 
 #[test]
 fn unknown_key() {
-    solid()
-        .scene("poisson", "poison")
-        .refused("scene.toml:12: solid.material.0.poison: found the unknown key `poison`, expected `poisson`");
+    solid().scene("poisson", "poison").refused(
+        "scene.toml:12: solid.material.0.poison: found the unknown key `poison`, expected `poisson`",
+    );
 }
 
 #[test]
@@ -366,7 +377,9 @@ fn override_without_a_value() {
 
 #[test]
 fn override_below_a_value() {
-    solid().set("title.x=3").refused("--set: title.x: found `title`, which is a value, expected a table there");
+    solid()
+        .set("title.x=3")
+        .refused("--set: title.x: found `title`, which is a value, expected a table there");
 }
 
 #[test]
@@ -436,15 +449,18 @@ fn face_of_an_absent_element() {
 
 #[test]
 fn box_without_faces() {
-    solid()
-        .scene(FACES, "faces_in = [[5, 5, 5], [6, 6, 6]]")
-        .refused("scene.toml:18: solid.load.0.faces_in: found no boundary face in the box, expected at least one");
+    solid().scene(FACES, "faces_in = [[5, 5, 5], [6, 6, 6]]").refused(
+        "scene.toml:18: solid.load.0.faces_in: found no boundary face in the box, expected at least one",
+    );
 }
 
 #[test]
 fn point_load_outside_the_solid() {
     solid()
-        .scene("kind = \"pressure\"\npressure = \"10 kPa\"\n", "kind = \"point\"\nat = [1, 1, 0.5]\nforce = [0, 0, -1]\n")
+        .scene(
+            "kind = \"pressure\"\npressure = \"10 kPa\"\n",
+            "kind = \"point\"\nat = [1, 1, 0.5]\nforce = [0, 0, -1]\n",
+        )
         .scene(&format!("{FACES}\n"), "")
         .refused("scene.toml:17: solid.load.0.at: found (1, 1, 0.5), expected a point of the solid");
 }
@@ -505,14 +521,16 @@ fn wall_without_area() {
 fn unknown_material_name() {
     grains()
         .scene("shape = \"sphere\"\nmaterial = \"stone\"", "shape = \"sphere\"\nmaterial = \"granite\"")
-        .refused("scene.toml:13: grains.0.material: found \"granite\", expected the name of a [[material]]: stone");
+        .refused(
+            "scene.toml:13: grains.0.material: found \"granite\", expected the name of a [[material]]: stone",
+        );
 }
 
 #[test]
 fn grains_without_density() {
-    grains()
-        .scene("density = 2650\n", "")
-        .refused("scene.toml:3: material.0.density: found nothing, expected the density of a material of grains");
+    grains().scene("density = 2650\n", "").refused(
+        "scene.toml:3: material.0.density: found nothing, expected the density of a material of grains",
+    );
 }
 
 #[test]
@@ -570,8 +588,16 @@ fn fill_box_too_small_for_a_stone() {
 #[test]
 fn absent_grade() {
     grains()
-        .scene(SPHERES, &format!("count = 3\ngradation = {{ file = \"g.csv\", standard = \"X\", grade = \"B\" }}\n{FILL}"))
-        .file("g.csv", "standard,grade,sieve_mm,passing_lo_pct,passing_hi_pct\nX,A,63,100,100\nX,A,31.5,0,0\n")
+        .scene(
+            SPHERES,
+            &format!(
+                "count = 3\ngradation = {{ file = \"g.csv\", standard = \"X\", grade = \"B\" }}\n{FILL}"
+            ),
+        )
+        .file(
+            "g.csv",
+            "standard,grade,sieve_mm,passing_lo_pct,passing_hi_pct\nX,A,63,100,100\nX,A,31.5,0,0\n",
+        )
         .refused("g.csv: gradation: found no row of X B, expected rows of this grade");
 }
 

@@ -1,1 +1,245 @@
-//! Not written yet.
+//! The command line: what each command prints, where results go, and the exit codes.
+
+use super::support::{
+    COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, small_block, trackbed,
+    trackbed_in, write_lists,
+};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+#[test]
+fn help_names_every_command_and_option() {
+    let help = trackbed(["--help"]).good().stdout;
+    for word in ["run", "check", "mesh", "--help", "--version"] {
+        assert!(help.contains(word), "{word} is missing in {help}");
+    }
+    let help = trackbed(["run", "--help"]).good().stdout;
+    for word in ["SCENE", "--out", "--threads", "--set", "--quiet"] {
+        assert!(help.contains(word), "{word} is missing in {help}");
+    }
+    let help = trackbed(["mesh", "--help"]).good().stdout;
+    for word in ["info", "check", "convert"] {
+        assert!(help.contains(word), "{word} is missing in {help}");
+    }
+}
+
+#[test]
+fn version_is_that_of_the_package() {
+    assert_eq!(trackbed(["--version"]).good().stdout, format!("trackbed {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn wrong_usage_is_bad_input() {
+    for arguments in
+        [&[][..], &["run"], &["dance"], &["run", "scene.toml", "--threads", "two"], &["mesh", "info"]]
+    {
+        let outcome = trackbed(arguments);
+        assert_eq!(outcome.code, 2, "{arguments:?}: {outcome:?}");
+        assert!(!outcome.stderr.is_empty() && !outcome.stderr.contains("panicked"), "{outcome:?}");
+    }
+    let folder = scene_folder("threads_zero", SOLID);
+    let scene = folder.join("scene.toml").display().to_string();
+    let outcome = trackbed_in(folder.path(), ["run", &scene, "--threads", "0"]);
+    assert_eq!(
+        (outcome.code, outcome.stderr.as_str()),
+        (2, "error: --threads: found 0, expected 1 or more\n")
+    );
+    assert!(!folder.join("results").exists());
+}
+
+/// All scene files below a folder.
+fn scenes(dir: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(dir).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(scenes(&path));
+        } else if path.file_name().is_some_and(|n| n == "scene.toml") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+#[test]
+fn check_accepts_every_scene_that_is_shipped() {
+    let shipped = [scenes(&repository().join("inputs")), scenes(&repository().join("tests/data"))].concat();
+    assert!(shipped.len() >= 8, "{shipped:?}");
+    for scene in shipped {
+        let outcome = trackbed([Path::new("check"), &scene]).good();
+        assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
+        assert!(
+            outcome.stdout.contains("solid: ") || outcome.stdout.contains("grains: "),
+            "{}",
+            outcome.stdout
+        );
+    }
+}
+
+#[test]
+fn check_tells_sizes_steps_and_stability() {
+    let folder = scene_folder("check", COUPLED);
+    let text = trackbed([Path::new("check"), &folder.join("scene.toml")]).good().stdout;
+    let parts = [
+        "spheres on a block\n",
+        "81 nodes, 8 elements, 180 unknowns",
+        "5 bodies with 5 spheres",
+        "step ",
+        "effective mass",
+        "4 faces, 10 grain steps per window",
+        "stability number W = ",
+    ];
+    for part in parts {
+        assert!(text.contains(part), "{part} is missing in {text}");
+    }
+    assert!(!folder.join("results").exists(), "check writes nothing");
+    folder.write("scene.toml", SOLID);
+    assert!(
+        trackbed([Path::new("check"), &folder.join("scene.toml")])
+            .good()
+            .stdout
+            .contains("statics: one solve")
+    );
+}
+
+#[test]
+fn results_go_to_a_folder_named_after_the_scene() {
+    let folder = Folder::new("default");
+    folder.write("pair/scene.toml", GRAINS);
+    folder.write("two_spheres.toml", GRAINS);
+    // `scene.toml` is named after its folder, any other file after itself.
+    trackbed_in(folder.path(), ["run", "pair/scene.toml"]).good();
+    trackbed_in(folder.path(), ["run", "two_spheres.toml"]).good();
+    for name in ["pair", "two_spheres"] {
+        let summary = json(&folder.join("results").join(name).join("summary.json"));
+        assert_eq!(summary["status"], "done");
+    }
+    assert_eq!(fs::read_dir(folder.join("results")).unwrap().count(), 2);
+}
+
+#[test]
+fn quiet_prints_nothing_and_loud_prints_a_report() {
+    let folder = scene_folder("quiet", COUPLED);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    let outcome = run(&scene, &out, &[]).good();
+    assert_eq!((outcome.stdout.as_str(), outcome.stderr.as_str()), ("", ""));
+    let outcome = trackbed([Path::new("run"), &scene, Path::new("--out"), &out]).good();
+    for part in [
+        "run: ",
+        "grain steps",
+        "energy error",
+        "momentum error",
+        "interface: ",
+        "settlement after each cycle",
+    ] {
+        assert!(outcome.stdout.contains(part), "{part} is missing in {}", outcome.stdout);
+    }
+}
+
+#[test]
+fn overrides_change_the_scene() {
+    let folder = scene_folder("override", SOLID);
+    let scene = folder.join("scene.toml");
+    let lowest = |set: &[&str]| {
+        run(&scene, &folder.join("out"), set).good();
+        Table::read(&folder.join("out/nodes.csv")).column("uz").into_iter().fold(0.0, f64::min)
+    };
+    let (soft, stiff) = (lowest(&[]), lowest(&["solid.material.0.young=40 MPa"]));
+    assert!((soft / stiff - 2.0).abs() < 1e-9, "twice the modulus, half the displacement: {soft} {stiff}");
+    assert_eq!(json(&folder.join("out/summary.json"))["overrides"][0], "solid.material.0.young=40 MPa");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_no_bad_input() {
+    let folder = scene_folder("unwritable", SOLID);
+    folder.write("taken", "a file");
+    let outcome = run(&folder.join("scene.toml"), &folder.join("taken"), &[]);
+    assert_eq!((outcome.code, outcome.stderr.lines().count()), (1, 1), "{outcome:?}");
+    assert!(outcome.stderr.starts_with("error: ") && outcome.stderr.contains("taken"), "{outcome:?}");
+    assert_eq!(fs::read_to_string(folder.join("taken")).unwrap(), "a file");
+}
+
+#[test]
+fn mesh_info_of_the_main_scene() {
+    let lists = repository().join("inputs/track/cyclic");
+    let by_folder = trackbed([Path::new("mesh"), Path::new("info"), &lists]).good().stdout;
+    let by_scene = trackbed([Path::new("mesh"), Path::new("info"), &lists.join("scene.toml")]).good().stdout;
+    assert_eq!(by_folder, by_scene);
+    let row = |name: &str| {
+        by_folder.lines().find(|l| l.trim_start().starts_with(name)).unwrap_or_default().to_string()
+    };
+    for (name, value) in
+        [("nodes", "3834"), ("elements", "684"), ("volume", "28.9800"), ("material 2", "264 elements")]
+    {
+        assert!(row(name).contains(value), "{name} should be {value}:\n{by_folder}");
+    }
+}
+
+#[test]
+fn mesh_check_of_sound_and_broken_meshes() {
+    let check = |input: &Path| trackbed([Path::new("mesh"), Path::new("check"), input]);
+    let sound = check(&repository().join("inputs/track/cyclic")).good();
+    assert!(sound.stdout.contains("no fault found"), "{}", sound.stdout);
+
+    let broken = |name: &str, change: &dyn Fn(&mut trackbed_fem::Mesh), parts: &[&str]| {
+        let folder = Folder::new(name);
+        let mut mesh = small_block();
+        change(&mut mesh);
+        write_lists(&mesh, folder.path());
+        let outcome = check(folder.path());
+        assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{outcome:?}");
+        assert!(outcome.stderr.starts_with("error: ") && outcome.stdout.is_empty(), "{outcome:?}");
+        for part in parts {
+            assert!(outcome.stderr.contains(part), "{part} is missing in {}", outcome.stderr);
+        }
+    };
+    // Bottom and top changed over: I…L with M…P and Q…T with U…X.
+    let turn = |m: &mut trackbed_fem::Mesh| {
+        m.connectivity[1][..8].rotate_left(4);
+        m.connectivity[1][8..16].rotate_left(4);
+    };
+    broken("upside_down", &turn, &["element 2 is turned inside out"]);
+    // Corners changed over but mid-sides not: positive at all Gauss points of the reduced rule, negative at corners.
+    broken(
+        "tangled",
+        &|m| m.connectivity[1][..8].rotate_left(4),
+        &["element 2 is turned inside out at corner"],
+    );
+    let apart = |m: &mut trackbed_fem::Mesh| {
+        let shift = m.coordinates.len() as u32;
+        let other = small_block();
+        m.coordinates.extend(other.coordinates.iter().map(|[x, y, z]| [x + 5.0, *y, *z]));
+        m.node_ids.extend((1..=shift).map(|n| n + shift));
+        m.element_ids.extend(9..=16);
+        m.materials.extend([1; 8]);
+        m.connectivity.extend(other.connectivity.iter().map(|e| e.map(|n| n + shift)));
+    };
+    broken("apart", &apart, &["2 parts that share no node", "element 1 (8 in all)", "element 9 (8 in all)"]);
+
+    let folder = Folder::new("loose");
+    write_lists(&small_block(), folder.path());
+    fs::remove_file(folder.join("DOF.DAT")).unwrap();
+    let outcome = check(folder.path());
+    assert!(outcome.code == 2 && outcome.stderr.contains("nothing is constrained"), "{outcome:?}");
+    let outcome = check(&folder.join("nowhere"));
+    assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{outcome:?}");
+}
+
+#[test]
+fn mesh_convert_writes_vtk_and_refuses_other_endings() {
+    let folder = Folder::new("convert");
+    let lists = repository().join("inputs/track/cyclic");
+    let convert = |output: &Path| trackbed([Path::new("mesh"), Path::new("convert"), &lists, output]);
+    let file = folder.join("mesh.vtu");
+    convert(&file).good();
+    let vtkio::model::DataSet::UnstructuredGrid { mut pieces, .. } = vtkio::Vtk::import(&file).unwrap().data
+    else {
+        panic!("no grid")
+    };
+    let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();
+    assert_eq!((piece.points.len(), piece.cells.types.len()), (3 * 3834, 684));
+
+    let outcome = convert(&folder.join("mesh.stl"));
+    assert_eq!(outcome.code, 2, "{outcome:?}");
+    assert!(outcome.stderr.contains("expected a file ending in .vtu") && !folder.join("mesh.stl").exists());
+}

@@ -1,1 +1,99 @@
-//! Not written yet.
+//! The same bits for any number of threads: whole runs with 1, 2 and 3 threads leave the same files.
+//!
+//! The summary, which tells threads, seconds and memory, is compared without those.
+
+use super::support::{Folder, SOLID, json, repository, scene_folder, snapshot, trackbed};
+use serde_json::Value;
+use std::path::Path;
+
+/// Runs a scene with 1, 2 and 3 threads; all files must be the same, and those of `expected` must be there.
+fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder {
+    let folder = Folder::new("threads");
+    let outs = ["1", "2", "3"].map(|threads| {
+        let out = folder.join(threads);
+        let mut arguments: Vec<String> =
+            ["run", &scene.display().to_string(), "--quiet", "--threads", threads, "--out"]
+                .map(String::from)
+                .into();
+        arguments.push(out.display().to_string());
+        set.iter().for_each(|s| arguments.extend(["--set".to_string(), s.to_string()]));
+        trackbed(arguments).good();
+        assert_eq!(json(&out.join("summary.json"))["threads"].to_string(), threads);
+        out
+    });
+    let [one, others @ ..] = outs.each_ref().map(|out| {
+        let mut files = snapshot(out);
+        let mut summary: Value = serde_json::from_slice(&files.remove("summary.json").unwrap()).unwrap();
+        summary["threads"] = Value::Null;
+        summary["peak_memory"] = Value::Null;
+        summary["stages"].as_array_mut().unwrap().iter_mut().for_each(|s| {
+            s["seconds"] = Value::Null;
+            s["parts"] = Value::Null;
+        });
+        files.insert("summary.json".into(), summary.to_string().into_bytes());
+        files
+    });
+    for name in expected {
+        assert!(one.contains_key(*name), "no {name} among {:?}", one.keys());
+    }
+    for (other, threads) in others.iter().zip([2, 3]) {
+        assert!(one.keys().eq(other.keys()), "{threads} threads leave other files");
+        for (name, bytes) in &one {
+            assert!(*bytes == other[name], "{name} differs between 1 and {threads} threads");
+        }
+    }
+    folder
+}
+
+#[test]
+fn clumps_and_sleeper_on_an_embankment() {
+    // The main scene made small, yet with more than the 2500 spheres from which on the grains share their work.
+    let set = [
+        "grains.0.count=250",
+        "deposition.max_time=0.06",
+        "deposition.level=9",
+        "track.load.cycles=1",
+        "track.load.frequency=200",
+        "track.load.rest=0.004",
+        "track.load.ramp=0.004",
+        "output.frames=2",
+    ];
+    let expected = [
+        "history.csv",
+        "cycles.csv",
+        "frames/solid_00002.vtu",
+        "frames/grains_00002.vtp",
+        "frames/chains_00002.vtp",
+        "tecplot/solid_00002.dat",
+    ];
+    let folder = same_bits(&repository().join("inputs/track/cyclic/scene.toml"), &set, &expected);
+    let summary = json(&folder.join("2/summary.json"));
+    assert!(summary["model"]["spheres"].as_u64().unwrap() >= 2500, "{}", summary["model"]);
+    // Grains did press on the solid, so that its results depend on theirs.
+    assert!(summary["energy"]["spent"]["surface_on_grains"].as_f64().unwrap() != 0.0);
+    assert!(summary["energy"]["spent"]["dashpot"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn embankment_in_motion() {
+    let set = [
+        "solid.dynamics.alpha=0.25",
+        "solid.rayleigh.alpha_m=4.0",
+        "solid.rayleigh.beta_k=0.0003",
+        "time.end=0.02",
+        "time.solid_step=0.001",
+        "output.frames=2",
+    ];
+    let scene = repository().join("tests/data/fem/E3_embankment_patch/scene.toml");
+    same_bits(
+        &scene,
+        &set,
+        &["history.csv", "nodes.csv", "gauss.csv", "frames/solid_00002.vtu", "tecplot/solid_00002.dat"],
+    );
+}
+
+#[test]
+fn static_block() {
+    let folder = scene_folder("static_threads", SOLID);
+    same_bits(&folder.join("scene.toml"), &[], &["nodes.csv", "gauss.csv", "frames/solid_00000.vtu"]);
+}

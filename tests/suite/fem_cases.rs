@@ -129,7 +129,11 @@ impl Case {
         }
         let reference = numbers(&self.case["reference"]["reaction_sum"]);
         self.within("sum of reactions", distance(&sum, &reference) / scale, 1e-9);
-        self.within("sum of reactions in the summary", distance(&sum, &numbers(&statics["reaction"])) / scale, 1e-9);
+        self.within(
+            "sum of reactions in the summary",
+            distance(&sum, &numbers(&statics["reaction"])) / scale,
+            1e-9,
+        );
         let balance: Vec<f64> = numbers(&statics["load"]).iter().map(|l| -l).collect();
         self.within("loads against reactions", distance(&sum, &balance) / scale, 1e-9);
         let energy = self.case["reference"]["strain_energy"].as_f64().unwrap();
@@ -194,7 +198,8 @@ fn patch_errors(case: &Case) -> (f64, f64) {
     let (mut error, mut largest) = (0.0_f64, 0.0_f64);
     for line in list.lines() {
         let fields: Vec<f64> = line.split_whitespace().map(|f| f.parse().unwrap()).collect();
-        let exact: Vec<f64> = gradient.iter().map(|g| g.iter().zip(&fields[1..]).map(|(g, x)| g * x).sum()).collect();
+        let exact: Vec<f64> =
+            gradient.iter().map(|g| g.iter().zip(&fields[1..]).map(|(g, x)| g * x).sum()).collect();
         error = error.max(distance(&u[&(fields[0] as u32)], &exact));
         largest = largest.max(distance(&exact, &[0.0; 3]));
     }
@@ -209,7 +214,11 @@ fn check_patch(name: &'static str) {
     case.within("displacement against G x", displacement, 1e-10);
     case.within("stress at 27 points per element", stress, 1e-9);
     // The printed references have ten digits, so that they cannot show 1e-9.
-    case.within("displacement against the printed one", case.displacement_error("reference_displacement.csv"), 1e-9);
+    case.within(
+        "displacement against the printed one",
+        case.displacement_error("reference_displacement.csv"),
+        1e-9,
+    );
     case.check_stress(1e-8);
     case.check_sums();
 }
@@ -255,7 +264,8 @@ fn e6_thick_cylinder() {
     let case = check_against_reference("E6_thick_cylinder");
     // Lamé, plane strain: u_r = (1 + ν) p a² / (E (b² − a²)) ((1 − 2ν) r + b² / r).
     let (a, b, p, young, nu) = (0.5_f64, 1.0_f64, 10e6, 200e9, 0.3);
-    let lame = |r: f64| (1.0 + nu) * p * a * a / (young * (b * b - a * a)) * ((1.0 - 2.0 * nu) * r + b * b / r);
+    let lame =
+        |r: f64| (1.0 + nu) * p * a * a / (young * (b * b - a * a)) * ((1.0 - 2.0 * nu) * r + b * b / r);
     let list = fs::read_to_string(case.data.join("NODECOORD.DAT")).unwrap();
     let u = case.displacement();
     let mut error = 0.0_f64;
@@ -278,8 +288,12 @@ fn e5_pulse_on_a_layered_column() {
         assert!((a - b).abs() < 1e-12, "rows at the same times: {a} {b}");
     }
     let largest = |column: &[f64]| column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let nodes: Vec<u64> =
-        case.case["reference"]["history_nodes"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+    let nodes: Vec<u64> = case.case["reference"]["history_nodes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|n| n.as_u64().unwrap())
+        .collect();
     for (kind, tolerance) in [("u", 1e-6), ("v", 1e-5)] {
         // Column by column; those that hold next to nothing are left out, as case.json says.
         let columns: Vec<(String, Vec<f64>, Vec<f64>)> = nodes

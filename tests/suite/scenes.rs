@@ -1,1 +1,377 @@
-//! Not written yet.
+//! What runs leave on disk: the fields that every file must hold, no number that is not finite, and an honest end
+//! when a run blows up (exit code 3: what, where, when; the summary says that it failed).
+
+use super::support::{COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use vtkio::model::{Attribute, DataSet};
+
+/// Arrays of a VTK file: name → (components, values).
+type Arrays = BTreeMap<String, (usize, Vec<f64>)>;
+
+/// Points, point data and cell data of a file; everything must be finite.
+fn vtk(file: &Path) -> (Vec<f64>, Arrays, Arrays) {
+    let arrays = |list: Vec<Attribute>| -> Arrays {
+        let one = |attribute: Attribute| match attribute {
+            Attribute::DataArray(a) => (a.name.clone(), (a.num_comp(), a.data.cast_into::<f64>().unwrap())),
+            Attribute::Field { .. } => panic!("a field in {}", file.display()),
+        };
+        list.into_iter().map(one).collect()
+    };
+    let (points, data) = match vtkio::Vtk::import(file).unwrap().data {
+        DataSet::UnstructuredGrid { mut pieces, .. } => {
+            let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();
+            (piece.points, piece.data)
+        }
+        DataSet::PolyData { mut pieces, .. } => {
+            let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();
+            (piece.points, piece.data)
+        }
+        _ => panic!("{}", file.display()),
+    };
+    let points = points.cast_into::<f64>().unwrap();
+    let (point, cell) = (arrays(data.point), arrays(data.cell));
+    for values in point.values().chain(cell.values()).map(|(_, v)| v).chain([&points]) {
+        assert!(values.iter().all(|v| v.is_finite()), "{}", file.display());
+    }
+    (points, point, cell)
+}
+
+#[track_caller]
+fn expect_arrays(arrays: &Arrays, items: usize, expected: &[(&str, usize)]) {
+    for (name, components) in expected {
+        let (found, values) = arrays.get(*name).unwrap_or_else(|| panic!("no {name} in {:?}", arrays.keys()));
+        assert_eq!((*found, values.len()), (*components, components * items), "{name}");
+    }
+}
+
+/// Files that `results.pvd` lists, with their times.
+fn series(dir: &Path) -> Vec<(f64, PathBuf)> {
+    let text = fs::read_to_string(dir.join("results.pvd")).unwrap();
+    let attribute = |row: &str, name: &str| {
+        row.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap().to_string()
+    };
+    text.lines()
+        .filter(|row| row.contains("<DataSet"))
+        .map(|row| (attribute(row, "timestep").parse().unwrap(), dir.join(attribute(row, "file"))))
+        .collect()
+}
+
+/// A finished run of the coupled scene.
+fn coupled(name: &str) -> Folder {
+    let folder = scene_folder(name, COUPLED);
+    run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
+    folder
+}
+
+#[test]
+fn files_of_a_coupled_run_hold_every_field() {
+    let folder = coupled("fields");
+    let out = folder.join("out");
+    let frames = series(&out);
+    // The start and two frames of solid, grains, force chains, walls.
+    assert_eq!(frames.len(), 12);
+    assert!(frames.iter().all(|(_, file)| file.is_file()));
+    assert_eq!(frames[0].0, 0.0);
+
+    let (points, point, cell) = vtk(&out.join("frames/solid_00002.vtu"));
+    let nodes = points.len() / 3;
+    assert_eq!(nodes, 81);
+    let solid = [
+        ("displacement", 3),
+        ("velocity", 3),
+        ("stress", 9),
+        ("von_mises", 1),
+        ("equivalent_plastic_strain", 1),
+        ("yield_function", 1),
+        ("node_id", 1),
+    ];
+    expect_arrays(&point, nodes, &solid);
+    expect_arrays(&cell, 8, &[("material", 1), ("element_id", 1)]);
+    // The picture and the history agree: the probe stands on the middle of the top.
+    let history = Table::read(&out.join("history.csv"));
+    let probe = (0..nodes).find(|n| points[3 * n..3 * n + 3] == [1.0, 1.0, 0.0]).unwrap();
+    for (d, axis) in ["x", "y", "z"].iter().enumerate() {
+        let last = |name: &str| *history.column(&format!("{name}_{axis}")).last().unwrap();
+        assert_eq!(point["displacement"].1[3 * probe + d], last("middle_u"));
+        assert_eq!(point["velocity"].1[3 * probe + d], last("middle_v"));
+    }
+    assert_eq!(frames.last().unwrap().0, *history.column("time").last().unwrap());
+
+    let (points, point, _) = vtk(&out.join("frames/grains_00002.vtp"));
+    let grains = [
+        ("radius", 1),
+        ("velocity", 3),
+        ("spin", 3),
+        ("orientation", 4),
+        ("id", 1),
+        ("part", 1),
+        ("mean_stress", 1),
+        ("force", 3),
+    ];
+    assert_eq!(points.len(), 3 * 5);
+    expect_arrays(&point, 5, &grains);
+    assert!(point["radius"].1.iter().all(|r| *r == 0.1));
+
+    let (points, _, cell) = vtk(&out.join("frames/chains_00002.vtp"));
+    let contacts = points.len() / 6;
+    assert!(contacts >= 4, "the bed carries the sleeper: {contacts} contacts");
+    expect_arrays(
+        &cell,
+        contacts,
+        &[("normal_force", 1), ("tangential_force", 1), ("magnitude", 1), ("kind", 1)],
+    );
+    let on_solid: f64 =
+        cell["kind"].1.iter().zip(&cell["normal_force"].1).filter(|(k, _)| **k == 3.0).map(|(_, f)| f).sum();
+    assert!(on_solid > 100.0, "the force chains end on the solid: {on_solid} N");
+
+    let (points, _, cell) = vtk(&out.join("frames/walls_00002.vtp"));
+    assert_eq!(points.len(), 3 * 8, "the sleeper's corners");
+    expect_arrays(&cell, 6, &[("id", 1)]);
+    let height: f64 = (0..8).map(|c| points[3 * c + 2] / 8.0).sum();
+    assert!((height - history.column("sleeper_z").last().unwrap()).abs() < 1e-12);
+
+    let expected = [
+        "time",
+        "load",
+        "sleeper_x",
+        "sleeper_y",
+        "sleeper_z",
+        "sleeper_tilt",
+        "contact_force_on_solid_x",
+        "contact_force_on_solid_y",
+        "contact_force_on_solid_z",
+        "peak_formation_pressure",
+        "grains_kinetic",
+        "contact_springs",
+        "grains_gravity",
+        "solid_kinetic",
+        "solid_strain",
+        "solid_gravity",
+        "work",
+        "dissipated_dashpot",
+        "dissipated_friction",
+        "dissipated_solid",
+        "interface_error",
+        "energy_error",
+        "middle_u_x",
+        "middle_u_y",
+        "middle_u_z",
+        "middle_v_x",
+        "middle_v_y",
+        "middle_v_z",
+    ];
+    assert_eq!(history.heads, expected);
+    let cycles = Table::read(&out.join("cycles.csv"));
+    let expected = [
+        "cycle",
+        "settlement",
+        "resilient_deflection",
+        "secant_stiffness",
+        "dissipated_energy",
+        "peak_formation_pressure",
+    ];
+    assert_eq!(cycles.heads, expected);
+    assert_eq!(cycles.column("cycle"), [1.0, 2.0]);
+    for plot in ["settlement.svg", "sleeper.svg"] {
+        assert!(fs::read_to_string(out.join(plot)).unwrap().contains("<svg"), "{plot}");
+    }
+}
+
+#[test]
+fn tecplot_file_holds_its_variables_points_and_bricks() {
+    let folder = coupled("tecplot");
+    let text = fs::read_to_string(folder.join("out/tecplot/solid_00002.dat")).unwrap();
+    let variables = text.lines().find_map(|l| l.strip_prefix("VARIABLES = ")).unwrap();
+    let expected = [
+        "x",
+        "y",
+        "z",
+        "ux",
+        "uy",
+        "uz",
+        "u",
+        "sxx",
+        "syy",
+        "szz",
+        "sxy",
+        "syz",
+        "szx",
+        "von_mises",
+        "eps_p",
+    ];
+    assert_eq!(variables.split_whitespace().map(|v| v.trim_matches('"')).collect::<Vec<_>>(), expected);
+    let zone = text.lines().find(|l| l.starts_with("ZONE")).unwrap();
+    let count =
+        |key: &str| -> usize { zone.split(key).nth(1).unwrap().split(',').next().unwrap().parse().unwrap() };
+    let (points, bricks) = (count("N="), count("E="));
+    // 81 nodes, a centre per face (36) and per element (8); eight bricks per element.
+    assert_eq!((points, bricks), (81 + 36 + 8, 64));
+    assert!(text.contains("ZONETYPE=FEBRICK"));
+    let numbers: Vec<Vec<f64>> = text
+        .lines()
+        .skip_while(|l| !l.starts_with("DATAPACKING"))
+        .skip(1)
+        .map(|l| l.split_whitespace().map(|v| v.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(numbers.len(), points + bricks);
+    assert!(numbers[..points].iter().all(|row| row.len() == 15 && row.iter().all(|v| v.is_finite())));
+    assert!(
+        numbers[points..]
+            .iter()
+            .all(|row| row.len() == 8 && row.iter().all(|v| (1.0..=points as f64).contains(v)))
+    );
+}
+
+#[test]
+fn vtk_itself_opens_the_results() {
+    let Some(python) = python() else { return };
+    let folder = coupled("vtk");
+    let script = repository().join("tests/vtk_check.py");
+    let output = Command::new(python)
+        .arg(script)
+        .args(["--volume", "4"])
+        .arg(folder.join("out/results.pvd"))
+        .output()
+        .expect("the interpreter starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && text.contains("13 passed, 0 failed"), "{text}");
+}
+
+/// An interpreter with the package `vtk`: the one that `TRACKBED_PYTHON` names, or else `python3` if it has it.
+fn python() -> Option<PathBuf> {
+    if let Some(told) = std::env::var_os("TRACKBED_PYTHON") {
+        return Some(told.into());
+    }
+    match Command::new("python3").args(["-c", "import vtkmodules.vtkIOXML"]).output() {
+        Ok(output) if output.status.success() => Some("python3".into()),
+        _ => {
+            eprintln!("skipped: python3 has no package vtk, and TRACKBED_PYTHON is not set");
+            None
+        }
+    }
+}
+
+#[test]
+fn output_that_is_not_wanted_is_not_written() {
+    let folder = scene_folder("no_output", COUPLED);
+    let out = folder.join("out");
+    run(&folder.join("scene.toml"), &out, &["output.vtk=false", "output.tecplot=false", "output.frames=0"])
+        .good();
+    let mut names: Vec<String> =
+        fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["cycles.csv", "history.csv", "settlement.svg", "sleeper.svg", "summary.json"]);
+}
+
+#[test]
+fn frames_of_an_earlier_run_are_gone() {
+    let folder = scene_folder("stale", COUPLED);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    run(&scene, &out, &["output.frames=5"]).good();
+    assert!(out.join("frames/solid_00005.vtu").exists());
+    run(&scene, &out, &["output.frames=1"]).good();
+    let listed: Vec<PathBuf> = series(&out).into_iter().map(|(_, file)| file).collect();
+    assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), listed.len());
+    assert_eq!(fs::read_dir(out.join("tecplot")).unwrap().count(), 2);
+}
+
+/// A run that fails numerically: one line on standard error with `what` and a time, code 3, and files without any
+/// number that is not finite.
+fn blows_up(folder: &Folder, what: &[&str]) {
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    let outcome = run(&scene, &out, &[]);
+    assert_eq!((outcome.code, outcome.stderr.lines().count()), (3, 1), "{outcome:?}");
+    println!("{}", outcome.stderr.trim());
+    for part in what.iter().chain(&["at t = "]) {
+        assert!(outcome.stderr.contains(part), "{part} is missing in {}", outcome.stderr);
+    }
+    let summary = json(&out.join("summary.json"));
+    let status = summary["status"].as_str().unwrap();
+    assert_eq!(format!("error: {}\n", status.strip_prefix("failed: ").unwrap()), outcome.stderr);
+
+    let history = Table::read(&out.join("history.csv"));
+    assert!(!history.rows.is_empty(), "what was known until then is kept");
+    let frames = series(&out);
+    assert!(!frames.is_empty());
+    for (_, file) in &frames {
+        let text = String::from_utf8_lossy(&fs::read(file).unwrap()).into_owned();
+        // Files of no contacts hold no array to look into.
+        if !text.contains("NumberOfPoints=\"0\"") {
+            vtk(file);
+        }
+    }
+    for entry in fs::read_dir(out.join("tecplot")).into_iter().flatten() {
+        let text = fs::read_to_string(entry.unwrap().path()).unwrap();
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+    }
+    let text = fs::read_to_string(out.join("summary.json")).unwrap();
+    assert!(!text.contains("NaN") && !text.contains("Infinity"));
+}
+
+#[test]
+fn grains_blow_up_with_a_step_far_above_the_limit() {
+    let step = "[time]\nend = \"0.5\"\ngrain_step = \"5 ms\"\naccept_step_above_limit = true\n";
+    let folder = Folder::new("blow_up_grains");
+    folder.write("scene.toml", &GRAINS.replace("[time]\nend = \"20 ms\"\n", step));
+    blows_up(&folder, &["grains: ", "body ", "above the bound"]);
+}
+
+#[test]
+fn coupled_scene_blows_up_with_a_step_far_above_the_limit() {
+    let step = "[time]\ngrain_step = \"10 ms\"\naccept_step_above_limit = true\n\n[output]";
+    let folder = scene_folder("blow_up_coupled", &COUPLED.replace("[output]", step));
+    blows_up(&folder, &["grains: ", "body ", "above the bound"]);
+}
+
+#[test]
+fn grains_inside_each_other_are_named() {
+    let folder = Folder::new("overlap");
+    folder.write("scene.toml", &GRAINS.replace("[0.01, 0.0, 0.152, 0.05]", "[0.001, 0.0, 0.06, 0.05]"));
+    blows_up(&folder, &["grains: ", "body 0 and body 1 overlap"]);
+}
+
+#[test]
+fn unstable_newmark_constants_blow_up() {
+    let dynamics =
+        "[solid.dynamics]\nalpha = 0\ndelta = 0.3\naccept_conditional_stability = true\n\n[[solid.load]]";
+    let time = "[time]\nend = 5\nsolid_step = 0.01\n\n[output]";
+    let text = SOLID.replace("[[solid.load]]", dynamics).replace("[output]", time);
+    let folder = scene_folder("blow_up_solid", &text);
+    blows_up(&folder, &["solid_kinetic", "not written"]);
+}
+
+#[test]
+fn a_run_after_a_failed_one_is_as_in_a_fresh_folder() {
+    let folder = Folder::new("after_failure");
+    let scene = folder.write("scene.toml", GRAINS);
+    let steps = ["time.grain_step=5 ms", "time.end=0.5", "time.accept_step_above_limit=true"];
+    assert_eq!(run(&scene, &folder.join("out"), &steps).code, 3);
+    run(&scene, &folder.join("out"), &[]).good();
+    run(&scene, &folder.join("fresh"), &[]).good();
+    for file in ["history.csv", "results.pvd", "frames/grains_00002.vtp"] {
+        assert!(
+            fs::read(folder.join("out").join(file)).unwrap()
+                == fs::read(folder.join("fresh").join(file)).unwrap()
+        );
+    }
+    assert_eq!(json(&folder.join("out/summary.json"))["status"], "done");
+}
+
+#[test]
+fn a_scene_of_one_side_runs_alone() {
+    let folder = scene_folder("alone", SOLID);
+    run(&folder.join("scene.toml"), &folder.join("solid"), &[]).good();
+    let names = |dir: &str| {
+        let frames = fs::read_dir(folder.join(dir).join("frames")).unwrap();
+        frames.map(|e| e.unwrap().file_name().into_string().unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(names("solid"), ["solid_00000.vtu"]);
+    assert!(!folder.join("solid/history.csv").exists(), "a static solid has no history");
+    folder.write("grains.toml", GRAINS);
+    run(&folder.join("grains.toml"), &folder.join("grains"), &[]).good();
+    assert!(names("grains").iter().all(|n| !n.starts_with("solid")));
+    assert!(!folder.join("grains/cycles.csv").exists(), "no load, no cycles");
+}

@@ -1,7 +1,6 @@
 //! What the tests share: fresh folders, runs of the binary, small scenes, readers of what a run leaves.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,7 +15,8 @@ impl Folder {
     pub fn new(name: &str) -> Folder {
         static NUMBER: AtomicU32 = AtomicU32::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("trackbed_suite_{}_{number}_{name}", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("trackbed_suite_{}_{number}_{name}", std::process::id()));
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path).unwrap();
         Folder(path)
@@ -78,7 +78,8 @@ impl Outcome {
 
 /// Runs the program in the folder `dir`.
 pub fn trackbed_in<A: AsRef<std::ffi::OsStr>>(dir: &Path, arguments: impl IntoIterator<Item = A>) -> Outcome {
-    let output = Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).current_dir(dir).output().unwrap();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).current_dir(dir).output().unwrap();
     Outcome {
         code: output.status.code().unwrap_or(-1),
         stdout: String::from_utf8(output.stdout).unwrap(),
@@ -94,7 +95,9 @@ pub fn trackbed<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A
 /// Runs a scene quietly into `out` with overrides `key.path=value`.
 pub fn run(scene: &Path, out: &Path, set: &[&str]) -> Outcome {
     let mut arguments: Vec<String> =
-        ["run", &scene.display().to_string(), "--out", &out.display().to_string(), "--quiet"].map(String::from).into();
+        ["run", &scene.display().to_string(), "--out", &out.display().to_string(), "--quiet"]
+            .map(String::from)
+            .into();
     for assignment in set {
         arguments.extend(["--set".to_string(), assignment.to_string()]);
     }
@@ -114,7 +117,8 @@ pub fn snapshot(dir: &Path) -> BTreeMap<String, Vec<u8>> {
             if path.is_dir() {
                 visit(root, &path, files);
             } else {
-                files.insert(path.strip_prefix(root).unwrap().display().to_string(), fs::read(&path).unwrap());
+                files
+                    .insert(path.strip_prefix(root).unwrap().display().to_string(), fs::read(&path).unwrap());
             }
         }
     }
@@ -151,8 +155,13 @@ impl Table {
             lines.next().unwrap().split(',').map(|h| h.split(" [").next().unwrap().to_string()).collect();
         let rows: Vec<Vec<f64>> = lines
             .map(|line| {
-                let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or_else(|_| panic!("{line}"))).collect();
-                assert!(row.len() == heads.len() && row.iter().all(|v| v.is_finite()), "{}: {line}", file.display());
+                let row: Vec<f64> =
+                    line.split(',').map(|v| v.parse().unwrap_or_else(|_| panic!("{line}"))).collect();
+                assert!(
+                    row.len() == heads.len() && row.iter().all(|v| v.is_finite()),
+                    "{}: {line}",
+                    file.display()
+                );
                 row
             })
             .collect();
@@ -162,7 +171,10 @@ impl Table {
     /// Index of a column.
     #[track_caller]
     pub fn index(&self, name: &str) -> usize {
-        self.heads.iter().position(|h| h == name).unwrap_or_else(|| panic!("no column {name} in {:?}", self.heads))
+        self.heads
+            .iter()
+            .position(|h| h == name)
+            .unwrap_or_else(|| panic!("no column {name} in {:?}", self.heads))
     }
 
     /// Values of a column.
@@ -311,12 +323,4 @@ pub fn scene_folder(name: &str, text: &str) -> Folder {
     write_lists(&small_block(), folder.path());
     folder.write("scene.toml", text);
     folder
-}
-
-/// One line per name, sorted: for messages.
-pub fn listing(files: &BTreeMap<String, Vec<u8>>) -> String {
-    files.iter().fold(String::new(), |mut text, (name, bytes)| {
-        writeln!(text, "  {name}: {} bytes", bytes.len()).unwrap();
-        text
-    })
 }
