@@ -30,7 +30,10 @@ pub fn execute(command: Command) -> Result<(), Failure> {
                 return print(&format!("{}: no fault found\n{}", args.input.display(), remarks(&lists)));
             }
             let text = problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
-            Err(Failure::Input(format!("{}: found {text}, expected a mesh without faults", args.input.display())))
+            Err(Failure::Input(format!(
+                "{}: found {text}, expected a mesh without faults",
+                args.input.display()
+            )))
         }
         Command::Mesh { command: MeshCommand::Convert { mesh, output } } => {
             if output.extension().is_none_or(|e| e != "vtu") {

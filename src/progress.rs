@@ -25,9 +25,11 @@ impl Progress {
             ProgressDrawTarget::stderr_with_hz(5)
         };
         let bar = ProgressBar::with_draw_target(Some(TICKS), target);
-        let style = ProgressStyle::with_template("{prefix:>12} [{bar:40}] {percent:>3}%  {elapsed} of about {duration}  {msg}")
-            .expect("the template is a constant")
-            .progress_chars("=> ");
+        let style = ProgressStyle::with_template(
+            "{prefix:>12} [{bar:40}] {percent:>3}%  {elapsed} of about {duration}  {msg}",
+        )
+        .expect("the template is a constant")
+        .progress_chars("=> ");
         bar.set_style(style);
         bar.set_prefix(stage);
         Progress { bar, stage, total, begun: Instant::now(), quiet }

@@ -218,8 +218,8 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
     }
 }
 
-/// Nodal load on the solid of grains that lie on its undeformed surface [N], shape `[3·nodes]`: what the solid
-/// carries when a run begins.
+/// What the solid carries when a run begins: the nodal load of grains that lie on its undeformed surface [N], shape
+/// `[3·nodes]`, and the grains' state with its contacts found.
 ///
 /// # Errors
 /// The grains cannot make a step.
@@ -227,17 +227,17 @@ pub fn resting_load(
     grains: &dem::Model,
     surface: &mut SolidSurface,
     mesh: &fem::mesh::Mesh,
-) -> Result<Vec<f64>, dem::StepError> {
+) -> Result<(Vec<f64>, dem::State), dem::StepError> {
     let mut state = dem::State::new(grains);
     let mut work = dem::Work::new(grains, &state);
     let zero = vec![0.0; 3 * mesh.node_count()];
     surface.begin_window(mesh, &zero, &zero, &zero, grains.dt());
-    dem::step(grains, &mut state, &mut work, &*surface, &[])?;
+    dem::find_contacts(grains, &mut state, &mut work, &*surface)?;
     let mut transfer = Transfer::new(surface);
     transfer.add(surface, work.surface_contacts(), grains.dt(), &mut TransferAudit::default());
     let mut load = zero;
     transfer.add_mean_load(surface, grains.dt(), &mut load);
-    Ok(load)
+    Ok((load, state))
 }
 
 /// Masses of the elements that `faces` belong to [kg].
@@ -248,11 +248,21 @@ pub fn face_masses(solid: &fem::model::Model, faces: &[fem::mesh::Face]) -> impl
     })
 }
 
-/// Stability number W = Δt √(Kₙ/m) of the exchange: window Δt [s], stiffest contact of a grain with the surface
-/// [N/m], and the lightest surface node, a corner with the share 0.018 of the lightest of the touched elements'
-/// `masses` [kg] (consistent mass; two-mass study). Damped contacts need W below about 1.
-pub fn stability(window: f64, stiffness: f64, masses: impl Iterator<Item = f64>) -> f64 {
+/// The two numbers that decide whether an exchange is stable; both should stay below about 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stability {
+    /// W = Δt √(Kₙ/m): window Δt, stiffest contact Kₙ of a grain with the surface, mass m of the lightest surface
+    /// node.
+    pub stiffness: f64,
+    /// D = C Δt/m: the dashpot C of that contact on the same node.
+    pub damping: f64,
+}
+
+/// Stability of an exchange with windows of `window` [s] and contacts of `stiffness` [N/m] and dashpot `damping`
+/// [N s/m]. The lightest surface node is a corner with the share 0.018 of the lightest of the touched elements'
+/// `masses` [kg] (consistent mass; two-mass study).
+pub fn stability(window: f64, stiffness: f64, damping: f64, masses: impl Iterator<Item = f64>) -> Stability {
     const CORNER_SHARE: f64 = 0.018;
-    let lightest = masses.fold(f64::INFINITY, f64::min);
-    window * (stiffness / (CORNER_SHARE * lightest)).sqrt()
+    let lightest = CORNER_SHARE * masses.fold(f64::INFINITY, f64::min);
+    Stability { stiffness: window * (stiffness / lightest).sqrt(), damping: damping * window / lightest }
 }

@@ -30,7 +30,7 @@ pub use material::{Material, PairOverride};
 pub use model::Model;
 pub use shape::Shape;
 pub use state::State;
-pub use step::step;
+pub use step::{find_contacts, step};
 pub use work::Work;
 
 /// A vector of three components.

@@ -53,6 +53,29 @@ pub fn step<S: Surface>(
     collect(model, state, work, surface.max_speed())
 }
 
+/// Finds the contacts of a state that has made no step yet, so that measures see them from the start. Nothing moves,
+/// and the ledger stays as it is.
+///
+/// # Errors
+/// As [`step`].
+pub fn find_contacts<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+) -> Result<(), StepError> {
+    let mut probe = state.clone();
+    step(model, &mut probe, work, surface, &[])?;
+    for (block, seen) in state.blocks.iter_mut().zip(probe.blocks) {
+        let Block { pairs, planes, triangles, surface, .. } = seen;
+        *block = Block { pairs, planes, triangles, surface, ..std::mem::take(block) };
+    }
+    state.cross = probe.cross;
+    (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
+    (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    Ok(())
+}
+
 fn contacts_and_motion<S: Surface, const RIGID: bool>(
     model: &Model,
     state: &mut State,

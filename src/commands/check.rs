@@ -39,8 +39,8 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
         }
     }
     if let Some(grains) = &job.grains {
-        let model = dem::Model::new(grains.input(grains.bodies.clone()))
-            .map_err(|e| refused(&document, &e))?;
+        let model =
+            dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
         line(format!("grains: {} bodies with {} spheres", model.body_count(), model.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
         if let Some(d) = &grains.deposition {
@@ -49,13 +49,14 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
         line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
         if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
             let window = model.dt() * f64::from(coupling.substeps);
-            let stiffness = grains.stiffest_surface_contact(&model);
-            let masses = trackbed_coupling::step::face_masses(&solid.model, &coupling.faces);
-            let w = trackbed_coupling::step::stability(window, stiffness, masses);
+            let s = grains.stability(&model, window, &solid.model, &coupling.faces);
             line(format!(
-                "coupling: {} faces, {} grain steps per window of {window:.4e} s, stability number W = {w:.3}",
+                "coupling: {} faces, {} grain steps per window of {window:.4e} s; stability W = {:.3}, D = {:.3} (both \
+                 should be below 1)",
                 coupling.faces.len(),
                 coupling.substeps,
+                s.stiffness,
+                s.damping,
             ));
         }
     } else if let Some(step) = job.solid_step {

@@ -8,11 +8,14 @@ use crate::scene::track::{Motion, Track};
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 use nalgebra::UnitQuaternion;
+use trackbed_coupling::step::{self, Stability};
 use trackbed_dem::insert::place;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
-    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, TriangleSurface, Vec3,
+    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep,
+    TriangleSurface, Vec3,
 };
+use trackbed_fem::Face;
 
 /// The grains, ready to build models of.
 pub struct GrainsPart {
@@ -77,7 +80,13 @@ impl GrainsPart {
                     if let Some(c) = contacts.iter_mut().find(same) {
                         c.friction = Some(friction);
                     } else {
-                        contacts.push(PairOverride { a, b, friction: Some(friction), restitution: None, stiffness: None });
+                        contacts.push(PairOverride {
+                            a,
+                            b,
+                            friction: Some(friction),
+                            restitution: None,
+                            stiffness: None,
+                        });
                     }
                 }
             }
@@ -103,10 +112,25 @@ impl GrainsPart {
         }
     }
 
-    /// Stiffest contact of a grain or sleeper with the solid's surface [N/m].
-    pub fn stiffest_surface_contact(&self, model: &Model) -> f64 {
-        let Some(surface) = self.surface_material else { return 0.0 };
-        self.grain_materials.iter().map(|&m| model.contact_stiffness(m, surface).0).fold(0.0, f64::max)
+    /// Stability of the exchange with a solid in windows of `window` [s], for the stiffest contact and the heaviest
+    /// grain.
+    pub fn stability(
+        &self,
+        model: &Model,
+        window: f64,
+        solid: &trackbed_fem::Model,
+        faces: &[Face],
+    ) -> Stability {
+        let Some(surface) = self.surface_material else { return Stability::default() };
+        let (mut stiffness, mut damping) = (0.0_f64, 0.0_f64);
+        let heaviest =
+            (0..self.bodies.len().min(model.body_count())).map(|b| model.mass(b)).fold(0.0, f64::max);
+        for &material in &self.grain_materials {
+            let (k, ratio) = model.contact_stiffness(material, surface);
+            stiffness = stiffness.max(k);
+            damping = damping.max(2.0 * ratio * (heaviest * k).sqrt());
+        }
+        step::stability(window, stiffness, damping, step::face_masses(solid, faces))
     }
 
     /// Planes, for the pictures of the walls.
@@ -141,7 +165,11 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     let names: Vec<&str> = scene.material.iter().map(|m| m.name.as_str()).collect();
     let find = |key: &str, name: &str| -> Result<usize, SceneError> {
         names.iter().position(|n| *n == name).ok_or_else(|| {
-            document.error(key, format!("\"{name}\""), format!("the name of a [[material]]: {}", names.join(", ")))
+            document.error(
+                key,
+                format!("\"{name}\""),
+                format!("the name of a [[material]]: {}", names.join(", ")),
+            )
         })
     };
     let materials = materials(document, scene)?;
@@ -165,7 +193,11 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         shapes: Vec::new(),
         planes: Vec::new(),
         triangles: Vec::new(),
-        surface_material: scene.coupling.as_ref().map(|c| find("coupling.material", &c.material)).transpose()?,
+        surface_material: scene
+            .coupling
+            .as_ref()
+            .map(|c| find("coupling.material", &c.material))
+            .transpose()?,
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         bodies: Vec::new(),
@@ -193,9 +225,21 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     }
     if let Some(d) = &scene.deposition {
         check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
-        check(document, "deposition.settled_speed", Some(d.settled_speed.si), |v| v > 0.0, "a speed above 0")?;
+        check(
+            document,
+            "deposition.settled_speed",
+            Some(d.settled_speed.si),
+            |v| v > 0.0,
+            "a speed above 0",
+        )?;
         check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
-        check(document, "deposition.local_damping", Some(d.local_damping), |a| (0.0..1.0).contains(&a), "0 or more, below 1")?;
+        check(
+            document,
+            "deposition.local_damping",
+            Some(d.local_damping),
+            |a| (0.0..1.0).contains(&a),
+            "0 or more, below 1",
+        )?;
         part.deposition = Some(DepositionPlan {
             max_time: d.max_time.si,
             settled_speed: d.settled_speed.si,
@@ -215,7 +259,8 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
 pub fn refused(document: &Document, error: &ModelError) -> SceneError {
     match error {
         ModelError::TimeStep { dt, limit, cause } => {
-            let expected = format!("at most {limit:.6e} s, set by {cause}, or `accept_step_above_limit = true`");
+            let expected =
+                format!("at most {limit:.6e} s, set by {cause}, or `accept_step_above_limit = true`");
             document.error("time.grain_step", format!("{dt} s"), expected)
         }
         ModelError::RigidPair { a, b } => {
@@ -251,10 +296,28 @@ fn materials(document: &Document, scene: &Scene) -> Result<Vec<Material>, SceneE
         }
         check(document, &key("density"), m.density.map(|d| d.si), |d| d > 0.0, "a density above 0")?;
         check(document, &key("stiffness"), m.stiffness.map(|s| s.si), |k| k > 0.0, "a stiffness above 0")?;
-        check(document, &key("tangential_ratio"), Some(m.tangential_ratio), |r| (0.0..=1.0).contains(&r), "0 to 1")?;
-        check(document, &key("tangential_damping_ratio"), Some(m.tangential_damping_ratio), |r| (0.0..=1.0).contains(&r), "0 to 1")?;
+        check(
+            document,
+            &key("tangential_ratio"),
+            Some(m.tangential_ratio),
+            |r| (0.0..=1.0).contains(&r),
+            "0 to 1",
+        )?;
+        check(
+            document,
+            &key("tangential_damping_ratio"),
+            Some(m.tangential_damping_ratio),
+            |r| (0.0..=1.0).contains(&r),
+            "0 to 1",
+        )?;
         check(document, &key("friction"), Some(m.friction), |f| f >= 0.0, "0 or more")?;
-        check(document, &key("restitution"), Some(m.restitution), |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
+        check(
+            document,
+            &key("restitution"),
+            Some(m.restitution),
+            |e| e > 0.0 && e <= 1.0,
+            "above 0, at most 1",
+        )?;
         out.push(Material {
             // Bodies need a density and say so; walls never use it.
             density: m.density.map_or(1.0, |d| d.si),
@@ -284,7 +347,13 @@ fn time_step(document: &Document, time: &TimeControl) -> Result<TimeStep, SceneE
                 return Err(document.error(key, "true", "a `grain_step` that it accepts"));
             }
             let fraction = fraction.unwrap_or(0.9);
-            check(document, "time.grain_step_fraction", Some(fraction), |f| f > 0.0 && f <= 1.0, "above 0, at most 1")?;
+            check(
+                document,
+                "time.grain_step_fraction",
+                Some(fraction),
+                |f| f > 0.0 && f <= 1.0,
+                "above 0, at most 1",
+            )?;
             Ok(TimeStep::Auto { fraction })
         }
     }
@@ -346,11 +415,14 @@ fn add_group(
         }
         let shape = part.shapes.len();
         part.shapes.push(Shape::Sphere { radius: 1.0 });
-        part.bodies.extend(spheres.iter().map(|(c, r)| body(shape, *r, Vec3::from(*c), UnitQuaternion::identity())));
+        part.bodies
+            .extend(spheres.iter().map(|(c, r)| body(shape, *r, Vec3::from(*c), UnitQuaternion::identity())));
         return Ok(());
     }
     let fill = group.fill.as_ref().expect("one of the three sources is there");
-    let count = group.count.ok_or_else(|| document.error(&key("count"), "nothing", "the number of grains to fill in"))?;
+    let count = group
+        .count
+        .ok_or_else(|| document.error(&key("count"), "nothing", "the number of grains to fill in"))?;
     check(document, &key("count"), Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
     let first = part.shapes.len();
     // Size 1 of every shape is a sieve size of 1 m, so that the scale of a body is its sieve size.
@@ -383,10 +455,13 @@ fn add_group(
             (0..count).map(|i| low.si + (high.si - low.si) * (i as f64 + 0.5) / count as f64).collect()
         }
         _ => {
-            return Err(document.error(&key("gradation"), "both or none of `gradation` and `size`", "one of them").into());
+            return Err(document
+                .error(&key("gradation"), "both or none of `gradation` and `size`", "one of them")
+                .into());
         }
     };
-    let scale: Vec<f64> = sizes.iter().enumerate().map(|(i, s)| s * unit_scale[i % unit_scale.len()]).collect();
+    let scale: Vec<f64> =
+        sizes.iter().enumerate().map(|(i, s)| s * unit_scale[i % unit_scale.len()]).collect();
     let radii: Vec<f64> = scale
         .iter()
         .enumerate()
@@ -430,15 +505,24 @@ fn add_wall(
     }
     match wall.kind {
         WallKind::Plane => {
-            let point = wall.point.ok_or_else(|| document.error(&key("point"), "nothing", "a point of the plane"))?;
-            let normal = wall.normal.ok_or_else(|| document.error(&key("normal"), "nothing", "the plane's normal"))?;
+            let point =
+                wall.point.ok_or_else(|| document.error(&key("point"), "nothing", "a point of the plane"))?;
+            let normal =
+                wall.normal.ok_or_else(|| document.error(&key("normal"), "nothing", "the plane's normal"))?;
             let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-            check(document, &key("normal"), Some(length), |l| l > 0.0 && l.is_finite(), "a vector that is not null")?;
+            check(
+                document,
+                &key("normal"),
+                Some(length),
+                |l| l > 0.0 && l.is_finite(),
+                "a vector that is not null",
+            )?;
             let point = Vec3::from(vector(&point));
             part.planes.push(Plane { point, normal: Vec3::from(normal), material, velocity });
         }
         WallKind::Triangles => {
-            let missing = |k: &str| document.error(&key(k), "nothing", "the vertices and triangles of the wall");
+            let missing =
+                |k: &str| document.error(&key(k), "nothing", "the vertices and triangles of the wall");
             let vertices = wall.vertices.as_ref().ok_or_else(|| missing("vertices"))?;
             let triangles = wall.triangles.clone().ok_or_else(|| missing("triangles"))?;
             if let Some(bad) = triangles.iter().flatten().find(|v| **v as usize >= vertices.len()) {
@@ -452,7 +536,12 @@ fn add_wall(
     Ok(())
 }
 
-fn add_track(document: &Document, track: &Track, material: usize, part: &mut GrainsPart) -> Result<(), SceneError> {
+fn add_track(
+    document: &Document,
+    track: &Track,
+    material: usize,
+    part: &mut GrainsPart,
+) -> Result<(), SceneError> {
     let s = &track.sleeper;
     let half = vector(&s.size).map(|l| 0.5 * l);
     for l in half {
@@ -477,7 +566,13 @@ fn add_track(document: &Document, track: &Track, material: usize, part: &mut Gra
     let mut seats = vec![[0.0, 0.0, half[2]]];
     if let Some(l) = &track.load {
         check(document, "track.load.minimum", Some(l.minimum.si), |f| f >= 0.0, "0 or more")?;
-        check(document, "track.load.maximum", Some(l.maximum.si), |f| f > l.minimum.si, "more than the minimum")?;
+        check(
+            document,
+            "track.load.maximum",
+            Some(l.maximum.si),
+            |f| f > l.minimum.si,
+            "more than the minimum",
+        )?;
         check(document, "track.load.frequency", Some(l.frequency.si), |f| f > 0.0, "above 0")?;
         check(document, "track.load.cycles", Some(f64::from(l.cycles)), |n| n >= 1.0, "1 or more")?;
         check(document, "track.load.rest", Some(l.rest.si), |t| t >= 0.0, "0 or more")?;

@@ -48,7 +48,9 @@ impl Job {
     /// Bad input: one sentence with file, line, key, found and expected.
     pub fn new(document: &Document, scene: &Scene) -> Result<Job, Failure> {
         if scene.solid.is_none() && scene.grains.is_empty() {
-            return Err(document.error("scene", "neither [solid] nor [[grains]]", "at least one of them").into());
+            return Err(document
+                .error("scene", "neither [solid] nor [[grains]]", "at least one of them")
+                .into());
         }
         let gravity = vector(&scene.gravity);
         let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity)).transpose()?;
@@ -63,17 +65,23 @@ impl Job {
                 ("track", scene.track.is_some()),
             ] {
                 if present {
-                    return Err(document.error(key, "a table for grains", "[[grains]] beside it, or no such table").into());
+                    return Err(document
+                        .error(key, "a table for grains", "[[grains]] beside it, or no such table")
+                        .into());
                 }
             }
         }
         let coupling = match (&scene.coupling, &solid, &grains) {
             (Some(c), Some(s), Some(_)) => Some(coupling(document, c, s.model.mesh())?),
             (Some(_), _, _) => {
-                return Err(document.error("coupling", "only one side", "both [solid] and [[grains]]").into());
+                return Err(document
+                    .error("coupling", "only one side", "both [solid] and [[grains]]")
+                    .into());
             }
             (None, Some(_), Some(_)) => {
-                return Err(document.error("coupling", "nothing", "[coupling], since the scene has [solid] and [[grains]]").into());
+                return Err(document
+                    .error("coupling", "nothing", "[coupling], since the scene has [solid] and [[grains]]")
+                    .into());
             }
             (None, _, _) => None,
         };
@@ -86,12 +94,16 @@ impl Job {
             .map(|(i, p)| probe(document, i, p, solid.as_ref().map(|s| s.model.mesh())))
             .collect::<Result<Vec<_>, _>>()?;
         if scene.output.frames > 100_000 {
-            return Err(document.error("output.frames", scene.output.frames.to_string(), "at most 100000").into());
+            return Err(document
+                .error("output.frames", scene.output.frames.to_string(), "at most 100000")
+                .into());
         }
         if let Some(interval) = scene.output.history_interval
             && interval.si <= 0.0
         {
-            return Err(document.error("output.history_interval", interval.si.to_string(), "a time above 0").into());
+            return Err(document
+                .error("output.history_interval", interval.si.to_string(), "a time above 0")
+                .into());
         }
         let title =
             if scene.title.is_empty() { document.file().display().to_string() } else { scene.title.clone() };
@@ -99,7 +111,11 @@ impl Job {
     }
 }
 
-fn coupling(document: &Document, c: &crate::scene::Coupling, mesh: &Mesh) -> Result<CouplingPart, SceneError> {
+fn coupling(
+    document: &Document,
+    c: &crate::scene::Coupling,
+    mesh: &Mesh,
+) -> Result<CouplingPart, SceneError> {
     if !(1..=1000).contains(&c.substeps) {
         return Err(document.error("coupling.substeps", c.substeps.to_string(), "1 to 1000"));
     }
@@ -114,12 +130,20 @@ fn coupling(document: &Document, c: &crate::scene::Coupling, mesh: &Mesh) -> Res
     }
     let faces = trackbed_coupling::surface::SolidSurface::facing(mesh, c.direction, c.max_angle.si);
     if faces.is_empty() {
-        return Err(document.error("coupling.direction", "no boundary face that looks this way", "at least one"));
+        return Err(document.error(
+            "coupling.direction",
+            "no boundary face that looks this way",
+            "at least one",
+        ));
     }
     Ok(CouplingPart { substeps: c.substeps, theta: c.theta, faces })
 }
 
-fn end_time(document: &Document, scene: &Scene, grains: Option<&grains::GrainsPart>) -> Result<f64, SceneError> {
+fn end_time(
+    document: &Document,
+    scene: &Scene,
+    grains: Option<&grains::GrainsPart>,
+) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.load.as_ref()).map(seat_load::CyclicLoad::end);
     let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(|s| s.dynamics.is_some());
     match (scene.time.end, counted, dynamic) {
@@ -145,15 +169,19 @@ fn solid_step(document: &Document, scene: &Scene, end: f64) -> Result<Option<f64
     let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
     match (scene.time.solid_step, alone_and_dynamic) {
         (Some(step), true) if step.si > 0.0 && step.si <= end => Ok(Some(step.si)),
-        (Some(step), true) => {
-            Err(document.error("time.solid_step", format!("{} s", step.si), format!("above 0, at most {end} s")))
-        }
+        (Some(step), true) => Err(document.error(
+            "time.solid_step",
+            format!("{} s", step.si),
+            format!("above 0, at most {end} s"),
+        )),
         (Some(_), false) if !scene.grains.is_empty() => Err(document.error(
             "time.solid_step",
             "a time",
             "no such key: the solid's step is coupling.substeps grain steps",
         )),
-        (Some(_), false) => Err(document.error("time.solid_step", "a time", "no such key for a static solid")),
+        (Some(_), false) => {
+            Err(document.error("time.solid_step", "a time", "no such key for a static solid"))
+        }
         (None, true) => Err(document.error("time.solid_step", "nothing", "the step of the solid")),
         (None, false) => Ok(None),
     }
@@ -167,14 +195,19 @@ fn probe(
 ) -> Result<(String, usize), SceneError> {
     let key = |k: &str| format!("probe.{index}.{k}");
     let Some(mesh) = mesh else {
-        return Err(document.error(&format!("probe.{index}"), "a probe", "a [solid] whose nodes it can observe"));
+        return Err(document.error(
+            &format!("probe.{index}"),
+            "a probe",
+            "a [solid] whose nodes it can observe",
+        ));
     };
     let node = match (probe.node, probe.at) {
         (Some(id), None) => solid::find_node(document, mesh, &key("node"), id)?,
         (None, Some(at)) => {
             let at = vector(&at);
             let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
-            let nearest = mesh.coordinates.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+            let nearest =
+                mesh.coordinates.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
             nearest.map_or(0, |(i, _)| i)
         }
         _ => return Err(document.error(&key("node"), "both or none of `node` and `at`", "one of them")),

@@ -54,9 +54,9 @@ impl SolidPart {
     pub fn failure(&self, error: &SolveError) -> Failure {
         let file = self.constraint_file.display();
         match error {
-            SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => {
-                Failure::Input(format!("{file}: constraints: found too few ({error}), expected a body that is held"))
-            }
+            SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
+                "{file}: constraints: found too few ({error}), expected a body that is held"
+            )),
             SolveError::Newmark(_) | SolveError::TimeStep { .. } | SolveError::Theta { .. } => {
                 Failure::Input(error.to_string())
             }
@@ -96,11 +96,20 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
     for (i, m) in solid.material.iter().enumerate() {
         let key = |k: &str| format!("solid.material.{i}.{k}");
         check(document, &key("young"), m.young.si, m.young.si > 0.0, "a modulus above 0")?;
-        check(document, &key("poisson"), m.poisson, m.poisson > -1.0 && m.poisson < 0.5, "above -1 and below 0.5")?;
+        check(
+            document,
+            &key("poisson"),
+            m.poisson,
+            m.poisson > -1.0 && m.poisson < 0.5,
+            "above -1 and below 0.5",
+        )?;
         check(document, &key("density"), m.density.si, m.density.si > 0.0, "a density above 0")?;
-        let elastic = fem::material::elastic::Elastic { young: m.young.si, poisson: m.poisson, density: m.density.si };
+        let elastic =
+            fem::material::elastic::Elastic { young: m.young.si, poisson: m.poisson, density: m.density.si };
         if materials.insert(m.id, elastic).is_some() {
-            return Err(document.error(&key("id"), format!("material {} again", m.id), "each number once").into());
+            return Err(document
+                .error(&key("id"), format!("material {} again", m.id), "each number once")
+                .into());
         }
         let name = if m.name.is_empty() { format!("material {}", m.id) } else { m.name.clone() };
         material_names.insert(m.id, name);
@@ -148,7 +157,9 @@ fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
     let (key, found, expected) = match error {
         fem::ModelError::Inverted { element, point: [xi, eta, zeta], determinant } => (
             format!("element {element}"),
-            format!("a Jacobian determinant of {determinant:.6e} m3 at ({xi:.2}, {eta:.2}, {zeta:.2}): inverted or flat"),
+            format!(
+                "a Jacobian determinant of {determinant:.6e} m3 at ({xi:.2}, {eta:.2}, {zeta:.2}): inverted or flat"
+            ),
             "a determinant above 0",
         ),
         other => ("mesh".into(), other.to_string(), "a mesh that makes a model"),
@@ -168,14 +179,27 @@ fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::dam
                 let value = value.unwrap_or(0.0);
                 check(document, &format!("solid.rayleigh.{name}"), value, value >= 0.0, "0 or more")?;
             }
-            fem::damping::Rayleigh { alpha_m: alpha.map_or(0.0, |a| a.si), beta_k: beta.map_or(0.0, |b| b.si) }
+            fem::damping::Rayleigh {
+                alpha_m: alpha.map_or(0.0, |a| a.si),
+                beta_k: beta.map_or(0.0, |b| b.si),
+            }
         }
         (None, None, Some(ratio), Some([f1, f2])) => {
-            check(document, "solid.rayleigh.damping_ratio", ratio, (0.0..1.0).contains(&ratio), "0 or more, below 1")?;
+            check(
+                document,
+                "solid.rayleigh.damping_ratio",
+                ratio,
+                (0.0..1.0).contains(&ratio),
+                "0 or more, below 1",
+            )?;
             let good = f1.si > 0.0 && f2.si > f1.si;
             if !good {
                 let found = format!("{} and {} Hz", f1.si, f2.si);
-                return Err(document.error("solid.rayleigh.frequencies", found, "two rising positive frequencies"));
+                return Err(document.error(
+                    "solid.rayleigh.frequencies",
+                    found,
+                    "two rising positive frequencies",
+                ));
             }
             fem::damping::Rayleigh::from_frequencies([f1.si, f2.si], [ratio, ratio])
                 .map_err(|e| document.error("solid.rayleigh", e.to_string(), "other frequencies"))?
@@ -193,11 +217,21 @@ fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::dam
     Ok(result)
 }
 
-fn nodal_load(document: &Document, mesh: &Mesh, index: usize, load: &SolidLoad) -> Result<NodalLoad, SceneError> {
+fn nodal_load(
+    document: &Document,
+    mesh: &Mesh,
+    index: usize,
+    load: &SolidLoad,
+) -> Result<NodalLoad, SceneError> {
     let key = |k: &str| format!("solid.load.{index}.{k}");
-    let needs = |k: &str, kind: &str| document.error(&key(k), "nothing", format!("a value for a {kind} load"));
+    let needs =
+        |k: &str, kind: &str| document.error(&key(k), "nothing", format!("a value for a {kind} load"));
     let refuse = |k: &str, present: bool| {
-        if present { Err(document.error(&key(k), "a value", "no such key for this kind of load")) } else { Ok(()) }
+        if present {
+            Err(document.error(&key(k), "a value", "no such key for this kind of load"))
+        } else {
+            Ok(())
+        }
     };
     let function = match &load.history {
         None => TimeFunction::CONSTANT,
@@ -208,7 +242,10 @@ fn nodal_load(document: &Document, mesh: &Mesh, index: usize, load: &SolidLoad) 
     match load.kind {
         SolidLoadKind::Pressure | SolidLoadKind::Traction => {
             let pressure = load.kind == SolidLoadKind::Pressure;
-            refuse(if pressure { "traction" } else { "pressure" }, if pressure { load.traction.is_some() } else { load.pressure.is_some() })?;
+            refuse(
+                if pressure { "traction" } else { "pressure" },
+                if pressure { load.traction.is_some() } else { load.pressure.is_some() },
+            )?;
             refuse("node", load.node.is_some())?;
             refuse("at", load.at.is_some())?;
             refuse("force", load.force.is_some())?;
@@ -236,7 +273,13 @@ fn nodal_load(document: &Document, mesh: &Mesh, index: usize, load: &SolidLoad) 
                     }
                 }
                 (None, Some(at)) => point_load(document, mesh, &key("at"), vector(&at), force, &mut pattern)?,
-                _ => return Err(document.error(&key("node"), "both or none of `node` and `at`", "one of them")),
+                _ => {
+                    return Err(document.error(
+                        &key("node"),
+                        "both or none of `node` and `at`",
+                        "one of them",
+                    ));
+                }
             }
         }
     }
@@ -255,18 +298,32 @@ pub fn find_node(document: &Document, mesh: &Mesh, key: &str, id: u32) -> Result
         .ok_or_else(|| document.error(key, format!("node {id}"), "the number of a node of the mesh"))
 }
 
-fn loaded_faces(document: &Document, mesh: &Mesh, index: usize, load: &SolidLoad) -> Result<Vec<Face>, SceneError> {
+fn loaded_faces(
+    document: &Document,
+    mesh: &Mesh,
+    index: usize,
+    load: &SolidLoad,
+) -> Result<Vec<Face>, SceneError> {
     let key = |k: &str| format!("solid.load.{index}.{k}");
     match (&load.faces, &load.faces_in) {
         (Some(list), None) => {
-            let elements: HashMap<u32, usize> = mesh.element_ids.iter().enumerate().map(|(i, &id)| (id, i)).collect();
+            let elements: HashMap<u32, usize> =
+                mesh.element_ids.iter().enumerate().map(|(i, &id)| (id, i)).collect();
             list.iter()
                 .map(|&[element, side]| {
                     let e = elements.get(&element).ok_or_else(|| {
-                        document.error(&key("faces"), format!("element {element}"), "the number of an element of the mesh")
+                        document.error(
+                            &key("faces"),
+                            format!("element {element}"),
+                            "the number of an element of the mesh",
+                        )
                     })?;
                     if !(1..=6).contains(&side) {
-                        return Err(document.error(&key("faces"), format!("face {side}"), "a SOLID186 face, 1 to 6"));
+                        return Err(document.error(
+                            &key("faces"),
+                            format!("face {side}"),
+                            "a SOLID186 face, 1 to 6",
+                        ));
                     }
                     Ok(mesh.face(*e, side as usize - 1))
                 })

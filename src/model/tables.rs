@@ -7,8 +7,20 @@ use trackbed_dem::insert::gradation::Gradation;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
 
-fn fault(file: &Path, line: Option<usize>, key: &str, found: impl Into<String>, expected: impl Into<String>) -> ReadError {
-    ReadError { file: file.to_path_buf(), line, key: key.into(), found: found.into(), expected: expected.into() }
+fn fault(
+    file: &Path,
+    line: Option<usize>,
+    key: &str,
+    found: impl Into<String>,
+    expected: impl Into<String>,
+) -> ReadError {
+    ReadError {
+        file: file.to_path_buf(),
+        line,
+        key: key.into(),
+        found: found.into(),
+        expected: expected.into(),
+    }
 }
 
 fn text(file: &Path, what: &str) -> Result<String, ReadError> {
@@ -71,10 +83,9 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Gradation, 
             let names = ["standard", "grade", "sieve_mm", "passing_lo_pct", "passing_hi_pct"];
             let mut found = [0; 5];
             for (k, name) in names.into_iter().enumerate() {
-                found[k] = fields
-                    .iter()
-                    .position(|f| *f == name)
-                    .ok_or_else(|| fault(file, Some(line), name, "no such column", format!("columns {}", names.join(", "))))?;
+                found[k] = fields.iter().position(|f| *f == name).ok_or_else(|| {
+                    fault(file, Some(line), name, "no such column", format!("columns {}", names.join(", ")))
+                })?;
             }
             columns = Some(found);
             continue;
@@ -90,10 +101,20 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Gradation, 
                 .filter(|v| v.is_finite())
                 .ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", field(k)), "a number"))
         };
-        table.push([1e-3 * number(size, "sieve_mm")?, 1e-2 * number(low, "passing_lo_pct")?, 1e-2 * number(high, "passing_hi_pct")?]);
+        table.push([
+            1e-3 * number(size, "sieve_mm")?,
+            1e-2 * number(low, "passing_lo_pct")?,
+            1e-2 * number(high, "passing_hi_pct")?,
+        ]);
     }
     if table.is_empty() {
-        return Err(fault(file, None, "gradation", format!("no row of {standard} {grade}"), "rows of this grade"));
+        return Err(fault(
+            file,
+            None,
+            "gradation",
+            format!("no row of {standard} {grade}"),
+            "rows of this grade",
+        ));
     }
     table.sort_by(|a, b| a[0].total_cmp(&b[0]));
     // Sieves that everything passes carry no information beyond the first of them.
@@ -111,7 +132,9 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Gradation, 
 pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
-    library.clumps().map_err(|e| document.error("stones", e.to_string(), "connected spheres with positive radii"))
+    library
+        .clumps()
+        .map_err(|e| document.error("stones", e.to_string(), "connected spheres with positive radii"))
 }
 
 #[cfg(test)]

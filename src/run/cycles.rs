@@ -53,7 +53,15 @@ impl CycleRecorder {
     /// Takes in the state at time `t` [s] after a step of length `dt` [s]: height of the sleeper's centre [m], load
     /// [N], work of the load so far [J], largest formation pressure of the step [Pa]. Returns the cycle that has
     /// just ended, if one has.
-    pub fn record(&mut self, t: f64, dt: f64, height: f64, load: f64, work: f64, pressure: f64) -> Option<Cycle> {
+    pub fn record(
+        &mut self,
+        t: f64,
+        dt: f64,
+        height: f64,
+        load: f64,
+        work: f64,
+        pressure: f64,
+    ) -> Option<Cycle> {
         // A step belongs to the cycle that holds its middle, so that rounding of t does not matter.
         if t - 0.5 * dt < self.begin {
             self.datum = height;
@@ -76,7 +84,11 @@ impl CycleRecorder {
             number,
             settlement: self.datum - height,
             resilient_deflection: resilient,
-            secant_stiffness: if resilient > 0.0 { (self.load_range.1 - self.load_range.0) / resilient } else { 0.0 },
+            secant_stiffness: if resilient > 0.0 {
+                (self.load_range.1 - self.load_range.0) / resilient
+            } else {
+                0.0
+            },
             dissipated_energy: work - self.work_before,
             peak_formation_pressure: self.pressure,
         };

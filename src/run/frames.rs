@@ -16,7 +16,11 @@ const NO_YIELD_SURFACE: f64 = -1.0;
 ///
 /// # Errors
 /// A file cannot be written, or a field is not finite.
-pub fn write_solid(view: SolidView<'_>, vtu: Option<&Path>, tecplot: Option<(&Path, f64)>) -> Result<(), Failure> {
+pub fn write_solid(
+    view: SolidView<'_>,
+    vtu: Option<&Path>,
+    tecplot: Option<(&Path, f64)>,
+) -> Result<(), Failure> {
     let mesh = view.model.mesh();
     let stress = stress::nodal(view.model, &view.state.u);
     let von_mises: Vec<f64> = stress.iter().map(stress::von_mises).collect();

@@ -169,7 +169,7 @@ impl Stage<'_> {
                 let deposited = self.deposit(grains, None, summary)?;
                 let bodies = self.with_sleeper(grains, deposited, None)?;
                 let model = self.grain_model(grains.input(bodies), summary)?;
-                let mut system = GrainsSystem::new(model);
+                let mut system = GrainsSystem::new(model)?;
                 self.prepare()?;
                 self.grain_stage(&mut system, grains, summary)
             }
@@ -179,12 +179,25 @@ impl Stage<'_> {
                 let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
                 let model = self.grain_model(grains.input(bodies), summary)?;
                 let mut system = self.couple(solid, model, plan, surface, summary)?;
+                let stability = grains.stability(
+                    &system.model.grains,
+                    system.model.window(),
+                    system.model.solid,
+                    &plan.faces,
+                );
+                if stability.stiffness.max(stability.damping) > 1.0 {
+                    summary.warnings.push(format!(
+                        "the exchange may be unstable: W = {:.2}, D = {:.2}, both should be below 1; use fewer \
+                         coupling.substeps or softer contacts",
+                        stability.stiffness, stability.damping
+                    ));
+                }
                 self.prepare()?;
                 self.grain_stage(&mut system, grains, summary)?;
                 summary.coupling = Some(CouplingRecord {
                     transfer: system.state.audit,
                     substeps: plan.substeps,
-                    stability_number: self.stability_number(&system, grains),
+                    stability,
                     interface_work_error: system.spent().interface(),
                     transfer_kind: "point, through the shape functions of the touched face",
                 });
@@ -307,7 +320,7 @@ impl Stage<'_> {
         let dead_load = solid.model.gravity_load();
         let mut load = dead_load.clone();
         solid.add_loads(0.0, &mut load);
-        let contacts = coupling::step::resting_load(&grains, &mut surface, solid.model.mesh())
+        let (contacts, resting) = coupling::step::resting_load(&grains, &mut surface, solid.model.mesh())
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
         for (l, c) in load.iter_mut().zip(&contacts) {
             *l += c;
@@ -323,21 +336,20 @@ impl Stage<'_> {
             theta: plan.theta,
             grains,
         };
-        let state = coupling::step::State::new(state, dem::State::new(&model.grains));
+        let state = coupling::step::State::new(state, resting);
         let work = coupling::step::Work::new(&model, &state, surface).map_err(|e| solid.failure(&e))?;
         summary.model.solid_step = Some(model.window());
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
         Ok(CoupledSystem { model, state, work, loads: &solid.loads })
     }
 
-    fn stability_number(&self, system: &CoupledSystem<'_>, grains: &GrainsPart) -> f64 {
-        let stiffness = grains.stiffest_surface_contact(&system.model.grains);
-        let masses = coupling::step::face_masses(system.model.solid, system.work.surface.faces());
-        coupling::step::stability(system.model.window(), stiffness, masses)
-    }
-
     /// The run proper of a scene with grains, with its accounts.
-    fn grain_stage<S: System>(&self, system: &mut S, grains: &GrainsPart, summary: &mut Summary) -> Result<(), Failure> {
+    fn grain_stage<S: System>(
+        &self,
+        system: &mut S,
+        grains: &GrainsPart,
+        summary: &mut Summary,
+    ) -> Result<(), Failure> {
         let momentum = |s: &S| {
             let g = s.grains().expect("a system with grains");
             dem::measure::momentum(g.model, g.state)
@@ -400,7 +412,11 @@ impl Stage<'_> {
             let time = k as f64 * window;
             system.advance(&apply)?;
             if let Some(cycle) = recorder.follow(time, system, at(time))? {
-                progress.message(format!("cycle {}: settlement {:.3} mm", cycle.number, 1e3 * cycle.settlement));
+                progress.message(format!(
+                    "cycle {}: settlement {:.3} mm",
+                    cycle.number,
+                    1e3 * cycle.settlement
+                ));
             }
             if k % every == 0 || k == windows {
                 recorder.row(time, system, at(time)).map_err(|e| e.at(time))?;
@@ -482,7 +498,8 @@ fn settlement(cycles: &[Cycle]) -> Option<SettlementRecord> {
         per_cycle.iter().enumerate().map(|(i, s)| if i == 0 { *s } else { s - per_cycle[i - 1] }).collect();
     let half = increments.len() / 2;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-    let slowing = (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
+    let slowing =
+        (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
     Some(SettlementRecord { per_cycle, increments, slowing })
 }
 

@@ -43,7 +43,12 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn start<S: System>(job: &'a Job, dir: &Path, system: &S, sleeper: Option<Sleeper>) -> Result<Self, Failure> {
+    pub fn start<S: System>(
+        job: &'a Job,
+        dir: &Path,
+        system: &S,
+        sleeper: Option<Sleeper>,
+    ) -> Result<Self, Failure> {
         let mut columns = vec![Column::new("time", "s")];
         let vector = |columns: &mut Vec<Column>, name: &str, unit: &str| {
             for d in ["x", "y", "z"] {
@@ -68,7 +73,8 @@ impl<'a> Recorder<'a> {
         }
         let history = History::create(&dir.join("history.csv"), columns)?;
         let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
-        let cycles_file = load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns())).transpose()?;
+        let cycles_file =
+            load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns())).transpose()?;
         let stored = system.stored();
         Ok(Recorder {
             job,
@@ -135,8 +141,15 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// A value is not finite, or the disk refuses.
-    pub fn follow<S: System>(&mut self, time: f64, system: &S, sleeper: Option<Sleeper>) -> Result<Option<Cycle>, Failure> {
-        let (Some(cycles), Some(s), Some(g)) = (&mut self.cycles, sleeper, system.grains()) else { return Ok(None) };
+    pub fn follow<S: System>(
+        &mut self,
+        time: f64,
+        system: &S,
+        sleeper: Option<Sleeper>,
+    ) -> Result<Option<Cycle>, Failure> {
+        let (Some(cycles), Some(s), Some(g)) = (&mut self.cycles, sleeper, system.grains()) else {
+            return Ok(None);
+        };
         let height = g.state.position(s.body).z;
         let work = g.state.ledger.work_applied;
         let done = cycles.record(time, system.window(), height, s.load, work, system.peak_pressure());
@@ -213,14 +226,18 @@ impl<'a> Recorder<'a> {
             .write(&self.dir.join("sleeper.svg"))?;
         }
         if !cycles.is_empty() {
-            let points = |f: fn(&Cycle) -> f64| cycles.iter().map(|c| [f64::from(c.number), 1e3 * f(c)]).collect();
+            let points =
+                |f: fn(&Cycle) -> f64| cycles.iter().map(|c| [f64::from(c.number), 1e3 * f(c)]).collect();
             write::svg::LinePlot {
                 title: format!("{}: settlement", self.job.title),
                 x_label: "load cycle".into(),
                 y_label: "[mm]".into(),
                 series: vec![
                     write::svg::Series { name: "settlement".into(), points: points(|c| c.settlement) },
-                    write::svg::Series { name: "resilient deflection".into(), points: points(|c| c.resilient_deflection) },
+                    write::svg::Series {
+                        name: "resilient deflection".into(),
+                        points: points(|c| c.resilient_deflection),
+                    },
                 ],
             }
             .write(&self.dir.join("settlement.svg"))?;

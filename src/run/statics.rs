@@ -51,7 +51,8 @@ pub fn run(job: &Job, solid: &SolidPart, dir: &Path, summary: &mut Summary) -> R
     }
     let imbalance: f64 = (0..3).map(|d| (total[d] + reaction[d]).powi(2)).sum::<f64>().sqrt();
     let length = |n: usize| result.u[3 * n..3 * n + 3].iter().map(|u| u * u).sum::<f64>().sqrt();
-    let farthest = (0..model.mesh().node_count()).max_by(|&a, &b| length(a).total_cmp(&length(b))).unwrap_or(0);
+    let farthest =
+        (0..model.mesh().node_count()).max_by(|&a, &b| length(a).total_cmp(&length(b))).unwrap_or(0);
     summary.statics = Some(StaticsRecord {
         load: total,
         reaction,
@@ -75,10 +76,19 @@ pub fn run(job: &Job, solid: &SolidPart, dir: &Path, summary: &mut Summary) -> R
 /// A value is not finite, or the disk refuses.
 pub fn write_tables(model: &Model, u: &[f64], reactions: &[f64], dir: &Path) -> Result<(), Failure> {
     let mesh = model.mesh();
-    let columns = |names: &[(&str, &str)]| names.iter().map(|(n, unit)| Column::new(*n, *unit)).collect::<Vec<_>>();
+    let columns =
+        |names: &[(&str, &str)]| names.iter().map(|(n, unit)| Column::new(*n, *unit)).collect::<Vec<_>>();
     let mut nodes = History::create(
         &dir.join("nodes.csv"),
-        columns(&[("node", ""), ("ux", "m"), ("uy", "m"), ("uz", "m"), ("rx", "N"), ("ry", "N"), ("rz", "N")]),
+        columns(&[
+            ("node", ""),
+            ("ux", "m"),
+            ("uy", "m"),
+            ("uz", "m"),
+            ("rx", "N"),
+            ("ry", "N"),
+            ("rz", "N"),
+        ]),
     )?;
     for (n, &id) in mesh.node_ids.iter().enumerate() {
         let mut row = vec![f64::from(id)];

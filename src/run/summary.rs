@@ -1,11 +1,12 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
 use crate::failure::Failure;
+use crate::write::WriteError;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use crate::write::WriteError;
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::step::Stability;
 use trackbed_coupling::transfer::TransferAudit;
 
 /// The content of `summary.json`.
@@ -75,8 +76,6 @@ pub struct ModelRecord {
     pub elements: usize,
     /// Unknowns of the solid.
     pub unknowns: usize,
-    /// Nonzero values of the factor.
-    pub factor_values: usize,
     /// Bodies (grains and sleeper).
     pub bodies: usize,
     /// Spheres that carry the contacts.
@@ -89,8 +88,6 @@ pub struct ModelRecord {
     pub grain_step_set_by: Option<String>,
     /// Step of the solid [s].
     pub solid_step: Option<f64>,
-    /// Void fraction of the settled bed, where it was measured.
-    pub porosity: Option<f64>,
     /// Mean number of touching partners per grain at the start of the run proper.
     pub coordination: Option<f64>,
 }
@@ -130,8 +127,8 @@ pub struct CouplingRecord {
     pub transfer: TransferAudit,
     /// Steps of the grains per step of the solid.
     pub substeps: u32,
-    /// W = Δt √(Kₙ/m) of the stiffest contact on the lightest surface node.
-    pub stability_number: f64,
+    /// Stability of the exchange: both numbers should be below about 1.
+    pub stability: Stability,
     /// Interface work seen by grains plus that seen by the solid [J], which should vanish.
     pub interface_work_error: f64,
     /// How contact forces are transferred.
@@ -197,12 +194,15 @@ impl Summary {
             lines.push(format!("work {:.6} J, energy error {:.2e} J{relative}", e.work, e.error));
         }
         if let Some(m) = &self.momentum {
-            lines.push(format!("momentum error {:.1e}, angular {:.1e} (relative to the impulses)", m.linear, m.angular));
+            lines.push(format!(
+                "momentum error {:.1e}, angular {:.1e} (relative to the impulses)",
+                m.linear, m.angular
+            ));
         }
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}",
-                c.transfer.force, c.transfer.moment, c.stability_number
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}",
+                c.transfer.force, c.transfer.moment, c.stability.stiffness, c.stability.damping
             ));
         }
         if let Some(s) = &self.settlement {

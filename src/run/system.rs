@@ -74,7 +74,10 @@ impl<'a> SolidSystem<'a> {
     ///
     /// # Errors
     /// A matrix cannot be factored.
-    pub fn new(part: &'a SolidPart, solver: fem::newmark::NewmarkSolver) -> Result<Self, fem::solver::SolveError> {
+    pub fn new(
+        part: &'a SolidPart,
+        solver: fem::newmark::NewmarkSolver,
+    ) -> Result<Self, fem::solver::SolveError> {
         let mut state = fem::state::State::new(&part.model);
         let gravity = part.model.gravity_load();
         let mut load = gravity.clone();
@@ -148,10 +151,15 @@ pub struct GrainsSystem {
 
 impl GrainsSystem {
     /// The grains at the start of their model.
-    pub fn new(model: dem::Model) -> GrainsSystem {
-        let state = dem::State::new(&model);
-        let work = dem::Work::new(&model, &state);
-        GrainsSystem { model, state, work, applied: Vec::new() }
+    ///
+    /// # Errors
+    /// They overlap so much that no step can be made.
+    pub fn new(model: dem::Model) -> Result<GrainsSystem, Failure> {
+        let mut state = dem::State::new(&model);
+        let mut work = dem::Work::new(&model, &state);
+        dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+        Ok(GrainsSystem { model, state, work, applied: Vec::new() })
     }
 }
 
@@ -215,7 +223,8 @@ impl System for CoupledSystem<'_> {
         let loads = self.loads;
         let solid_load = |t: f64, load: &mut [f64]| loads.iter().for_each(|l| l.add(t, load));
         let model = &self.model;
-        let apply = |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| applied(t, &model.grains, s, out);
+        let apply =
+            |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| applied(t, &model.grains, s, out);
         coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
             .map_err(|e| Failure::Numerical(e.to_string()))
     }

@@ -248,8 +248,10 @@ fn explain(message: &str, path: &[String]) -> (String, String, String) {
     let quoted = |text: &str| text.split('`').nth(1).unwrap_or_default().to_string();
     if let Some(rest) = message.strip_prefix("unknown field ") {
         let unknown = quoted(rest);
-        let known: Vec<&str> =
-            rest.split_once("expected").map(|(_, e)| e.split('`').skip(1).step_by(2).collect()).unwrap_or_default();
+        let known: Vec<&str> = rest
+            .split_once("expected")
+            .map(|(_, e)| e.split('`').skip(1).step_by(2).collect())
+            .unwrap_or_default();
         let key = if path.last() == Some(&unknown) { here } else { join(&here, &unknown) };
         let nearest = known.iter().min_by_key(|k| edit_distance(k, &unknown));
         let expected = match nearest {
@@ -266,7 +268,9 @@ fn explain(message: &str, path: &[String]) -> (String, String, String) {
         return (here, format!("\"{}\"", quoted(rest)), expected.replace('`', "\""));
     }
     for prefix in ["invalid value: ", "invalid type: ", "invalid length "] {
-        if let Some((found, expected)) = message.strip_prefix(prefix).and_then(|r| r.split_once(", expected ")) {
+        if let Some((found, expected)) =
+            message.strip_prefix(prefix).and_then(|r| r.split_once(", expected "))
+        {
             let expected = match expected {
                 "u8" | "u32" | "u64" | "usize" => "a whole number of 0 or more",
                 "f64" => "a number",

@@ -61,12 +61,16 @@ impl TimeFunction {
                 return Err(("frequency", format!("{}", f.si), "no such key for this kind of history"));
             }
             Some(f) if f.si <= 0.0 => return Err(("frequency", format!("{}", f.si), "a positive frequency")),
-            None if periodic => return Err(("frequency", "nothing".into(), "a frequency for this kind of history")),
+            None if periodic => {
+                return Err(("frequency", "nothing".into(), "a frequency for this kind of history"));
+            }
             Some(f) => function.frequency = f.si,
             None => {}
         }
         match history.cycles {
-            Some(c) if !periodic => return Err(("cycles", format!("{c}"), "no such key for this kind of history")),
+            Some(c) if !periodic => {
+                return Err(("cycles", format!("{c}"), "no such key for this kind of history"));
+            }
             Some(c) if !(c > 0.0 && c.is_finite()) => {
                 return Err(("cycles", format!("{c}"), "a positive number of cycles"));
             }
@@ -76,8 +80,12 @@ impl TimeFunction {
         match (history.duration, history.kind) {
             (Some(d), HistoryKind::Ramp) if d.si > 0.0 => function.frequency = 1.0 / d.si,
             (Some(d), HistoryKind::Ramp) => return Err(("duration", format!("{}", d.si), "a positive time")),
-            (None, HistoryKind::Ramp) => return Err(("duration", "nothing".into(), "the rise time of the ramp")),
-            (Some(d), _) => return Err(("duration", format!("{}", d.si), "no such key for this kind of history")),
+            (None, HistoryKind::Ramp) => {
+                return Err(("duration", "nothing".into(), "the rise time of the ramp"));
+            }
+            (Some(d), _) => {
+                return Err(("duration", format!("{}", d.si), "no such key for this kind of history"));
+            }
             (None, _) => {}
         }
         Ok(function)

@@ -11,9 +11,9 @@ pub mod solid;
 pub mod track;
 pub mod units;
 
-pub use document::Document;
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
+pub use document::Document;
 
 use serde::Deserialize;
 use units::{Acceleration, Angle, Length, Quantity, Time};

@@ -105,7 +105,9 @@ impl<'de, D: Dimension> Deserialize<'de> for Quantity<D> {
                 Ok(Quantity::new(v as f64))
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
-                parse::<D>(text).map(Quantity::new).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+                parse::<D>(text)
+                    .map(Quantity::new)
+                    .ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
             }
         }
         deserializer.deserialize_any(QuantityVisitor(PhantomData))
