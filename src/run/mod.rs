@@ -70,10 +70,13 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
             Err(Failure::Input(_)) => {}
             Err(failure) => summary.status = format!("failed: {failure}"),
         }
-        if !matches!(result, Err(Failure::Input(_))) {
-            summary.write(&dir)?;
+        if matches!(result, Err(Failure::Input(_))) {
+            return result.map(|()| summary);
         }
-        result.map(|()| summary)
+        // A failure before the first file, such as one while settling, has no folder yet. What stopped the run
+        // comes before what stopped its summary.
+        let written = std::fs::create_dir_all(&dir).map_err(Failure::from).and_then(|()| summary.write(&dir));
+        result.and(written).map(|()| summary)
     })
 }
 

@@ -87,7 +87,7 @@ fn check_tells_sizes_steps_and_stability() {
         "step ",
         "effective mass",
         "4 faces, 10 grain steps per window",
-        "stability number W = ",
+        "stability W = ",
     ];
     for part in parts {
         assert!(text.contains(part), "{part} is missing in {text}");

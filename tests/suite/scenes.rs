@@ -278,9 +278,9 @@ fn frames_of_an_earlier_run_are_gone() {
     assert_eq!(fs::read_dir(out.join("tecplot")).unwrap().count(), 2);
 }
 
-/// A run that fails numerically: one line on standard error with `what` and a time, code 3, and files without any
-/// number that is not finite.
-fn blows_up(folder: &Folder, what: &[&str]) {
+/// A run that fails numerically: code 3, one line on standard error with `what` and a time, and a summary that says the
+/// same. Returns the folder of the results.
+fn fails(folder: &Folder, what: &[&str]) -> PathBuf {
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let outcome = run(&scene, &out, &[]);
     assert_eq!((outcome.code, outcome.stderr.lines().count()), (3, 1), "{outcome:?}");
@@ -288,10 +288,17 @@ fn blows_up(folder: &Folder, what: &[&str]) {
     for part in what.iter().chain(&["at t = "]) {
         assert!(outcome.stderr.contains(part), "{part} is missing in {}", outcome.stderr);
     }
+    let text = fs::read_to_string(out.join("summary.json")).unwrap();
+    assert!(!text.contains("NaN") && !text.contains("Infinity"));
     let summary = json(&out.join("summary.json"));
     let status = summary["status"].as_str().unwrap();
     assert_eq!(format!("error: {}\n", status.strip_prefix("failed: ").unwrap()), outcome.stderr);
+    out
+}
 
+/// A run that fails on its way, and leaves what it had until then without any number that is not finite.
+fn blows_up(folder: &Folder, what: &[&str]) {
+    let out = fails(folder, what);
     let history = Table::read(&out.join("history.csv"));
     assert!(!history.rows.is_empty(), "what was known until then is kept");
     let frames = series(&out);
@@ -307,8 +314,6 @@ fn blows_up(folder: &Folder, what: &[&str]) {
         let text = fs::read_to_string(entry.unwrap().path()).unwrap();
         assert!(!text.contains("NaN") && !text.contains("inf"));
     }
-    let text = fs::read_to_string(out.join("summary.json")).unwrap();
-    assert!(!text.contains("NaN") && !text.contains("Infinity"));
 }
 
 #[test]
@@ -326,11 +331,23 @@ fn coupled_scene_blows_up_with_a_step_far_above_the_limit() {
     blows_up(&folder, &["grains: ", "body ", "above the bound"]);
 }
 
+/// [`GRAINS`] with the upper sphere deep inside the lower one.
+fn one_in_the_other() -> String {
+    GRAINS.replace("[0.01, 0.0, 0.152, 0.05]", "[0.001, 0.0, 0.06, 0.05]")
+}
+
 #[test]
 fn grains_inside_each_other_are_named() {
     let folder = Folder::new("overlap");
-    folder.write("scene.toml", &GRAINS.replace("[0.01, 0.0, 0.152, 0.05]", "[0.001, 0.0, 0.06, 0.05]"));
-    blows_up(&folder, &["grains: ", "body 0 and body 1 overlap"]);
+    folder.write("scene.toml", &one_in_the_other());
+    fails(&folder, &["grains: ", "body 0 and body 1 overlap"]);
+}
+
+#[test]
+fn a_failure_while_settling_is_told() {
+    let folder = Folder::new("overlap_settling");
+    folder.write("scene.toml", &(one_in_the_other() + "\n[deposition]\nmax_time = 0.1\n"));
+    fails(&folder, &["grains while settling: ", "body 0 and body 1 overlap"]);
 }
 
 #[test]

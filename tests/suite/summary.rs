@@ -73,10 +73,7 @@ fn a_coupled_run_tells_everything_and_its_accounts_close() {
     println!("momentum {:.1e}, angular momentum {:.1e}", momentum[0], momentum[1]);
     assert!(momentum.iter().all(|e| *e < 1e-9), "{momentum:?}");
     let coupling = &summary["coupling"];
-    expect_keys(
-        coupling,
-        &["transfer", "substeps", "stability_number", "interface_work_error", "transfer_kind"],
-    );
+    expect_keys(coupling, &["transfer", "substeps", "stability", "interface_work_error", "transfer_kind"]);
     let audit = ["force", "moment"].map(|k| coupling["transfer"][k].as_f64().unwrap());
     println!("interface: force {:.1e}, moment {:.1e}", audit[0], audit[1]);
     assert!(audit.iter().all(|e| *e <= 1e-12), "{audit:?}");
@@ -95,12 +92,17 @@ fn a_coupled_run_tells_everything_and_its_accounts_close() {
     let work: f64 = ["applied_work", "wall_work", "solid_load_work"].map(spent).iter().sum();
     let error = total("end") - total("start") + dissipated - work;
     assert!((error - energy["error"].as_f64().unwrap()).abs() < 1e-9);
+    // The reader of JSON may lose the last bit of a number.
+    let same = |a: f64, b: f64| (a - b).abs() <= 1e-15 * a.abs();
     let history = Table::read(&folder.join("out/history.csv"));
-    assert_eq!(history.column("energy_error").last().unwrap(), &energy["error"].as_f64().unwrap());
-    assert_eq!(history.column("work").last().unwrap(), &energy["work"].as_f64().unwrap());
+    for (column, key) in [("energy_error", "error"), ("work", "work")] {
+        assert!(same(*history.column(column).last().unwrap(), energy[key].as_f64().unwrap()), "{column}");
+    }
 
     let cycles = Table::read(&folder.join("out/cycles.csv"));
-    assert_eq!(numbers(&summary["settlement"]["per_cycle"]), cycles.column("settlement"));
+    let settlement = numbers(&summary["settlement"]["per_cycle"]);
+    assert_eq!(settlement.len(), 3);
+    assert!(settlement.iter().zip(cycles.column("settlement")).all(|(a, b)| same(*a, b)), "{settlement:?}");
     assert_eq!(numbers(&summary["settlement"]["increments"]).len(), 3);
     let work: f64 = cycles.column("dissipated_energy").iter().sum();
     assert!(work <= energy["work"].as_f64().unwrap() + 1e-9, "the cycles' part of the work, {work} J");
