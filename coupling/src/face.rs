@@ -15,8 +15,9 @@ use trackbed_fem::element::quad8;
 
 /// Distance from the border of the square within which a point counts as lying on the border.
 const BORDER: f64 = 1e-9;
-/// Newton stops when the step in natural coordinates is below this.
-const STEP: f64 = 1e-14;
+/// Newton stops when the step in natural coordinates is below this: convergence is quadratic, so the error left is
+/// about its square.
+const STEP: f64 = 1e-8;
 const MAX_ITERATIONS: usize = 50;
 
 /// Where the closest point of a face lies.
