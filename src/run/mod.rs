@@ -16,6 +16,7 @@ use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
 use record::{Recorder, Sleeper};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use summary::{CouplingRecord, EnergyRecord, Hash, MomentumRecord, SettlementRecord, StageRecord};
 use system::{CoupledSystem, GrainsSystem, SolidSystem, System};
@@ -61,7 +62,13 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
             threads: rayon::current_num_threads(),
             ..Summary::default()
         };
-        let stage = Stage { document: &document, job: &job, dir: &dir, quiet: options.quiet };
+        let stage = Stage {
+            document: &document,
+            job: &job,
+            dir: &dir,
+            quiet: options.quiet,
+            prepared: Cell::new(false),
+        };
         let result = stage.run(&mut summary);
         summary.peak_memory = peak_memory();
         match &result {
@@ -73,9 +80,10 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
         if matches!(result, Err(Failure::Input(_))) {
             return result.map(|()| summary);
         }
-        // A failure before the first file, such as one while settling, has no folder yet. What stopped the run
-        // comes before what stopped its summary.
-        let written = std::fs::create_dir_all(&dir).map_err(Failure::from).and_then(|()| summary.write(&dir));
+        // A failure before the first file, such as one while settling, has no folder yet, or one with the results of
+        // an earlier run. What stopped the run comes before what stopped its summary.
+        let cleared = if stage.prepared.get() { Ok(()) } else { stage.prepare() };
+        let written = cleared.and_then(|()| summary.write(&dir));
         result.and(written).map(|()| summary)
     })
 }
@@ -134,6 +142,8 @@ struct Stage<'a> {
     job: &'a Job,
     dir: &'a Path,
     quiet: bool,
+    /// Whether the folder is cleared of earlier results and holds those of this run.
+    prepared: Cell<bool>,
 }
 
 impl Stage<'_> {
@@ -151,7 +161,7 @@ impl Stage<'_> {
         }
         match (&self.job.solid, &self.job.grains, &self.job.coupling) {
             (Some(solid), None, _) => match &solid.newmark {
-                None => statics::run(self.job, solid, self.dir, summary),
+                None => statics::run(self.job, solid, self.dir, || self.prepare(), summary),
                 Some(method) => {
                     let dt = self.job.solid_step.expect("a dynamic solid has a step");
                     let solver = fem::newmark::NewmarkSolver::conditionally_stable(&solid.model, *method, dt)
@@ -211,7 +221,9 @@ impl Stage<'_> {
     }
 
     fn prepare(&self) -> Result<(), Failure> {
-        record::prepare(self.dir, &self.job.output)
+        record::prepare(self.dir, &self.job.output)?;
+        self.prepared.set(true);
+        Ok(())
     }
 
     fn grain_model(&self, input: dem::ModelInput, summary: &mut Summary) -> Result<dem::Model, Failure> {
@@ -443,13 +455,14 @@ impl Stage<'_> {
         summary.settlement = settlement(recorder.cycles());
         let balance = recorder.balance();
         let work = balance.spent.work();
+        let turnover = work.abs().max(balance.spent.dissipated());
         summary.energy = Some(EnergyRecord {
             start: balance.start,
             end: balance.now,
             spent: balance.spent,
             error: balance.error(),
             work,
-            relative_error: (work != 0.0).then(|| (balance.error() / work).abs()),
+            relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
             largest_error: recorder.largest_error,
         });
         recorder.plot_settlement()?;

@@ -274,14 +274,31 @@ fn cycle_columns() -> Vec<Column> {
     .to_vec()
 }
 
-/// Makes the folder of the results; frames that an earlier run left there are removed, so that no frame of another
-/// run is taken for one of this.
+/// What a run may leave beside its frames.
+const FILES: [&str; 8] = [
+    "summary.json",
+    "history.csv",
+    "cycles.csv",
+    "nodes.csv",
+    "gauss.csv",
+    "results.pvd",
+    "settlement.svg",
+    "sleeper.svg",
+];
+
+/// Makes the folder of the results; what an earlier run left there is removed, so that no result of another run is
+/// taken for one of this. Files that are not of this program stay.
 ///
 /// # Errors
 /// The folder cannot be made or cleaned.
 pub fn prepare(dir: &Path, output: &crate::scene::Output) -> Result<(), Failure> {
     let fail = |e: std::io::Error| Failure::Other(format!("{}: {e}", dir.display()));
     fs::create_dir_all(dir).map_err(fail)?;
+    // Only in a folder of results: a user's own `nodes.csv` elsewhere is not ours to remove.
+    let of_a_run = dir.join("summary.json").is_file();
+    for file in FILES.map(|name| dir.join(name)).iter().filter(|file| of_a_run && file.is_file()) {
+        fs::remove_file(file).map_err(fail)?;
+    }
     for (sub, wanted) in [("frames", output.vtk), ("tecplot", output.tecplot)] {
         let folder = dir.join(sub);
         if folder.is_dir() {

@@ -1,7 +1,7 @@
 //! A static solid: one solve, its reactions, its tables.
 
+use super::frames;
 use super::summary::{StageRecord, StaticsRecord, Summary};
-use super::{frames, record};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::SolidPart;
@@ -12,11 +12,18 @@ use std::time::Instant;
 use trackbed_fem as fem;
 use trackbed_fem::model::Model;
 
-/// Solves the static problem of a scene and writes its results.
+/// Solves the static problem of a scene and writes its results into `dir`, which `prepare` makes once there is a
+/// solution.
 ///
 /// # Errors
 /// The body is not held, or the result is no solution.
-pub fn run(job: &Job, solid: &SolidPart, dir: &Path, summary: &mut Summary) -> Result<(), Failure> {
+pub fn run(
+    job: &Job,
+    solid: &SolidPart,
+    dir: &Path,
+    prepare: impl Fn() -> Result<(), Failure>,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
     let begun = Instant::now();
     let model = &solid.model;
     let mut load = model.gravity_load();
@@ -25,7 +32,7 @@ pub fn run(job: &Job, solid: &SolidPart, dir: &Path, summary: &mut Summary) -> R
     let mut state = fem::state::State::new(model);
     state.u.copy_from_slice(&result.u);
 
-    record::prepare(dir, &job.output)?;
+    prepare()?;
     let vtu = dir.join("frames/solid_00000.vtu");
     let dat = dir.join("tecplot/solid_00000.dat");
     let view = super::system::SolidView { model, state: &state };

@@ -105,7 +105,7 @@ pub struct EnergyRecord {
     pub error: f64,
     /// Work of the load [J].
     pub work: f64,
-    /// |error| / |work of the load|; absent without work.
+    /// |error| over the larger of |work of the load| and energy dissipated; absent when both are zero.
     pub relative_error: Option<f64>,
     /// Largest |error| at any row of the history [J].
     pub largest_error: f64,
@@ -190,7 +190,7 @@ impl Summary {
             lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
         }
         if let Some(e) = &self.energy {
-            let relative = e.relative_error.map_or(String::new(), |r| format!(" ({:.3} % of it)", 100.0 * r));
+            let relative = e.relative_error.map_or(String::new(), |r| format!(" ({:.4} % of what was turned over)", 100.0 * r));
             lines.push(format!("work {:.6} J, energy error {:.2e} J{relative}", e.work, e.error));
         }
         if let Some(m) = &self.momentum {

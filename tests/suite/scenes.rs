@@ -1,7 +1,7 @@
 //! What runs leave on disk: the fields that every file must hold, no number that is not finite, and an honest end
 //! when a run blows up (exit code 3: what, where, when; the summary says that it failed).
 
-use super::support::{COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder};
+use super::support::{COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, snapshot};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -267,15 +267,41 @@ fn output_that_is_not_wanted_is_not_written() {
 }
 
 #[test]
-fn frames_of_an_earlier_run_are_gone() {
+fn files_that_are_no_results_stay() {
+    // Results beside the input, in a folder that no run has written to: the input has names of result files.
+    let folder = scene_folder("beside", SOLID);
+    fs::rename(folder.join("NODECOORD.DAT"), folder.join("nodes.csv")).unwrap();
+    folder.edit("scene.toml", "NODECOORD.DAT", "nodes.csv");
+    let before = fs::read(folder.join("nodes.csv")).unwrap();
+    run(&folder.join("scene.toml"), folder.path(), &["output.tables=false"]).good();
+    assert!(folder.join("summary.json").exists() && fs::read(folder.join("nodes.csv")).unwrap() == before);
+}
+
+#[test]
+fn results_of_an_earlier_run_are_gone() {
     let folder = scene_folder("stale", COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     run(&scene, &out, &["output.frames=5"]).good();
-    assert!(out.join("frames/solid_00005.vtu").exists());
+    folder.write("out/notes.txt", "kept by hand");
+    assert!(out.join("frames/solid_00005.vtu").exists() && out.join("cycles.csv").exists());
     run(&scene, &out, &["output.frames=1"]).good();
     let listed: Vec<PathBuf> = series(&out).into_iter().map(|(_, file)| file).collect();
     assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), listed.len());
     assert_eq!(fs::read_dir(out.join("tecplot")).unwrap().count(), 2);
+
+    // A scene of another kind has no cycles and no solid.
+    folder.write("scene.toml", GRAINS);
+    run(&scene, &out, &[]).good();
+    for name in
+        ["cycles.csv", "settlement.svg", "sleeper.svg", "frames/solid_00000.vtu", "tecplot/solid_00000.dat"]
+    {
+        assert!(!out.join(name).exists(), "{name} is of another run");
+    }
+
+    // A run that fails before its first file leaves no result but its summary.
+    folder.write("scene.toml", &one_in_the_other());
+    fails(&folder, &["overlap"]);
+    assert_eq!(snapshot(&out).into_keys().collect::<Vec<_>>(), ["notes.txt", "summary.json"]);
 }
 
 /// A run that fails numerically: code 3, one line on standard error with `what` and a time, and a summary that says the
