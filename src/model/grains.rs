@@ -123,8 +123,12 @@ impl GrainsPart {
     ) -> Stability {
         let Some(surface) = self.surface_material else { return Stability::default() };
         let (mut stiffness, mut damping) = (0.0_f64, 0.0_f64);
-        let heaviest =
-            (0..self.bodies.len().min(model.body_count())).map(|b| model.mass(b)).fold(0.0, f64::max);
+        // The sleeper touches grains only.
+        let grains = self.parts.len() as u32 - u32::from(self.sleeper.is_some());
+        let heaviest = (0..model.body_count())
+            .filter(|&b| model.part(b) < grains)
+            .map(|b| model.mass(b))
+            .fold(0.0, f64::max);
         for &material in &self.grain_materials {
             let (k, ratio) = model.contact_stiffness(material, surface);
             stiffness = stiffness.max(k);

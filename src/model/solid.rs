@@ -1,11 +1,11 @@
 //! The solid of a scene: mesh read, materials and loads resolved.
 
 use crate::failure::Failure;
-use crate::read;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::{Integration, Rayleigh, Solid, SolidLoad, SolidLoadKind};
 use crate::scene::units::vector;
 use crate::scene::{Document, SceneError};
+use crate::{mesh_tools, read};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use trackbed_coupling::{face, inverse_map};
@@ -148,8 +148,11 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
     })
     .map_err(|e| refused(&document.resolve(&solid.elements), &e))?;
+    // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
+    let faults = mesh_tools::check(model.mesh(), model.constraints());
+    let warnings = lists.warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
     let constraint_file = document.resolve(solid.constraints.as_deref().unwrap_or(&solid.elements));
-    Ok(SolidPart { model, loads, newmark, constraint_file, material_names, warnings: lists.warnings })
+    Ok(SolidPart { model, loads, newmark, constraint_file, material_names, warnings })
 }
 
 /// What is wrong with the mesh, which shows only when its model is made.

@@ -83,7 +83,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
         // A failure before the first file, such as one while settling, has no folder yet, or one with the results of
         // an earlier run. What stopped the run comes before what stopped its summary.
         let cleared = if stage.prepared.get() { Ok(()) } else { stage.prepare() };
-        let written = cleared.and_then(|()| summary.write(&dir));
+        let written = cleared.and_then(|()| summary.write(&dir)).and_then(|()| summary.write_log(&dir));
         result.and(written).map(|()| summary)
     })
 }
@@ -423,6 +423,7 @@ impl Stage<'_> {
         recorder.frame(0.0, system)?;
         let progress = Progress::start("running", windows as f64, self.quiet);
         let mut next_frame = 1;
+        let mut done = 0;
         let outcome = (1..=windows).try_for_each(|k| -> Result<(), Failure> {
             let time = k as f64 * window;
             system.advance(&apply)?;
@@ -441,15 +442,16 @@ impl Stage<'_> {
                 next_frame += 1;
             }
             progress.at(k as f64);
+            done = k;
             Ok(())
         });
         let (grain_steps, solid_steps) = system.steps_per_window();
-        let seconds = progress.finish(&format!("{:.3} s simulated", job.end));
+        let seconds = progress.finish(&format!("{:.3} s simulated", done as f64 * window));
         summary.stages.push(StageRecord {
             name: "run".into(),
             seconds,
-            grain_steps: windows * grain_steps,
-            solid_steps: windows * solid_steps,
+            grain_steps: done * grain_steps,
+            solid_steps: done * solid_steps,
             parts: Default::default(),
         });
         summary.settlement = settlement(recorder.cycles());

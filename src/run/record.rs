@@ -275,8 +275,9 @@ fn cycle_columns() -> Vec<Column> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "summary.json",
+    "log.txt",
     "history.csv",
     "cycles.csv",
     "nodes.csv",

@@ -175,6 +175,20 @@ impl Summary {
         Ok(())
     }
 
+    /// Writes `log.txt` in `dir`: what a run prints, its status and the sources of the models it used.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_log(&self, dir: &Path) -> Result<(), Failure> {
+        let file = dir.join("log.txt");
+        crate::write::atomic::write(&file, |out| {
+            let sources: String = self.sources.iter().map(|s| format!("source: {s}\n")).collect();
+            write!(out, "{}\nstatus: {}\n{}{sources}", self.title, self.status, self.report())
+                .map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+        Ok(())
+    }
+
     /// What a user wants to see when a run has ended.
     pub fn report(&self) -> String {
         let mut lines = Vec::new();
@@ -190,7 +204,9 @@ impl Summary {
             lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
         }
         if let Some(e) = &self.energy {
-            let relative = e.relative_error.map_or(String::new(), |r| format!(" ({:.4} % of what was turned over)", 100.0 * r));
+            let relative = e
+                .relative_error
+                .map_or(String::new(), |r| format!(" ({:.4} % of what was turned over)", 100.0 * r));
             lines.push(format!("work {:.6} J, energy error {:.2e} J{relative}", e.work, e.error));
         }
         if let Some(m) = &self.momentum {
