@@ -263,7 +263,10 @@ fn output_that_is_not_wanted_is_not_written() {
     let mut names: Vec<String> =
         fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["cycles.csv", "history.csv", "settlement.svg", "sleeper.svg", "summary.json"]);
+    assert_eq!(
+        names,
+        ["cycles.csv", "history.csv", "log.txt", "settlement.svg", "sleeper.svg", "summary.json"]
+    );
 }
 
 #[test]
@@ -298,10 +301,10 @@ fn results_of_an_earlier_run_are_gone() {
         assert!(!out.join(name).exists(), "{name} is of another run");
     }
 
-    // A run that fails before its first file leaves no result but its summary.
+    // A run that fails before its first file leaves no result but its summary and log.
     folder.write("scene.toml", &one_in_the_other());
     fails(&folder, &["overlap"]);
-    assert_eq!(snapshot(&out).into_keys().collect::<Vec<_>>(), ["notes.txt", "summary.json"]);
+    assert_eq!(snapshot(&out).into_keys().collect::<Vec<_>>(), ["log.txt", "notes.txt", "summary.json"]);
 }
 
 /// A run that fails numerically: code 3, one line on standard error with `what` and a time, and a summary that says the
