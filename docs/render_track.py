@@ -4,8 +4,8 @@
     python3 -m venv venv && venv/bin/pip install vtk numpy
     venv/bin/python docs/render_track.py results/cyclic docs/track.png
 
-A third argument picks the frame; default is the frame with the largest sum of contact forces among those after the
-fifth cycle, that is near full load. Off-screen: no display needed (VTK falls back to a software renderer).
+A third argument picks the frame; default is the frame with the largest sum of contact forces in the
+later half of the run, near full load. Off-screen: no display needed (VTK falls back to a software renderer).
 
 Shown: the solid for |x| <= 2.6 m and z >= -1.5 m, its colour the change of vertical stress since the start of the run
 (frame 0), which is in equilibrium with the weight of solid and bed; the stones on the left (x < 0), each in its own
@@ -290,7 +290,7 @@ def main():
 
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(0.97, 0.975, 0.98)
-    stress_limits, chain_limits = (-60.0, 0.0), (0.0, 2.0)
+    stress_limits, chain_limits = (-40.0, 0.0), (0.0, 1.6)
     solid, stress_table = solid_actors(files, series[0][1], stress_limits)
     chain, chain_table = chain_actor(files, chain_limits)
     for item in [*solid, stones_actor(files), chain, sleeper_actor(files)]:
