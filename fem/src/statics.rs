@@ -39,17 +39,28 @@ pub struct StaticSolver {
     equations: Vec<f64>,
 }
 
+/// Checks, before any solve, that no body of the model can move as a rigid body.
+///
+/// # Errors
+/// [`SolveError::NotHeld`] names a node and direction that can move freely.
+pub fn check_held(model: &Model) -> Result<(), SolveError> {
+    match model.supports().free_motion(model.mesh()) {
+        None => Ok(()),
+        Some((node, direction)) => {
+            let (node, direction) = name(model.mesh(), 3 * node + direction);
+            Err(SolveError::NotHeld { node, direction })
+        }
+    }
+}
+
 impl StaticSolver {
     /// Checks that the body is held, and factors its stiffness.
     ///
     /// # Errors
     /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely.
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
+        check_held(model)?;
         let (mesh, supports) = (model.mesh(), model.supports());
-        if let Some((node, direction)) = supports.free_motion(mesh) {
-            let (node, direction) = name(mesh, 3 * node + direction);
-            return Err(SolveError::NotHeld { node, direction });
-        }
         let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, 1.0, 0.0)?;
         let weakest = factor.weakest_pivot();
         if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {

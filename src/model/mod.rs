@@ -9,6 +9,7 @@ mod tables;
 use crate::failure::Failure;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
+use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
 
 /// A resolved scene.
@@ -54,6 +55,12 @@ impl Job {
         }
         let gravity = vector(&scene.gravity);
         let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity)).transpose()?;
+        // A static solve stands at the start of every run but that of a moving solid alone.
+        if let Some(part) = &solid
+            && (part.newmark.is_none() || !scene.grains.is_empty())
+        {
+            fem::statics::check_held(&part.model).map_err(|e| part.failure(&e))?;
+        }
         let grains =
             if scene.grains.is_empty() { None } else { Some(grains::build(document, scene, gravity)?) };
         if grains.is_none() {
