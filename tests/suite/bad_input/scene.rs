@@ -1,0 +1,269 @@
+//! Broken input: the form of a scene, the solid, the exchange, time and output.
+
+use super::*;
+
+#[test]
+fn bad_toml() {
+    solid()
+        .scene("[solid]\n", "[solid\n")
+        .refused("scene.toml:3: syntax: found unclosed table, expected `]`");
+}
+
+#[test]
+fn key_given_twice() {
+    solid()
+        .scene("poisson = 0.3", "poisson = 0.3\npoisson = 0.2")
+        .refused("scene.toml:13: syntax: found duplicate key, expected valid TOML");
+}
+
+#[test]
+fn unknown_key() {
+    solid().scene("poisson", "poison").refused(
+        "scene.toml:12: solid.material.0.poison: found the unknown key `poison`, expected `poisson`",
+    );
+}
+
+#[test]
+fn unknown_table() {
+    solid()
+        .scene("[output]", "[outputs]")
+        .refused("scene.toml:23: outputs: found the unknown key `outputs`, expected `output`");
+}
+
+#[test]
+fn missing_key() {
+    solid()
+        .scene("young = \"20 MPa\"\n", "")
+        .refused("scene.toml:8: solid.material.0.young: found nothing, expected a value for this key");
+}
+
+#[test]
+fn wrong_unit() {
+    solid().scene("\"20 MPa\"", "\"20 kg\"").refused(
+        "scene.toml:11: solid.material.0.young: found string \"20 kg\", expected a stress in Pa, such as 2e7 or \"20 MPa\"",
+    );
+}
+
+#[test]
+fn wrong_type() {
+    solid()
+        .scene("poisson = 0.3", "poisson = \"soft\"")
+        .refused("scene.toml:12: solid.material.0.poisson: found string \"soft\", expected a number");
+}
+
+#[test]
+fn vector_of_two() {
+    grains_scene()
+        .scene("normal = [0, 0, 1]", "normal = [0, 1]")
+        .refused("scene.toml:19: walls.0.normal: found 2, expected an array of length 3");
+}
+
+#[test]
+fn empty_scene() {
+    solid()
+        .file(SCENE, "title = \"nothing\"\n")
+        .refused("scene.toml: scene: found neither [solid] nor [[grains]], expected at least one of them");
+}
+
+#[test]
+fn override_without_a_value() {
+    solid()
+        .set("solid.integration")
+        .refused("--set: solid.integration: found solid.integration, expected key.path=value");
+}
+
+#[test]
+fn override_below_a_value() {
+    solid()
+        .set("title.x=3")
+        .refused("--set: title.x: found `title`, which is a value, expected a table there");
+}
+
+#[test]
+fn override_of_an_absent_entry() {
+    solid().set("solid.material.4.young=3").refused(
+        "--set: solid.material.4.young: found solid.material.4.young, expected an index below 1 after `material`",
+    );
+}
+
+#[test]
+fn override_of_an_unknown_key() {
+    solid()
+        .set("solid.material.0.yung=1")
+        .refused("--set: solid.material.0.yung: found the unknown key `yung`, expected `young`");
+}
+
+#[test]
+fn override_out_of_range() {
+    solid()
+        .set("solid.material.0.poisson=0.7")
+        .refused("--set: solid.material.0.poisson: found 0.7, expected above -1 and below 0.5");
+}
+
+// --- the solid of a scene -----------------------------------------------------------------------------------------
+
+#[test]
+fn negative_density() {
+    solid()
+        .scene("\"2000 kg/m3\"", "-2000")
+        .refused("scene.toml:13: solid.material.0.density: found -2000, expected a density above 0");
+}
+
+#[test]
+fn incompressible_material() {
+    solid()
+        .scene("poisson = 0.3", "poisson = 0.5")
+        .refused("scene.toml:12: solid.material.0.poisson: found 0.5, expected above -1 and below 0.5");
+}
+
+#[test]
+fn poisson_that_is_not_a_number() {
+    solid()
+        .scene("poisson = 0.3", "poisson = nan")
+        .refused("scene.toml:12: solid.material.0.poisson: found NaN, expected above -1 and below 0.5");
+}
+
+#[test]
+fn element_without_a_material() {
+    solid().field(ELEMENTS, 3, 1, "7").refused(
+        "scene.toml:8: solid.material: found no material 7, which element 3 has, expected an entry with this id",
+    );
+}
+
+#[test]
+fn seventh_face() {
+    solid()
+        .scene("[8, 6]", "[8, 7]")
+        .refused("scene.toml:18: solid.load.0.faces: found face 7, expected a SOLID186 face, 1 to 6");
+}
+
+#[test]
+fn face_of_an_absent_element() {
+    solid().scene("[8, 6]", "[80, 6]").refused(
+        "scene.toml:18: solid.load.0.faces: found element 80, expected the number of an element of the mesh",
+    );
+}
+
+#[test]
+fn box_without_faces() {
+    solid().scene(FACES, "faces_in = [[5, 5, 5], [6, 6, 6]]").refused(
+        "scene.toml:18: solid.load.0.faces_in: found no boundary face in the box, expected at least one",
+    );
+}
+
+#[test]
+fn point_load_outside_the_solid() {
+    solid()
+        .scene(
+            "kind = \"pressure\"\npressure = \"10 kPa\"\n",
+            "kind = \"point\"\nat = [1, 1, 0.5]\nforce = [0, 0, -1]\n",
+        )
+        .scene(&format!("{FACES}\n"), "")
+        .refused("scene.toml:17: solid.load.0.at: found (1, 1, 0.5), expected a point of the solid");
+}
+
+#[test]
+fn load_history_without_frequency() {
+    solid().scene("pressure = \"10 kPa\"", "pressure = 1e4\nhistory = { kind = \"sine\" }").refused(
+        "scene.toml:18: solid.load.0.history.frequency: found nothing, expected a frequency for this kind of history",
+    );
+}
+
+#[test]
+fn probe_at_an_absent_node() {
+    solid()
+        .scene("node = 1\n", "node = 1000\n")
+        .refused("scene.toml:21: probe.0.node: found node 1000, expected the number of a node of the mesh");
+}
+
+#[test]
+fn unstable_newmark_constants() {
+    solid()
+        .scene("[[solid.load]]", "[solid.dynamics]\nalpha = 0.1\n\n[[solid.load]]")
+        .scene("[output]", "[time]\nend = 0.1\nsolid_step = 0.01\n\n[output]")
+        .refused(
+            "scene.toml:15: solid.dynamics: found Newmark with alpha = 0.1, delta = 0.5 is not unconditionally stable: \
+             it needs delta >= 0.5 and alpha >= 0.25 (0.5 + delta)^2 = 0.25, expected stable constants",
+        );
+}
+
+#[test]
+fn mixed_rayleigh_damping() {
+    coupled().scene("damping_ratio = 0.05, ", "damping_ratio = 0.05, alpha_m = 3, ").refused(
+        "scene.toml:7: solid.rayleigh: found a mixture of keys, expected either alpha_m and beta_k, or damping_ratio \
+         and frequencies",
+    );
+}
+
+#[test]
+fn grain_step_above_the_limit() {
+    // Limit of the step: that of two like spheres, of which one touches; the message gives it.
+    grains_scene().scene("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"1 ms\"").refused(
+        "scene.toml:24: time.grain_step: found 0.001 s, expected at most 1.374298e-4 s, set by body 0 (effective mass \
+         7.929e-1 kg) in contact with material 0 (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
+    );
+}
+
+#[test]
+fn grain_step_above_the_limit_under_a_sleeper() {
+    coupled().scene("[output]", "[time]\ngrain_step = \"1 ms\"\n\n[output]").refused(
+        "scene.toml:54: time.grain_step: found 0.001 s, expected at most 3.887101e-4 s, set by body 0 (effective mass \
+         6.343e0 kg) in contact with material 0 (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
+    );
+}
+
+#[test]
+fn no_substeps() {
+    coupled()
+        .scene("substeps = 10", "substeps = 0")
+        .refused("scene.toml:46: coupling.substeps: found 0, expected 1 to 1000");
+}
+
+#[test]
+fn theta_that_is_not_a_number() {
+    coupled()
+        .scene("substeps = 10", "substeps = 10\ntheta = nan")
+        .refused("scene.toml:47: coupling.theta: found NaN, expected 0.5 to 1");
+}
+
+#[test]
+fn both_sides_without_coupling() {
+    coupled().scene("[coupling]\nsubsteps = 10\nmaterial = \"stone\"\n", "").refused(
+        "scene.toml: coupling: found nothing, expected [coupling], since the scene has [solid] and [[grains]]",
+    );
+}
+
+#[test]
+fn coupling_with_one_side() {
+    grains_scene()
+        .scene("[time]", "[coupling]\nmaterial = \"stone\"\n\n[time]")
+        .refused("scene.toml:22: coupling: found only one side, expected both [solid] and [[grains]]");
+}
+
+#[test]
+fn no_end_of_time() {
+    grains_scene()
+        .scene("[time]\nend = \"20 ms\"\n", "")
+        .refused("scene.toml: time.end: found nothing, expected the time to simulate");
+}
+
+#[test]
+fn end_before_the_last_cycle() {
+    coupled().scene("[output]", "[time]\nend = 0.01\n\n[output]").refused(
+        "scene.toml:54: time.end: found 0.01 s, expected at least 0.08 s, when the last load cycle ends",
+    );
+}
+
+#[test]
+fn negative_number_of_frames() {
+    solid()
+        .scene("tables = true", "frames = -1")
+        .refused("scene.toml:24: output.frames: found integer -1, expected a whole number of 0 or more");
+}
+
+#[test]
+fn history_interval_of_zero() {
+    grains_scene()
+        .scene("frames = 2", "history_interval = 0")
+        .refused("scene.toml:26: output.history_interval: found 0, expected a time above 0");
+}
