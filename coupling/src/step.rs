@@ -121,6 +121,11 @@ impl Work {
         self.transfer.peak_face_pressure(&self.surface, window)
     }
 
+    /// Load on the solid in the last window, weight and contacts included [N]. Shape `[3·nodes]`.
+    pub fn load(&self) -> &[f64] {
+        &self.load
+    }
+
     /// Force of the grains on the solid, mean over the last window [N].
     pub fn mean_contact_force(&self, window: f64) -> [f64; 3] {
         self.transfer.total_impulse().map(|i| i / window)

@@ -27,9 +27,24 @@ pub struct Job {
     /// Step of a solid that runs alone [s].
     pub solid_step: Option<f64>,
     /// What is written.
-    pub output: crate::scene::Output,
+    pub output: OutputPlan,
     /// Observed nodes: (name, node index).
     pub probes: Vec<(String, usize)>,
+}
+
+/// What is written, resolved.
+#[derive(Clone, Copy, Debug)]
+pub struct OutputPlan {
+    /// Frames over the run proper; the start is one more.
+    pub frames: u32,
+    /// Time between rows of the history [s].
+    pub history_interval: f64,
+    /// VTK files.
+    pub vtk: bool,
+    /// Tecplot files of the solid.
+    pub tecplot: bool,
+    /// Nodes and Gauss points of the last state as CSV.
+    pub tables: bool,
 }
 
 /// The exchange, resolved.
@@ -53,6 +68,7 @@ impl Job {
                 .error("scene", "neither [solid] nor [[grains]]", "at least one of them")
                 .into());
         }
+        refuse_idle_keys(document, scene)?;
         let gravity = vector(&scene.gravity);
         let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity)).transpose()?;
         // A static solve stands at the start of every run but that of a moving solid alone.
@@ -100,22 +116,73 @@ impl Job {
             .enumerate()
             .map(|(i, p)| probe(document, i, p, solid.as_ref().map(|s| s.model.mesh())))
             .collect::<Result<Vec<_>, _>>()?;
-        if scene.output.frames > 100_000 {
-            return Err(document
-                .error("output.frames", scene.output.frames.to_string(), "at most 100000")
-                .into());
-        }
-        if let Some(interval) = scene.output.history_interval
-            && interval.si <= 0.0
-        {
-            return Err(document
-                .error("output.history_interval", interval.si.to_string(), "a time above 0")
-                .into());
-        }
+        let output = output(document, scene, end)?;
         let title =
             if scene.title.is_empty() { document.file().display().to_string() } else { scene.title.clone() };
-        Ok(Job { title, solid, grains, coupling, end, solid_step, output: scene.output.clone(), probes })
+        Ok(Job { title, solid, grains, coupling, end, solid_step, output, probes })
     }
+}
+
+/// Refuses keys that would have no effect beside the other parts of the scene.
+fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError> {
+    if scene.grains.is_empty() {
+        let time = &scene.time;
+        for (key, present) in [
+            ("time.grain_step", time.grain_step.is_some()),
+            ("time.grain_step_fraction", time.grain_step_fraction.is_some()),
+            ("time.accept_step_above_limit", time.accept_step_above_limit),
+        ] {
+            if present {
+                return Err(document.error(key, "a value", "no such key without [[grains]]"));
+            }
+        }
+    } else if scene.solid.as_ref().is_some_and(|s| s.dynamics.is_some()) {
+        let expected = "no such key beside [[grains]]: coupling.theta tells how the solid is integrated";
+        return Err(document.error("solid.dynamics", "a value", expected));
+    }
+    Ok(())
+}
+
+fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, SceneError> {
+    let o = &scene.output;
+    let without = |key: &str, needs: &str| {
+        document.error(&format!("output.{key}"), "a value", format!("no such key without {needs}"))
+    };
+    if scene.solid.is_none() {
+        if o.tecplot.is_some() {
+            return Err(without("tecplot", "[solid]"));
+        }
+        if o.tables.is_some() {
+            return Err(without("tables", "[solid]"));
+        }
+    }
+    if end == 0.0 {
+        if o.frames.is_some() {
+            return Err(without("frames", "time: a static solid has one frame"));
+        }
+        if o.history_interval.is_some() {
+            return Err(without("history_interval", "time: a static solid has no history"));
+        }
+    }
+    let frames = o.frames.unwrap_or(20);
+    if frames > 100_000 {
+        return Err(document.error("output.frames", frames.to_string(), "at most 100000"));
+    }
+    let history_interval = o.history_interval.map_or(end / 1000.0, |i| i.si);
+    if o.history_interval.is_some() && (history_interval <= 0.0 || !history_interval.is_finite()) {
+        return Err(document.error(
+            "output.history_interval",
+            history_interval.to_string(),
+            "a time above 0",
+        ));
+    }
+    Ok(OutputPlan {
+        frames,
+        history_interval,
+        vtk: o.vtk.unwrap_or(true),
+        tecplot: scene.solid.is_some() && o.tecplot.unwrap_or(true),
+        tables: o.tables.unwrap_or(false),
+    })
 }
 
 fn coupling(

@@ -2,7 +2,9 @@
 
 mod cycles;
 mod frames;
+mod main_stage;
 mod record;
+mod settle;
 mod statics;
 mod summary;
 mod system;
@@ -11,19 +13,17 @@ pub use cycles::{Cycle, CycleRecorder};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
-use crate::model::grains::{DepositionPlan, GrainsPart, refused};
+use crate::model::grains::refused;
 use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
-use record::{Recorder, Sleeper};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
-use summary::{CouplingRecord, EnergyRecord, Hash, MomentumRecord, SettlementRecord, StageRecord};
+use summary::{CouplingRecord, Hash};
 use system::{CoupledSystem, GrainsSystem, SolidSystem, System};
 use trackbed_coupling as coupling;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
-use trackbed_dem::BodyInput;
 use trackbed_fem as fem;
 
 /// How to run a scene.
@@ -207,6 +207,11 @@ impl Stage<'_> {
                 }
                 self.prepare()?;
                 self.grain_stage(&mut system, grains, summary)?;
+                if self.job.output.tables {
+                    let moved = &system.state.solid;
+                    let reactions = fem::energy::reactions(&solid.model, moved, system.work.load());
+                    statics::write_tables(&solid.model, &moved.u, &reactions, self.dir)?;
+                }
                 summary.coupling = Some(CouplingRecord {
                     transfer: system.state.audit,
                     substeps: plan.substeps,
@@ -234,91 +239,6 @@ impl Stage<'_> {
         summary.model.grain_step_limit = Some(model.dt_limit().dt);
         summary.model.grain_step_set_by = Some(model.dt_limit().to_string());
         Ok(model)
-    }
-
-    /// Lets filled grains settle and levels the bed; the bodies come back at rest where they lie.
-    fn deposit(
-        &self,
-        grains: &GrainsPart,
-        surface: Option<&SolidSurface>,
-        summary: &mut Summary,
-    ) -> Result<Vec<BodyInput>, Failure> {
-        let Some(plan) = &grains.deposition else { return Ok(grains.bodies.clone()) };
-        let input = grains.deposition_input(plan);
-        let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-        let mut state = dem::State::new(&model);
-        let mut work = dem::Work::new(&model, &state);
-        let progress = Progress::start("settling", plan.max_time, self.quiet);
-        // Look at the speed about every millisecond.
-        let stride = ((1e-3 / model.dt()) as u64).max(1);
-        let mut settled = false;
-        while state.time < plan.max_time && !settled {
-            for _ in 0..stride {
-                match surface {
-                    Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
-                    None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
-                }
-                .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
-            }
-            let speed = rms_speed(&model, &state);
-            // Everything starts at rest: free fall has to be under way before slowness means anything.
-            settled = state.time > START_OF_SETTLING && speed < plan.settled_speed;
-            progress.at(state.time);
-            progress.message(format!("rms speed {speed:.2e} m/s"));
-        }
-        if !settled {
-            let speed = rms_speed(&model, &state);
-            summary.warnings.push(format!(
-                "the grains were still moving at {speed:.2e} m/s (root mean square) after {} s of settling",
-                plan.max_time
-            ));
-        }
-        let steps = state.steps;
-        let (bodies, removed) = at_rest(&grains.bodies, &model, &state, plan);
-        let seconds = progress.finish(&format!(
-            "{} grains at rest after {:.2} s, {removed} above the level taken away",
-            bodies.len(),
-            state.time
-        ));
-        summary.stages.push(StageRecord {
-            name: "settling".into(),
-            seconds,
-            grain_steps: steps,
-            solid_steps: 0,
-            parts: Default::default(),
-        });
-        if bodies.is_empty() {
-            return Err(self.document.error("deposition.level", "no grain below it", "at least one").into());
-        }
-        Ok(bodies)
-    }
-
-    /// Adds the sleeper, just above the highest grain below it.
-    fn with_sleeper(
-        &self,
-        grains: &GrainsPart,
-        mut bodies: Vec<BodyInput>,
-        surface: Option<&SolidSurface>,
-    ) -> Result<Vec<BodyInput>, Failure> {
-        let Some(plan) = &grains.sleeper else { return Ok(bodies) };
-        let model = dem::Model::new(grains.input(bodies.clone())).map_err(|e| refused(self.document, &e))?;
-        let state = dem::State::new(&model);
-        let mut top = f64::NEG_INFINITY;
-        for body in 0..model.body_count() {
-            for (x, r) in state.spheres(&model, body) {
-                let over = [0, 1].map(|d| ((x[d] - plan.centre[d]).abs() - plan.half[d]).max(0.0));
-                let reach = r * r - over[0] * over[0] - over[1] * over[1];
-                if reach > 0.0 {
-                    top = top.max(x.z + reach.sqrt());
-                }
-            }
-        }
-        if !top.is_finite() {
-            // No grain below: on the solid, or on the plane z = 0.
-            top = surface.map_or(0.0, |s| s.highest());
-        }
-        bodies.push(grains.sleeper_body(plan, top + plan.half[2]));
-        Ok(bodies)
     }
 
     /// Joins grains and solid. The solid starts in static equilibrium with its weight and the grains that rest on
@@ -357,168 +277,6 @@ impl Stage<'_> {
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
         Ok(CoupledSystem { model, state, work, loads: &solid.loads })
     }
-
-    /// The run proper of a scene with grains, with its accounts.
-    fn grain_stage<S: System>(
-        &self,
-        system: &mut S,
-        grains: &GrainsPart,
-        summary: &mut Summary,
-    ) -> Result<(), Failure> {
-        let momentum = |s: &S| {
-            let g = s.grains().expect("a system with grains");
-            dem::measure::momentum(g.model, g.state)
-        };
-        let view = system.grains().expect("a system with grains");
-        summary.model.coordination = Some(dem::measure::coordination(view.model, view.state));
-        let before = momentum(system);
-        self.main_stage(system, Some(grains), summary)?;
-        let after = momentum(system);
-        let ledger = &system.grains().expect("a system with grains").state.ledger;
-        let impulse = ledger.impulse();
-        let (mut linear, mut angular) = (0.0, 0.0);
-        for part in [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.constraints] {
-            linear += part.linear.norm();
-            angular += part.angular.norm();
-        }
-        let relative = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { error };
-        summary.momentum = Some(MomentumRecord {
-            linear: relative((after.linear - before.linear - impulse.linear).norm(), linear),
-            angular: relative((after.angular - before.angular - impulse.angular).norm(), angular),
-        });
-        Ok(())
-    }
-
-    /// Advances a system to the end of the run, recording.
-    fn main_stage<S: System>(
-        &self,
-        system: &mut S,
-        grains: Option<&GrainsPart>,
-        summary: &mut Summary,
-    ) -> Result<(), Failure> {
-        let job = self.job;
-        let window = system.window();
-        let windows = ((job.end / window).ceil() as u64).max(1);
-        let frames = u64::from(job.output.frames).min(windows);
-        let interval = job.output.history_interval.map_or(job.end / 1000.0, |i| i.si);
-        let every = ((interval / window).round() as u64).max(1);
-
-        let load = grains.and_then(|g| g.load.as_ref());
-        let sleeper = grains.and_then(|g| g.sleeper.as_ref());
-        let body = system.grains().map_or(0, |g| g.model.body_count()).saturating_sub(1);
-        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            if let (Some(load), Some(plan)) = (load, sleeper) {
-                let share = load.force(t) / plan.seats.len() as f64;
-                let (x, q) = (state.position(body), state.orientation(model, body));
-                for seat in &plan.seats {
-                    let point = x + q * dem::Vec3::from(*seat);
-                    out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -share), point });
-                }
-            }
-        };
-        let at = |t: f64| sleeper.map(|_| Sleeper { body, load: load.map_or(0.0, |l| l.force(t)) });
-
-        let mut recorder = Recorder::start(job, self.dir, system, at(0.0))?;
-        recorder.row(0.0, system, at(0.0))?;
-        recorder.frame(0.0, system)?;
-        let progress = Progress::start("running", windows as f64, self.quiet);
-        let mut next_frame = 1;
-        let mut done = 0;
-        let outcome = (1..=windows).try_for_each(|k| -> Result<(), Failure> {
-            let time = k as f64 * window;
-            system.advance(&apply)?;
-            if let Some(cycle) = recorder.follow(time, system, at(time))? {
-                progress.message(format!(
-                    "cycle {}: settlement {:.3} mm",
-                    cycle.number,
-                    1e3 * cycle.settlement
-                ));
-            }
-            if k % every == 0 || k == windows {
-                recorder.row(time, system, at(time)).map_err(|e| e.at(time))?;
-            }
-            if frames > 0 && k * frames >= next_frame * windows {
-                recorder.frame(time, system).map_err(|e| e.at(time))?;
-                next_frame += 1;
-            }
-            progress.at(k as f64);
-            done = k;
-            Ok(())
-        });
-        let (grain_steps, solid_steps) = system.steps_per_window();
-        let seconds = progress.finish(&format!("{:.3} s simulated", done as f64 * window));
-        summary.stages.push(StageRecord {
-            name: "run".into(),
-            seconds,
-            grain_steps: done * grain_steps,
-            solid_steps: done * solid_steps,
-            parts: Default::default(),
-        });
-        summary.settlement = settlement(recorder.cycles());
-        let balance = recorder.balance();
-        let work = balance.spent.work();
-        let turnover = work.abs().max(balance.spent.dissipated());
-        summary.energy = Some(EnergyRecord {
-            start: balance.start,
-            end: balance.now,
-            spent: balance.spent,
-            error: balance.error(),
-            work,
-            relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
-            largest_error: recorder.largest_error,
-        });
-        recorder.plot_settlement()?;
-        outcome
-    }
-}
-
-/// Time that bodies need to get going before slowness counts as rest [s].
-const START_OF_SETTLING: f64 = 0.05;
-
-/// Root-mean-square speed of all bodies [m/s].
-fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
-    let n = model.body_count();
-    let sum: f64 = (0..n).map(|b| state.velocity(b).norm_squared()).sum();
-    (sum / n.max(1) as f64).sqrt()
-}
-
-/// Bodies where they have come to lie, at rest, without those above the level.
-fn at_rest(
-    inputs: &[BodyInput],
-    model: &dem::Model,
-    state: &dem::State,
-    plan: &DepositionPlan,
-) -> (Vec<BodyInput>, usize) {
-    let mut bodies = Vec::with_capacity(inputs.len());
-    for (b, input) in inputs.iter().enumerate() {
-        let position = state.position(b);
-        if plan.level.is_some_and(|level| position.z > level) {
-            continue;
-        }
-        bodies.push(BodyInput {
-            position,
-            orientation: state.orientation(model, b),
-            velocity: dem::Vec3::zeros(),
-            spin: dem::Vec3::zeros(),
-            ..input.clone()
-        });
-    }
-    let removed = inputs.len() - bodies.len();
-    (bodies, removed)
-}
-
-fn settlement(cycles: &[Cycle]) -> Option<SettlementRecord> {
-    if cycles.is_empty() {
-        return None;
-    }
-    let per_cycle: Vec<f64> = cycles.iter().map(|c| c.settlement).collect();
-    let increments: Vec<f64> =
-        per_cycle.iter().enumerate().map(|(i, s)| if i == 0 { *s } else { s - per_cycle[i - 1] }).collect();
-    let half = increments.len() / 2;
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-    let slowing =
-        (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
-    Some(SettlementRecord { per_cycle, increments, slowing })
 }
 
 const SOLID_SOURCES: [&str; 3] = [

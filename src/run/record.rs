@@ -292,7 +292,7 @@ const FILES: [&str; 9] = [
 ///
 /// # Errors
 /// The folder cannot be made or cleaned.
-pub fn prepare(dir: &Path, output: &crate::scene::Output) -> Result<(), Failure> {
+pub fn prepare(dir: &Path, output: &crate::model::OutputPlan) -> Result<(), Failure> {
     let fail = |e: std::io::Error| Failure::Other(format!("{}: {e}", dir.display()));
     fs::create_dir_all(dir).map_err(fail)?;
     // Only in a folder of results: a user's own `nodes.csv` elsewhere is not ours to remove.

@@ -114,38 +114,25 @@ pub struct TimeControl {
     pub accept_step_above_limit: bool,
 }
 
+fn yes() -> bool {
+    true
+}
+
 /// What a run writes.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
     /// Number of frames of the animation over the run proper, 0–100000; default 20. The start is one more.
-    #[serde(default = "twenty")]
-    pub frames: u32,
+    pub frames: Option<u32>,
     /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
     /// solid (coupled and solid runs) or of the grains.
     pub history_interval: Option<Quantity<Time>>,
     /// Write VTK files (`results.pvd`); default true.
-    #[serde(default = "yes")]
-    pub vtk: bool,
+    pub vtk: Option<bool>,
     /// Write the solid as Tecplot files; default true.
-    #[serde(default = "yes")]
-    pub tecplot: bool,
+    pub tecplot: Option<bool>,
     /// Write nodal displacements, reactions and Gauss-point stresses of the last state as CSV; default false.
-    #[serde(default)]
-    pub tables: bool,
-}
-
-impl Default for Output {
-    fn default() -> Self {
-        Output { frames: 20, history_interval: None, vtk: true, tecplot: true, tables: false }
-    }
-}
-
-fn twenty() -> u32 {
-    20
-}
-fn yes() -> bool {
-    true
+    pub tables: Option<bool>,
 }
 
 /// A node of the solid, by number or by the place nearest to it, whose motion goes to `history.csv`.

@@ -1,0 +1,71 @@
+//! `[track]` resolved.
+
+use super::{GrainsPart, SleeperPlan, check};
+use crate::model::seat_load::CyclicLoad;
+use crate::scene::track::{Motion, Track};
+use crate::scene::units::vector;
+use crate::scene::{Document, SceneError};
+use trackbed_dem::shape::Shape;
+
+/// Adds the sleeper and its load.
+pub(super) fn add(
+    document: &Document,
+    track: &Track,
+    material: usize,
+    part: &mut GrainsPart,
+) -> Result<(), SceneError> {
+    let s = &track.sleeper;
+    let half = vector(&s.size).map(|l| 0.5 * l);
+    for l in half {
+        check(document, "track.sleeper.size", Some(l), |l| l > 0.0, "lengths above 0")?;
+    }
+    check(document, "track.sleeper.mass", Some(s.mass.si), |m| m > 0.0, "a mass above 0")?;
+    let shape = part.shapes.len();
+    part.shapes.push(Shape::Box { half });
+    part.parts.push("sleeper".into());
+    let mut fixed = [false; 6];
+    for motion in &s.hold {
+        let k = match motion {
+            Motion::X => 0,
+            Motion::Y => 1,
+            Motion::Z => 2,
+            Motion::Rx => 3,
+            Motion::Ry => 4,
+            Motion::Rz => 5,
+        };
+        fixed[k] = true;
+    }
+    let mut seats = vec![[0.0, 0.0, half[2]]];
+    if let Some(l) = &track.load {
+        check(document, "track.load.minimum", Some(l.minimum.si), |f| f >= 0.0, "0 or more")?;
+        check(
+            document,
+            "track.load.maximum",
+            Some(l.maximum.si),
+            |f| f > l.minimum.si,
+            "more than the minimum",
+        )?;
+        check(document, "track.load.frequency", Some(l.frequency.si), |f| f > 0.0, "above 0")?;
+        check(document, "track.load.cycles", Some(f64::from(l.cycles)), |n| n >= 1.0, "1 or more")?;
+        check(document, "track.load.rest", Some(l.rest.si), |t| t >= 0.0, "0 or more")?;
+        check(document, "track.load.ramp", Some(l.ramp.si), |t| t >= 0.0, "0 or more")?;
+        if !l.seats.is_empty() {
+            seats = l.seats.iter().map(|p| [p[0].si, p[1].si, half[2]]).collect();
+        }
+        if let Some(p) = seats.iter().find(|p| p[0].abs() > half[0] || p[1].abs() > half[1]) {
+            let found = format!("({}, {})", p[0], p[1]);
+            return Err(document.error("track.load.seats", found, "points on the sleeper's top"));
+        }
+        part.load = Some(CyclicLoad::new(l));
+    }
+    part.sleeper = Some(SleeperPlan {
+        shape,
+        material,
+        mass: s.mass.si,
+        fixed,
+        half,
+        centre: [s.centre[0].si, s.centre[1].si],
+        seats,
+    });
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! The run proper: steps, records, accounts.
+
+use super::Stage;
+use super::cycles::Cycle;
+use super::record::{Recorder, Sleeper};
+use super::summary::{EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
+use super::system::System;
+use crate::failure::Failure;
+use crate::model::grains::GrainsPart;
+use crate::progress::Progress;
+use trackbed_dem as dem;
+
+impl Stage<'_> {
+    /// The run proper of a scene with grains, with its accounts.
+    pub(super) fn grain_stage<S: System>(
+        &self,
+        system: &mut S,
+        grains: &GrainsPart,
+        summary: &mut Summary,
+    ) -> Result<(), Failure> {
+        let momentum = |s: &S| {
+            let g = s.grains().expect("a system with grains");
+            dem::measure::momentum(g.model, g.state)
+        };
+        let view = system.grains().expect("a system with grains");
+        summary.model.coordination = Some(dem::measure::coordination(view.model, view.state));
+        let before = momentum(system);
+        self.main_stage(system, Some(grains), summary)?;
+        let after = momentum(system);
+        let ledger = &system.grains().expect("a system with grains").state.ledger;
+        let impulse = ledger.impulse();
+        let (mut linear, mut angular) = (0.0, 0.0);
+        for part in [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.constraints] {
+            linear += part.linear.norm();
+            angular += part.angular.norm();
+        }
+        let relative = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { error };
+        summary.momentum = Some(MomentumRecord {
+            linear: relative((after.linear - before.linear - impulse.linear).norm(), linear),
+            angular: relative((after.angular - before.angular - impulse.angular).norm(), angular),
+        });
+        Ok(())
+    }
+
+    /// Advances a system to the end of the run, recording.
+    pub(super) fn main_stage<S: System>(
+        &self,
+        system: &mut S,
+        grains: Option<&GrainsPart>,
+        summary: &mut Summary,
+    ) -> Result<(), Failure> {
+        let job = self.job;
+        let window = system.window();
+        let windows = ((job.end / window).ceil() as u64).max(1);
+        let frames = u64::from(job.output.frames).min(windows);
+        let interval = job.output.history_interval;
+        let every = ((interval / window).round() as u64).max(1);
+
+        let load = grains.and_then(|g| g.load.as_ref());
+        let sleeper = grains.and_then(|g| g.sleeper.as_ref());
+        let body = system.grains().map_or(0, |g| g.model.body_count()).saturating_sub(1);
+        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            if let (Some(load), Some(plan)) = (load, sleeper) {
+                let share = load.force(t) / plan.seats.len() as f64;
+                let (x, q) = (state.position(body), state.orientation(model, body));
+                for seat in &plan.seats {
+                    let point = x + q * dem::Vec3::from(*seat);
+                    out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -share), point });
+                }
+            }
+        };
+        let at = |t: f64| sleeper.map(|_| Sleeper { body, load: load.map_or(0.0, |l| l.force(t)) });
+
+        let mut recorder = Recorder::start(job, self.dir, system, at(0.0))?;
+        recorder.row(0.0, system, at(0.0))?;
+        recorder.frame(0.0, system)?;
+        let progress = Progress::start("running", windows as f64, self.quiet);
+        let mut next_frame = 1;
+        let mut done = 0;
+        let outcome = (1..=windows).try_for_each(|k| -> Result<(), Failure> {
+            let time = k as f64 * window;
+            system.advance(&apply)?;
+            if let Some(cycle) = recorder.follow(time, system, at(time))? {
+                progress.message(format!(
+                    "cycle {}: settlement {:.3} mm",
+                    cycle.number,
+                    1e3 * cycle.settlement
+                ));
+            }
+            if k % every == 0 || k == windows {
+                recorder.row(time, system, at(time)).map_err(|e| e.at(time))?;
+            }
+            if frames > 0 && k * frames >= next_frame * windows {
+                recorder.frame(time, system).map_err(|e| e.at(time))?;
+                next_frame += 1;
+            }
+            progress.at(k as f64);
+            done = k;
+            Ok(())
+        });
+        let (grain_steps, solid_steps) = system.steps_per_window();
+        let seconds = progress.finish(&format!("{:.3} s simulated", done as f64 * window));
+        summary.stages.push(StageRecord {
+            name: "run".into(),
+            seconds,
+            grain_steps: done * grain_steps,
+            solid_steps: done * solid_steps,
+            parts: Default::default(),
+        });
+        summary.settlement = settlement(recorder.cycles());
+        let balance = recorder.balance();
+        let work = balance.spent.work();
+        let turnover = work.abs().max(balance.spent.dissipated());
+        summary.energy = Some(EnergyRecord {
+            start: balance.start,
+            end: balance.now,
+            spent: balance.spent,
+            error: balance.error(),
+            work,
+            relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
+            largest_error: recorder.largest_error,
+        });
+        recorder.plot_settlement()?;
+        outcome
+    }
+}
+
+fn settlement(cycles: &[Cycle]) -> Option<SettlementRecord> {
+    if cycles.is_empty() {
+        return None;
+    }
+    let per_cycle: Vec<f64> = cycles.iter().map(|c| c.settlement).collect();
+    let increments: Vec<f64> =
+        per_cycle.iter().enumerate().map(|(i, s)| if i == 0 { *s } else { s - per_cycle[i - 1] }).collect();
+    let half = increments.len() / 2;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let slowing =
+        (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
+    Some(SettlementRecord { per_cycle, increments, slowing })
+}
