@@ -421,3 +421,42 @@ fn a_scene_of_one_side_runs_alone() {
     assert!(names("grains").iter().all(|n| !n.starts_with("solid")));
     assert!(!folder.join("grains/cycles.csv").exists(), "no load, no cycles");
 }
+
+/// Two groups filled into one box: the second starts above the first, and the run goes on without an overlap.
+#[test]
+fn groups_filled_into_one_box_stack() {
+    let group = |name: &str| {
+        format!(
+            "[[grains]]\nname = \"{name}\"\nshape = \"sphere\"\nmaterial = \"stone\"\ncount = 30\n\
+             size = [0.04, 0.06]\nfill = {{ low = [0, 0, 0], high = [0.3, 0.3] }}\n\n"
+        )
+    };
+    let folder = scene_folder("two_groups", GRAINS);
+    let text = fs::read_to_string(folder.join("scene.toml")).unwrap();
+    let (head, rest) = text.split_once("[[grains]]").unwrap();
+    let tail = rest.split_once("[[walls]]").unwrap().1;
+    folder.write("scene.toml", &format!("{head}{}{}[[walls]]{tail}", group("first"), group("second")));
+    let out = folder.join("out");
+    run(&folder.join("scene.toml"), &out, &[]).good();
+    let (points, fields, _) = vtk(&out.join("frames/grains_00000.vtp"));
+    let height = |part: f64| {
+        let of_part = |(_, p): &(usize, &f64)| **p == part;
+        let heights = fields["part"].1.iter().enumerate().filter(of_part).map(|(i, _)| points[3 * i + 2]);
+        heights.fold((f64::INFINITY, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)))
+    };
+    assert!(height(1.0).0 > height(0.0).1, "the second group starts above the first");
+}
+
+/// A wall that moves in the run proper stands still while the grains settle.
+#[test]
+fn moving_walls_wait_for_the_run() {
+    let folder = scene_folder("moving_wall", GRAINS);
+    folder.edit("scene.toml", "normal = [0, 0, 1]", "normal = [0, 0, 1]\nvelocity = [0, 0, 0.5]");
+    folder.edit("scene.toml", "[time]", "[deposition]\nmax_time = 0.3\n\n[time]");
+    let out = folder.join("out");
+    run(&folder.join("scene.toml"), &out, &[]).good();
+    let (first, ..) = vtk(&out.join("frames/grains_00000.vtp"));
+    let (last, ..) = vtk(&out.join("frames/grains_00002.vtp"));
+    assert!((first[2] - 0.05).abs() < 1e-3, "at rest on the wall's first place: {}", first[2]);
+    assert!(last[2] > first[2] + 0.005, "lifted by the wall: {}", last[2]);
+}

@@ -267,3 +267,21 @@ fn history_interval_of_zero() {
         .scene("frames = 2", "history_interval = 0")
         .refused("scene.toml:26: output.history_interval: found 0, expected a time above 0");
 }
+
+#[test]
+fn keys_without_effect() {
+    let scene = "scene.toml";
+    solid()
+        .set("time.grain_step_fraction=0.5")
+        .refused("--set: time.grain_step_fraction: found a value, expected no such key without [[grains]]");
+    solid().set("output.frames=3").refused(
+        "--set: output.frames: found a value, expected no such key without time: a static solid has one frame",
+    );
+    grains_scene()
+        .append(scene, "tecplot = true")
+        .refused("scene.toml:27: output.tecplot: found a value, expected no such key without [solid]");
+    coupled().scene("[solid]\n", "[solid]\ndynamics = {}\n").refused(
+        "scene.toml:4: solid.dynamics: found a value, expected no such key beside [[grains]]: coupling.theta tells \
+         how the solid is integrated",
+    );
+}
