@@ -122,6 +122,7 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
     }
     let quadrature = match solid.integration {
         Integration::Reduced => fem::element::quadrature::Quadrature::Gauss2,
+        Integration::Irons14 => fem::element::quadrature::Quadrature::Irons14,
         Integration::Full => fem::element::quadrature::Quadrature::Gauss3,
     };
     let loads = solid

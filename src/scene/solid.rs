@@ -44,6 +44,8 @@ pub enum Integration {
     /// 2 × 2 × 2 points, the default of SOLID186.
     #[default]
     Reduced,
+    /// Irons' 14 points, the "full" rule of SOLID186.
+    Irons14,
     /// 3 × 3 × 3 points.
     Full,
 }

@@ -12,7 +12,7 @@
 //! | E2, E3 load and weight, E6 | stress at centroids and 2×2×2 points | 1e-5 of the largest | case.json |
 //! | E5 | displacement history per node and component | 1e-6 of its largest | case.json |
 //! | E5 | velocity history per node and component | 1e-5 of its largest | case.json |
-//! | all static | displacement of probes with 2×2×2 integration | 1e-7 of the largest | 8 printed digits |
+//! | all static | displacement of probes with 2×2×2 and 14-point integration | 1e-7 of the largest | 8 printed digits |
 //! | all static | sum of reactions | 1e-9 of the sum of their absolute values | solver of the reference |
 //! | all static | strain energy | 1e-9 | solver of the reference |
 //! | E6 | radial displacement against Lamé | 1e-4 | case.json: the reference has 8e-5 |
@@ -142,19 +142,28 @@ impl Case {
     }
 
     /// With 2 × 2 × 2 integration the displacement of the probes is that of the same rule in the reference, and, where
-    /// the rules differ, not that of the other.
+    /// the rules differ, not that of the other; with Irons' 14 points likewise.
     fn check_reduced(name: &'static str, rules_differ: bool) -> Case {
-        let reduced = Case::run(name, &["solid.integration=reduced"]);
-        assert_eq!(reduced.gauss().len() as u64, 8 * reduced.case["reference"]["elements"].as_u64().unwrap());
+        Case::check_rule(name, rules_differ, "irons14", "irons14", 14);
+        Case::check_rule(name, rules_differ, "reduced", "2x2x2", 8)
+    }
+
+    /// The case with the rule `key` of scenes and `probes` of the reference, which has `points` points.
+    fn check_rule(name: &'static str, rules_differ: bool, key: &str, probes: &str, points: u64) -> Case {
+        let reduced = Case::run(name, &[&format!("solid.integration={key}")]);
+        assert_eq!(
+            reduced.gauss().len() as u64,
+            points * reduced.case["reference"]["elements"].as_u64().unwrap()
+        );
         let u = reduced.displacement();
-        let error = |probes: &Value| {
-            let probes = probes.as_object().unwrap();
-            assert!(!probes.is_empty());
+        let error = |values: &Value| {
+            let values = values.as_object().unwrap();
+            assert!(!values.is_empty());
             let one = |(id, at): (&String, &Value)| distance(&u[&id.parse().unwrap()], &numbers(at));
-            probes.iter().map(one).fold(0.0, f64::max) / reduced.largest_reference()
+            values.iter().map(one).fold(0.0, f64::max) / reduced.largest_reference()
         };
         let rules = &reduced.case["other_integration_rules"];
-        reduced.within("probes with 2x2x2 integration", error(&rules["probes"]["2x2x2"]), 1e-7);
+        reduced.within(&format!("probes with {probes} integration"), error(&rules["probes"][probes]), 1e-7);
         if rules_differ {
             let other = error(&rules["same_probes_27pt"]);
             assert!(other > 1e-6, "{name}: the rules should differ, but by {other:e} only");
