@@ -460,3 +460,28 @@ fn moving_walls_wait_for_the_run() {
     assert!((first[2] - 0.05).abs() < 1e-3, "at rest on the wall's first place: {}", first[2]);
     assert!(last[2] > first[2] + 0.005, "lifted by the wall: {}", last[2]);
 }
+
+/// The small scenes of `inputs/` run, the long ones cut short, and their accounts close.
+#[test]
+fn small_scenes_run() {
+    let out = scene_folder("small_scenes", SOLID);
+    for (scene, set, energy) in [
+        ("solid/embankment", [].as_slice(), None),
+        ("solid/pulse", &["time.end=0.06"], Some(1e-10)),
+        ("grains/box", &["time.end=0.15"], Some(0.02)),
+        ("grains/chute", &["time.end=0.6"], Some(0.02)),
+    ] {
+        let dir = out.join(scene.split('/').next_back().unwrap());
+        run(&repository().join("inputs").join(format!("{scene}.toml")), &dir, set).good();
+        let summary = json(&dir.join("summary.json"));
+        assert_eq!(summary["warnings"].as_array().unwrap().len(), 0, "{scene}: {}", summary["warnings"]);
+        match energy {
+            None => assert!(summary["statics"]["equilibrium_error"].as_f64().unwrap() < 1e-12),
+            Some(bound) => {
+                let error = summary["energy"]["relative_error"].as_f64().unwrap();
+                println!("{scene}: energy error {error:.1e}");
+                assert!(error < bound, "{scene}: {error:e}");
+            }
+        }
+    }
+}
