@@ -227,3 +227,36 @@ fn a_quiet_packing_on_soft_ground_gains_no_energy() {
     assert!(largest.windows(2).all(|pair| pair[1] < pair[0]));
     assert!(largest[6] < 1e-6 * potential);
 }
+
+/// Within a window the surface goes on with the velocity it had at the start: a sphere that moves along with the block,
+/// pressed in by δ, feels K δ in all of its ten sub-steps. On a surface that stood still it would have left after one.
+#[test]
+fn the_surface_moves_within_a_window() {
+    let solid = cube();
+    let speed = 1.0;
+    let (overlap, dt) = (1e-6, 2e-6);
+    let mut c = Coupled::new(
+        &solid,
+        dem::ModelInput {
+            materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
+            shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
+            bodies: vec![dem::BodyInput {
+                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap),
+                velocity: Vec3::new(0.0, 0.0, speed),
+                // So heavy that the force does not move it.
+                mass: Some(1e9),
+                ..Default::default()
+            }],
+            gravity: Vec3::zeros(),
+            surface_material: Some(0),
+            time_step: dem::TimeStep::Fixed(dt),
+            ..Default::default()
+        },
+        10,
+    );
+    c.state.solid.v.iter_mut().skip(2).step_by(3).for_each(|v| *v = speed);
+    c.step(&[]);
+    let force = -c.work.mean_contact_force(c.model.window())[2];
+    println!("mean force over K times overlap: {}", force / (STIFFNESS * overlap));
+    assert!((force / (STIFFNESS * overlap) - 1.0).abs() < 1e-6);
+}
