@@ -28,7 +28,6 @@
 //! assert!((solution.u[3 * top + 2] + 10e3 * 2.0 / 20e6).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets, as in [N]")]
 
 pub mod assembly;
 pub mod block;
