@@ -242,9 +242,10 @@ mod tests {
             let on = interpolate(&x, [0.8 * random.symmetric(), 0.8 * random.symmetric()]);
             let centre = [on[0], on[1], on[2] + 0.05];
             let cold = closest_point(&x, centre, [0.0, 0.0]);
-            let near = [cold.natural[0] + 1e-4, cold.natural[1] - 1e-4];
+            // A stone at 1 m/s moves so far in a step of 5 µs on a face with half-edges of 1 m.
+            let near = [cold.natural[0] + 5e-6, cold.natural[1] - 5e-6];
             let warm = closest_point(&x, centre, near);
-            assert!(warm.iterations <= 3, "{} iterations", warm.iterations);
+            assert!(warm.iterations <= 2, "{} iterations", warm.iterations);
             assert!(distance(warm.point, cold.point) < 1e-13);
         }
     }

@@ -105,7 +105,6 @@ impl Stage<'_> {
             seconds,
             grain_steps: done * grain_steps,
             solid_steps: done * solid_steps,
-            parts: Default::default(),
         });
         summary.settlement = settlement(recorder.cycles());
         let balance = recorder.balance();

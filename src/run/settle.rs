@@ -62,7 +62,6 @@ impl Stage<'_> {
             seconds,
             grain_steps: steps,
             solid_steps: 0,
-            parts: Default::default(),
         });
         if bodies.is_empty() {
             return Err(self.document.error("deposition.level", "no grain below it", "at least one").into());

@@ -72,7 +72,6 @@ pub fn run(
         seconds: begun.elapsed().as_secs_f64(),
         grain_steps: 0,
         solid_steps: 1,
-        parts: Default::default(),
     });
     Ok(())
 }

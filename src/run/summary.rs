@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use crate::write::WriteError;
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::step::Stability;
@@ -62,9 +61,6 @@ pub struct StageRecord {
     pub grain_steps: u64,
     /// Steps of the solid.
     pub solid_steps: u64,
-    /// Share of the wall time by part, where it was measured.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub parts: BTreeMap<String, f64>,
 }
 
 /// Sizes of the model.

@@ -174,7 +174,7 @@ fn energy_drift_with_sub_stepping_is_small() {
 }
 
 /// Negative test of the exchange order: a quiet packing on a soft block gains no energy. 36 spheres settle on a block
-/// of 1 MPa and are watched for 3.5 seconds: the largest kinetic energy of each half second is below that of the one
+/// of 1 MPa and are watched for ten seconds: the largest kinetic energy of each half second is below that of the one
 /// before, and at the end it is below 1e-6 of the potential energy at the start. W = 0.3 and C Δt/m = 0.5 here.
 #[test]
 fn a_quiet_packing_on_soft_ground_gains_no_energy() {
@@ -212,7 +212,7 @@ fn a_quiet_packing_on_soft_ground_gains_no_energy() {
     );
     let potential = 36.0 * c.model.grains.mass(0) * 9.81 * 0.08;
     let windows = (0.5 / c.model.window()) as usize;
-    let mut largest = [0.0_f64; 7];
+    let mut largest = [0.0_f64; 20];
     for slot in &mut largest {
         for _ in 0..windows {
             c.step(&[]);
@@ -225,7 +225,7 @@ fn a_quiet_packing_on_soft_ground_gains_no_energy() {
         largest.map(|k| k / potential)
     );
     assert!(largest.windows(2).all(|pair| pair[1] < pair[0]));
-    assert!(largest[6] < 1e-6 * potential);
+    assert!(largest[19] < 1e-6 * potential);
 }
 
 /// Within a window the surface goes on with the velocity it had at the start: a sphere that moves along with the block,

@@ -51,7 +51,11 @@ fn sphere_rests_with_its_weight_on_the_block_and_the_base() {
             fem::energy::reactions(&solid, &c.state.solid, &load).iter().skip(2).step_by(3).sum();
         let rest = fem::statics::solve(&solid, &load).unwrap();
         let deflection = deflection(&c.work.surface, &contacts[0], &rest.u);
-        let gap = c.state.grains.position(0).z - (RADIUS - exact / STIFFNESS + deflection);
+        // The force acts along the normal of the bent surface, which is not quite vertical where it is not level.
+        let centre = c.state.grains.position(0);
+        let arm = centre - Vec3::from(contacts[0].point);
+        let normal_force = force * arm.norm() / arm.z;
+        let gap = centre.z - ((RADIUS - normal_force / STIFFNESS) * arm.z / arm.norm() + deflection);
         println!(
             "{place:?}: contact/weight - 1 = {:.1e}, base/weight - 1 = {:.1e}, force and moment errors {:.1e}, {:.1e}, \
              gap error {:.1e} of the deflection {:.3e} m",
@@ -65,7 +69,7 @@ fn sphere_rests_with_its_weight_on_the_block_and_the_base() {
         assert!((force / exact - 1.0).abs() < 1e-6);
         assert!((reaction / exact - 1.0).abs() < 1e-6);
         assert!(audit.exchanges > 1000 && audit.force < 1e-12 && audit.moment < 1e-12, "{audit:?}");
-        // The contact is where the bent surface is nearest to the centre, R × slope²/2 higher: 1e-9 to 1e-7 m.
-        assert!((gap / deflection).abs() < 5e-3);
+        // Friction, which the held sphere can raise on a slope, is left out of the force balance: some 1e-11 m.
+        assert!((gap / deflection).abs() < 1e-5);
     }
 }

@@ -69,7 +69,7 @@ fn shared_edges_and_corners_give_the_same_loads_from_every_side() {
     let model = rough_block();
     let surface = top(&model);
     let force = [10.0, -5.0, -100.0];
-    let mut shared = 0;
+    let (mut shared, mut worst) = (0, 0.0_f64);
     for (a, fa) in surface.faces().iter().enumerate() {
         for side in 0..4 {
             for s in [-1.0, -0.6, 0.0, 0.37, 1.0] {
@@ -89,12 +89,12 @@ fn shared_edges_and_corners_give_the_same_loads_from_every_side() {
                     let (other, _) =
                         nodal_load(&model, &surface, &[at(&surface, b as u32, there.local, force)]);
                     let difference = load.iter().zip(&other).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-                    // The border's coordinate comes from Newton: its rounding is the rounding of the loads.
-                    assert!(difference < 1e-13 * 100.0, "faces {a}, {b}: {difference:e}");
+                    worst = worst.max(difference / 100.0);
                     shared += 1;
                 }
             }
         }
     }
-    assert!(shared > 100, "{shared} shared points");
+    println!("{shared} shared points, largest difference {worst:.1e} F");
+    assert!(shared > 100 && worst < 1e-14);
 }
