@@ -271,3 +271,16 @@ pub fn stability(window: f64, stiffness: f64, damping: f64, masses: impl Iterato
     let lightest = CORNER_SHARE * masses.fold(f64::INFINITY, f64::min);
     Stability { stiffness: window * (stiffness / lightest).sqrt(), damping: damping * window / lightest }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// W = Δt √(K/m) and D = C Δt/m on the corner node, 0.018 of the lighter element: m = 2 kg here.
+    #[test]
+    fn stability_takes_the_corner_of_the_lightest_element() {
+        let s = stability(1e-3, 1e6, 100.0, [500.0, 2.0 / 0.018].into_iter());
+        assert!((s.stiffness - 0.5_f64.sqrt()).abs() < 1e-12, "{s:?}");
+        assert!((s.damping - 0.05).abs() < 1e-12, "{s:?}");
+    }
+}

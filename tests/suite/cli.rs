@@ -243,3 +243,24 @@ fn mesh_convert_writes_vtk_and_refuses_other_endings() {
     assert_eq!(outcome.code, 2, "{outcome:?}");
     assert!(outcome.stderr.contains("expected a file ending in .vtu") && !folder.join("mesh.stl").exists());
 }
+
+/// The exchange of the main scene is stable as shipped; both numbers grow with the window. The sleeper, which never
+/// touches the solid, does not count.
+#[test]
+fn check_tells_the_stability_of_the_exchange() {
+    let scene = repository().join("inputs/track/cyclic/scene.toml");
+    let numbers = |substeps: &str| {
+        let set = format!("coupling.substeps={substeps}");
+        let outcome = trackbed(["check", scene.to_str().unwrap(), "--set", &set]).good();
+        let after = |mark: &str| -> f64 {
+            let rest = outcome.stdout.split_once(mark).unwrap().1;
+            rest.split([',', ' ']).next().unwrap().parse().unwrap()
+        };
+        [after("W = "), after("D = ")]
+    };
+    let (shipped, twice) = (numbers("20"), numbers("40"));
+    for k in 0..2 {
+        assert!(shipped[k] > 0.05 && shipped[k] < 1.0, "{shipped:?}");
+        assert!((twice[k] / shipped[k] - 2.0).abs() < 0.01, "{shipped:?} {twice:?}");
+    }
+}
