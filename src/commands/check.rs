@@ -39,9 +39,13 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
         }
     }
     if let Some(grains) = &job.grains {
-        let model =
+        // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
+        let alone =
             dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
-        line(format!("grains: {} bodies with {} spheres", model.body_count(), model.sphere_count()));
+        let sleeper = grains.sleeper.as_ref().map(|plan| grains.sleeper_body(plan, 0.0));
+        let bodies = grains.bodies.iter().cloned().chain(sleeper).collect();
+        let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
+        line(format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
         if let Some(d) = &grains.deposition {
             line(format!("  settling: at most {} s, {:.0} steps", d.max_time, d.max_time / model.dt()));
