@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::Path;
 
 use serde::Serialize;
-use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
+use trackbed_fem::mesh::{Constraint, Mesh};
 
 use crate::write::{WriteError, vtu};
 
@@ -88,15 +88,10 @@ impl Range {
     }
 }
 
-/// Coordinates of the nodes of an element. Shape `[20][3]` [m].
-fn element_coordinates(mesh: &Mesh, element: usize) -> [[f64; 3]; HEX20_NODES] {
-    mesh.connectivity[element].map(|node| mesh.coordinates[node as usize])
-}
-
 /// Numbers of the nodes that no element has, in node order.
 fn unused_nodes(mesh: &Mesh) -> Vec<u32> {
     let mut used = vec![false; mesh.node_count()];
-    for node in mesh.connectivity.iter().flatten() {
+    for node in mesh.connectivity.nodes() {
         used[*node as usize] = true;
     }
     used.iter().zip(&mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect()
@@ -105,7 +100,7 @@ fn unused_nodes(mesh: &Mesh) -> Vec<u32> {
 /// Counts, sizes and quality of a mesh.
 pub fn info(mesh: &Mesh, constraints: &[Constraint]) -> MeshInfo {
     let qualities: Vec<Quality> =
-        (0..mesh.element_count()).map(|e| element_quality(&element_coordinates(mesh, e))).collect();
+        (0..mesh.element_count()).map(|e| element_quality(mesh, e)).collect();
     let mut materials: BTreeMap<u32, MaterialInfo> = BTreeMap::new();
     for (id, quality) in mesh.materials.iter().zip(&qualities) {
         let material = materials.entry(*id).or_insert(MaterialInfo { id: *id, elements: 0, volume: 0.0 });

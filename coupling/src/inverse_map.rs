@@ -1,12 +1,13 @@
-//! Natural coordinates of a point inside a 20-node hexahedron, by Newton (S2 eq. 21 and its text; the
+//! Natural coordinates of a point inside an element, by Newton (S2 eq. 21 and its text; the
 //! iteration itself is not given there).
 //!
-//! Solves Σ Nᵢ(ξ) xᵢ = p from ξ = 0 or from a warm start. The stop is on the residual, 10⁻¹³ of the largest
+//! Solves Σ Nᵢ(ξ) xᵢ = p from a given start. The stop is on the residual, 10⁻¹³ of the largest
 //! coordinate difference of the element. A point of a *face* is found by [`crate::face::closest_point`]
 //! instead: the three-dimensional map has no solution worth the name for a point off the element.
 
 use nalgebra::{Matrix3, Vector3};
-use trackbed_fem::element::hex20;
+use trackbed_fem::ElementKind;
+use trackbed_fem::kinematics::ElementCoordinates;
 
 const TOLERANCE: f64 = 1e-13;
 const MAX_ITERATIONS: usize = 30;
@@ -20,9 +21,15 @@ pub struct Natural {
     pub iterations: usize,
 }
 
-/// Natural coordinates at which the element with node coordinates `x` [m], shape `[20][3]`, passes through
-/// `point` [m]. `None` when Newton does not converge or the Jacobian is singular on the way.
-pub fn hex20(x: &[[f64; 3]; 20], point: [f64; 3], start: [f64; 3]) -> Option<Natural> {
+/// Natural coordinates at which the element of this kind with node coordinates `x` [m] passes through `point` [m].
+/// `None` when Newton does not converge or the Jacobian is singular on the way.
+pub fn natural_point(
+    kind: ElementKind,
+    x: &ElementCoordinates,
+    point: [f64; 3],
+    start: [f64; 3],
+) -> Option<Natural> {
+    let x = &x[..kind.node_count()];
     let mut size = 0.0_f64;
     for d in 0..3 {
         let low = x.iter().map(|n| n[d]).fold(f64::INFINITY, f64::min);
@@ -31,17 +38,17 @@ pub fn hex20(x: &[[f64; 3]; 20], point: [f64; 3], start: [f64; 3]) -> Option<Nat
     }
     let mut xi = Vector3::from(start);
     for iterations in 0..=MAX_ITERATIONS {
-        let n = hex20::shape_functions(xi.into());
+        let n = kind.shape_functions(xi.into());
         let mut residual = -Vector3::from(point);
-        for i in 0..20 {
+        for i in 0..x.len() {
             residual += n[i] * Vector3::from(x[i]);
         }
         if residual.norm() < TOLERANCE * size {
             return Some(Natural { xi: xi.into(), iterations });
         }
-        let dn = hex20::gradients(xi.into());
+        let dn = kind.gradients(xi.into());
         let mut jacobian = Matrix3::zeros();
-        for i in 0..20 {
+        for i in 0..x.len() {
             jacobian += Vector3::from(x[i]) * nalgebra::RowVector3::from(dn[i]);
         }
         xi -= jacobian.try_inverse()? * residual;
@@ -73,13 +80,13 @@ mod tests {
                         point[d] += n * x[d];
                     }
                 }
-                let found = hex20(&x, point, [0.0; 3]).expect("no failure up to a = 0.25");
+                let found = natural_point(ElementKind::Hex20, &x, point, [0.0; 3]).expect("no failure up to a = 0.25");
                 let error = (0..3).map(|d| (found.xi[d] - xi[d]).abs()).fold(0.0, f64::max);
                 assert!(error < 1e-10, "a = {amplitude}: {error:e}");
                 assert!(found.iterations <= 7, "a = {amplitude}: {} iterations", found.iterations);
                 total += found.iterations;
                 // A warm start a little off, as from the step before.
-                let warm = hex20(&x, point, xi.map(|c| c + 1e-4)).unwrap();
+                let warm = natural_point(ElementKind::Hex20, &x, point, xi.map(|c| c + 1e-4)).unwrap();
                 assert!(warm.iterations <= 2, "warm start took {}", warm.iterations);
             }
             println!("a = {amplitude}: mean {} iterations", f64::from(total as u32) / 300.0);

@@ -7,6 +7,7 @@
 use crate::face::{self, Location};
 use trackbed_dem::search::bvh::Bvh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
+use trackbed_fem::FaceShape;
 use trackbed_fem::mesh::{Face, Mesh};
 
 /// Part of the solid's boundary that grains may touch.
@@ -47,12 +48,13 @@ impl SolidSurface {
         }
     }
 
-    /// The boundary faces of `mesh` whose outward area vector makes an angle of at most `max_angle` [rad] with
+    /// The 8-node boundary faces of `mesh` whose outward area vector makes an angle of at most `max_angle` [rad] with
     /// `direction`: the default choice of a surface for ballast is "upward, up to 75 degrees".
     pub fn facing(mesh: &Mesh, direction: [f64; 3], max_angle: f64) -> Vec<Face> {
         let length = face::dot(direction, direction).sqrt();
         mesh.boundary_faces()
             .into_iter()
+            .filter(|f| f.shape == FaceShape::Quad8)
             .filter(|f| {
                 let x = |k: usize| mesh.coordinates[f.nodes[k] as usize];
                 let diagonal = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];

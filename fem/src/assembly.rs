@@ -9,17 +9,15 @@
 //! thread, so the bits do not depend on the number of threads.
 
 use crate::element::quadrature::Quadrature;
-use crate::kinematics::{gradient_products, mass_matrix, stiffness_block};
+use crate::element::{ElementKind, mass_points, stiffness_points};
+use crate::kinematics::{gradient_products, mass_matrix, mean_gradients, stiffness_block};
 use crate::material::elastic::Elastic;
-use crate::mesh::{HEX20_NODES, Mesh};
+use crate::mesh::Mesh;
 use crate::supports::{CONSTRAINED, Supports};
 use rayon::prelude::*;
 
 /// Elements computed before they are added; fixed, so that nothing depends on the number of threads.
 const CHUNK: usize = 128;
-
-/// Node pairs of an element with a <= b.
-const PAIRS: usize = HEX20_NODES * (HEX20_NODES + 1) / 2;
 
 /// Stiffness and mass over all dofs: the upper half by node pairs.
 #[derive(Clone, Debug)]
@@ -78,10 +76,10 @@ impl Matrices {
         Matrices { row_start, column, stiffness: vec![[0.0; 9]; entries], mass: vec![0.0; entries] }
     }
 
-    fn add(&mut self, nodes: &[u32; HEX20_NODES], contribution: &Contribution) {
+    fn add(&mut self, nodes: &[u32], contribution: &Contribution) {
         let mut pair = contribution.iter();
-        for a in 0..HEX20_NODES {
-            for b in a..HEX20_NODES {
+        for a in 0..nodes.len() {
+            for b in a..nodes.len() {
                 let Some((block, mass)) = pair.next() else { return };
                 let (p, q) = (nodes[a].min(nodes[b]), nodes[a].max(nodes[b]));
                 let row = self.row_start[p as usize]..self.row_start[p as usize + 1];
@@ -231,14 +229,46 @@ fn add_scaled(sum: &mut [f64; 3], factor: f64, v: &[f64; 3]) {
 }
 
 fn contribution(mesh: &Mesh, element: usize, rule: Quadrature, material: &Elastic) -> Contribution {
-    let coordinates = mesh.element_coordinates(element);
+    match mesh.connectivity.kind(element) {
+        ElementKind::Hex20 => pairs::<20>(mesh, element, rule, material),
+        ElementKind::Wedge15 => pairs::<15>(mesh, element, rule, material),
+        ElementKind::Pyramid13 => pairs::<13>(mesh, element, rule, material),
+        ElementKind::Tet10 => pairs::<10>(mesh, element, rule, material),
+        ElementKind::Hex8 => pairs::<8>(mesh, element, rule, material),
+        ElementKind::Wedge6 => pairs::<6>(mesh, element, rule, material),
+        ElementKind::Pyramid5 => pairs::<5>(mesh, element, rule, material),
+        ElementKind::Tet4 => pairs::<4>(mesh, element, rule, material),
+    }
+}
+
+/// The pairs a <= b of an element of N nodes.
+fn pairs<const N: usize>(mesh: &Mesh, element: usize, rule: Quadrature, material: &Elastic) -> Contribution {
+    let (coordinates, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
+    let points = stiffness_points(kind, rule);
     let (lambda, mu) = material.lame();
-    let products = gradient_products(&coordinates, rule.points());
-    let mass = mass_matrix(&coordinates, material.density);
-    let mut pairs = Vec::with_capacity(PAIRS);
-    for a in 0..HEX20_NODES {
-        for b in a..HEX20_NODES {
-            pairs.push((stiffness_block(&products, lambda, mu, a, b), mass[a][b]));
+    let products = gradient_products::<N>(&coordinates, points);
+    let mass = mass_matrix::<N>(&coordinates, mass_points(kind), material.density);
+    let mut pairs = Vec::with_capacity(N * (N + 1) / 2);
+    if kind.is_linear() {
+        // B-bar: the deviatoric part at the points, the volume strain as its mean.
+        let (mean, volume) = mean_gradients(&coordinates, points);
+        let bulk = (lambda + 2.0 / 3.0 * mu) * volume;
+        for a in 0..N {
+            for b in a..N {
+                let mut block = stiffness_block(&products, -2.0 / 3.0 * mu, mu, a, b);
+                for i in 0..3 {
+                    for j in 0..3 {
+                        block[3 * i + j] += bulk * mean[a][i] * mean[b][j];
+                    }
+                }
+                pairs.push((block, mass[a][b]));
+            }
+        }
+    } else {
+        for a in 0..N {
+            for b in a..N {
+                pairs.push((stiffness_block(&products, lambda, mu, a, b), mass[a][b]));
+            }
         }
     }
     pairs

@@ -1,5 +1,6 @@
 //! A block of equal 20-node bricks: the simplest mesh, for templates, tests and measurements.
 
+use crate::element::ElementKind;
 use crate::element::hex20::NATURAL;
 use crate::mesh::{HEX20_NODES, Mesh};
 
@@ -34,7 +35,7 @@ impl Mesh {
                         let [a, b, c] = natural.map(|v| (v + 1.0) as usize);
                         *node = index[((2 * k + c) * ny + 2 * j + b) * nx + 2 * i + a];
                     }
-                    mesh.connectivity.push(nodes);
+                    mesh.connectivity.push(ElementKind::Hex20, &nodes);
                 }
             }
         }

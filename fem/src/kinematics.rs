@@ -1,4 +1,4 @@
-//! Small-strain kinematics of the isoparametric hex20, and its element matrices.
+//! Small-strain kinematics of the isoparametric elements, and their elastic matrices.
 //!
 //! With `x = sum N_a x_a`, `J = dx/dxi` and `g_a = dN_a/dx = J^-T dN_a/dxi`:
 //! strain `eps = sym(sum u_a ⊗ g_a)`; stiffness block `K_ab = ∫ lambda g_a⊗g_b + mu g_b⊗g_a + mu (g_a·g_b) 1 dV`;
@@ -8,12 +8,10 @@
 //! lambda and mu stand outside the integral, so the 400 products of gradients are summed over the points first and
 //! combined once: an order of magnitude less work than B^T D B. Limits: small strain and rotation.
 
-use crate::element::hex20;
-use crate::element::quadrature::{GAUSS3, VolumePoint};
-use crate::mesh::HEX20_NODES;
+use crate::element::{IntegrationPoint, MAX_NODES};
 
-/// Coordinates of the nodes of one element [m].
-pub type ElementCoordinates = [[f64; 3]; HEX20_NODES];
+/// A triple for each node of one element, such as its coordinates [m]; zero beyond the nodes of its kind.
+pub type ElementCoordinates = [[f64; 3]; MAX_NODES];
 
 /// Jacobian matrix `J[i][k] = dx_i/dxi_k` [m] and its determinant [m³], from the natural gradients.
 #[inline]
@@ -32,11 +30,13 @@ pub fn jacobian(coordinates: &ElementCoordinates, gradients: &ElementCoordinates
     (j, det)
 }
 
-/// Gradients of the shape functions in space [1/m] at the natural point `xi`, and det J [m³].
+/// Gradients of the shape functions in space [1/m] where their natural gradients are `natural`, and det J [m³].
 #[inline]
-pub fn spatial_gradients(coordinates: &ElementCoordinates, xi: [f64; 3]) -> (ElementCoordinates, f64) {
-    let natural = hex20::gradients(xi);
-    let (j, det) = jacobian(coordinates, &natural);
+pub fn spatial_gradients(
+    coordinates: &ElementCoordinates,
+    natural: &ElementCoordinates,
+) -> (ElementCoordinates, f64) {
+    let (j, det) = jacobian(coordinates, natural);
     let mut inverse = [[0.0; 3]; 3];
     for r in 0..3 {
         for c in 0..3 {
@@ -64,23 +64,47 @@ pub fn strain(g: &ElementCoordinates, u: &ElementCoordinates) -> [f64; 6] {
     e
 }
 
+/// Mean of the gradients over the volume of an element [1/m], and the volume [m³]: the gradients that make the volume
+/// strain of a linear element (B-bar, Hughes, Int. J. Numer. Methods Eng. 15 (1980) 1413-1418).
+pub fn mean_gradients(
+    coordinates: &ElementCoordinates,
+    points: &[IntegrationPoint],
+) -> (ElementCoordinates, f64) {
+    let (mut mean, mut volume) = (ElementCoordinates::default(), 0.0);
+    for point in points {
+        let (g, det) = spatial_gradients(coordinates, &point.gradients);
+        let part = point.weight * det;
+        volume += part;
+        for (mean, g) in mean.iter_mut().zip(&g) {
+            for k in 0..3 {
+                mean[k] += part * g[k];
+            }
+        }
+    }
+    mean.iter_mut().flatten().for_each(|m| *m /= volume);
+    (mean, volume)
+}
+
 /// Products of gradients summed over the points of a rule: `[xx, yy, zz, xy, yz, xz][a][b]`, where the pair ij stands
-/// for `∫ dN_a/dx_i dN_b/dx_j dV` [m].
-pub type GradientProducts = [[[f64; HEX20_NODES]; HEX20_NODES]; 6];
+/// for `∫ dN_a/dx_i dN_b/dx_j dV` [m]. N is the number of nodes.
+pub type GradientProducts<const N: usize> = [[[f64; N]; N]; 6];
 
 /// Sums the gradient products of one element over the points of a rule.
-pub fn gradient_products(coordinates: &ElementCoordinates, points: &[VolumePoint]) -> GradientProducts {
-    let mut sum = [[[0.0; HEX20_NODES]; HEX20_NODES]; 6];
-    for &(xi, weight) in points {
-        let (g, det) = spatial_gradients(coordinates, xi);
-        let volume = weight * det;
-        let (mut x, mut y, mut z) = ([0.0; HEX20_NODES], [0.0; HEX20_NODES], [0.0; HEX20_NODES]);
-        for b in 0..HEX20_NODES {
+pub fn gradient_products<const N: usize>(
+    coordinates: &ElementCoordinates,
+    points: &[IntegrationPoint],
+) -> GradientProducts<N> {
+    let mut sum = [[[0.0; N]; N]; 6];
+    for point in points {
+        let (g, det) = spatial_gradients(coordinates, &point.gradients);
+        let volume = point.weight * det;
+        let (mut x, mut y, mut z) = ([0.0; N], [0.0; N], [0.0; N]);
+        for b in 0..N {
             (x[b], y[b], z[b]) = (g[b][0], g[b][1], g[b][2]);
         }
-        for a in 0..HEX20_NODES {
+        for a in 0..N {
             let (wx, wy, wz) = (volume * x[a], volume * y[a], volume * z[a]);
-            for b in 0..HEX20_NODES {
+            for b in 0..N {
                 sum[0][a][b] += wx * x[b];
                 sum[1][a][b] += wy * y[b];
                 sum[2][a][b] += wz * z[b];
@@ -95,7 +119,13 @@ pub fn gradient_products(coordinates: &ElementCoordinates, points: &[VolumePoint
 
 /// Stiffness block of the node pair (a, b), row-major [N/m], from the gradient products.
 #[inline]
-pub fn stiffness_block(p: &GradientProducts, lambda: f64, mu: f64, a: usize, b: usize) -> [f64; 9] {
+pub fn stiffness_block<const N: usize>(
+    p: &GradientProducts<N>,
+    lambda: f64,
+    mu: f64,
+    a: usize,
+    b: usize,
+) -> [f64; 9] {
     // The product yx of (a, b) is the product xy of (b, a).
     let (xx, yy, zz) = (p[0][a][b], p[1][a][b], p[2][a][b]);
     let (xy, yz, xz) = (p[3][a][b], p[4][a][b], p[5][a][b]);
@@ -114,16 +144,19 @@ pub fn stiffness_block(p: &GradientProducts, lambda: f64, mu: f64, a: usize, b: 
     ]
 }
 
-/// Consistent mass of one element, per direction [kg], by the 3×3×3 rule. Shape `[20][20]`.
-pub fn mass_matrix(coordinates: &ElementCoordinates, density: f64) -> [[f64; HEX20_NODES]; HEX20_NODES] {
-    let mut m = [[0.0; HEX20_NODES]; HEX20_NODES];
-    for &(xi, weight) in &GAUSS3 {
-        let n = hex20::shape_functions(xi);
-        let (_, det) = jacobian(coordinates, &hex20::gradients(xi));
-        for a in 0..HEX20_NODES {
-            let factor = density * weight * det * n[a];
-            for b in 0..HEX20_NODES {
-                m[a][b] += factor * n[b];
+/// Consistent mass of one element, per direction [kg]. Shape `[nodes][nodes]`.
+pub fn mass_matrix<const N: usize>(
+    coordinates: &ElementCoordinates,
+    points: &[IntegrationPoint],
+    density: f64,
+) -> [[f64; N]; N] {
+    let mut m = [[0.0; N]; N];
+    for point in points {
+        let (_, det) = jacobian(coordinates, &point.gradients);
+        for a in 0..N {
+            let factor = density * point.weight * det * point.shape[a];
+            for b in 0..N {
+                m[a][b] += factor * point.shape[b];
             }
         }
     }
@@ -134,6 +167,7 @@ pub fn mass_matrix(coordinates: &ElementCoordinates, density: f64) -> [[f64; HEX
 mod tests {
     use super::*;
     use crate::element::quadrature::Quadrature;
+    use crate::element::{ElementKind, hex20, mass_points, stiffness_points};
     use crate::material::elastic::Elastic;
 
     fn distorted() -> ElementCoordinates {
@@ -152,19 +186,20 @@ mod tests {
         let (x, steel) = (distorted(), Elastic { young: 3.0, poisson: 0.27, density: 2.0 });
         let (lambda, mu) = steel.lame();
         for rule in [Quadrature::Gauss2, Quadrature::Gauss3] {
-            let products = gradient_products(&x, rule.points());
+            let points = stiffness_points(ElementKind::Hex20, rule);
+            let products = gradient_products::<20>(&x, points);
             for (a, i, b, j) in [(0, 0, 0, 0), (3, 1, 17, 2), (17, 2, 3, 1), (8, 0, 9, 1), (12, 2, 12, 0)] {
                 let unit = |node: usize, k: usize| {
-                    let mut u = [[0.0; 3]; HEX20_NODES];
+                    let mut u = [[0.0; 3]; MAX_NODES];
                     u[node][k] = 1.0;
                     u
                 };
                 let mut work = 0.0;
-                for &(xi, w) in rule.points() {
-                    let (g, det) = spatial_gradients(&x, xi);
+                for point in points {
+                    let (g, det) = spatial_gradients(&x, &point.gradients);
                     let stress = steel.stress(&strain(&g, &unit(a, i)));
                     let e = strain(&g, &unit(b, j));
-                    work += w * det * (0..6).map(|c| stress[c] * e[c]).sum::<f64>();
+                    work += point.weight * det * (0..6).map(|c| stress[c] * e[c]).sum::<f64>();
                 }
                 let block = stiffness_block(&products, lambda, mu, a, b);
                 assert!(
@@ -179,7 +214,7 @@ mod tests {
     #[test]
     fn mass_adds_up_to_density_times_volume() {
         let x = hex20::NATURAL.map(|x| [1.5 * x[0], 0.5 * x[1], 2.0 * x[2] + 0.3 * x[0]]);
-        let total: f64 = mass_matrix(&x, 2000.0).iter().flatten().sum();
+        let total: f64 = mass_matrix::<20>(&x, mass_points(ElementKind::Hex20), 2000.0).iter().flatten().sum();
         assert!((total / (2000.0 * 12.0) - 1.0).abs() < 1e-14);
     }
 }

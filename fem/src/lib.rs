@@ -1,4 +1,4 @@
-//! Implicit finite elements for ballasted track: 20-node hexahedra, statics and Newmark dynamics.
+//! Implicit finite elements for ballasted track: 20-node hexahedra and their companions, statics and Newmark dynamics.
 //!
 //! A [`model::Model`] is built once from a mesh, materials and supports and never changes; a [`state::State`] is what a
 //! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`window::WindowSolver`]) hold a
@@ -31,6 +31,7 @@
 
 pub mod assembly;
 pub mod block;
+pub mod connectivity;
 pub mod damping;
 pub mod element;
 pub mod energy;
@@ -48,7 +49,9 @@ pub mod supports;
 pub mod window;
 
 pub use damping::Rayleigh;
+pub use connectivity::Connectivity;
 pub use element::quadrature::Quadrature;
+pub use element::{ElementKind, FaceShape};
 pub use material::elastic::Elastic;
 pub use mesh::{Constraint, Face, Mesh};
 pub use model::{Model, ModelError, ModelInput};

@@ -1,12 +1,10 @@
 //! Loads as consistent nodal forces: `F_a = ∫ N_a t dA` on faces, `F_a = N_a(xi) F` at points.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 2.3. Faces take the 3×3 rule. All
+//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 2.3. Quadrilaterals take the 3×3 rule (2×2 for four nodes), triangles one of seven points (three for three nodes). All
 //! functions *add* to `load`, shape `[3 * nodes]` [N]. A uniform pressure on a flat rectangular face puts -1/12 of the
 //! force on each corner and +1/3 on each mid-side, so the sign of a nodal force says nothing about contact. Limits:
 //! small displacement; the load does not follow the turning face. Gravity is [`crate::model::Model::gravity_load`].
 
-use crate::element::quadrature::FACE3;
-use crate::element::{hex20, quad8};
 use crate::mesh::{Face, Mesh};
 
 /// Adds a uniform pressure [Pa] on a face; positive pressure compresses the body.
@@ -21,20 +19,21 @@ pub fn face_traction(mesh: &Mesh, face: &Face, traction: [f64; 3], load: &mut [f
 
 /// Adds a force [N] at the natural point `xi` of element `element` (index).
 pub fn point_load(mesh: &Mesh, element: usize, xi: [f64; 3], force: [f64; 3], load: &mut [f64]) {
-    add(&mesh.connectivity[element], &hex20::shape_functions(xi), force, load);
+    let kind = mesh.connectivity.kind(element);
+    add(&mesh.connectivity[element], &kind.shape_functions(xi), force, load);
 }
 
-/// Adds a force [N] at the natural point `xi` of a face; only the face's eight nodes get a share.
+/// Adds a force [N] at the natural point `xi` of a face; only the face's nodes get a share.
 pub fn face_point_load(face: &Face, xi: [f64; 2], force: [f64; 3], load: &mut [f64]) {
-    add(&face.nodes, &quad8::shape_functions(xi), force, load);
+    add(face.nodes(), &face.shape.shape_functions(xi), force, load);
 }
 
 fn integrate(mesh: &Mesh, face: &Face, load: &mut [f64], force: impl Fn([f64; 3], f64) -> [f64; 3]) {
-    for (xi, weight) in FACE3 {
-        let (_, area) = quad8::point_and_area(mesh, face, xi);
+    for &(xi, weight) in face.shape.points() {
+        let (_, area) = face.point_and_area(mesh, xi);
         let size = (area[0] * area[0] + area[1] * area[1] + area[2] * area[2]).sqrt();
         let force = force(area, size).map(|f| f * weight);
-        add(&face.nodes, &quad8::shape_functions(xi), force, load);
+        add(face.nodes(), &face.shape.shape_functions(xi), force, load);
     }
 }
 
@@ -49,6 +48,7 @@ fn add(nodes: &[u32], shape: &[f64], force: [f64; 3], load: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::hex20;
 
     /// V0.7.
     #[test]
@@ -96,7 +96,7 @@ mod tests {
         load.fill(0.0);
         let face = mesh.face(0, 2);
         face_point_load(&face, [0.4, -0.7], force, &mut load);
-        check(&load, quad8::point_and_area(&mesh, &face, [0.4, -0.7]).0);
+        check(&load, face.point_and_area(&mesh, [0.4, -0.7]).0);
 
         load.fill(0.0);
         face_traction(&Mesh::block([1, 1, 1], [2.0, 1.0, 1.0]), &face, force, &mut load);

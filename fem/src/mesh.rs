@@ -1,7 +1,7 @@
-//! The finite-element mesh: nodes, 20-node hexahedra, and the faces of its surface.
+//! The finite-element mesh: nodes, elements, and the faces of its surface.
 
-use crate::element::hex20;
-use crate::element::quadrature::GAUSS3;
+use crate::connectivity::Connectivity;
+use crate::element::{ElementKind, FaceShape, MAX_FACE_NODES, mass_points};
 use crate::kinematics::{ElementCoordinates, jacobian};
 
 /// Number of nodes of the serendipity hexahedron.
@@ -20,7 +20,8 @@ pub const FACE_NODES: [[usize; 8]; 6] = [
     [4, 5, 6, 7, 12, 13, 14, 15],
 ];
 
-/// A mesh of 20-node hexahedra in SOLID186 node order (I…P corners, Q…T bottom, U…X top, Y…B uprights).
+/// A mesh: 20-node hexahedra in SOLID186 node order (I…P corners, Q…T bottom, U…X top, Y…B uprights), and their
+/// companions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Node numbers as the user's files name them. Shape `[nodes]`.
@@ -31,8 +32,8 @@ pub struct Mesh {
     pub element_ids: Vec<u32>,
     /// Material number of each element as the user's files name it. Shape `[elements]`.
     pub materials: Vec<u32>,
-    /// Node indices (0-based, into `coordinates`) of each element. Shape `[elements][20]`.
-    pub connectivity: Vec<[u32; HEX20_NODES]>,
+    /// Kind and node indices (0-based, into `coordinates`) of each element.
+    pub connectivity: Connectivity,
 }
 
 /// One face of an element on the boundary of the mesh.
@@ -40,10 +41,53 @@ pub struct Mesh {
 pub struct Face {
     /// Index of the element (0-based).
     pub element: u32,
-    /// SOLID186 face number minus one, 0–5.
+    /// Number of the face in [`ElementKind::faces`]; for a hexahedron the SOLID186 face number minus one, 0–5.
     pub side: u8,
-    /// Node indices: corners counter-clockwise seen from outside, then mid-sides (see [`FACE_NODES`]).
-    pub nodes: [u32; 8],
+    /// Its shape.
+    pub shape: FaceShape,
+    /// Node indices: corners counter-clockwise seen from outside, then the mid-side node after each corner. Those
+    /// beyond the nodes of the shape repeat the first.
+    pub nodes: [u32; MAX_FACE_NODES],
+}
+
+impl Face {
+    /// The nodes of the face's shape.
+    #[inline]
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes[..self.shape.node_count()]
+    }
+
+    /// The corners.
+    #[inline]
+    pub fn corners(&self) -> &[u32] {
+        &self.nodes[..self.shape.corner_count()]
+    }
+
+    /// Point [m] of the face at the natural point `xi`, and the area vector dx/dxi × dx/deta [m²] there: its length
+    /// is the area per unit of natural area, its direction the outward normal of the body.
+    pub fn point_and_area(&self, mesh: &Mesh, xi: [f64; 2]) -> ([f64; 3], [f64; 3]) {
+        let (n, d) = (self.shape.shape_functions(xi), self.shape.gradients(xi));
+        let (mut point, mut tangent, mut cotangent) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for (a, &node) in self.nodes().iter().enumerate() {
+            let x = mesh.coordinates[node as usize];
+            for k in 0..3 {
+                point[k] += n[a] * x[k];
+                tangent[k] += d[a][0] * x[k];
+                cotangent[k] += d[a][1] * x[k];
+            }
+        }
+        let area = [
+            tangent[1] * cotangent[2] - tangent[2] * cotangent[1],
+            tangent[2] * cotangent[0] - tangent[0] * cotangent[2],
+            tangent[0] * cotangent[1] - tangent[1] * cotangent[0],
+        ];
+        (point, area)
+    }
+
+    /// The middle of the face [m].
+    pub fn centre(&self, mesh: &Mesh) -> [f64; 3] {
+        self.point_and_area(mesh, self.shape.natural_centre()).0
+    }
 }
 
 /// A constraint as a mesh file names it: node number, direction 0–2, prescribed displacement [m].
@@ -68,19 +112,25 @@ impl Mesh {
         self.connectivity.len()
     }
 
-    /// The face `side` (SOLID186 number minus one) of element `element` (index).
+    /// The face `side` (number in [`ElementKind::faces`]) of element `element` (index).
     pub fn face(&self, element: usize, side: usize) -> Face {
-        let nodes = FACE_NODES[side].map(|n| self.connectivity[element][n]);
-        Face { element: element as u32, side: side as u8, nodes }
+        let (local, nodes) = (self.connectivity.kind(element).faces()[side], &self.connectivity[element]);
+        let mut of_face = [nodes[local[0]]; MAX_FACE_NODES];
+        for (node, &l) in of_face.iter_mut().zip(local) {
+            *node = nodes[l];
+        }
+        let shape = FaceShape::with_nodes(local.len());
+        Face { element: element as u32, side: side as u8, shape, nodes: of_face }
     }
 
     /// The faces that belong to one element only, in element order then side order.
     pub fn boundary_faces(&self) -> Vec<Face> {
         let mut keyed: Vec<([u32; 4], Face)> = (0..self.element_count())
-            .flat_map(|e| (0..6).map(move |s| (e, s)))
+            .flat_map(|e| (0..self.connectivity.kind(e).faces().len()).map(move |s| (e, s)))
             .map(|(e, s)| {
                 let face = self.face(e, s);
-                let mut key = [face.nodes[0], face.nodes[1], face.nodes[2], face.nodes[3]];
+                let mut key = [u32::MAX; 4];
+                key[..face.corners().len()].copy_from_slice(face.corners());
                 key.sort_unstable();
                 (key, face)
             })
@@ -94,29 +144,50 @@ impl Mesh {
         faces.sort_unstable_by_key(|f| (f.element, f.side));
         faces
     }
+
+    /// Adds an element.
+    ///
+    /// # Panics
+    /// When the number of nodes is not that of the kind.
+    pub fn push_element(&mut self, id: u32, material: u32, kind: ElementKind, nodes: &[u32]) {
+        self.element_ids.push(id);
+        self.materials.push(material);
+        self.connectivity.push(kind, nodes);
+    }
 }
 
 impl Mesh {
-    /// Coordinates of the nodes of element `element` (index) [m].
+    /// Coordinates of the nodes of element `element` (index) [m]; zero beyond the nodes of its kind.
+    #[inline]
     pub fn element_coordinates(&self, element: usize) -> ElementCoordinates {
-        self.connectivity[element].map(|n| self.coordinates[n as usize])
+        let mut x = ElementCoordinates::default();
+        for (x, &n) in x.iter_mut().zip(&self.connectivity[element]) {
+            *x = self.coordinates[n as usize];
+        }
+        x
     }
 
-    /// Volume of element `element` [m³], by the 3×3×3 rule.
+    /// Volume of element `element` [m³], by the rule of the mass.
     pub fn element_volume(&self, element: usize) -> f64 {
         let x = self.element_coordinates(element);
-        GAUSS3.iter().map(|(xi, w)| w * jacobian(&x, &hex20::gradients(*xi)).1).sum()
+        mass_points(self.connectivity.kind(element))
+            .iter()
+            .map(|p| p.weight * jacobian(&x, &p.gradients).1)
+            .sum()
     }
 
-    /// Quality of element `element`: smallest over largest determinant of the Jacobian at the nodes and the 27 Gauss
-    /// points. 1 is a parallelepiped; 0 or below is degenerate or inverted somewhere.
+    /// Quality of element `element`: smallest over largest determinant of the Jacobian at the nodes and the points of the
+    /// mass. 1 is a parallelepiped; 0 or below is degenerate or inverted somewhere. The apex of a pyramid, where the
+    /// map is singular by nature, is left out.
     pub fn jacobian_ratio(&self, element: usize) -> f64 {
-        let x = self.element_coordinates(element);
-        let points = GAUSS3.iter().map(|p| p.0).chain(hex20::NATURAL);
-        let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), xi| {
-            let det = jacobian(&x, &hex20::gradients(xi)).1;
-            (low.min(det), high.max(det))
-        });
+        let (x, kind) = (self.element_coordinates(element), self.connectivity.kind(element));
+        let apex = |n: usize| kind.linear() == ElementKind::Pyramid5 && n == 4;
+        let nodes = kind.natural().iter().enumerate().filter(|(n, _)| !apex(*n));
+        let at_nodes = nodes.map(|(_, xi)| jacobian(&x, &kind.gradients(*xi)).1);
+        let at_points = mass_points(kind).iter().map(|p| jacobian(&x, &p.gradients).1);
+        let (low, high) = at_nodes
+            .chain(at_points)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), det| (low.min(det), high.max(det)));
         low / high.max(-low)
     }
 
@@ -131,8 +202,6 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::quad8::point_and_area;
-    use crate::element::quadrature::FACE3;
 
     /// A curved, skewed two-element body: a block whose every node is moved smoothly.
     fn bent() -> Mesh {
@@ -149,8 +218,8 @@ mod tests {
         let mesh = bent();
         let (mut sum, mut enclosed, mut area) = ([0.0; 3], 0.0, 0.0);
         for face in mesh.boundary_faces() {
-            for (xi, w) in FACE3 {
-                let (x, a) = point_and_area(&mesh, &face, xi);
+            for &(xi, w) in face.shape.points() {
+                let (x, a) = face.point_and_area(&mesh, xi);
                 for k in 0..3 {
                     sum[k] += w * a[k];
                     enclosed += w * a[k] * x[k] / 3.0;
@@ -169,7 +238,7 @@ mod tests {
         let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
         let outward = [[0, 0, -1], [0, -1, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, 1]];
         for (side, normal) in outward.into_iter().enumerate() {
-            let (_, area) = point_and_area(&mesh, &mesh.face(0, side), [0.3, -0.2]);
+            let (_, area) = mesh.face(0, side).point_and_area(&mesh, [0.3, -0.2]);
             for k in 0..3 {
                 assert!((area[k] - f64::from(normal[k]) / 4.0).abs() < 1e-15, "side {side}: {area:?}");
             }

@@ -2,11 +2,11 @@
 
 use crate::assembly::Matrices;
 use crate::damping::Rayleigh;
-use crate::element::hex20;
-use crate::element::quadrature::{GAUSS3, Quadrature};
+use crate::element::quadrature::Quadrature;
+use crate::element::{mass_points, stiffness_points};
 use crate::kinematics::jacobian;
 use crate::material::elastic::Elastic;
-use crate::mesh::{Constraint, HEX20_NODES, Mesh};
+use crate::mesh::{Constraint, Mesh};
 use crate::solver::SolveError;
 use crate::solver::cholesky::Analysis;
 use crate::supports::Supports;
@@ -43,8 +43,8 @@ pub enum ModelError {
     Coordinate { node: u32 },
     #[error("element {element} refers to node index {index}, but the mesh has {nodes} nodes")]
     NodeRange { element: u32, index: u32, nodes: usize },
-    #[error("element {element} uses node {node} more than once; a hexahedron needs 20 different nodes")]
-    RepeatedNode { element: u32, node: u32 },
+    #[error("element {element} uses node {node} more than once; a {kind} needs {nodes} different nodes")]
+    RepeatedNode { element: u32, node: u32, kind: &'static str, nodes: usize },
     #[error("node {node} belongs to no element")]
     UnusedNode { node: u32 },
     #[error("element {element} has material {material}, which is not defined")]
@@ -232,7 +232,14 @@ fn check_mesh(mesh: &Mesh) -> Result<(), ModelError> {
             };
             *used = true;
             if connectivity[..a].contains(&n) {
-                return Err(ModelError::RepeatedNode { element, node: mesh.node_ids[n as usize] });
+                let kind = mesh.connectivity.kind(e);
+                let node = mesh.node_ids[n as usize];
+                return Err(ModelError::RepeatedNode {
+                    element,
+                    node,
+                    kind: kind.name(),
+                    nodes: kind.node_count(),
+                });
             }
         }
     }
@@ -258,19 +265,14 @@ fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Elastic>) -> Result<()
 
 /// Every Gauss point of the mass and of the stiffness must have a positive volume.
 fn check_shape(mesh: &Mesh, rule: Quadrature) -> Result<(), ModelError> {
-    let mut points: Vec<([f64; 3], [[f64; 3]; HEX20_NODES])> = Vec::new();
-    points.extend(GAUSS3.iter().map(|p| (p.0, hex20::gradients(p.0))));
-    if rule != Quadrature::Gauss3 {
-        points.extend(rule.points().iter().map(|p| (p.0, hex20::gradients(p.0))));
-    }
     for e in 0..mesh.element_count() {
-        let x = mesh.element_coordinates(e);
-        for (point, gradients) in &points {
-            let determinant = jacobian(&x, gradients).1;
+        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
+        for point in mass_points(kind).iter().chain(stiffness_points(kind, rule)) {
+            let determinant = jacobian(&x, &point.gradients).1;
             if determinant.is_nan() || determinant <= 0.0 {
                 return Err(ModelError::Inverted {
                     element: mesh.element_ids[e],
-                    point: *point,
+                    point: point.xi,
                     determinant,
                 });
             }

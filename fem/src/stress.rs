@@ -7,49 +7,98 @@
 //! outweigh its neighbour. Limits: at a material border the true stress jumps in some components; the mean hides that, and
 //! [`at_natural`] on either side shows it.
 
-use crate::element::hex20;
-use crate::element::quadrature::{GAUSS2, LINE2};
-use crate::kinematics::{ElementCoordinates, spatial_gradients, strain};
-use crate::mesh::HEX20_NODES;
+use crate::element::quadrature::{GAUSS2, LINE2, Quadrature};
+use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
+use crate::kinematics::{ElementCoordinates, mean_gradients, spatial_gradients, strain};
 use crate::model::Model;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Stress at the points of the model's rule in element `element` (index), in the order of the rule.
 pub fn gauss(model: &Model, u: &[f64], element: usize) -> Vec<[f64; 6]> {
-    model.quadrature().points().iter().map(|(xi, _)| at_natural(model, u, element, *xi)).collect()
+    let points = stiffness_points(model.mesh().connectivity.kind(element), model.quadrature());
+    points.iter().map(|p| at_natural(model, u, element, p.xi)).collect()
 }
 
 /// Stress at the natural point `xi` of element `element` (index).
 pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f64; 6] {
     let mesh = model.mesh();
-    let moved: ElementCoordinates =
-        mesh.connectivity[element].map(|n| std::array::from_fn(|k| u[3 * n as usize + k]));
-    let (gradients, _) = spatial_gradients(&mesh.element_coordinates(element), xi);
-    model.material(element).stress(&strain(&gradients, &moved))
+    let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
+    let moved = element_values(&mesh.connectivity[element], u);
+    let (gradients, _) = spatial_gradients(&x, &kind.gradients(xi));
+    let mut strain = strain(&gradients, &moved);
+    if kind.is_linear() {
+        let (mean, _) = mean_gradients(&x, stiffness_points(kind, model.quadrature()));
+        let mut correction = 0.0;
+        for a in 0..kind.node_count() {
+            for k in 0..3 {
+                correction += (mean[a][k] - gradients[a][k]) * moved[a][k] / 3.0;
+            }
+        }
+        strain[..3].iter_mut().for_each(|e| *e += correction);
+    }
+    model.material(element).stress(&strain)
+}
+
+/// The triples of an element's nodes out of a nodal vector of shape `[3 * nodes]`; zero beyond them.
+#[inline]
+pub(crate) fn element_values(nodes: &[u32], nodal: &[f64]) -> ElementCoordinates {
+    let mut values = ElementCoordinates::default();
+    for (value, &n) in values.iter_mut().zip(nodes) {
+        let n = 3 * n as usize;
+        *value = [nodal[n], nodal[n + 1], nodal[n + 2]];
+    }
+    values
+}
+
+/// Natural points whose stresses are extrapolated to the nodes of a kind of element.
+pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
+    match kind {
+        ElementKind::Hex20 | ElementKind::Hex8 => GAUSS2.map(|p| p.0).to_vec(),
+        ElementKind::Wedge15 | ElementKind::Wedge6 => {
+            mass_points(ElementKind::Wedge6).iter().map(|p| p.xi).collect()
+        }
+        ElementKind::Tet10 => {
+            stiffness_points(kind, Quadrature::Gauss2).iter().map(|p| p.xi).collect()
+        }
+        // One value: at the apex of a pyramid the stress of the element has no limit.
+        ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => vec![kind.natural_centre()],
+    }
 }
 
 /// Stress at every node, extrapolated and averaged as told above. Shape `[nodes][6]`.
 pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
+    nodal_mean(model, |e| {
+        let kind = model.mesh().connectivity.kind(e);
+        let stresses: Vec<_> =
+            sampling_points(kind).into_iter().map(|xi| at_natural(model, u, e, xi)).collect();
+        extrapolate(kind, &stresses)
+    })
+}
+
+/// Averages nodal values of elements: first over the elements of each material, then over the materials.
+/// `of_element(e)` gives the values at the nodes of element e. Shape `[nodes][C]`.
+pub(crate) fn nodal_mean<const C: usize>(
+    model: &Model,
+    of_element: impl Fn(usize) -> [[f64; C]; MAX_NODES] + Sync,
+) -> Vec<[f64; C]> {
     let mesh = model.mesh();
-    let elements: Vec<[[f64; 6]; HEX20_NODES]> = (0..mesh.element_count())
-        .into_par_iter()
-        .map(|e| extrapolate(&GAUSS2.map(|(xi, _)| at_natural(model, u, e, xi))))
-        .collect();
+    let elements: Vec<[[f64; C]; MAX_NODES]> =
+        (0..mesh.element_count()).into_par_iter().map(of_element).collect();
     // Sum and count per node and material, in element order.
-    let mut sums: Vec<BTreeMap<u32, ([f64; 6], u32)>> = vec![BTreeMap::new(); mesh.node_count()];
-    for (e, stresses) in elements.iter().enumerate() {
-        for (&node, stress) in mesh.connectivity[e].iter().zip(stresses) {
-            let (sum, count) = sums[node as usize].entry(mesh.materials[e]).or_default();
-            sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += s);
+    let mut sums: Vec<BTreeMap<u32, ([f64; C], u32)>> = vec![BTreeMap::new(); mesh.node_count()];
+    for (e, values) in elements.iter().enumerate() {
+        for (&node, value) in mesh.connectivity[e].iter().zip(values) {
+            let (sum, count) = sums[node as usize].entry(mesh.materials[e]).or_insert(([0.0; C], 0));
+            sum.iter_mut().zip(value).for_each(|(sum, s)| *sum += s);
             *count += 1;
         }
     }
     sums.iter()
         .map(|by_material| {
-            let mut mean = [0.0; 6];
+            let mut mean = [0.0; C];
             for (sum, count) in by_material.values() {
-                for k in 0..6 {
+                for k in 0..C {
                     mean[k] += sum[k] / (f64::from(*count) * by_material.len() as f64);
                 }
             }
@@ -64,18 +113,45 @@ pub fn von_mises(s: &[f64; 6]) -> f64 {
     (0.5 * normal + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt()
 }
 
-/// Values at the 2×2×2 points → values at the nodes, by the trilinear polynomial through the points.
-fn extrapolate(points: &[[f64; 6]; 8]) -> [[f64; 6]; HEX20_NODES] {
-    hex20::NATURAL.map(|node| {
-        let mut stress = [0.0; 6];
-        for (value, (xi, _)) in points.iter().zip(&GAUSS2) {
-            let weight: f64 = (0..3).map(|k| 0.5 * (1.0 + node[k] * xi[k] / LINE2[1].0.powi(2))).product();
-            for c in 0..6 {
-                stress[c] += weight * value[c];
+/// Values at the sampling points of a kind → values at its nodes: by the trilinear polynomial through the points of a
+/// hexahedron, the linear one (times linear along the axis of a wedge) through those of the others.
+pub(crate) fn extrapolate<const C: usize>(kind: ElementKind, points: &[[f64; C]]) -> [[f64; C]; MAX_NODES] {
+    let mut nodes = [[0.0; C]; MAX_NODES];
+    for (value, node) in nodes.iter_mut().zip(kind.natural()) {
+        for (i, point) in points.iter().enumerate() {
+            let weight = extrapolation_weight(kind, i, *node);
+            for c in 0..C {
+                value[c] += weight * point[c];
             }
         }
-        stress
-    })
+    }
+    nodes
+}
+
+/// Weight of sampling point `i` at the natural point `x`.
+fn extrapolation_weight(kind: ElementKind, i: usize, x: [f64; 3]) -> f64 {
+    match kind {
+        ElementKind::Hex20 | ElementKind::Hex8 => {
+            let xi = GAUSS2[i].0;
+            (0..3).map(|k| 0.5 * (1.0 + x[k] * xi[k] / LINE2[1].0.powi(2))).product()
+        }
+        ElementKind::Wedge15 | ElementKind::Wedge6 => {
+            // The three points of the triangle are 1/6, 1/6, 2/3 in its area coordinates.
+            let p = mass_points(ElementKind::Wedge6)[i].xi;
+            let area = |at: [f64; 3]| [1.0 - at[0] - at[1], at[0], at[1]];
+            let corner = (0..3).max_by(|a, b| area(p)[*a].total_cmp(&area(p)[*b])).unwrap_or(0);
+            (2.0 * area(x)[corner] - 1.0 / 3.0) * 0.5 * (1.0 + x[2] * p[2] / LINE2[1].0.powi(2))
+        }
+        ElementKind::Tet10 => {
+            // The four points are (5 - √5)/20 and once (5 + 3√5)/20 in volume coordinates.
+            let p = stiffness_points(ElementKind::Tet10, Quadrature::Gauss2)[i].xi;
+            let volume = |at: [f64; 3]| [1.0 - at[0] - at[1] - at[2], at[0], at[1], at[2]];
+            let corner = (0..4).max_by(|a, b| volume(p)[*a].total_cmp(&volume(p)[*b])).unwrap_or(0);
+            let (far, near) = ((5.0 - 5.0_f64.sqrt()) / 20.0, (5.0 + 3.0 * 5.0_f64.sqrt()) / 20.0);
+            (volume(x)[corner] - far) / (near - far)
+        }
+        ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => 1.0,
+    }
 }
 
 #[cfg(test)]
@@ -83,11 +159,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn extrapolation_is_exact_for_trilinear_fields() {
-        let field = |x: [f64; 3]| 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2];
-        let points = GAUSS2.map(|(xi, _)| [field(xi); 6]);
-        for (node, s) in hex20::NATURAL.iter().zip(extrapolate(&points)) {
-            assert!((s[0] - field(*node)).abs() < 1e-13 && (s[5] - field(*node)).abs() < 1e-13);
+    fn extrapolation_is_exact_for_the_polynomials_of_each_kind() {
+        for kind in ElementKind::ALL {
+            let field = |x: [f64; 3]| match kind.linear() {
+                ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
+                ElementKind::Wedge6 => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
+                ElementKind::Tet4 if kind == ElementKind::Tet10 => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
+                _ => 2.0,
+            };
+            let points: Vec<_> = sampling_points(kind).into_iter().map(|xi| [field(xi); 6]).collect();
+            for (node, s) in kind.natural().iter().zip(extrapolate(kind, &points)) {
+                let name = kind.name();
+                assert!((s[0] - field(*node)).abs() < 1e-13 && (s[5] - field(*node)).abs() < 1e-13, "{name}");
+            }
         }
     }
 

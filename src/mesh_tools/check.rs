@@ -3,9 +3,11 @@
 use std::collections::HashMap;
 
 use serde::Serialize;
+use trackbed_fem::ElementKind;
+use trackbed_fem::element::mass_points;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-use super::{element_coordinates, element_quality, unused_nodes};
+use super::{element_quality, unused_nodes};
 
 /// Nodes nearer than this times the size of the mesh are one point that was meshed twice.
 const COINCIDENT: f64 = 1e-9;
@@ -95,10 +97,11 @@ pub fn check(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
 }
 
 fn inverted(mesh: &Mesh, element: usize) -> Option<Problem> {
-    let quality = element_quality(&element_coordinates(mesh, element));
-    let place = match quality.worst_point.checked_sub(8) {
-        None => format!("corner {}", CORNERS[quality.worst_point]),
-        Some(point) => format!("Gauss point {} of 27", point + 1),
+    let (quality, kind) = (element_quality(mesh, element), mesh.connectivity.kind(element));
+    let place = match quality.worst_point.checked_sub(kind.corner_count()) {
+        None if kind.linear() == ElementKind::Hex8 => format!("corner {}", CORNERS[quality.worst_point]),
+        None => format!("corner {}", quality.worst_point + 1),
+        Some(point) => format!("Gauss point {} of {}", point + 1, mass_points(kind).len()),
     };
     let (element, determinant) = (mesh.element_ids[element], quality.determinant);
     (determinant <= 0.0).then_some(Problem::Inverted { element, place, determinant })
@@ -143,7 +146,7 @@ fn coincident(mesh: &Mesh) -> Vec<Problem> {
 /// Parts of the mesh by union of the nodes of each element, and which of them nothing holds.
 fn parts(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
     let mut parent: Vec<usize> = (0..mesh.node_count()).collect();
-    for element in &mesh.connectivity {
+    for element in mesh.connectivity.iter() {
         let first = root(&mut parent, element[0] as usize);
         for node in &element[1..] {
             let other = root(&mut parent, *node as usize);

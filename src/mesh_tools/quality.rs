@@ -1,20 +1,18 @@
-//! Shape of one 20-node hexahedron.
+//! Shape of one element.
 //!
-//! Scaled Jacobian: the least of det J / (|g1| |g2| |g3|) over the corners and the 27 Gauss points, g the
-//! columns of J = dx/dξ (Knupp 2000 takes the corners only, which misses curved edges). It is 1 for a brick
-//! and not positive for an element that is turned inside out at one of these points.
+//! Scaled Jacobian: the least of det J / (|g1| |g2| |g3|) over the corners and the Gauss points of the mass, g the
+//! columns of J = dx/dξ (Knupp 2000 takes the corners only, which misses curved edges), so that it is 1 for a
+//! brick and for the natural tetrahedron. It is not positive for an element that is turned inside out at one of these points. The apex of a pyramid, where the map is
+//! singular by nature, is left out.
 //!
-//! Aspect ratio: longest over shortest of the twelve edges, measured from corner to corner.
+//! Aspect ratio: longest over shortest of the edges, measured from corner to corner.
 //!
-//! Volume: 3x3x3 Gauss points, exact, since det J has degree 5 at most in each natural coordinate.
+//! Volume: by the rule of the mass; for hexahedra 3x3x3 Gauss points, exact, since det J has degree 5 at most in each
+//! natural coordinate.
 
-use trackbed_fem::element::hex20;
-use trackbed_fem::element::quadrature::GAUSS3;
-use trackbed_fem::mesh::HEX20_NODES;
-
-/// Corners of the twelve edges, in the order of the mid-side nodes 9–20.
-const EDGES: [[usize; 2]; 12] =
-    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+use trackbed_fem::Mesh;
+use trackbed_fem::element::{ElementKind, mass_points};
+use trackbed_fem::kinematics::ElementCoordinates;
 
 /// Shape and size of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,22 +25,32 @@ pub struct Quality {
     pub volume: f64,
     /// Least determinant of the Jacobian matrix [m³].
     pub determinant: f64,
-    /// Where that is: 0–7 the corner I…P, 8–34 the Gauss point less 8.
+    /// Where that is: below the number of corners that corner, else the Gauss point plus that number.
     pub worst_point: usize,
 }
 
-/// Shape and size of the element with these nodes, SOLID186 order. Shape `[20][3]` [m].
-pub fn element_quality(x: &[[f64; 3]; HEX20_NODES]) -> Quality {
-    let corners = hex20::NATURAL[..8].iter().map(|xi| (*xi, 0.0));
+/// Shape and size of element `element` (index) of a mesh.
+pub fn element_quality(mesh: &Mesh, element: usize) -> Quality {
+    let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
+    quality(kind, &x)
+}
+
+fn quality(kind: ElementKind, x: &ElementCoordinates) -> Quality {
+    let apex = |corner: usize| kind.linear() == ElementKind::Pyramid5 && corner == 4;
+    let corners = kind.natural()[..kind.corner_count()]
+        .iter()
+        .enumerate()
+        .map(|(corner, xi)| (kind.gradients(if apex(corner) { kind.natural_centre() } else { *xi }), 0.0));
+    let points = mass_points(kind).iter().map(|p| (p.gradients, p.weight));
     let mut quality = Quality {
         scaled_jacobian: f64::INFINITY,
-        aspect_ratio: aspect_ratio(x),
+        aspect_ratio: aspect_ratio(kind, x),
         volume: 0.0,
         determinant: f64::INFINITY,
         worst_point: 0,
     };
-    for (point, (xi, weight)) in corners.chain(GAUSS3).enumerate() {
-        let columns = columns(x, xi);
+    for (point, (gradients, weight)) in corners.chain(points).enumerate() {
+        let columns = columns(x, &gradients);
         let determinant = determinant(&columns);
         let size: f64 = columns.iter().map(norm).product();
         let scaled = if size > 0.0 { determinant / size } else { 0.0 };
@@ -56,9 +64,9 @@ pub fn element_quality(x: &[[f64; 3]; HEX20_NODES]) -> Quality {
 }
 
 /// dx/dξ for each natural coordinate ξ.
-fn columns(x: &[[f64; 3]; HEX20_NODES], xi: [f64; 3]) -> [[f64; 3]; 3] {
+fn columns(x: &ElementCoordinates, gradients: &ElementCoordinates) -> [[f64; 3]; 3] {
     let mut columns = [[0.0; 3]; 3];
-    for (gradient, point) in hex20::gradients(xi).iter().zip(x) {
+    for (gradient, point) in gradients.iter().zip(x) {
         for natural in 0..3 {
             for axis in 0..3 {
                 columns[natural][axis] += gradient[natural] * point[axis];
@@ -79,20 +87,22 @@ fn norm(v: &[f64; 3]) -> f64 {
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
-fn aspect_ratio(x: &[[f64; 3]; HEX20_NODES]) -> f64 {
+fn aspect_ratio(kind: ElementKind, x: &ElementCoordinates) -> f64 {
     let length = |[a, b]: [usize; 2]| norm(&[0, 1, 2].map(|axis| x[b][axis] - x[a][axis]));
-    let (least, greatest) = EDGES
-        .map(length)
+    let (least, greatest) = kind
+        .edges()
         .iter()
-        .fold((f64::INFINITY, 0.0_f64), |(l, g), length| (l.min(*length), g.max(*length)));
+        .map(|edge| length(*edge))
+        .fold((f64::INFINITY, 0.0_f64), |(l, g), length| (l.min(length), g.max(length)));
     if least > 0.0 { greatest / least } else { f64::INFINITY }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trackbed_fem::element::hex20;
 
-    fn brick(size: [f64; 3]) -> [[f64; 3]; HEX20_NODES] {
+    fn brick(size: [f64; 3]) -> ElementCoordinates {
         hex20::NATURAL.map(|xi| [0, 1, 2].map(|axis| 0.5 * size[axis] * (1.0 + hex20_axis(xi, axis))))
     }
 
@@ -107,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_brick() {
-        let quality = element_quality(&brick([2.0, 3.0, 0.5]));
+        let quality = quality(ElementKind::Hex20, &brick([2.0, 3.0, 0.5]));
         assert!((quality.volume - 3.0).abs() < 1e-13);
         assert!((quality.scaled_jacobian - 1.0).abs() < 1e-13);
         assert!((quality.aspect_ratio - 6.0).abs() < 1e-13);
@@ -117,7 +127,7 @@ mod tests {
     #[test]
     fn a_sheared_brick_has_the_sine_of_its_angle() {
         let sheared = brick([1.0; 3]).map(|[x, y, z]| [x + y, y, z]);
-        let quality = element_quality(&sheared);
+        let quality = quality(ElementKind::Hex20, &sheared);
         assert!((quality.scaled_jacobian - 0.5_f64.sqrt()).abs() < 1e-13);
         assert!((quality.volume - 1.0).abs() < 1e-13);
     }
@@ -128,12 +138,12 @@ mod tests {
         // the brick (top and bottom rise alike); raising the top ones alone adds 2/3 h.
         let h = 0.15;
         let mut x = brick([1.0; 3]);
-        for (point, [a, b]) in x[8..].iter_mut().zip(EDGES) {
-            if matches!([a, b], [4, 5] | [6, 7]) {
+        for (point, [a, b]) in x[8..].iter_mut().zip(ElementKind::Hex20.edges()) {
+            if matches!([*a, *b], [4, 5] | [6, 7]) {
                 point[2] += h;
             }
         }
-        assert!((element_quality(&x).volume - (1.0 + 2.0 / 3.0 * h)).abs() < 1e-13);
+        assert!((quality(ElementKind::Hex20, &x).volume - (1.0 + 2.0 / 3.0 * h)).abs() < 1e-13);
     }
 
     #[test]
@@ -141,11 +151,11 @@ mod tests {
         // A mid-side node beyond a quarter of the edge from its corner: det J turns negative at that corner.
         let mut x = brick([1.0; 3]);
         x[8][0] = 0.2;
-        let quality = element_quality(&x);
+        let quality = quality(ElementKind::Hex20, &x);
         assert!(quality.scaled_jacobian < 0.0 && quality.worst_point == 0, "{quality:?}");
         x[8][0] = 0.3;
-        assert!(element_quality(&x).scaled_jacobian > 0.0);
+        assert!(quality(ElementKind::Hex20, &x).scaled_jacobian > 0.0);
         let mirrored = brick([1.0; 3]).map(|[x, y, z]| [x, y, -z]);
-        assert!(element_quality(&mirrored).volume < 0.0);
+        assert!(quality(ElementKind::Hex20, &mirrored).volume < 0.0);
     }
 }

@@ -339,8 +339,7 @@ fn loaded_faces(
                 .boundary_faces()
                 .into_iter()
                 .filter(|f| {
-                    let x = f.nodes.map(|n| mesh.coordinates[n as usize]);
-                    let centre = face::interpolate(&x, [0.0, 0.0]);
+                    let centre = f.centre(mesh);
                     (0..3).all(|d| low[d] <= centre[d] && centre[d] <= high[d])
                 })
                 .collect();
@@ -364,20 +363,21 @@ fn point_load(
 ) -> Result<(), SceneError> {
     // A little slack lets a point on the surface belong to the solid in spite of rounding.
     const SLACK: f64 = 1e-9;
-    for element in &mesh.connectivity {
-        let x = element.map(|n| mesh.coordinates[n as usize]);
+    for (e, element) in mesh.connectivity.iter().enumerate() {
+        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
+        let nodes = &x[..element.len()];
         let inside_box = (0..3).all(|d| {
-            let low = x.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min);
-            let high = x.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max);
+            let low = nodes.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min);
+            let high = nodes.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max);
             let margin = 0.25 * (high - low);
             low - margin <= point[d] && point[d] <= high + margin
         });
         if !inside_box {
             continue;
         }
-        let Some(natural) = inverse_map::hex20(&x, point, [0.0; 3]) else { continue };
-        if natural.xi.iter().all(|c| c.abs() <= 1.0 + SLACK) {
-            let n = fem::element::hex20::shape_functions(natural.xi);
+        let Some(natural) = inverse_map::natural_point(kind, &x, point, kind.natural_centre()) else { continue };
+        if kind.contains(natural.xi, SLACK) {
+            let n = kind.shape_functions(natural.xi);
             for (&node, n) in element.iter().zip(n) {
                 for d in 0..3 {
                     pattern[3 * node as usize + d] += n * force[d];

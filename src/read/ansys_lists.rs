@@ -19,6 +19,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
 
 use super::element_list::{self, Columns, Record};
@@ -152,9 +153,7 @@ fn read_elements(
         if let Some(first) = lines.insert(id, line) {
             return Err(named_twice(&table, "element", id, first, line));
         }
-        lists.mesh.element_ids.push(id);
-        lists.mesh.materials.push(material.unwrap_or(layout.material));
-        lists.mesh.connectivity.push(nodes);
+        lists.mesh.push_element(id, material.unwrap_or(layout.material), ElementKind::Hex20, &nodes);
     }
     Ok(())
 }
@@ -281,7 +280,7 @@ fn directions(table: &Table, row: &Row) -> Result<&'static [u8], ReadError> {
 fn drop_unused_nodes(file: &Path, lists: &mut Lists) {
     let mesh = &mut lists.mesh;
     let mut used = vec![false; mesh.node_count()];
-    for node in mesh.connectivity.iter().flatten() {
+    for node in mesh.connectivity.nodes() {
         used[*node as usize] = true;
     }
     let unused: Vec<u32> =
@@ -301,7 +300,7 @@ fn drop_unused_nodes(file: &Path, lists: &mut Lists) {
     mesh.node_ids.retain(|_| keep.next().copied().unwrap_or(false));
     let mut keep = used.iter();
     mesh.coordinates.retain(|_| keep.next().copied().unwrap_or(false));
-    for node in mesh.connectivity.iter_mut().flatten() {
+    for node in mesh.connectivity.nodes_mut() {
         *node = renumbered[*node as usize];
     }
     lists.constraints.retain(|c| used[c.node as usize]);

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
 
 /// A fresh folder for one test.
@@ -74,9 +75,8 @@ fn mapped_block(n: [usize; 3], map: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
         for j in 0..n[1] {
             for i in 0..n[0] {
                 let nodes = LATTICE.map(|l| index[&[2 * i + l[0], 2 * j + l[1], 2 * k + l[2]]]);
-                mesh.element_ids.push(1000 - mesh.connectivity.len() as u32);
-                mesh.materials.push(1 + (3 * k / n[2]) as u32);
-                mesh.connectivity.push(nodes);
+                let (id, material) = (1000 - mesh.element_count() as u32, 1 + (3 * k / n[2]) as u32);
+                mesh.push_element(id, material, ElementKind::Hex20, &nodes);
             }
         }
     }

@@ -9,12 +9,15 @@
 //! `u` and `von_mises` there come from the interpolated displacement and stress; `eps_p`, which the negative
 //! weights of the corners could make negative, is kept at 0 or above.
 //!
+//! Elements of other kinds are written as one brick of their corners, with corners repeated where there are fewer.
+//!
 //! Source of the format: Tecplot 360 Data Format Guide, ASCII data, finite-element zones.
 
 use std::collections::HashMap;
 use std::io::Write;
 use std::path::Path;
 
+use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{FACE_NODES, HEX20_NODES, Mesh};
 
 use super::atomic;
@@ -124,7 +127,11 @@ fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
     let mut extra = Vec::new();
     let mut centres: HashMap<[u32; 4], usize> = HashMap::new();
     let mut bricks = Vec::with_capacity(8 * mesh.element_count());
-    for element in &mesh.connectivity {
+    for (element, &kind) in mesh.connectivity.iter().zip(mesh.connectivity.kinds()) {
+        if kind != ElementKind::Hex20 {
+            bricks.push(corners_as_brick(kind).map(|local| element[local] as usize));
+            continue;
+        }
         let mut points = [0; 27];
         for local in 0..HEX20_NODES {
             points[local] = element[local] as usize;
@@ -145,6 +152,16 @@ fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
         bricks.extend(LOWEST.map(|low| BRICK.map(|corner| points[LATTICE[low + corner]])));
     }
     (bricks, extra)
+}
+
+/// The corners of another kind as a brick, some of them repeated.
+fn corners_as_brick(kind: ElementKind) -> [usize; 8] {
+    match kind.linear() {
+        ElementKind::Wedge6 => [0, 1, 2, 2, 3, 4, 5, 5],
+        ElementKind::Pyramid5 => [0, 1, 2, 3, 4, 4, 4, 4],
+        ElementKind::Tet4 => [0, 1, 2, 2, 3, 3, 3, 3],
+        _ => [0, 1, 2, 3, 4, 5, 6, 7],
+    }
 }
 
 fn combine(frame: &SolidFrame, weights: impl Iterator<Item = (usize, f64)>) -> Values {

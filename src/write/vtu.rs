@@ -5,7 +5,8 @@
 
 use std::path::Path;
 
-use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
+use trackbed_fem::ElementKind;
+use trackbed_fem::mesh::{Constraint, Mesh};
 use vtkio::model::{Attributes, CellType, Cells, UnstructuredGridPiece, VertexNumbers};
 
 use super::error::WriteError;
@@ -70,17 +71,40 @@ fn write_grid(file: &Path, mesh: &Mesh, point_fields: Fields) -> Result<(), Writ
     cell_fields.ids("element_id", &mesh.element_ids)?;
     let point = point_fields.finish();
     let cell = cell_fields.finish();
-    let connectivity: Vec<u64> = mesh.connectivity.iter().flatten().map(|n| u64::from(*n)).collect();
-    let offsets: Vec<u64> = (1..=elements).map(|e| (HEX20_NODES * e) as u64).collect();
+    let connectivity: Vec<u64> = mesh.connectivity.nodes().iter().map(|n| u64::from(*n)).collect();
+    let mut end = 0;
+    let offsets: Vec<u64> = mesh
+        .connectivity
+        .kinds()
+        .iter()
+        .map(|kind| {
+            end += kind.node_count() as u64;
+            end
+        })
+        .collect();
     let piece = UnstructuredGridPiece {
         points: vtk::points(file, &mesh.coordinates)?,
         cells: Cells {
             cell_verts: VertexNumbers::XML { connectivity, offsets },
-            types: vec![CellType::QuadraticHexahedron; elements],
+            types: mesh.connectivity.kinds().iter().map(|kind| cell_type(*kind)).collect(),
         },
         data: Attributes { point, cell },
     };
     vtk::write(file, piece)
+}
+
+/// The cell type whose nodes are those of a kind, in the same order.
+fn cell_type(kind: ElementKind) -> CellType {
+    match kind {
+        ElementKind::Hex20 => CellType::QuadraticHexahedron,
+        ElementKind::Wedge15 => CellType::QuadraticWedge,
+        ElementKind::Pyramid13 => CellType::QuadraticPyramid,
+        ElementKind::Tet10 => CellType::QuadraticTetra,
+        ElementKind::Hex8 => CellType::Hexahedron,
+        ElementKind::Wedge6 => CellType::Wedge,
+        ElementKind::Pyramid5 => CellType::Pyramid,
+        ElementKind::Tet4 => CellType::Tetra,
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,26 @@
-//! Elements: shape functions of the 20-node hexahedron and of its 8-node face, and the Gauss rules.
+//! Elements: shape functions, faces and integration rules.
+//!
+//! [`ElementKind`] names the kinds of volume elements and [`FaceShape`] those of their faces; both lead to the module of
+//! the element. Values of shape functions come in arrays for the largest kind, zero beyond the nodes of a smaller
+//! one, so that element loops need no allocation.
+
+mod face_shape;
 pub mod hex20;
+pub mod hex8;
+mod kind;
+pub mod pyramid13;
+pub mod pyramid5;
+pub mod quad4;
 pub mod quad8;
 pub mod quadrature;
+mod table;
+pub mod tet10;
+pub mod tet4;
+pub mod tri3;
+pub mod tri6;
+pub mod wedge15;
+pub mod wedge6;
+
+pub use face_shape::{FaceShape, MAX_FACE_NODES};
+pub use kind::{ElementKind, MAX_NODES};
+pub use table::{IntegrationPoint, mass_points, stiffness_points};

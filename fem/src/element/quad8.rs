@@ -9,8 +9,6 @@
 //! Node order as in [`crate::mesh::Face`]. Restricted to a face, the hex20 functions are exactly these.
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 8.5.
 
-use crate::mesh::{Face, Mesh};
-
 /// Number of nodes of a face.
 pub const QUAD8_NODES: usize = 8;
 
@@ -61,27 +59,6 @@ pub fn second_gradients(xi: [f64; 2]) -> [[f64; 3]; QUAD8_NODES] {
         };
     }
     d
-}
-
-/// Point [m] of `face` at the natural point `xi`, and the area vector dx/dxi × dx/deta [m²] there: its length is the
-/// area per unit of natural area, its direction the outward normal of the body.
-pub fn point_and_area(mesh: &Mesh, face: &Face, xi: [f64; 2]) -> ([f64; 3], [f64; 3]) {
-    let (n, d) = (shape_functions(xi), gradients(xi));
-    let (mut point, mut tangent, mut cotangent) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-    for (a, &node) in face.nodes.iter().enumerate() {
-        let x = mesh.coordinates[node as usize];
-        for k in 0..3 {
-            point[k] += n[a] * x[k];
-            tangent[k] += d[a][0] * x[k];
-            cotangent[k] += d[a][1] * x[k];
-        }
-    }
-    let area = [
-        tangent[1] * cotangent[2] - tangent[2] * cotangent[1],
-        tangent[2] * cotangent[0] - tangent[0] * cotangent[2],
-        tangent[0] * cotangent[1] - tangent[1] * cotangent[0],
-    ];
-    (point, area)
 }
 
 #[cfg(test)]
