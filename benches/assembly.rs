@@ -33,7 +33,7 @@ fn assemble(bencher: Bencher<'_, '_>, side: usize, threads: usize, quadrature: Q
         quadrature,
         constraints: Vec::new(),
         gravity: [0.0; 3],
-        rayleigh: Rayleigh::default(),
+        ..Default::default()
     };
     let pool = watch::pool(threads);
     let (mut watch, mut elements) = (watch::Watch::default(), 0);

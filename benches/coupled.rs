@@ -74,6 +74,7 @@ fn block([width, height]: [f64; 2]) -> trackbed_fem::Model {
         constraints,
         gravity: [0.0; 3],
         rayleigh: Rayleigh { alpha_m: 0.0, beta_k: 1e-4 },
+        ..Default::default()
     })
     .expect("a block is a model")
 }

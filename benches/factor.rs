@@ -60,7 +60,7 @@ impl Case {
             quadrature: Quadrature::Gauss3,
             constraints,
             gravity: [0.0; 3],
-            rayleigh: Rayleigh::default(),
+            ..Default::default()
         })
         .expect("the mesh is a model");
         let analysis = Arc::new(analyse(&model));

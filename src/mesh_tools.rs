@@ -99,8 +99,7 @@ fn unused_nodes(mesh: &Mesh) -> Vec<u32> {
 
 /// Counts, sizes and quality of a mesh.
 pub fn info(mesh: &Mesh, constraints: &[Constraint]) -> MeshInfo {
-    let qualities: Vec<Quality> =
-        (0..mesh.element_count()).map(|e| element_quality(mesh, e)).collect();
+    let qualities: Vec<Quality> = (0..mesh.element_count()).map(|e| element_quality(mesh, e)).collect();
     let mut materials: BTreeMap<u32, MaterialInfo> = BTreeMap::new();
     for (id, quality) in mesh.materials.iter().zip(&qualities) {
         let material = materials.entry(*id).or_insert(MaterialInfo { id: *id, elements: 0, volume: 0.0 });

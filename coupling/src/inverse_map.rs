@@ -80,7 +80,8 @@ mod tests {
                         point[d] += n * x[d];
                     }
                 }
-                let found = natural_point(ElementKind::Hex20, &x, point, [0.0; 3]).expect("no failure up to a = 0.25");
+                let found = natural_point(ElementKind::Hex20, &x, point, [0.0; 3])
+                    .expect("no failure up to a = 0.25");
                 let error = (0..3).map(|d| (found.xi[d] - xi[d]).abs()).fold(0.0, f64::max);
                 assert!(error < 1e-10, "a = {amplitude}: {error:e}");
                 assert!(found.iterations <= 7, "a = {amplitude}: {} iterations", found.iterations);

@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(mesh.element_count(), 6);
         // corners + sides along x, y, z
         assert_eq!(mesh.node_count(), 3 * 4 * 2 + 2 * 4 * 2 + 3 * 3 * 2 + 3 * 4);
-        let last = mesh.connectivity[5];
+        let last = &mesh.connectivity[5];
         for (node, natural) in last.iter().zip(NATURAL) {
             let expected = [1.5 + natural[0] / 2.0, 2.5 + natural[1] / 2.0, 0.25 + natural[2] / 4.0];
             assert_eq!(mesh.coordinates[*node as usize], expected);

@@ -214,7 +214,8 @@ mod tests {
     #[test]
     fn mass_adds_up_to_density_times_volume() {
         let x = hex20::NATURAL.map(|x| [1.5 * x[0], 0.5 * x[1], 2.0 * x[2] + 0.3 * x[0]]);
-        let total: f64 = mass_matrix::<20>(&x, mass_points(ElementKind::Hex20), 2000.0).iter().flatten().sum();
+        let total: f64 =
+            mass_matrix::<20>(&x, mass_points(ElementKind::Hex20), 2000.0).iter().flatten().sum();
         assert!((total / (2000.0 * 12.0) - 1.0).abs() < 1e-14);
     }
 }

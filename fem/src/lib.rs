@@ -48,8 +48,8 @@ pub mod stress;
 pub mod supports;
 pub mod window;
 
-pub use damping::Rayleigh;
 pub use connectivity::Connectivity;
+pub use damping::Rayleigh;
 pub use element::quadrature::Quadrature;
 pub use element::{ElementKind, FaceShape};
 pub use material::elastic::Elastic;

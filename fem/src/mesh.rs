@@ -167,6 +167,18 @@ impl Mesh {
         x
     }
 
+    /// The triples of the nodes of element `element` (index) out of a nodal vector of shape `[3 * nodes]`; zero beyond
+    /// the nodes of its kind.
+    #[inline]
+    pub fn element_values(&self, element: usize, nodal: &[f64]) -> ElementCoordinates {
+        let mut values = ElementCoordinates::default();
+        for (value, &n) in values.iter_mut().zip(&self.connectivity[element]) {
+            let n = 3 * n as usize;
+            *value = [nodal[n], nodal[n + 1], nodal[n + 2]];
+        }
+        values
+    }
+
     /// Volume of element `element` [m³], by the rule of the mass.
     pub fn element_volume(&self, element: usize) -> f64 {
         let x = self.element_coordinates(element);

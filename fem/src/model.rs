@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
-/// What a model is built from.
-#[derive(Clone, Debug)]
+/// What a model is built from. The default is an empty mesh of no material under the reduced rule, without gravity.
+#[derive(Clone, Debug, Default)]
 pub struct ModelInput {
     /// The mesh [m].
     pub mesh: Mesh,
@@ -292,7 +292,7 @@ mod tests {
             quadrature: Quadrature::Gauss3,
             constraints: Vec::new(),
             gravity: [0.0, 0.0, -9.81],
-            rayleigh: Rayleigh::default(),
+            ..Default::default()
         }
     }
 

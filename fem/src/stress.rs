@@ -9,7 +9,7 @@
 
 use crate::element::quadrature::{GAUSS2, LINE2, Quadrature};
 use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
-use crate::kinematics::{ElementCoordinates, mean_gradients, spatial_gradients, strain};
+use crate::kinematics::{mean_gradients, spatial_gradients, strain};
 use crate::model::Model;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub fn gauss(model: &Model, u: &[f64], element: usize) -> Vec<[f64; 6]> {
 pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f64; 6] {
     let mesh = model.mesh();
     let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
-    let moved = element_values(&mesh.connectivity[element], u);
+    let moved = mesh.element_values(element, u);
     let (gradients, _) = spatial_gradients(&x, &kind.gradients(xi));
     let mut strain = strain(&gradients, &moved);
     if kind.is_linear() {
@@ -40,17 +40,6 @@ pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f6
     model.material(element).stress(&strain)
 }
 
-/// The triples of an element's nodes out of a nodal vector of shape `[3 * nodes]`; zero beyond them.
-#[inline]
-pub(crate) fn element_values(nodes: &[u32], nodal: &[f64]) -> ElementCoordinates {
-    let mut values = ElementCoordinates::default();
-    for (value, &n) in values.iter_mut().zip(nodes) {
-        let n = 3 * n as usize;
-        *value = [nodal[n], nodal[n + 1], nodal[n + 2]];
-    }
-    values
-}
-
 /// Natural points whose stresses are extrapolated to the nodes of a kind of element.
 pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
     match kind {
@@ -58,9 +47,7 @@ pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
         ElementKind::Wedge15 | ElementKind::Wedge6 => {
             mass_points(ElementKind::Wedge6).iter().map(|p| p.xi).collect()
         }
-        ElementKind::Tet10 => {
-            stiffness_points(kind, Quadrature::Gauss2).iter().map(|p| p.xi).collect()
-        }
+        ElementKind::Tet10 => stiffness_points(kind, Quadrature::Gauss2).iter().map(|p| p.xi).collect(),
         // One value: at the apex of a pyramid the stress of the element has no limit.
         ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => vec![kind.natural_centre()],
     }
@@ -80,7 +67,7 @@ pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
 /// `of_element(e)` gives the values at the nodes of element e. Shape `[nodes][C]`.
 pub(crate) fn nodal_mean<const C: usize>(
     model: &Model,
-    of_element: impl Fn(usize) -> [[f64; C]; MAX_NODES] + Sync,
+    of_element: impl Fn(usize) -> [[f64; C]; MAX_NODES] + Send + Sync,
 ) -> Vec<[f64; C]> {
     let mesh = model.mesh();
     let elements: Vec<[[f64; C]; MAX_NODES]> =

@@ -180,7 +180,7 @@ fn bodies(mesh: &Mesh) -> Vec<usize> {
         }
         n
     }
-    for nodes in &mesh.connectivity {
+    for nodes in mesh.connectivity.iter() {
         let first = root(&mut parent, nodes[0] as usize);
         let mut low = first;
         for &n in nodes {
@@ -246,9 +246,8 @@ mod tests {
         let other = Mesh::block([1, 1, 1], [1.0; 3]);
         mesh.coordinates.extend(other.coordinates.iter().map(|c| [c[0] + 5.0, c[1], c[2] + 1.0]));
         mesh.node_ids = (1..=40).collect();
-        mesh.connectivity.push(other.connectivity[0].map(|n| n + 20));
-        mesh.element_ids.push(2);
-        mesh.materials.push(1);
+        let nodes: Vec<u32> = other.connectivity[0].iter().map(|n| n + 20).collect();
+        mesh.push_element(2, 1, crate::element::ElementKind::Hex20, &nodes);
         let supports = Supports::new(&mesh, &on_base(&mesh, &[0, 1, 2])).unwrap();
         assert!(supports.free_motion(&mesh).unwrap().0 >= 20);
     }

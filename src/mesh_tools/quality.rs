@@ -117,19 +117,19 @@ mod tests {
 
     #[test]
     fn a_brick() {
-        let quality = quality(ElementKind::Hex20, &brick([2.0, 3.0, 0.5]));
-        assert!((quality.volume - 3.0).abs() < 1e-13);
-        assert!((quality.scaled_jacobian - 1.0).abs() < 1e-13);
-        assert!((quality.aspect_ratio - 6.0).abs() < 1e-13);
-        assert!((quality.determinant - 3.0 / 8.0).abs() < 1e-13);
+        let found = quality(ElementKind::Hex20, &brick([2.0, 3.0, 0.5]));
+        assert!((found.volume - 3.0).abs() < 1e-13);
+        assert!((found.scaled_jacobian - 1.0).abs() < 1e-13);
+        assert!((found.aspect_ratio - 6.0).abs() < 1e-13);
+        assert!((found.determinant - 3.0 / 8.0).abs() < 1e-13);
     }
 
     #[test]
     fn a_sheared_brick_has_the_sine_of_its_angle() {
         let sheared = brick([1.0; 3]).map(|[x, y, z]| [x + y, y, z]);
-        let quality = quality(ElementKind::Hex20, &sheared);
-        assert!((quality.scaled_jacobian - 0.5_f64.sqrt()).abs() < 1e-13);
-        assert!((quality.volume - 1.0).abs() < 1e-13);
+        let found = quality(ElementKind::Hex20, &sheared);
+        assert!((found.scaled_jacobian - 0.5_f64.sqrt()).abs() < 1e-13);
+        assert!((found.volume - 1.0).abs() < 1e-13);
     }
 
     #[test]
@@ -151,8 +151,8 @@ mod tests {
         // A mid-side node beyond a quarter of the edge from its corner: det J turns negative at that corner.
         let mut x = brick([1.0; 3]);
         x[8][0] = 0.2;
-        let quality = quality(ElementKind::Hex20, &x);
-        assert!(quality.scaled_jacobian < 0.0 && quality.worst_point == 0, "{quality:?}");
+        let found = quality(ElementKind::Hex20, &x);
+        assert!(found.scaled_jacobian < 0.0 && found.worst_point == 0, "{found:?}");
         x[8][0] = 0.3;
         assert!(quality(ElementKind::Hex20, &x).scaled_jacobian > 0.0);
         let mirrored = brick([1.0; 3]).map(|[x, y, z]| [x, y, -z]);

@@ -8,7 +8,7 @@ use crate::scene::{Document, SceneError};
 use crate::{mesh_tools, read};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
-use trackbed_coupling::{face, inverse_map};
+use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
 use trackbed_fem::solver::SolveError;
@@ -147,6 +147,7 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         constraints: lists.constraints,
         gravity: if solid.gravity { gravity } else { [0.0; 3] },
         rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
+        ..Default::default()
     })
     .map_err(|e| refused(&document.resolve(&solid.elements), &e))?;
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
@@ -375,7 +376,9 @@ fn point_load(
         if !inside_box {
             continue;
         }
-        let Some(natural) = inverse_map::natural_point(kind, &x, point, kind.natural_centre()) else { continue };
+        let Some(natural) = inverse_map::natural_point(kind, &x, point, kind.natural_centre()) else {
+            continue;
+        };
         if kind.contains(natural.xi, SLACK) {
             let n = kind.shape_functions(natural.xi);
             for (&node, n) in element.iter().zip(n) {

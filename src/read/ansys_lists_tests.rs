@@ -78,8 +78,8 @@ fn our_layout() {
     assert_eq!(mesh.element_ids, [7, 3]);
     assert_eq!(mesh.materials, [2, 1]);
     // Node number 1 is the last of the file, index 31.
-    assert_eq!(mesh.connectivity[0], std::array::from_fn(|n| 31 - n as u32));
-    assert_eq!(mesh.connectivity[1], std::array::from_fn(|n| 19 - n as u32));
+    assert_eq!(mesh.connectivity[0], std::array::from_fn::<u32, 20, _>(|n| 31 - n as u32));
+    assert_eq!(mesh.connectivity[1], std::array::from_fn::<u32, 20, _>(|n| 19 - n as u32));
     let expected = [(27, 0, 0.0), (0, 2, -1.5e-3), (30, 0, 0.0), (30, 1, 0.0), (30, 2, 0.0)];
     let expected = expected.map(|(node, direction, value)| Constraint { node, direction, value });
     assert_eq!(lists.constraints, expected);

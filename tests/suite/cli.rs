@@ -210,9 +210,10 @@ fn mesh_check_of_sound_and_broken_meshes() {
         let other = small_block();
         m.coordinates.extend(other.coordinates.iter().map(|[x, y, z]| [x + 5.0, *y, *z]));
         m.node_ids.extend((1..=shift).map(|n| n + shift));
-        m.element_ids.extend(9..=16);
-        m.materials.extend([1; 8]);
-        m.connectivity.extend(other.connectivity.iter().map(|e| e.map(|n| n + shift)));
+        for (e, nodes) in other.connectivity.iter().enumerate() {
+            let nodes: Vec<u32> = nodes.iter().map(|n| n + shift).collect();
+            m.push_element(9 + e as u32, 1, trackbed_fem::ElementKind::Hex20, &nodes);
+        }
     };
     broken("apart", &apart, &["2 parts that share no node", "element 1 (8 in all)", "element 9 (8 in all)"]);
 

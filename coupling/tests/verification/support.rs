@@ -73,6 +73,7 @@ pub fn model(
         constraints,
         gravity: [0.0; 3],
         rayleigh,
+        ..Default::default()
     })
     .expect("a valid block")
 }

@@ -36,8 +36,7 @@ const HEX20_FACES: [&[usize]; 6] =
 /// The edges of each shape, in the order of the mid-side nodes of its quadratic kind.
 const HEX_EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
-const WEDGE_EDGES: [[usize; 2]; 9] =
-    [[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]];
+const WEDGE_EDGES: [[usize; 2]; 9] = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]];
 const PYRAMID_EDGES: [[usize; 2]; 8] = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]];
 const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
@@ -116,10 +115,7 @@ impl ElementKind {
     /// Whether all nodes are corners.
     #[inline]
     pub const fn is_linear(self) -> bool {
-        matches!(
-            self,
-            ElementKind::Hex8 | ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4
-        )
+        matches!(self, ElementKind::Hex8 | ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4)
     }
 
     /// The kind of the same shape without mid-side nodes.
@@ -243,7 +239,8 @@ mod tests {
             assert!((shape.iter().sum::<f64>() - 1.0).abs() < 1e-14);
             assert!(shape[n..].iter().all(|v| *v == 0.0));
             assert_eq!(kind.linear().edges().len() + kind.corner_count(), {
-                let quadratic = ElementKind::ALL.iter().find(|k| !k.is_linear() && k.linear() == kind.linear());
+                let quadratic =
+                    ElementKind::ALL.iter().find(|k| !k.is_linear() && k.linear() == kind.linear());
                 quadratic.unwrap().node_count()
             });
         }

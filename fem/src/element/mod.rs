@@ -4,6 +4,8 @@
 //! the element. Values of shape functions come in arrays for the largest kind, zero beyond the nodes of a smaller
 //! one, so that element loops need no allocation.
 
+#[cfg(test)]
+mod checks;
 mod face_shape;
 pub mod hex20;
 pub mod hex8;

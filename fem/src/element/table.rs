@@ -7,8 +7,7 @@
 
 use super::kind::{ElementKind, MAX_NODES};
 use super::quadrature::{
-    GAUSS2, GAUSS3, PYRAMID8, PYRAMID27, Quadrature, TETRAHEDRON1, TETRAHEDRON4, TETRAHEDRON15, VolumePoint,
-    WEDGE6, WEDGE9, WEDGE21,
+    GAUSS2, GAUSS3, PYRAMID8, PYRAMID27, Quadrature, TET1, TET4, TET14, VolumePoint, WEDGE6, WEDGE9, WEDGE21,
 };
 use std::sync::OnceLock;
 
@@ -47,12 +46,12 @@ fn stiffness_rule(kind: ElementKind, rule: Quadrature) -> &'static [VolumePoint]
         ElementKind::Wedge15 => &WEDGE9,
         ElementKind::Pyramid13 if full => &PYRAMID27,
         ElementKind::Pyramid13 => &PYRAMID8,
-        ElementKind::Tet10 if full => &TETRAHEDRON15,
-        ElementKind::Tet10 => &TETRAHEDRON4,
+        ElementKind::Tet10 if full => &TET14,
+        ElementKind::Tet10 => &TET4,
         ElementKind::Hex8 => &GAUSS2,
         ElementKind::Wedge6 => &WEDGE6,
         ElementKind::Pyramid5 => &PYRAMID8,
-        ElementKind::Tet4 => &TETRAHEDRON1,
+        ElementKind::Tet4 => &TET1,
     }
 }
 
@@ -61,10 +60,10 @@ fn mass_rule(kind: ElementKind) -> &'static [VolumePoint] {
         ElementKind::Hex20 => &GAUSS3,
         ElementKind::Wedge15 => &WEDGE21,
         ElementKind::Pyramid13 | ElementKind::Pyramid5 => &PYRAMID27,
-        ElementKind::Tet10 => &TETRAHEDRON15,
+        ElementKind::Tet10 => &TET14,
         ElementKind::Hex8 => &GAUSS2,
         ElementKind::Wedge6 => &WEDGE6,
-        ElementKind::Tet4 => &TETRAHEDRON4,
+        ElementKind::Tet4 => &TET4,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use trackbed_fem::damping::Rayleigh;
+use trackbed_fem::ElementKind;
 use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::{Constraint, Mesh};
@@ -42,9 +42,8 @@ pub fn read_mesh(case: &str) -> (Mesh, Vec<Constraint>) {
         mesh.coordinates.push([row[1], row[2], row[3]]);
     }
     for row in table(case, "ELEMENTNUM.DAT") {
-        mesh.element_ids.push(row[0] as u32);
-        mesh.materials.push(row[1] as u32);
-        mesh.connectivity.push(std::array::from_fn(|a| row[2 + a] as u32 - 1));
+        let nodes: [u32; 20] = std::array::from_fn(|a| row[2 + a] as u32 - 1);
+        mesh.push_element(row[0] as u32, row[1] as u32, ElementKind::Hex20, &nodes);
     }
     let constraints = table(case, "DOF.DAT")
         .iter()
@@ -67,7 +66,7 @@ pub fn model(mesh: Mesh, constraints: Vec<Constraint>, material: Elastic, quadra
         quadrature,
         constraints,
         gravity: [0.0; 3],
-        rayleigh: Rayleigh::default(),
+        ..Default::default()
     })
     .unwrap()
 }

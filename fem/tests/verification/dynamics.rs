@@ -65,8 +65,15 @@ fn column(rayleigh: Rayleigh) -> Model {
     let mesh = Mesh::block([2, 1, 4], [1.0, 0.5, 2.0]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     let materials = [(1, SOIL)].into();
-    Model::new(ModelInput { mesh, materials, quadrature: Gauss2, constraints, gravity: [0.0; 3], rayleigh })
-        .unwrap()
+    Model::new(ModelInput {
+        mesh,
+        materials,
+        quadrature: Gauss2,
+        constraints,
+        rayleigh,
+        ..Default::default()
+    })
+    .unwrap()
 }
 
 /// Push on the top of the column, oblique, N per face area.
@@ -154,6 +161,7 @@ fn a_body_at_rest_under_gravity_stays_at_rest() {
         constraints,
         gravity: [0.0, 0.0, -9.81],
         rayleigh: Rayleigh { alpha_m: 1.0, beta_k: 1e-4 },
+        ..Default::default()
     })
     .unwrap();
     let load = model.gravity_load();
@@ -235,6 +243,7 @@ fn layered_column_follows_the_tabled_history() {
         constraints,
         gravity: [0.0; 3],
         rayleigh: Rayleigh { alpha_m: 4.1887902047863905, beta_k: 0.0003315727981081153 },
+        ..Default::default()
     })
     .unwrap();
     let mut full = vec![0.0; model.dof_count()];

@@ -6,7 +6,6 @@
 
 use crate::common::{difference, read_mesh, soils, table};
 use std::collections::BTreeMap;
-use trackbed_fem::damping::Rayleigh;
 use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::loads;
 use trackbed_fem::material::elastic::Elastic;
@@ -38,7 +37,7 @@ fn solve(case: &Case, rule: Quadrature) -> (Model, Vec<f64>, Static) {
         quadrature: rule,
         constraints,
         gravity: case.gravity,
-        rayleigh: Rayleigh::default(),
+        ..Default::default()
     })
     .unwrap();
     let mut load = model.gravity_load();

@@ -18,8 +18,15 @@ fn block(rayleigh: Rayleigh) -> Model {
     let mesh = Mesh::block([2, 2, 2], [1.0, 0.8, 0.6]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     let materials = [(1, SOIL)].into();
-    Model::new(ModelInput { mesh, materials, quadrature: Gauss3, constraints, gravity: [0.0; 3], rayleigh })
-        .unwrap()
+    Model::new(ModelInput {
+        mesh,
+        materials,
+        quadrature: Gauss3,
+        constraints,
+        rayleigh,
+        ..Default::default()
+    })
+    .unwrap()
 }
 
 fn random_load(random: &mut Random, model: &Model) -> Vec<f64> {
