@@ -1,4 +1,4 @@
-//! Integration rules of the hexahedron and of its face.
+//! Integration rules of the hexahedron, wedge, pyramid and tetrahedron and of their faces.
 //!
 //! Source of the Gauss rules: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), table 9.1. A rule of n
 //! points per axis is exact for polynomials of degree 2n - 1 per axis. The 14-point rule: Irons, Int. J. Numer. Methods
@@ -10,6 +10,13 @@
 //! clamped; from two elements in one direction on, a clamped side removes them. A static solve names the node where such
 //! a mode is left. The 14-point rule has full rank at half the cost of 27 points, and misses the curved patch test
 //! by some 1e-3.
+//!
+//! Triangle: Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10 (1956) 130-137 (3 points); Dunavant, Int. J. Numer.
+//! Methods Eng. 21 (1985) 1129-1148 (6 and 7 points). Tetrahedron: Hammer, Marlowe and Stroud (1956) (4 points);
+//! Walkington, Quadrature on simplices of arbitrary dimension (2000) (14 points); Keast, Comput. Methods Appl. Mech.
+//! Eng. 55 (1986) 339-348 (24 points). Their decimals are solved anew to 20 digits from the moment equations. Wedge:
+//! products of triangle and line. Pyramid: conical products, after Hammer, Marlowe and Stroud (1956): Gauss-Jacobi
+//! points for the weight (1 - t)² along the axis, Gauss points across. All weights are positive and all points inside.
 
 use serde::{Deserialize, Serialize};
 
@@ -79,9 +86,10 @@ pub static IRONS14: [VolumePoint; 14] = irons14();
 pub static FACE3: [FacePoint; 9] = face_rule(LINE3);
 
 /// The rule that integrates the stiffness (the mass always takes 3×3×3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quadrature {
     /// 2×2×2 points ("reduced").
+    #[default]
     Gauss2,
     /// Irons' 14 points.
     Irons14,
@@ -99,6 +107,162 @@ impl Quadrature {
         }
     }
 }
+
+/// Points and weights of the Gauss-Jacobi rule of two points for the weight (1 - t)² on [0, 1]: exact to degree 3.
+const CONE2: [(f64, f64); 2] = [
+    (0.122_514_822_655_441_377_87, 0.232_547_451_253_507_902_75), // 1/3 - sqrt(2/45)
+    (0.544_151_844_011_225_288_80, 0.100_785_882_079_825_430_58), // 1/3 + sqrt(2/45)
+];
+/// The same of three points: exact to degree 5.
+const CONE3: [(f64, f64); 3] = [
+    (0.072_994_024_073_149_732_16, 0.157_136_361_064_886_613_32),
+    (0.347_003_766_038_351_884_72, 0.146_246_269_259_866_022_00),
+    (0.705_002_209_888_498_312_24, 0.029_950_703_008_580_698_01),
+];
+
+/// Triangle rule from the weight of the centroid (none where zero) and from orbits (a, w) of three points each, with
+/// area coordinates (a, a, 1 - 2a). The weights are of unit sum; the rule's sum is 1/2.
+const fn triangle_rule<const P: usize>(centroid: f64, orbits: &[(f64, f64)]) -> [FacePoint; P] {
+    let mut points = [([1.0 / 3.0; 2], centroid / 2.0); P];
+    let mut p = 0;
+    while p < 3 * orbits.len() {
+        let (a, w) = orbits[p / 3];
+        points[p] = ([a; 2], w / 2.0);
+        if p % 3 > 0 {
+            points[p].0[p % 3 - 1] = 1.0 - 2.0 * a;
+        }
+        p += 1;
+    }
+    points
+}
+
+/// Tetrahedron rule from orbits with weights of unit sum; the rule's sum is 1/6. `vertex` (a, w): four points with
+/// volume coordinates (a, a, a, 1 - 3a); `edge` (a, w): six points (a, a, 1/2 - a, 1/2 - a); `twelve` (a, b, w): the
+/// twelve points (a, a, b, 1 - 2a - b).
+const fn tet_rule<const P: usize>(
+    vertex: &[(f64, f64)],
+    edge: &[(f64, f64)],
+    twelve: &[(f64, f64, f64)],
+) -> [VolumePoint; P] {
+    let mut points = [([0.0; 3], 0.0); P];
+    let mut p = 0;
+    while p < P {
+        // Volume coordinates 1, 2, 3 are the natural coordinates; coordinate 0 is what is left to one.
+        let mut l;
+        let w;
+        if p < 4 * vertex.len() {
+            let (a, weight) = vertex[p / 4];
+            l = [a; 4];
+            l[p % 4] = 1.0 - 3.0 * a;
+            w = weight;
+        } else if p < 4 * vertex.len() + 6 * edge.len() {
+            const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+            let local = p - 4 * vertex.len();
+            let (a, weight) = edge[local / 6];
+            l = [0.5 - a; 4];
+            l[PAIRS[local % 6].0] = a;
+            l[PAIRS[local % 6].1] = a;
+            w = weight;
+        } else {
+            let local = p - 4 * vertex.len() - 6 * edge.len();
+            let (a, b, weight) = twelve[local / 12];
+            let (i, j) = (local % 12 / 3, local % 3);
+            l = [a; 4];
+            l[i] = b;
+            l[(i + 1 + j) % 4] = 1.0 - 2.0 * a - b;
+            w = weight;
+        }
+        points[p] = ([l[1], l[2], l[3]], w / 6.0);
+        p += 1;
+    }
+    points
+}
+
+const fn wedge_rule<const T: usize, const L: usize, const P: usize>(
+    triangle: [FacePoint; T],
+    line: [(f64, f64); L],
+) -> [VolumePoint; P] {
+    let mut points = [([0.0; 3], 0.0); P];
+    let mut p = 0;
+    while p < P {
+        let ((rs, w), (t, v)) = (triangle[p / L], line[p % L]);
+        points[p] = ([rs[0], rs[1], t], w * v);
+        p += 1;
+    }
+    points
+}
+
+const fn pyramid_rule<const N: usize, const P: usize>(
+    line: [(f64, f64); N],
+    cone: [(f64, f64); N],
+) -> [VolumePoint; P] {
+    let mut points = [([0.0; 3], 0.0); P];
+    let mut p = 0;
+    while p < P {
+        let (x, y, (t, w)) = (line[p / (N * N)], line[p / N % N], cone[p % N]);
+        points[p] = ([x.0 * (1.0 - t), y.0 * (1.0 - t), t], x.1 * y.1 * w);
+        p += 1;
+    }
+    points
+}
+
+/// The 4 points of the 2×2 rule on a quadrilateral face; the second coordinate runs fastest. Exact to degree 3 per axis.
+pub static FACE2: [FacePoint; 4] = face_rule(LINE2);
+/// 3 points inside a triangle; weights sum to 1/2. Exact to degree 2.
+pub static TRIANGLE3: [FacePoint; 3] = triangle_rule(0.0, &[(1.0 / 6.0, 1.0 / 3.0)]);
+/// 6 points inside a triangle; weights sum to 1/2. Exact to degree 4.
+pub static TRIANGLE6: [FacePoint; 6] = triangle_rule(
+    0.0,
+    &[
+        (0.445_948_490_915_964_886_32, 0.223_381_589_678_011_465_70),
+        (0.091_576_213_509_770_743_46, 0.109_951_743_655_321_867_64),
+    ],
+);
+/// 7 points inside a triangle; weights sum to 1/2. Exact to degree 5.
+pub static TRIANGLE7: [FacePoint; 7] = triangle_rule(
+    9.0 / 40.0,
+    &[
+        (0.470_142_064_105_115_089_77, 0.132_394_152_788_506_180_74), // (6 + sqrt(15))/21, (155 + sqrt(15))/1200
+        (0.101_286_507_323_456_338_80, 0.125_939_180_544_827_152_60), // (6 - sqrt(15))/21, (155 - sqrt(15))/1200
+    ],
+);
+/// The centroid of a tetrahedron; weight 1/6. Exact to degree 1.
+pub static TET1: [VolumePoint; 1] = [([0.25; 3], 1.0 / 6.0)];
+/// 4 points inside a tetrahedron; weights sum to 1/6. Exact to degree 2.
+pub static TET4: [VolumePoint; 4] = tet_rule(&[(0.138_196_601_125_010_515_18, 0.25)], &[], &[]); // (5 - sqrt(5))/20
+/// 14 points inside a tetrahedron (Walkington); weights sum to 1/6. Exact to degree 5.
+pub static TET14: [VolumePoint; 14] = tet_rule(
+    &[
+        (0.310_885_919_263_300_609_80, 0.112_687_925_718_015_850_80),
+        (0.092_735_250_310_891_226_40, 0.073_493_043_116_361_949_54),
+    ],
+    &[(0.045_503_704_125_649_649_49, 0.042_546_020_777_081_466_44)],
+    &[],
+);
+/// 24 points inside a tetrahedron (Keast); weights sum to 1/6. Exact to degree 6.
+pub static TET24: [VolumePoint; 24] = tet_rule(
+    &[
+        (0.214_602_871_259_152_027_83, 0.039_922_750_258_167_474_79),
+        (0.040_673_958_534_611_341_12, 0.010_077_211_055_320_638_36),
+        (0.322_337_890_142_275_500_61, 0.055_357_181_543_654_746_94),
+    ],
+    &[],
+    &[(0.063_661_001_875_017_521_75, 0.269_672_331_458_315_799_14, 27.0 / 560.0)],
+);
+/// 6 points inside a wedge: 3 in the triangle × 2 along t; weights sum to 1. Exact to degree 2 in (r, s), 3 in t.
+pub static WEDGE6: [VolumePoint; 6] = wedge_rule(TRIANGLE3, LINE2);
+/// 9 points inside a wedge: 3 in the triangle × 3 along t; weights sum to 1. Exact to degree 2 in (r, s), 5 in t.
+pub static WEDGE9: [VolumePoint; 9] = wedge_rule(TRIANGLE3, LINE3);
+/// 21 points inside a wedge: 7 in the triangle × 3 along t; weights sum to 1. Exact to degree 5 in (r, s), 5 in t.
+pub static WEDGE21: [VolumePoint; 21] = wedge_rule(TRIANGLE7, LINE3);
+/// 8 points inside a pyramid: 2×2 across × 2 along t; weights sum to 4/3. Exact to total degree 3.
+pub static PYRAMID8: [VolumePoint; 8] = pyramid_rule(LINE2, CONE2);
+/// 27 points inside a pyramid: 3×3 across × 3 along t; weights sum to 4/3. Exact to total degree 5.
+pub static PYRAMID27: [VolumePoint; 27] = pyramid_rule(LINE3, CONE3);
+
+#[cfg(test)]
+#[path = "quadrature_tests.rs"]
+mod companion_tests;
 
 #[cfg(test)]
 mod tests {

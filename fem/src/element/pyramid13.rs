@@ -1,0 +1,156 @@
+//! The 13-node pyramid: joins the quadrilateral face of a hex20 or wedge15 to tet10.
+//!
+//! ```text
+//!              4             natural axes: x along 0→1, y along 1→2, t from the base to the apex;
+//!             /│\\           |x|, |y| <= 1 - t, 0 <= t <= 1
+//!            / │ \ 11        base 0 1 2 3 (t = 0), counter-clockwise seen from the apex;
+//!           / 12  \  \       apex 4 (0, 0, 1)
+//!          9  │   10  \      mid-sides 5 6 7 8 of the base (0-1, 1-2, 2-3, 3-0),
+//!         /   3──7─\───2     9 10 11 12 of the uprights (0-4, 1-4, 2-4, 3-4)
+//!        /  8       \ 6
+//!       0─────5──────1
+//! ```
+//!
+//! With `u = 1 - t`, `p = x / u`, `q = y / u` (natural coordinates of the section at height t, both in [-1, 1]):
+//! corner `N = u (x_a x + y_a y - 1)(1 + x_a p)(1 + y_a q) / 4`, apex `N = t (2 t - 1)`,
+//! mid-side of the base along x `N = u² (1 - p²)(1 + y_a q) / 2` (along y: p and q exchanged),
+//! mid-side of an upright `N = t u (1 + x_a p)(1 + y_a q)` with the signs of its corner.
+//!
+//! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108 (13-node pyramid).
+//! Limits: rational functions, which hold complete quadratic polynomials; conforming to quad8 and tri6. Their values
+//! are continuous at the apex, their gradients depend on the direction from which the apex is reached: nearer to the
+//! apex than `1 - t` = 1e-10 this module takes the limit along the axis (p = q = 0). Gradients of quadratic fields
+//! are exact there all the same. Rules with points inside never meet that case.
+
+/// Number of nodes.
+pub const PYRAMID13_NODES: usize = 13;
+
+/// Natural coordinates of the nodes. Shape `[13][3]`, no unit.
+pub const NATURAL: [[f64; 3]; PYRAMID13_NODES] = [
+    [-1.0, -1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [-1.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.0, -1.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [-0.5, -0.5, 0.5],
+    [0.5, -0.5, 0.5],
+    [0.5, 0.5, 0.5],
+    [-0.5, 0.5, 0.5],
+];
+
+/// Local nodes of each face: corners counter-clockwise seen from outside, then the mid-side node after each corner.
+/// Base ([`super::quad8`]), then the sides 0-1, 1-2, 2-3, 3-0 ([`super::tri6`]).
+pub const FACES: [&[usize]; 5] = [
+    &[0, 3, 2, 1, 8, 7, 6, 5],
+    &[0, 1, 4, 5, 10, 9],
+    &[1, 2, 4, 6, 11, 10],
+    &[2, 3, 4, 7, 12, 11],
+    &[3, 0, 4, 8, 9, 12],
+];
+
+/// Height `u = 1 - t` below which a point counts as the apex.
+const APEX: f64 = 1e-10;
+
+/// (u, p, q) of the natural point `xi`: distance below the apex and natural coordinates of the section.
+#[inline]
+pub(super) fn section(xi: [f64; 3]) -> (f64, f64, f64) {
+    let u = 1.0 - xi[2];
+    if u.abs() < APEX { (u, 0.0, 0.0) } else { (u, xi[0] / u, xi[1] / u) }
+}
+
+/// Values of the 13 shape functions at the natural point `xi`.
+pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID13_NODES] {
+    let (u, p, q) = section(xi);
+    let t = xi[2];
+    let mut n = [0.0; PYRAMID13_NODES];
+    for (i, c) in NATURAL[..4].iter().enumerate() {
+        let (a, b) = (c[0] * p, c[1] * q);
+        let bilinear = u * (1.0 + a) * (1.0 + b);
+        n[i] = (u * (a + b) - 1.0) * bilinear / 4.0;
+        n[9 + i] = t * bilinear;
+    }
+    n[4] = t * (2.0 * t - 1.0);
+    for i in [5, 7] {
+        n[i] = u * u * (1.0 - p * p) * (1.0 + NATURAL[i][1] * q) / 2.0;
+        n[i + 1] = u * u * (1.0 - q * q) * (1.0 + NATURAL[i + 1][0] * p) / 2.0;
+    }
+    n
+}
+
+/// Derivatives of the 13 shape functions with respect to (x, y, t), at `xi`; finite at the apex, where they are the
+/// limit along the axis. Shape `[13][3]`.
+///
+/// By the chain rule for F(p, q, u): `F,x = F,p / u`, `F,y = F,q / u`, `F,t = p F,x + q F,y - F,u`. Every F,p and F,q
+/// holds a factor u, which is cancelled by hand, so that nothing is divided by u.
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID13_NODES] {
+    let (u, p, q) = section(xi);
+    let t = xi[2];
+    let chain = |x: f64, y: f64, fu: f64| [x, y, p * x + q * y - fu];
+    let mut d = [[0.0; 3]; PYRAMID13_NODES];
+    for (i, c) in NATURAL[..4].iter().enumerate() {
+        let (a, b) = (1.0 + c[0] * p, 1.0 + c[1] * q);
+        let g = u * (a + b - 2.0) - 1.0;
+        d[i] =
+            chain(c[0] * b * (u * a + g) / 4.0, c[1] * a * (u * b + g) / 4.0, a * b * (2.0 * g + 1.0) / 4.0);
+        d[9 + i] = chain(t * c[0] * b, t * c[1] * a, (1.0 - 2.0 * u) * a * b);
+    }
+    d[4] = [0.0, 0.0, 4.0 * t - 1.0];
+    for i in [5, 7] {
+        let (c, b) = (NATURAL[i][1], 1.0 + NATURAL[i][1] * q);
+        let bubble = u * (1.0 - p * p);
+        d[i] = chain(-u * p * b, bubble * c / 2.0, bubble * b);
+        let (c, a) = (NATURAL[i + 1][0], 1.0 + NATURAL[i + 1][0] * p);
+        let bubble = u * (1.0 - q * q);
+        d[i + 1] = chain(bubble * c / 2.0, -u * q * a, bubble * a);
+    }
+    d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::checks;
+    use crate::element::quadrature::{PYRAMID8, PYRAMID27};
+
+    #[test]
+    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+        checks::nodal(&NATURAL, shape_functions);
+        checks::complete(&NATURAL, shape_functions, 2);
+        checks::differences(&NATURAL, shape_functions, gradients);
+        let sides = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)];
+        checks::mid_sides(&NATURAL, 5, &sides);
+    }
+
+    /// In (p, q, t) the determinant of a curved pyramid13 is a polynomial of degree 5 in p and q and 3 in t, so that
+    /// 27 points are exact; 8 points are near.
+    #[test]
+    fn faces_are_quad8_and_tri6_and_close_the_element() {
+        checks::faces(&NATURAL, shape_functions, &FACES);
+        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID27, 1e-13);
+        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID8, 1e-3);
+    }
+
+    /// At the apex the gradients are the limit along the axis, and those of the fields x y, x t and t² are exact.
+    #[test]
+    fn gradients_at_the_apex_are_finite_and_exact_for_quadratic_fields() {
+        let apex = gradients([0.0, 0.0, 1.0]);
+        for (at_apex, below) in apex.iter().zip(gradients([0.0, 0.0, 1.0 - 1e-8])) {
+            assert!((0..3).all(|k| (at_apex[k] - below[k]).abs() < 1e-7));
+        }
+        let field = |f: fn([f64; 3]) -> f64| {
+            [0, 1, 2].map(|k| apex.iter().zip(NATURAL).map(|(d, x)| d[k] * f(x)).sum::<f64>())
+        };
+        let cases: [(fn([f64; 3]) -> f64, [f64; 3]); 3] = [
+            (|x| x[0] * x[1], [0.0, 0.0, 0.0]),
+            (|x| x[0] * x[2], [1.0, 0.0, 0.0]),
+            (|x| x[2] * x[2], [0.0, 0.0, 2.0]),
+        ];
+        for (f, exact) in cases {
+            assert!(field(f).iter().zip(exact).all(|(d, e)| (d - e).abs() < 1e-14), "{:?}", field(f));
+        }
+    }
+}

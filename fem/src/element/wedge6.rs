@@ -1,0 +1,76 @@
+//! The 6-node wedge (triangular prism): the corners of the wedge15.
+//!
+//! ```text
+//!          5
+//!         /│\            natural axes: r along 0→1, s along 0→2, t along 0→3;
+//!        / │ \           r, s >= 0, r + s <= 1, -1 <= t <= 1
+//!       3─────4          corners 0 1 2 (t = -1), 3 4 5 (t = +1);
+//!       │  2  │          0-1-2 counter-clockwise seen from the top
+//!       │ / \ │
+//!       0─────1
+//! ```
+//!
+//! With the area coordinates `L = (1 - r - s, r, s)`: `N = L (1 + t_a t) / 2`.
+//!
+//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular prisms).
+//! Limits: complete linear polynomials only; too stiff in bending. Use wedge15 where accuracy counts.
+
+use super::tri3;
+
+/// Number of nodes.
+pub const WEDGE6_NODES: usize = 6;
+
+/// Natural coordinates of the nodes. Shape `[6][3]`, no unit.
+pub const NATURAL: [[f64; 3]; WEDGE6_NODES] =
+    [[0.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+
+/// Local nodes of each face, counter-clockwise seen from outside: bottom, top ([`super::tri3`]), then the sides
+/// 0-1, 1-2, 2-0 ([`super::quad4`]).
+pub const FACES: [&[usize]; 5] = [&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]];
+
+/// Values of the 6 shape functions at the natural point `xi`.
+pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE6_NODES] {
+    let l = tri3::shape_functions([xi[0], xi[1]]);
+    let mut n = [0.0; WEDGE6_NODES];
+    for i in 0..3 {
+        n[i] = l[i] * (1.0 - xi[2]) / 2.0;
+        n[3 + i] = l[i] * (1.0 + xi[2]) / 2.0;
+    }
+    n
+}
+
+/// Derivatives of the 6 shape functions with respect to (r, s, t), at `xi`. Shape `[6][3]`.
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE6_NODES] {
+    let (l, dl) = (tri3::shape_functions([xi[0], xi[1]]), tri3::gradients([xi[0], xi[1]]));
+    let mut d = [[0.0; 3]; WEDGE6_NODES];
+    for i in 0..3 {
+        for k in 0..2 {
+            d[i][k] = dl[i][k] * (1.0 - xi[2]) / 2.0;
+            d[3 + i][k] = dl[i][k] * (1.0 + xi[2]) / 2.0;
+        }
+        d[i][2] = -l[i] / 2.0;
+        d[3 + i][2] = l[i] / 2.0;
+    }
+    d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::checks;
+    use crate::element::quadrature::{WEDGE6, WEDGE21};
+
+    #[test]
+    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+        checks::nodal(&NATURAL, shape_functions);
+        checks::complete(&NATURAL, shape_functions, 1);
+        checks::differences(&NATURAL, shape_functions, gradients);
+    }
+
+    #[test]
+    fn faces_are_tri3_and_quad4_and_close_the_element() {
+        checks::faces(&NATURAL, shape_functions, &FACES);
+        checks::volume(&NATURAL, gradients, &FACES, &WEDGE6, 1e-13);
+        checks::volume(&NATURAL, gradients, &FACES, &WEDGE21, 1e-13);
+    }
+}
