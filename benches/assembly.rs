@@ -9,7 +9,7 @@ mod watch;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use trackbed_fem::{Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh};
+use trackbed_fem::{Elastic, Mesh, Model, ModelInput, Quadrature};
 
 fn main() {
     divan::main();

@@ -15,7 +15,7 @@ use std::sync::{Arc, LazyLock};
 use trackbed::read::{ListLayout, read_lists};
 use trackbed_fem::solver::LinearSolver;
 use trackbed_fem::solver::cholesky::{Analysis, Cholesky};
-use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh};
+use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature};
 
 fn main() {
     divan::main();
