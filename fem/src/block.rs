@@ -1,4 +1,4 @@
-//! A block of equal 20-node bricks: the simplest mesh, for templates, tests and measurements.
+//! Bricks on a grid: the simplest mesh, for templates, tests and measurements.
 
 use crate::element::ElementKind;
 use crate::element::hex20::NATURAL;
@@ -9,11 +9,26 @@ impl Mesh {
     ///
     /// Nodes are numbered along x, then y, then z; so are elements. A count of 0 gives an empty mesh.
     pub fn block(counts: [usize; 3], size: [f64; 3]) -> Mesh {
-        let [nx, ny, nz] = counts.map(|n| 2 * n + 1);
+        let lines: [Vec<f64>; 3] = std::array::from_fn(|d| {
+            (0..=counts[d]).map(|i| size[d] * i as f64 / counts[d].max(1) as f64).collect()
+        });
+        Mesh::grid(&lines)
+    }
+
+    /// A block of 20-node bricks of material 1 between grid planes at ascending coordinates [m] along x, y and z.
+    ///
+    /// Numbered as [`Mesh::block`]. Fewer than two planes along an axis give an empty mesh.
+    pub fn grid(planes: &[Vec<f64>; 3]) -> Mesh {
         let mut mesh = Mesh::default();
-        if counts.contains(&0) {
+        if planes.iter().any(|p| p.len() < 2) {
             return mesh;
         }
+        let counts = [0, 1, 2].map(|d| planes[d].len() - 1);
+        let [nx, ny, nz] = counts.map(|n| 2 * n + 1);
+        let at = |d: usize, i: usize| {
+            let low = planes[d][i / 2];
+            if i % 2 == 0 { low } else { 0.5 * (low + planes[d][i / 2 + 1]) }
+        };
         // On the grid of half elements a node has at most one odd index (a mid-side).
         let mut index = vec![u32::MAX; nx * ny * nz];
         for k in 0..nz {
@@ -21,8 +36,7 @@ impl Mesh {
                 for i in 0..nx {
                     if i % 2 + j % 2 + k % 2 < 2 {
                         index[(k * ny + j) * nx + i] = mesh.coordinates.len() as u32;
-                        let at = |i: usize, d: usize| size[d] * i as f64 / (2 * counts[d]) as f64;
-                        mesh.coordinates.push([at(i, 0), at(j, 1), at(k, 2)]);
+                        mesh.coordinates.push([at(0, i), at(1, j), at(2, k)]);
                     }
                 }
             }
@@ -35,13 +49,12 @@ impl Mesh {
                         let [a, b, c] = natural.map(|v| (v + 1.0) as usize);
                         *node = index[((2 * k + c) * ny + 2 * j + b) * nx + 2 * i + a];
                     }
-                    mesh.connectivity.push(ElementKind::Hex20, &nodes);
+                    let id = mesh.element_count() as u32 + 1;
+                    mesh.push_element(id, 1, ElementKind::Hex20, &nodes);
                 }
             }
         }
-        mesh.node_ids = (1..=mesh.coordinates.len() as u32).collect();
-        mesh.element_ids = (1..=mesh.connectivity.len() as u32).collect();
-        mesh.materials = vec![1; mesh.connectivity.len()];
+        mesh.node_ids = (1..=mesh.node_count() as u32).collect();
         mesh
     }
 }

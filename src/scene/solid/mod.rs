@@ -1,40 +1,88 @@
 //! The solid part as written in a scene.
 
+mod analysis;
+mod boundary;
+mod material;
+mod mesh;
+
+pub use analysis::{
+    Dynamics, InitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant, QuasiStatic, Rayleigh,
+    StrengthReduction,
+};
+pub use boundary::{Absorbing, Side, Support};
+pub use material::{Cone, MaterialModel, SolidMaterial};
+pub use mesh::{Axis, Block, Layer, Order};
+
 use super::history::History;
-use super::units::{Density, Force, Frequency, Length, Quantity, Rate, Stress, Time};
+use super::units::{Force, Length, Quantity, Stress};
 use crate::read::ListLayout;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// `[solid]`: a mesh of 20-node hexahedra from three ANSYS lists, its materials and loads.
+/// `[solid]`: a mesh, its materials, supports and loads, and how it is solved.
+///
+/// The mesh comes from `mesh` (any mesh file), from `nodes` and `elements` (ANSYS lists), or from `block`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Solid {
+    /// Mesh file (`.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`) or a folder with the three lists; relative to the scene.
+    pub mesh: Option<PathBuf>,
     /// Node list, `id x y z`; path relative to the scene file.
-    pub nodes: PathBuf,
+    pub nodes: Option<PathBuf>,
     /// Element list, `id mat n1 … n20` in SOLID186 order.
-    pub elements: PathBuf,
+    pub elements: Option<PathBuf>,
     /// Constraint list, `node dir value`.
     pub constraints: Option<PathBuf>,
     /// Columns of the lists, where their number alone does not tell.
-    #[serde(default)]
-    pub layout: ListLayout,
+    pub layout: Option<ListLayout>,
+    /// A block of bricks made on the spot.
+    pub block: Option<Block>,
+    /// Elements with or without mid-side nodes; default as the mesh has them.
+    pub order: Option<Order>,
     /// Integration rule of the stiffness; default `reduced`.
     #[serde(default)]
     pub integration: Integration,
+    /// Mass matrix; default `consistent`.
+    #[serde(default)]
+    pub mass: Mass,
     /// One entry per material number of the element list.
     #[serde(default)]
     pub material: Vec<SolidMaterial>,
     /// Whether gravity acts on the solid; default true.
     #[serde(default = "super::yes")]
     pub gravity: bool,
+    /// Supports, beside those of the mesh file.
+    #[serde(default)]
+    pub support: Vec<Support>,
+    /// Boundaries that let waves out.
+    #[serde(default)]
+    pub absorbing: Vec<Absorbing>,
+    /// Stress before the run; default none.
+    pub initial_stress: Option<InitialStress>,
     /// Dynamics; without it a solid alone is solved statically. A coupled solid is always dynamic.
     pub dynamics: Option<Dynamics>,
+    /// Equilibrium in steps of a pseudo-time.
+    pub quasi_static: Option<QuasiStatic>,
+    /// Factor of safety by strength reduction.
+    pub strength_reduction: Option<StrengthReduction>,
+    /// How equilibrium is found in a plastic solid.
+    pub newton: Option<Newton>,
     /// Rayleigh damping C = α M + β K; default none.
     pub rayleigh: Option<Rayleigh>,
     /// Loads on the solid.
     #[serde(default)]
     pub load: Vec<SolidLoad>,
+}
+
+/// Mass matrix of the solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mass {
+    /// ∫ ρ Nₐ N_b dV.
+    #[default]
+    Consistent,
+    /// Its diagonal, scaled to the mass of the element.
+    Lumped,
 }
 
 /// Integration rule of the element stiffness.
@@ -50,66 +98,20 @@ pub enum Integration {
     Full,
 }
 
-/// Linear elastic material of the solid.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SolidMaterial {
-    /// Material number of the element list.
-    pub id: u32,
-    /// Name for reports.
-    #[serde(default)]
-    pub name: String,
-    /// Young's modulus [Pa], above 0.
-    pub young: Quantity<Stress>,
-    /// Poisson's ratio, above −1 and below 0.5.
-    pub poisson: f64,
-    /// Density [kg/m³], above 0.
-    pub density: Quantity<Density>,
-}
-
-/// Newmark's method for a solid that runs alone.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Dynamics {
-    /// Newmark α (β elsewhere); default 0.25.
-    #[serde(default = "quarter")]
-    pub alpha: f64,
-    /// Newmark δ (γ elsewhere); default 0.5.
-    #[serde(default = "super::half")]
-    pub delta: f64,
-    /// Accept α and δ that are not unconditionally stable; default false.
-    #[serde(default)]
-    pub accept_conditional_stability: bool,
-}
-
-fn quarter() -> f64 {
-    0.25
-}
-
-/// Rayleigh damping, by its coefficients or by a damping ratio at two frequencies.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Rayleigh {
-    /// Coefficient of the mass [1/s].
-    pub alpha_m: Option<Quantity<Rate>>,
-    /// Coefficient of the stiffness [s].
-    pub beta_k: Option<Quantity<Time>>,
-    /// Damping ratio at both `frequencies`, 0–1.
-    pub damping_ratio: Option<f64>,
-    /// The two frequencies [Hz].
-    pub frequencies: Option<[Quantity<Frequency>; 2]>,
-}
-
 /// A load on the solid.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolidLoad {
     /// What it is.
     pub kind: SolidLoadKind,
-    /// Faces of `pressure` and `traction` as pairs [element number, SOLID186 face 1–6].
+    /// Faces of `pressure` and `traction` as pairs [element number, face from 1].
     pub faces: Option<Vec<[u32; 2]>>,
     /// Instead of `faces`: all boundary faces whose centre lies in this box [m], [[x, y, z] low, high].
     pub faces_in: Option<[[Quantity<Length>; 3]; 2]>,
+    /// Instead of `faces`: all boundary faces on this side of the bounding box.
+    pub side: Option<Side>,
+    /// Instead of `faces`: all boundary faces whose nodes belong to this node set of the mesh file.
+    pub set: Option<String>,
     /// Pressure [Pa]; positive compresses.
     pub pressure: Option<Quantity<Stress>>,
     /// Traction vector [Pa].

@@ -1,0 +1,124 @@
+//! How the solid is solved, as written in a scene.
+
+use crate::scene::units::{Frequency, Length, Quantity, Rate, Stress, Time};
+use serde::Deserialize;
+
+/// `[solid.dynamics]`: Newmark's method, or that of Hilber, Hughes and Taylor, for a solid that runs alone.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Dynamics {
+    /// Newmark α (β elsewhere); default 0.25.
+    pub alpha: Option<f64>,
+    /// Newmark δ (γ elsewhere); default 0.5.
+    pub delta: Option<f64>,
+    /// α of Hilber, Hughes and Taylor, −1/3 to 0, in place of `alpha` and `delta`.
+    pub hht_alpha: Option<f64>,
+    /// Accept α and δ that are not unconditionally stable; default false.
+    #[serde(default)]
+    pub accept_conditional_stability: bool,
+}
+
+/// `solid.rayleigh`: Rayleigh damping, by its coefficients or by a damping ratio at two frequencies.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rayleigh {
+    /// Coefficient of the mass [1/s].
+    pub alpha_m: Option<Quantity<Rate>>,
+    /// Coefficient of the stiffness [s].
+    pub beta_k: Option<Quantity<Time>>,
+    /// Damping ratio at both `frequencies`, 0–1.
+    pub damping_ratio: Option<f64>,
+    /// The two frequencies [Hz].
+    pub frequencies: Option<[Quantity<Frequency>; 2]>,
+}
+
+/// `[solid.quasi_static]`: equilibrium at every step of a pseudo-time, in which loads and supports vary.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct QuasiStatic {
+    /// Smallest part of `time.solid_step` that is tried before the run gives up; default 1/1024.
+    pub smallest_step: Option<f64>,
+    /// Newton iterations above which the next step is made shorter; default 12.
+    pub target_iterations: Option<u32>,
+}
+
+/// `[solid.initial_stress]`: stress that the solid has before the run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InitialStress {
+    /// How it is found.
+    pub method: InitialStressMethod,
+    /// Horizontal over vertical stress, of `k0`; a material's own `k0` comes first.
+    pub k0: Option<f64>,
+    /// Height of the ground's surface [m], of `k0`; default the top of the mesh above each point.
+    pub surface: Option<Quantity<Length>>,
+    /// Stress xx, yy, zz, xy, yz, zx [Pa], of `uniform`.
+    pub stress: Option<[Quantity<Stress>; 6]>,
+    /// Whether displacements start from zero after it; default true.
+    #[serde(default = "crate::scene::yes")]
+    pub reset: bool,
+}
+
+/// How the initial stress is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InitialStressMethod {
+    /// Weight of the ground above, times K₀ sideways; then brought into equilibrium.
+    K0,
+    /// Gravity turned on in steps.
+    Gravity,
+    /// The same stress everywhere; then brought into equilibrium.
+    Uniform,
+}
+
+/// `[solid.strength_reduction]`: the factor by which cohesion and tan φ can be divided before the solid fails.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StrengthReduction {
+    /// A factor at which the solid stands; default 0.5.
+    pub from: Option<f64>,
+    /// A factor at which it fails; default 4.
+    pub to: Option<f64>,
+    /// Width of the bracket that ends the search; default 0.01.
+    pub tolerance: Option<f64>,
+}
+
+/// `[solid.newton]`: how equilibrium is found in a plastic solid.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Newton {
+    /// Which matrix the iteration takes; default `full`.
+    pub variant: Option<NewtonVariant>,
+    /// Whether steps of the iteration are shortened where the energy asks for it; default true.
+    pub line_search: Option<bool>,
+    /// Residual force over the largest force at which equilibrium counts as found; default 1e-6.
+    pub tolerance: Option<f64>,
+    /// Iterations at most; default 40.
+    pub max_iterations: Option<u32>,
+    /// How unsymmetric equations are solved; default `auto`.
+    pub solver: Option<LinearSolver>,
+}
+
+/// Which matrix the iteration takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NewtonVariant {
+    /// The consistent tangent, new in every iteration.
+    Full,
+    /// The tangent of the start of the step.
+    Modified,
+    /// The elastic matrix, factored once.
+    InitialStiffness,
+}
+
+/// How unsymmetric equations are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LinearSolver {
+    /// `direct` for small systems, `krylov` for large ones.
+    Auto,
+    /// LU factorization.
+    Direct,
+    /// GMRES on a kept factor.
+    Krylov,
+}
