@@ -179,7 +179,7 @@ pub fn volume<const N: usize>(
     let distorted: [[f64; 3]; N] = std::array::from_fn(|a| {
         std::array::from_fn(|k| {
             let shear: f64 = (0..3).map(|m| 0.2 * ((2 * k + m) as f64).sin() * natural[a][m]).sum();
-            natural[a][k] + shear + 0.05 * ((7 * a + 3 * k) as f64).sin() + 0.3
+            natural[a][k] + shear + 0.05 * (1.7 * ((a + 1) * (k + 1)) as f64).sin() + 0.3
         })
     });
     for (x, tolerance) in [(natural, 1e-13), (&distorted, tolerance)] {
