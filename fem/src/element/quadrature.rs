@@ -11,8 +11,8 @@
 //! a mode is left. The 14-point rule has full rank at half the cost of 27 points, and misses the curved patch test
 //! by some 1e-3.
 //!
-//! Triangle: Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10 (1956) 130-137 (3 points); Dunavant, Int. J. Numer.
-//! Methods Eng. 21 (1985) 1129-1148 (6 and 7 points). Tetrahedron: Hammer, Marlowe and Stroud (1956) (4 points);
+//! Triangle: Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10 (1956) 130-137 (3 points); Dunavant, Int. J.
+//! Numer. Methods Eng. 21 (1985) 1129-1148 (6 and 7 points). Tetrahedron: Hammer, Marlowe and Stroud (1956) (4 points);
 //! Walkington, Quadrature on simplices of arbitrary dimension (2000) (14 points); Keast, Comput. Methods Appl. Mech.
 //! Eng. 55 (1986) 339-348 (24 points). Their decimals are solved anew to 20 digits from the moment equations. Wedge:
 //! products of triangle and line. Pyramid: conical products, after Hammer, Marlowe and Stroud (1956): Gauss-Jacobi
@@ -206,7 +206,7 @@ const fn pyramid_rule<const N: usize, const P: usize>(
     points
 }
 
-/// The 4 points of the 2×2 rule on a quadrilateral face; the second coordinate runs fastest. Exact to degree 3 per axis.
+/// The 4 points of the 2×2 rule on a face; the second coordinate runs fastest. Exact to degree 3 per axis.
 pub static FACE2: [FacePoint; 4] = face_rule(LINE2);
 /// 3 points inside a triangle; weights sum to 1/2. Exact to degree 2.
 pub static TRIANGLE3: [FacePoint; 3] = triangle_rule(0.0, &[(1.0 / 6.0, 1.0 / 3.0)]);

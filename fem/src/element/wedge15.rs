@@ -17,7 +17,7 @@
 //! corner `N = L (1 + t_a t)(2 L + t_a t - 2) / 2`, mid-side of i and j in a triangle `N = 2 L_i L_j (1 + t_a t)`,
 //! mid-side of an upright `N = L (1 - t²)`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular prisms of the serendipity family).
+//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular prisms, serendipity).
 //! Limits: complete quadratic polynomials while mid-side nodes stay near the middle of straight sides.
 
 use super::tri3;
