@@ -1,16 +1,25 @@
-//! The solid of a scene: mesh read, materials and loads resolved.
+//! The solid of a scene: mesh read, materials, supports and loads resolved.
+
+mod analysis;
+mod boundary;
+mod geometry;
+mod load;
+mod material;
+mod selection;
+
+pub use analysis::{Analysis, InitialStress, InitialStressKind, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan, TimeMethod};
+pub use geometry::{Geometry, geometry};
+pub use load::NodalLoad;
+pub use selection::find_node;
 
 use crate::failure::Failure;
-use crate::scene::history::TimeFunction;
-use crate::scene::solid::{Integration, Rayleigh, Solid, SolidLoad, SolidLoadKind};
-use crate::scene::units::vector;
+use crate::mesh_tools;
+use crate::scene::history::{History, TimeFunction};
+use crate::scene::solid::{Integration, Mass, Rayleigh, Solid};
 use crate::scene::{Document, SceneError};
-use crate::{mesh_tools, read};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
-use trackbed_fem::mesh::{Face, Mesh};
 use trackbed_fem::solver::SolveError;
 
 /// The solid, ready to run.
@@ -19,34 +28,22 @@ pub struct SolidPart {
     pub model: fem::model::Model,
     /// Nodal loads other than gravity, each with its course in time.
     pub loads: Vec<NodalLoad>,
+    /// Supports that move, by position in the model's list of fixed dofs: displacement [m] and its course.
+    pub moving: Vec<(usize, f64, TimeFunction)>,
+    /// Named supports and their dofs, whose reactions are recorded.
+    pub named_supports: Vec<(String, Vec<u32>)>,
     /// File of the constraints, for messages.
     pub constraint_file: PathBuf,
-    /// Newmark's method, for a solid that runs alone and dynamically.
-    pub newmark: Option<fem::newmark::Newmark>,
+    /// How it is solved when it runs alone.
+    pub analysis: Analysis,
+    /// Stress before the run.
+    pub initial_stress: Option<InitialStress>,
+    /// How equilibrium of a plastic solid is found.
+    pub newton: NewtonPlan,
     /// Names of the materials by number, for reports.
     pub material_names: BTreeMap<u32, String>,
     /// Remarks of the readers.
     pub warnings: Vec<String>,
-}
-
-/// A load pattern and how it varies in time.
-pub struct NodalLoad {
-    /// (degree of freedom, force [N]) pairs.
-    pub entries: Vec<(usize, f64)>,
-    /// Factor against time.
-    pub function: TimeFunction,
-}
-
-impl NodalLoad {
-    /// Adds the load at time `t` [s] to `load`, shape `[3·nodes]`.
-    pub fn add(&self, t: f64, load: &mut [f64]) {
-        let factor = self.function.factor(t);
-        if factor != 0.0 {
-            for &(dof, value) in &self.entries {
-                load[dof] += factor * value;
-            }
-        }
-    }
 }
 
 impl SolidPart {
@@ -68,21 +65,23 @@ impl SolidPart {
     pub fn add_loads(&self, t: f64, load: &mut [f64]) {
         self.loads.iter().for_each(|l| l.add(t, load));
     }
-}
 
-/// Reads the mesh of a scene's solid.
-///
-/// # Errors
-/// A list is missing, unreadable or contradictory.
-pub fn read_mesh(document: &Document, solid: &Solid) -> Result<read::Lists, Failure> {
-    let constraints = solid.constraints.as_ref().map(|c| document.resolve(c));
-    read::read_lists(
-        &document.resolve(&solid.nodes),
-        &document.resolve(&solid.elements),
-        constraints.as_deref(),
-        &solid.layout,
-    )
-    .map_err(|e| Failure::Input(e.to_string()))
+    /// Displacements of the fixed dofs at time `t` [m], in the model's order; nothing when no support moves.
+    pub fn prescribed(&self, t: f64) -> Option<Vec<f64>> {
+        if self.moving.is_empty() {
+            return None;
+        }
+        let mut all: Vec<f64> = self.model.supports().fixed().iter().map(|(_, value)| *value).collect();
+        for (position, value, function) in &self.moving {
+            all[*position] = value * function.factor(t);
+        }
+        Some(all)
+    }
+
+    /// Whether the linear solvers can take it: no yield surface and no initial stress.
+    pub fn is_linear(&self) -> bool {
+        self.model.is_linear() && self.initial_stress.is_none()
+    }
 }
 
 /// Resolves `[solid]`.
@@ -90,71 +89,64 @@ pub fn read_mesh(document: &Document, solid: &Solid) -> Result<read::Lists, Fail
 /// # Errors
 /// Bad input in the scene or in the mesh files.
 pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<SolidPart, Failure> {
-    let lists = read_mesh(document, solid)?;
-    let mut materials = BTreeMap::new();
-    let mut material_names = BTreeMap::new();
-    for (i, m) in solid.material.iter().enumerate() {
-        let key = |k: &str| format!("solid.material.{i}.{k}");
-        check(document, &key("young"), m.young.si, m.young.si > 0.0, "a modulus above 0")?;
-        check(
-            document,
-            &key("poisson"),
-            m.poisson,
-            m.poisson > -1.0 && m.poisson < 0.5,
-            "above -1 and below 0.5",
-        )?;
-        check(document, &key("density"), m.density.si, m.density.si > 0.0, "a density above 0")?;
-        let elastic =
-            fem::material::elastic::Elastic { young: m.young.si, poisson: m.poisson, density: m.density.si };
-        if materials.insert(m.id, elastic).is_some() {
-            return Err(document
-                .error(&key("id"), format!("material {} again", m.id), "each number once")
-                .into());
-        }
-        let name = if m.name.is_empty() { format!("material {}", m.id) } else { m.name.clone() };
-        material_names.insert(m.id, name);
-    }
-    for (number, element) in lists.mesh.materials.iter().zip(&lists.mesh.element_ids) {
-        if !materials.contains_key(number) {
+    let geometry = geometry(document, solid)?;
+    let materials = material::materials(document, solid)?;
+    for (number, element) in geometry.mesh.materials.iter().zip(&geometry.mesh.element_ids) {
+        if !materials.constants.contains_key(number) {
             let found = format!("no material {number}, which element {element} has");
             return Err(document.error("solid.material", found, "an entry with this id").into());
         }
     }
     let quadrature = match solid.integration {
-        Integration::Reduced => fem::element::quadrature::Quadrature::Gauss2,
-        Integration::Irons14 => fem::element::quadrature::Quadrature::Irons14,
-        Integration::Full => fem::element::quadrature::Quadrature::Gauss3,
+        Integration::Reduced => fem::Quadrature::Gauss2,
+        Integration::Irons14 => fem::Quadrature::Irons14,
+        Integration::Full => fem::Quadrature::Gauss3,
     };
     let loads = solid
         .load
         .iter()
         .enumerate()
-        .map(|(i, l)| nodal_load(document, &lists.mesh, i, l))
+        .map(|(i, l)| load::nodal_load(document, &geometry, i, l))
         .collect::<Result<Vec<_>, _>>()?;
-    let newmark = match &solid.dynamics {
-        None => None,
-        Some(d) => {
-            let method = fem::newmark::Newmark { alpha: d.alpha, delta: d.delta };
-            let checked = if d.accept_conditional_stability { method.check_range() } else { method.check() };
-            checked.map_err(|e| document.error("solid.dynamics", e.to_string(), "stable constants"))?;
-            Some(method)
-        }
-    };
+    let supports = boundary::supports(document, solid, &geometry)?;
+    let boundaries = boundary::absorbing(document, solid, &geometry, &materials.constants)?;
+    let linear = materials.constants.values().all(|m| m.is_linear());
+    let plans = analysis::plans(document, solid, &materials, linear)?;
+    let Geometry { mesh, element_file, constraint_file, warnings, .. } = geometry;
     let model = fem::model::Model::new(fem::model::ModelInput {
-        mesh: lists.mesh,
-        materials,
+        mesh,
+        materials: materials.constants,
         quadrature,
-        constraints: lists.constraints,
+        mass: match solid.mass {
+            Mass::Consistent => fem::Mass::Consistent,
+            Mass::Lumped => fem::Mass::Lumped,
+        },
+        constraints: supports.constraints,
+        boundaries,
         gravity: if solid.gravity { gravity } else { [0.0; 3] },
         rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
-        ..Default::default()
     })
-    .map_err(|e| refused(&document.resolve(&solid.elements), &e))?;
+    .map_err(|e| refused(&element_file, &e))?;
+    let position = |dof: u32| {
+        let fixed = model.supports().fixed();
+        fixed.binary_search_by_key(&dof, |(d, _)| *d).expect("a support of the model")
+    };
+    let moving = supports.moving.iter().map(|(&dof, &(value, f))| (position(dof), value, f)).collect();
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(model.mesh(), model.constraints());
-    let warnings = lists.warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
-    let constraint_file = document.resolve(solid.constraints.as_deref().unwrap_or(&solid.elements));
-    Ok(SolidPart { model, loads, newmark, constraint_file, material_names, warnings })
+    let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
+    Ok(SolidPart {
+        model,
+        loads,
+        moving,
+        named_supports: supports.named,
+        constraint_file,
+        analysis: plans.analysis,
+        initial_stress: plans.initial_stress,
+        newton: plans.newton,
+        material_names: materials.names,
+        warnings,
+    })
 }
 
 /// What is wrong with the mesh, which shows only when its model is made.
@@ -174,6 +166,20 @@ fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
 
 fn check(document: &Document, key: &str, value: f64, good: bool, expected: &str) -> Result<(), SceneError> {
     if good { Ok(()) } else { Err(document.error(key, value.to_string(), expected)) }
+}
+
+/// Resolves the `history` of the table at `path`.
+fn time_function(
+    document: &Document,
+    path: &str,
+    history: Option<&History>,
+) -> Result<TimeFunction, SceneError> {
+    match history {
+        None => Ok(TimeFunction::CONSTANT),
+        Some(h) => TimeFunction::new(h).map_err(|(k, found, expected)| {
+            document.error(&format!("{path}.history.{k}"), found, expected)
+        }),
+    }
 }
 
 fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::damping::Rayleigh, SceneError> {
@@ -222,173 +228,3 @@ fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::dam
     Ok(result)
 }
 
-fn nodal_load(
-    document: &Document,
-    mesh: &Mesh,
-    index: usize,
-    load: &SolidLoad,
-) -> Result<NodalLoad, SceneError> {
-    let key = |k: &str| format!("solid.load.{index}.{k}");
-    let needs =
-        |k: &str, kind: &str| document.error(&key(k), "nothing", format!("a value for a {kind} load"));
-    let refuse = |k: &str, present: bool| {
-        if present {
-            Err(document.error(&key(k), "a value", "no such key for this kind of load"))
-        } else {
-            Ok(())
-        }
-    };
-    let function = match &load.history {
-        None => TimeFunction::CONSTANT,
-        Some(h) => TimeFunction::new(h)
-            .map_err(|(k, found, expected)| document.error(&key(&format!("history.{k}")), found, expected))?,
-    };
-    let mut pattern = vec![0.0; 3 * mesh.node_count()];
-    match load.kind {
-        SolidLoadKind::Pressure | SolidLoadKind::Traction => {
-            let pressure = load.kind == SolidLoadKind::Pressure;
-            refuse(
-                if pressure { "traction" } else { "pressure" },
-                if pressure { load.traction.is_some() } else { load.pressure.is_some() },
-            )?;
-            refuse("node", load.node.is_some())?;
-            refuse("at", load.at.is_some())?;
-            refuse("force", load.force.is_some())?;
-            for face in &loaded_faces(document, mesh, index, load)? {
-                if pressure {
-                    let p = load.pressure.ok_or_else(|| needs("pressure", "pressure"))?.si;
-                    fem::loads::face_pressure(mesh, face, p, &mut pattern);
-                } else {
-                    let t = vector(&load.traction.ok_or_else(|| needs("traction", "traction"))?);
-                    fem::loads::face_traction(mesh, face, t, &mut pattern);
-                }
-            }
-        }
-        SolidLoadKind::Point => {
-            refuse("faces", load.faces.is_some())?;
-            refuse("faces_in", load.faces_in.is_some())?;
-            refuse("pressure", load.pressure.is_some())?;
-            refuse("traction", load.traction.is_some())?;
-            let force = vector(&load.force.ok_or_else(|| needs("force", "point"))?);
-            match (load.node, load.at) {
-                (Some(id), None) => {
-                    let node = find_node(document, mesh, &key("node"), id)?;
-                    for d in 0..3 {
-                        pattern[3 * node + d] += force[d];
-                    }
-                }
-                (None, Some(at)) => point_load(document, mesh, &key("at"), vector(&at), force, &mut pattern)?,
-                _ => {
-                    return Err(document.error(
-                        &key("node"),
-                        "both or none of `node` and `at`",
-                        "one of them",
-                    ));
-                }
-            }
-        }
-    }
-    let entries = pattern.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(i, v)| (i, *v)).collect();
-    Ok(NodalLoad { entries, function })
-}
-
-/// Index of the node with number `id`.
-///
-/// # Errors
-/// The mesh has no such node.
-pub fn find_node(document: &Document, mesh: &Mesh, key: &str, id: u32) -> Result<usize, SceneError> {
-    mesh.node_ids
-        .iter()
-        .position(|&n| n == id)
-        .ok_or_else(|| document.error(key, format!("node {id}"), "the number of a node of the mesh"))
-}
-
-fn loaded_faces(
-    document: &Document,
-    mesh: &Mesh,
-    index: usize,
-    load: &SolidLoad,
-) -> Result<Vec<Face>, SceneError> {
-    let key = |k: &str| format!("solid.load.{index}.{k}");
-    match (&load.faces, &load.faces_in) {
-        (Some(list), None) => {
-            let elements: HashMap<u32, usize> =
-                mesh.element_ids.iter().enumerate().map(|(i, &id)| (id, i)).collect();
-            list.iter()
-                .map(|&[element, side]| {
-                    let e = elements.get(&element).ok_or_else(|| {
-                        document.error(
-                            &key("faces"),
-                            format!("element {element}"),
-                            "the number of an element of the mesh",
-                        )
-                    })?;
-                    if !(1..=6).contains(&side) {
-                        return Err(document.error(
-                            &key("faces"),
-                            format!("face {side}"),
-                            "a SOLID186 face, 1 to 6",
-                        ));
-                    }
-                    Ok(mesh.face(*e, side as usize - 1))
-                })
-                .collect()
-        }
-        (None, Some([low, high])) => {
-            let (low, high) = (vector(low), vector(high));
-            let faces: Vec<Face> = mesh
-                .boundary_faces()
-                .into_iter()
-                .filter(|f| {
-                    let centre = f.centre(mesh);
-                    (0..3).all(|d| low[d] <= centre[d] && centre[d] <= high[d])
-                })
-                .collect();
-            if faces.is_empty() {
-                return Err(document.error(&key("faces_in"), "no boundary face in the box", "at least one"));
-            }
-            Ok(faces)
-        }
-        _ => Err(document.error(&key("faces"), "both or none of `faces` and `faces_in`", "one of them")),
-    }
-}
-
-/// Spreads a force at a point of the solid over the nodes of the element that holds the point.
-fn point_load(
-    document: &Document,
-    mesh: &Mesh,
-    key: &str,
-    point: [f64; 3],
-    force: [f64; 3],
-    pattern: &mut [f64],
-) -> Result<(), SceneError> {
-    // A little slack lets a point on the surface belong to the solid in spite of rounding.
-    const SLACK: f64 = 1e-9;
-    for (e, element) in mesh.connectivity.iter().enumerate() {
-        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
-        let nodes = &x[..element.len()];
-        let inside_box = (0..3).all(|d| {
-            let low = nodes.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min);
-            let high = nodes.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max);
-            let margin = 0.25 * (high - low);
-            low - margin <= point[d] && point[d] <= high + margin
-        });
-        if !inside_box {
-            continue;
-        }
-        let Some(natural) = inverse_map::natural_point(kind, &x, point, kind.natural_centre()) else {
-            continue;
-        };
-        if kind.contains(natural.xi, SLACK) {
-            let n = kind.shape_functions(natural.xi);
-            for (&node, n) in element.iter().zip(n) {
-                for d in 0..3 {
-                    pattern[3 * node as usize + d] += n * force[d];
-                }
-            }
-            return Ok(());
-        }
-    }
-    let found = format!("({}, {}, {})", point[0], point[1], point[2]);
-    Err(document.error(key, found, "a point of the solid"))
-}

@@ -1,0 +1,271 @@
+//! How the solid is solved, resolved.
+
+use super::check;
+use super::material::Materials;
+use crate::scene::solid::{
+    Dynamics, InitialStress as SceneInitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant,
+    QuasiStatic, Solid, StrengthReduction,
+};
+use crate::scene::{Document, SceneError};
+use std::collections::BTreeMap;
+use trackbed_fem::newmark::Newmark;
+use trackbed_fem::nonlinear::{NewtonOptions, SolverChoice, Variant};
+
+/// How a solid that runs alone is solved.
+#[derive(Clone, Copy, Debug)]
+pub enum Analysis {
+    /// One static solve.
+    Static,
+    /// Time integration.
+    Dynamic(TimeMethod),
+    /// Equilibrium at every step of a pseudo-time.
+    QuasiStatic(QuasiStaticPlan),
+    /// Factor of safety.
+    StrengthReduction(StrengthReductionPlan),
+}
+
+/// Method of time integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeMethod {
+    /// Newmark's.
+    Newmark(Newmark),
+    /// That of Hilber, Hughes and Taylor, with its α, −1/3 to 0.
+    Hht(f64),
+}
+
+/// Steps of a quasi-static run.
+#[derive(Clone, Copy, Debug)]
+pub struct QuasiStaticPlan {
+    /// Smallest part of the step that is tried before giving up.
+    pub smallest_step: f64,
+    /// Newton iterations above which the next step is made shorter.
+    pub target_iterations: u32,
+}
+
+/// Search for the factor of safety.
+#[derive(Clone, Copy, Debug)]
+pub struct StrengthReductionPlan {
+    /// A factor at which the solid stands.
+    pub from: f64,
+    /// A factor at which it fails.
+    pub to: f64,
+    /// Width of the bracket that ends the search.
+    pub tolerance: f64,
+}
+
+/// Stress before the run.
+#[derive(Clone, Debug)]
+pub struct InitialStress {
+    /// How it is found.
+    pub kind: InitialStressKind,
+    /// Whether displacements start from zero after it.
+    pub reset: bool,
+}
+
+/// How the initial stress is found.
+#[derive(Clone, Debug)]
+pub enum InitialStressKind {
+    /// Weight above times K₀ sideways.
+    K0 {
+        /// K₀ of each material.
+        k0: BTreeMap<u32, f64>,
+        /// Height of the surface [m]; none: the top of the mesh above each point.
+        surface: Option<f64>,
+    },
+    /// Gravity turned on in steps.
+    Gravity,
+    /// The same stress everywhere [Pa].
+    Uniform([f64; 6]),
+}
+
+/// Options of the iteration.
+pub type NewtonPlan = NewtonOptions;
+
+/// All of a solid's plans.
+pub struct Plans {
+    /// How it is solved.
+    pub analysis: Analysis,
+    /// Stress before the run.
+    pub initial_stress: Option<InitialStress>,
+    /// Options of the iteration.
+    pub newton: NewtonPlan,
+}
+
+/// Resolves what a scene says about how its solid is solved. `linear`: no material yields.
+///
+/// # Errors
+/// Tables that exclude each other, a value out of range, or a plastic solid without steps.
+pub fn plans(
+    document: &Document,
+    solid: &Solid,
+    materials: &Materials,
+    linear: bool,
+) -> Result<Plans, SceneError> {
+    let chosen = [
+        ("dynamics", solid.dynamics.is_some()),
+        ("quasi_static", solid.quasi_static.is_some()),
+        ("strength_reduction", solid.strength_reduction.is_some()),
+    ];
+    let mut present = chosen.iter().filter(|(_, present)| *present).map(|(name, _)| *name);
+    if let (Some(first), Some(second)) = (present.next(), present.next()) {
+        let key = format!("solid.{second}");
+        return Err(document.error(&key, format!("it beside `{first}`"), "one way to solve the solid"));
+    }
+    let analysis = match (&solid.dynamics, &solid.quasi_static, &solid.strength_reduction) {
+        (Some(d), _, _) => Analysis::Dynamic(time_method(document, d)?),
+        (_, Some(q), _) => Analysis::QuasiStatic(quasi_static(document, q)?),
+        (_, _, Some(s)) => {
+            if linear {
+                let expected = "a material that yields";
+                return Err(document.error("solid.strength_reduction", "elastic materials only", expected));
+            }
+            Analysis::StrengthReduction(strength_reduction(document, s)?)
+        }
+        _ => Analysis::Static,
+    };
+    if solid.newton.is_some() && linear && solid.initial_stress.is_none() {
+        let expected = "no such table for an elastic solid without initial stress";
+        return Err(document.error("solid.newton", "a table", expected));
+    }
+    let initial_stress =
+        solid.initial_stress.as_ref().map(|i| initial_stress(document, i, materials)).transpose()?;
+    if let Some(&first) = materials.k0.keys().next()
+        && !matches!(initial_stress, Some(InitialStress { kind: InitialStressKind::K0 { .. }, .. }))
+    {
+        let position = solid.material.iter().position(|m| m.id == first).unwrap_or(0);
+        let expected = "no such key without `method = \"k0\"` in [solid.initial_stress]";
+        return Err(document.error(&format!("solid.material.{position}.k0"), "a value", expected));
+    }
+    let newton = newton(document, solid.newton.as_ref())?;
+    Ok(Plans { analysis, initial_stress, newton })
+}
+
+fn time_method(document: &Document, d: &Dynamics) -> Result<TimeMethod, SceneError> {
+    if let Some(alpha) = d.hht_alpha {
+        for (key, present) in [
+            ("alpha", d.alpha.is_some()),
+            ("delta", d.delta.is_some()),
+            ("accept_conditional_stability", d.accept_conditional_stability),
+        ] {
+            if present {
+                let key = format!("solid.dynamics.{key}");
+                return Err(document.error(&key, "a value", "no such key beside `hht_alpha`"));
+            }
+        }
+        let good = (-1.0 / 3.0..=0.0).contains(&alpha);
+        check(document, "solid.dynamics.hht_alpha", alpha, good, "-1/3 to 0")?;
+        return Ok(TimeMethod::Hht(alpha));
+    }
+    let method = Newmark { alpha: d.alpha.unwrap_or(0.25), delta: d.delta.unwrap_or(0.5) };
+    let checked = if d.accept_conditional_stability { method.check_range() } else { method.check() };
+    checked.map_err(|e| document.error("solid.dynamics", e.to_string(), "stable constants"))?;
+    Ok(TimeMethod::Newmark(method))
+}
+
+fn quasi_static(document: &Document, q: &QuasiStatic) -> Result<QuasiStaticPlan, SceneError> {
+    let plan = QuasiStaticPlan {
+        smallest_step: q.smallest_step.unwrap_or(1.0 / 1024.0),
+        target_iterations: q.target_iterations.unwrap_or(12),
+    };
+    let good = plan.smallest_step > 0.0 && plan.smallest_step <= 1.0;
+    check(document, "solid.quasi_static.smallest_step", plan.smallest_step, good, "above 0, at most 1")?;
+    let target = plan.target_iterations;
+    let key = "solid.quasi_static.target_iterations";
+    check(document, key, f64::from(target), (2..=1000).contains(&target), "2 to 1000")?;
+    Ok(plan)
+}
+
+fn strength_reduction(
+    document: &Document,
+    s: &StrengthReduction,
+) -> Result<StrengthReductionPlan, SceneError> {
+    let plan = StrengthReductionPlan {
+        from: s.from.unwrap_or(0.5),
+        to: s.to.unwrap_or(4.0),
+        tolerance: s.tolerance.unwrap_or(0.01),
+    };
+    let key = |k: &str| format!("solid.strength_reduction.{k}");
+    check(document, &key("from"), plan.from, plan.from > 0.0 && plan.from.is_finite(), "a factor above 0")?;
+    let good = plan.to > plan.from && plan.to.is_finite();
+    check(document, &key("to"), plan.to, good, "a factor above `from`")?;
+    let good = plan.tolerance > 0.0 && plan.tolerance < plan.to - plan.from;
+    check(document, &key("tolerance"), plan.tolerance, good, "above 0, below the distance of `from` and `to`")?;
+    Ok(plan)
+}
+
+fn initial_stress(
+    document: &Document,
+    i: &SceneInitialStress,
+    materials: &Materials,
+) -> Result<InitialStress, SceneError> {
+    let key = |k: &str| format!("solid.initial_stress.{k}");
+    let method = match i.method {
+        InitialStressMethod::K0 => "k0",
+        InitialStressMethod::Gravity => "gravity",
+        InitialStressMethod::Uniform => "uniform",
+    };
+    for (name, present, of) in [
+        ("k0", i.k0.is_some(), "k0"),
+        ("surface", i.surface.is_some(), "k0"),
+        ("stress", i.stress.is_some(), "uniform"),
+    ] {
+        if present && of != method {
+            let expected = format!("no such key for the method \"{method}\"");
+            return Err(document.error(&key(name), "a value", expected));
+        }
+    }
+    let kind = match i.method {
+        InitialStressMethod::Gravity => InitialStressKind::Gravity,
+        InitialStressMethod::Uniform => {
+            let stress =
+                i.stress.ok_or_else(|| document.error(&key("stress"), "nothing", "six components in Pa"))?;
+            InitialStressKind::Uniform(stress.map(|s| s.si))
+        }
+        InitialStressMethod::K0 => {
+            if let Some(k0) = i.k0 {
+                check(document, &key("k0"), k0, k0 >= 0.0 && k0.is_finite(), "0 or more")?;
+            }
+            let mut all = BTreeMap::new();
+            for (&id, name) in &materials.names {
+                let k0 = materials.k0.get(&id).copied().or(i.k0).ok_or_else(|| {
+                    document.error(&key("k0"), "nothing", format!("a value, or one of its own for {name}"))
+                })?;
+                all.insert(id, k0);
+            }
+            InitialStressKind::K0 { k0: all, surface: i.surface.map(|s| s.si) }
+        }
+    };
+    Ok(InitialStress { kind, reset: i.reset })
+}
+
+fn newton(document: &Document, newton: Option<&Newton>) -> Result<NewtonPlan, SceneError> {
+    let mut plan = NewtonOptions::default();
+    let Some(n) = newton else { return Ok(plan) };
+    if let Some(v) = n.variant {
+        plan.variant = match v {
+            NewtonVariant::Full => Variant::Full,
+            NewtonVariant::Modified => Variant::Modified,
+            NewtonVariant::InitialStiffness => Variant::InitialStiffness,
+        };
+    }
+    if let Some(l) = n.line_search {
+        plan.line_search = l;
+    }
+    if let Some(t) = n.tolerance {
+        check(document, "solid.newton.tolerance", t, t > 0.0 && t < 1.0, "above 0, below 1")?;
+        plan.force_tolerance = t;
+    }
+    if let Some(m) = n.max_iterations {
+        let good = (1..=10_000).contains(&m);
+        check(document, "solid.newton.max_iterations", f64::from(m), good, "1 to 10000")?;
+        plan.max_iterations = m as usize;
+    }
+    if let Some(s) = n.solver {
+        plan.solver = match s {
+            LinearSolver::Auto => SolverChoice::Auto,
+            LinearSolver::Direct => SolverChoice::Direct,
+            LinearSolver::Krylov => SolverChoice::Krylov,
+        };
+    }
+    Ok(plan)
+}

@@ -1,0 +1,135 @@
+//! Supports and absorbing boundaries of the solid, resolved.
+
+use super::geometry::Geometry;
+use super::{check, selection, time_function};
+use crate::scene::history::TimeFunction;
+use crate::scene::solid::Solid;
+use crate::scene::{Document, SceneError};
+use std::collections::BTreeMap;
+use trackbed_fem::boundary::BoundaryLayer;
+use trackbed_fem::material::Material;
+use trackbed_fem::mesh::{Constraint, Mesh};
+
+/// Supports of the scene, joined with those of the mesh file.
+pub struct Supports {
+    /// All of them, with the displacement at time 0.
+    pub constraints: Vec<Constraint>,
+    /// Supports that move: dof (`3 * node + direction`), displacement [m], its course.
+    pub moving: BTreeMap<u32, (f64, TimeFunction)>,
+    /// Named supports and their dofs, for reactions.
+    pub named: Vec<(String, Vec<u32>)>,
+}
+
+/// Resolves `[[solid.support]]`.
+///
+/// # Errors
+/// A key is missing or contradictory, or two supports give one dof different displacements.
+pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Result<Supports, SceneError> {
+    let mut all = Supports {
+        constraints: geometry.constraints.clone(),
+        moving: BTreeMap::new(),
+        named: Vec::new(),
+    };
+    // What each dof is given, by which support of the scene; none for the mesh file's.
+    let mut given: BTreeMap<u32, (f64, Option<usize>)> =
+        all.constraints.iter().map(|c| (3 * c.node + u32::from(c.direction), (c.value, None))).collect();
+    for (i, s) in solid.support.iter().enumerate() {
+        let path = format!("solid.support.{i}");
+        let nodes =
+            selection::nodes(document, geometry, &path, s.side, s.nodes_in, s.set.as_deref(), s.node)?;
+        let directions = directions(document, &format!("{path}.directions"), &s.directions)?;
+        let value = s.displacement.map_or(0.0, |d| d.si);
+        let function = time_function(document, &path, s.history.as_ref())?;
+        if s.history.is_some() && value == 0.0 {
+            let expected = "a displacement beside it that is not 0";
+            return Err(document.error(&format!("{path}.history"), "a course of nothing", expected));
+        }
+        let mut dofs = Vec::new();
+        for &node in &nodes {
+            for &direction in &directions {
+                let dof = 3 * node + u32::from(direction);
+                dofs.push(dof);
+                let start = value * function.factor(0.0);
+                if let Some(&(other, by)) = given.get(&dof) {
+                    let moves = s.history.is_some() || all.moving.contains_key(&dof);
+                    if moves || other != value {
+                        let id = geometry.mesh.node_ids[node as usize];
+                        let axis = ["x", "y", "z"][direction as usize];
+                        let first = by.map_or("the mesh file".into(), |k| format!("solid.support.{k}"));
+                        let found = format!("node {id} in {axis}, which {first} holds already");
+                        return Err(document.error(&path, found, "one course for each direction of a node"));
+                    }
+                } else {
+                    given.insert(dof, (value, Some(i)));
+                    all.constraints.push(Constraint { node, direction, value: start });
+                    if s.history.is_some() {
+                        all.moving.insert(dof, (value, function));
+                    }
+                }
+            }
+        }
+        if let Some(name) = &s.name {
+            if name.is_empty() || name.contains([',', '"', '\n']) {
+                let expected = "a name without commas or quotes";
+                return Err(document.error(&format!("{path}.name"), format!("\"{name}\""), expected));
+            }
+            all.named.push((name.clone(), dofs));
+        }
+    }
+    Ok(all)
+}
+
+fn directions(document: &Document, key: &str, names: &[String]) -> Result<Vec<u8>, SceneError> {
+    let wrong = |found: String| document.error(key, found, "one or more of \"x\", \"y\", \"z\", each once");
+    let mut directions = Vec::new();
+    for name in names {
+        let direction =
+            ["x", "y", "z"].iter().position(|d| d == name).ok_or_else(|| wrong(format!("\"{name}\"")))? as u8;
+        if directions.contains(&direction) {
+            return Err(wrong(format!("\"{name}\" again")));
+        }
+        directions.push(direction);
+    }
+    if directions.is_empty() { Err(wrong("none".into())) } else { Ok(directions) }
+}
+
+/// Resolves `[[solid.absorbing]]`: one layer for each material that the faces belong to.
+///
+/// # Errors
+/// No face, or a factor out of range.
+pub fn absorbing(
+    document: &Document,
+    solid: &Solid,
+    geometry: &Geometry,
+    materials: &BTreeMap<u32, Material>,
+) -> Result<Vec<BoundaryLayer>, SceneError> {
+    let mesh: &Mesh = &geometry.mesh;
+    let mut layers = Vec::new();
+    for (i, a) in solid.absorbing.iter().enumerate() {
+        let path = format!("solid.absorbing.{i}");
+        let faces =
+            selection::faces(document, geometry, &path, None, a.faces_in, a.side, a.set.as_deref())?;
+        for (key, factor) in [("normal", a.normal), ("tangential", a.tangential)] {
+            let good = factor >= 0.0 && factor.is_finite();
+            check(document, &format!("{path}.{key}"), factor, good, "0 or more")?;
+        }
+        if let Some(r) = a.radius {
+            check(document, &format!("{path}.radius"), r.si, r.si > 0.0, "a distance above 0")?;
+        }
+        let mut by_material: BTreeMap<u32, Vec<_>> = BTreeMap::new();
+        for face in faces {
+            by_material.entry(mesh.materials[face.element as usize]).or_default().push(face);
+        }
+        for (number, faces) in by_material {
+            let Some(material) = materials.get(&number) else { continue };
+            let mut layer = BoundaryLayer::absorbing(faces, &material.elastic);
+            layer.dashpot_normal *= a.normal;
+            layer.dashpot_tangential *= a.tangential;
+            if let Some(r) = a.radius {
+                layer = layer.with_springs(&material.elastic, r.si);
+            }
+            layers.push(layer);
+        }
+    }
+    Ok(layers)
+}

@@ -1,0 +1,224 @@
+//! The mesh of a scene's solid: read from files, or made on the spot.
+
+use super::check;
+use crate::failure::Failure;
+use crate::read;
+use crate::scene::solid::{Axis, Block, Order, Solid};
+use crate::scene::{Document, SceneError};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use trackbed_fem::mesh::{Constraint, Mesh};
+
+/// A mesh with what its file says about it.
+#[derive(Debug, Default)]
+pub struct Geometry {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Constraints of the file.
+    pub constraints: Vec<Constraint>,
+    /// Node sets of the file: node indices, ascending.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// File that the elements come from, for messages.
+    pub element_file: PathBuf,
+    /// File that the constraints come from, for messages.
+    pub constraint_file: PathBuf,
+    /// Remarks of the reader.
+    pub warnings: Vec<String>,
+}
+
+/// Reads or makes the mesh of a scene's solid.
+///
+/// # Errors
+/// No source or several, or a file is missing, unreadable or contradictory.
+pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure> {
+    let mut geometry = match (&solid.mesh, &solid.nodes, &solid.elements, &solid.block) {
+        (Some(file), None, None, None) => {
+            refuse(document, "layout", solid.layout.is_some(), "with lists alone")?;
+            refuse(document, "constraints", solid.constraints.is_some(), "with lists alone")?;
+            let path = document.resolve(file);
+            let read = read::read_mesh_file(&path)?;
+            Geometry {
+                mesh: read.mesh,
+                constraints: read.constraints,
+                node_sets: read.node_sets,
+                element_file: path.clone(),
+                constraint_file: path,
+                warnings: read.warnings,
+            }
+        }
+        (None, Some(nodes), Some(elements), None) => {
+            let constraints = solid.constraints.as_ref().map(|c| document.resolve(c));
+            let element_file = document.resolve(elements);
+            let layout = solid.layout.clone().unwrap_or_default();
+            let lists =
+                read::read_lists(&document.resolve(nodes), &element_file, constraints.as_deref(), &layout)?;
+            Geometry {
+                mesh: lists.mesh,
+                constraints: lists.constraints,
+                constraint_file: constraints.unwrap_or_else(|| element_file.clone()),
+                element_file,
+                warnings: lists.warnings,
+                ..Geometry::default()
+            }
+        }
+        (None, None, None, Some(b)) => {
+            refuse(document, "layout", solid.layout.is_some(), "with lists alone")?;
+            refuse(document, "constraints", solid.constraints.is_some(), "with lists alone")?;
+            let file = document.file().to_path_buf();
+            Geometry {
+                mesh: block(document, b)?,
+                element_file: file.clone(),
+                constraint_file: file,
+                ..Geometry::default()
+            }
+        }
+        (None, Some(_), None, None) => {
+            return Err(document.error("solid.elements", "nothing", "the element list beside `nodes`").into());
+        }
+        (None, None, Some(_), None) => {
+            return Err(document.error("solid.nodes", "nothing", "the node list beside `elements`").into());
+        }
+        _ => {
+            let found = "none or several of `mesh`, `nodes` with `elements`, and `block`";
+            return Err(document.error("solid", found, "one source of the mesh").into());
+        }
+    };
+    if !solid.support.is_empty() && solid.constraints.is_none() && geometry.constraints.is_empty() {
+        geometry.constraint_file = document.file().to_path_buf();
+    }
+    match solid.order {
+        Some(Order::Linear) => reorder(&mut geometry, Mesh::to_linear),
+        Some(Order::Quadratic) => reorder(&mut geometry, Mesh::to_quadratic),
+        None => {}
+    }
+    Ok(geometry)
+}
+
+/// Changes the order of the elements; constraints and sets keep the nodes that are left.
+fn reorder(geometry: &mut Geometry, change: impl Fn(&Mesh) -> Mesh) {
+    let old = std::mem::take(&mut geometry.mesh);
+    geometry.mesh = change(&old);
+    let index: BTreeMap<u32, u32> =
+        geometry.mesh.node_ids.iter().enumerate().map(|(i, &id)| (id, i as u32)).collect();
+    let moved = |n: u32| index.get(&old.node_ids[n as usize]).copied();
+    geometry.constraints = geometry
+        .constraints
+        .iter()
+        .filter_map(|c| moved(c.node).map(|node| Constraint { node, ..*c }))
+        .collect();
+    for set in geometry.node_sets.values_mut() {
+        *set = set.iter().filter_map(|n| moved(*n)).collect();
+        set.sort_unstable();
+    }
+}
+
+fn refuse(document: &Document, key: &str, present: bool, only: &str) -> Result<(), SceneError> {
+    if present {
+        Err(document.error(&format!("solid.{key}"), "a value", format!("no such key: it goes {only}")))
+    } else {
+        Ok(())
+    }
+}
+
+fn block(document: &Document, block: &Block) -> Result<Mesh, SceneError> {
+    let planes = [
+        planes(document, "x", &block.x)?,
+        planes(document, "y", &block.y)?,
+        planes(document, "z", &block.z)?,
+    ];
+    let elements: usize = planes.iter().map(|p| p.len() - 1).product();
+    if elements > 20_000_000 {
+        return Err(document.error("solid.block", format!("{elements} elements"), "at most 20000000"));
+    }
+    let mut mesh = Mesh::grid(&planes);
+    let ends = |p: &[f64]| (p[0], p[p.len() - 1]);
+    let (bottom, top) = ends(&planes[2]);
+    let mut from = bottom;
+    for (i, layer) in block.layer.iter().enumerate() {
+        let last = i + 1 == block.layer.len();
+        let key = format!("solid.block.layer.{i}.top");
+        let to = match layer.top {
+            Some(t) => t.si,
+            None if last => top,
+            None => return Err(document.error(&key, "nothing", "the top of a layer below others")),
+        };
+        if !(to > from && to <= top * (1.0 + 1e-12)) && to != top {
+            let expected = format!("above {from} m, at most {top} m");
+            return Err(document.error(&key, format!("{to} m"), expected));
+        }
+        if last && to < top {
+            return Err(document.error(&key, format!("{to} m"), format!("{top} m: the last layer ends at the top")));
+        }
+        for e in 0..mesh.element_count() {
+            let height = mesh.element_centre(e)[2];
+            if height > from && height < to {
+                mesh.materials[e] = layer.material;
+            }
+        }
+        from = to;
+    }
+    if let Some(crest) = block.crest {
+        let (low, high) = ends(&planes[0]);
+        let width = high - low;
+        check(document, "solid.block.crest", crest.si, crest.si > 0.0, "a width above 0")?;
+        for x in &mut mesh.coordinates {
+            let share = (x[2] - bottom) / (top - bottom);
+            let middle = 0.5 * (low + high);
+            x[0] = middle + (x[0] - middle) * (1.0 + share * (crest.si / width - 1.0));
+        }
+    }
+    Ok(mesh)
+}
+
+/// The grid planes of an axis.
+fn planes(document: &Document, name: &str, axis: &Axis) -> Result<Vec<f64>, SceneError> {
+    let key = |k: &str| format!("solid.block.{name}.{k}");
+    let lines: Vec<f64> = axis.lines.iter().map(|l| l.si).collect();
+    if lines.len() < 2 || lines.windows(2).any(|w| w[1] <= w[0]) {
+        return Err(document.error(&key("lines"), format!("{lines:?}"), "two or more ascending coordinates"));
+    }
+    let intervals = lines.len() - 1;
+    if axis.counts.len() != intervals || axis.counts.contains(&0) {
+        let expected = format!("{intervals} numbers of 1 or more, one for each interval of `lines`");
+        return Err(document.error(&key("counts"), format!("{:?}", axis.counts), expected));
+    }
+    let ratios = axis.ratios.clone().unwrap_or_else(|| vec![1.0; intervals]);
+    if ratios.len() != intervals || ratios.iter().any(|r| !(r.is_finite() && *r > 0.0)) {
+        let expected = format!("{intervals} numbers above 0, one for each interval of `lines`");
+        return Err(document.error(&key("ratios"), format!("{ratios:?}"), expected));
+    }
+    let mut planes = vec![lines[0]];
+    for i in 0..intervals {
+        let (low, high, count) = (lines[i], lines[i + 1], axis.counts[i]);
+        // Element lengths are a geometric row whose last is `ratio` times its first.
+        let growth = if count > 1 { ratios[i].powf(1.0 / (count - 1) as f64) } else { 1.0 };
+        let total: f64 = (0..count).map(|k| growth.powi(k as i32)).sum();
+        let mut sum = 0.0;
+        for k in 0..count - 1 {
+            sum += growth.powi(k as i32);
+            planes.push(low + (high - low) * sum / total);
+        }
+        planes.push(high);
+    }
+    Ok(planes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::units::Quantity;
+
+    #[test]
+    fn a_graded_axis_keeps_its_lines_and_ratios() {
+        let document = Document::parse(std::path::Path::new("x.toml"), String::new()).unwrap();
+        let axis = Axis {
+            lines: [0.0, 1.0, 4.0].map(Quantity::new).to_vec(),
+            counts: vec![2, 3],
+            ratios: Some(vec![1.0, 4.0]),
+        };
+        let p = planes(&document, "x", &axis).unwrap();
+        assert_eq!((p.len(), p[0], p[2], p[5]), (6, 0.0, 1.0, 4.0));
+        assert!(((p[5] - p[4]) / (p[3] - p[2]) - 4.0).abs() < 1e-12);
+        assert_eq!(p[1], 0.5);
+    }
+}

@@ -1,0 +1,147 @@
+//! Loads on the solid, resolved to nodal forces with a course in time.
+
+use super::geometry::Geometry;
+use super::{selection, time_function};
+use crate::scene::history::TimeFunction;
+use crate::scene::solid::{SolidLoad, SolidLoadKind};
+use crate::scene::units::vector;
+use crate::scene::{Document, SceneError};
+use trackbed_coupling::inverse_map;
+use trackbed_fem as fem;
+use trackbed_fem::mesh::Mesh;
+
+/// A load pattern and how it varies in time.
+pub struct NodalLoad {
+    /// (degree of freedom, force [N]) pairs.
+    pub entries: Vec<(usize, f64)>,
+    /// Factor against time.
+    pub function: TimeFunction,
+}
+
+impl NodalLoad {
+    /// Adds the load at time `t` [s] to `load`, shape `[3·nodes]`.
+    pub fn add(&self, t: f64, load: &mut [f64]) {
+        let factor = self.function.factor(t);
+        if factor != 0.0 {
+            for &(dof, value) in &self.entries {
+                load[dof] += factor * value;
+            }
+        }
+    }
+}
+
+/// Resolves one `[[solid.load]]`.
+///
+/// # Errors
+/// A key is missing or not one of this kind of load, or it covers no face.
+pub fn nodal_load(
+    document: &Document,
+    geometry: &Geometry,
+    index: usize,
+    load: &SolidLoad,
+) -> Result<NodalLoad, SceneError> {
+    let mesh = &geometry.mesh;
+    let path = format!("solid.load.{index}");
+    let key = |k: &str| format!("solid.load.{index}.{k}");
+    let needs =
+        |k: &str, kind: &str| document.error(&key(k), "nothing", format!("a value for a {kind} load"));
+    let refuse = |k: &str, present: bool| {
+        if present {
+            Err(document.error(&key(k), "a value", "no such key for this kind of load"))
+        } else {
+            Ok(())
+        }
+    };
+    let function = time_function(document, &path, load.history.as_ref())?;
+    let mut pattern = vec![0.0; 3 * mesh.node_count()];
+    match load.kind {
+        SolidLoadKind::Pressure | SolidLoadKind::Traction => {
+            let pressure = load.kind == SolidLoadKind::Pressure;
+            refuse(
+                if pressure { "traction" } else { "pressure" },
+                if pressure { load.traction.is_some() } else { load.pressure.is_some() },
+            )?;
+            refuse("node", load.node.is_some())?;
+            refuse("at", load.at.is_some())?;
+            refuse("force", load.force.is_some())?;
+            let (list, set) = (load.faces.as_deref(), load.set.as_deref());
+            let faces = selection::faces(document, geometry, &path, list, load.faces_in, load.side, set)?;
+            for face in &faces {
+                if pressure {
+                    let p = load.pressure.ok_or_else(|| needs("pressure", "pressure"))?.si;
+                    fem::loads::face_pressure(mesh, face, p, &mut pattern);
+                } else {
+                    let t = vector(&load.traction.ok_or_else(|| needs("traction", "traction"))?);
+                    fem::loads::face_traction(mesh, face, t, &mut pattern);
+                }
+            }
+        }
+        SolidLoadKind::Point => {
+            refuse("faces", load.faces.is_some())?;
+            refuse("faces_in", load.faces_in.is_some())?;
+            refuse("side", load.side.is_some())?;
+            refuse("set", load.set.is_some())?;
+            refuse("pressure", load.pressure.is_some())?;
+            refuse("traction", load.traction.is_some())?;
+            let force = vector(&load.force.ok_or_else(|| needs("force", "point"))?);
+            match (load.node, load.at) {
+                (Some(id), None) => {
+                    let node = selection::find_node(document, mesh, &key("node"), id)?;
+                    for d in 0..3 {
+                        pattern[3 * node + d] += force[d];
+                    }
+                }
+                (None, Some(at)) => point_load(document, mesh, &key("at"), vector(&at), force, &mut pattern)?,
+                _ => {
+                    return Err(document.error(
+                        &key("node"),
+                        "both or none of `node` and `at`",
+                        "one of them",
+                    ));
+                }
+            }
+        }
+    }
+    let entries = pattern.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(i, v)| (i, *v)).collect();
+    Ok(NodalLoad { entries, function })
+}
+
+/// Spreads a force at a point of the solid over the nodes of the element that holds the point.
+fn point_load(
+    document: &Document,
+    mesh: &Mesh,
+    key: &str,
+    point: [f64; 3],
+    force: [f64; 3],
+    pattern: &mut [f64],
+) -> Result<(), SceneError> {
+    // A little slack lets a point on the surface belong to the solid in spite of rounding.
+    const SLACK: f64 = 1e-9;
+    for (e, element) in mesh.connectivity.iter().enumerate() {
+        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
+        let nodes = &x[..element.len()];
+        let inside_box = (0..3).all(|d| {
+            let low = nodes.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min);
+            let high = nodes.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max);
+            let margin = 0.25 * (high - low);
+            low - margin <= point[d] && point[d] <= high + margin
+        });
+        if !inside_box {
+            continue;
+        }
+        let Some(natural) = inverse_map::natural_point(kind, &x, point, kind.natural_centre()) else {
+            continue;
+        };
+        if kind.contains(natural.xi, SLACK) {
+            let n = kind.shape_functions(natural.xi);
+            for (&node, n) in element.iter().zip(n) {
+                for d in 0..3 {
+                    pattern[3 * node as usize + d] += n * force[d];
+                }
+            }
+            return Ok(());
+        }
+    }
+    let found = format!("({}, {}, {})", point[0], point[1], point[2]);
+    Err(document.error(key, found, "a point of the solid"))
+}

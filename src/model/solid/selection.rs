@@ -1,0 +1,166 @@
+//! Nodes and faces that a scene chooses by side, box, set or number.
+
+use super::geometry::Geometry;
+use crate::scene::solid::Side;
+use crate::scene::units::{Length, Quantity, vector};
+use crate::scene::{Document, SceneError};
+use std::collections::HashMap;
+use trackbed_fem::mesh::{Face, Mesh};
+
+/// Part of the bounding box's largest edge within which a node counts as on its side.
+const ON_SIDE: f64 = 1e-6;
+
+/// A box as a scene writes it, [low, high].
+pub type SceneBox = [[Quantity<Length>; 3]; 2];
+
+/// Index of the node with number `id`.
+///
+/// # Errors
+/// The mesh has no such node.
+pub fn find_node(document: &Document, mesh: &Mesh, key: &str, id: u32) -> Result<usize, SceneError> {
+    mesh.node_ids
+        .iter()
+        .position(|&n| n == id)
+        .ok_or_else(|| document.error(key, format!("node {id}"), "the number of a node of the mesh"))
+}
+
+/// Nodes of a support, ascending. `path` is the key of its table.
+///
+/// # Errors
+/// None or several of the keys are given, or no node answers to them.
+pub fn nodes(
+    document: &Document,
+    geometry: &Geometry,
+    path: &str,
+    side: Option<Side>,
+    within: Option<SceneBox>,
+    set: Option<&str>,
+    node: Option<u32>,
+) -> Result<Vec<u32>, SceneError> {
+    let mesh = &geometry.mesh;
+    let all = 0..mesh.node_count() as u32;
+    let x = |n: &u32| mesh.coordinates[*n as usize];
+    match (side, within, set, node) {
+        (Some(side), None, None, None) => {
+            let on = on_side(mesh, side);
+            Ok(all.filter(|n| on(x(n))).collect())
+        }
+        (None, Some(within), None, None) => {
+            let inside = in_box(mesh, within);
+            let chosen: Vec<u32> = all.filter(|n| inside(x(n))).collect();
+            if chosen.is_empty() {
+                return Err(document.error(&format!("{path}.nodes_in"), "no node in the box", "at least one"));
+            }
+            Ok(chosen)
+        }
+        (None, None, Some(name), None) => node_set(document, geometry, path, name).cloned(),
+        (None, None, None, Some(id)) => {
+            Ok(vec![find_node(document, mesh, &format!("{path}.node"), id)? as u32])
+        }
+        _ => {
+            let found = "none or several of `side`, `nodes_in`, `set` and `node`";
+            Err(document.error(path, found, "one of them"))
+        }
+    }
+}
+
+/// Boundary faces that a load or an absorbing boundary covers. `path` is the key of its table.
+///
+/// # Errors
+/// None or several of the keys are given, or no face answers to them.
+pub fn faces(
+    document: &Document,
+    geometry: &Geometry,
+    path: &str,
+    list: Option<&[[u32; 2]]>,
+    within: Option<SceneBox>,
+    side: Option<Side>,
+    set: Option<&str>,
+) -> Result<Vec<Face>, SceneError> {
+    let mesh = &geometry.mesh;
+    let boundary = |key: &str, what: &str, keep: &dyn Fn(&Face) -> bool| {
+        let faces: Vec<Face> = mesh.boundary_faces().into_iter().filter(keep).collect();
+        if faces.is_empty() {
+            Err(document.error(&format!("{path}.{key}"), format!("no boundary face {what}"), "at least one"))
+        } else {
+            Ok(faces)
+        }
+    };
+    match (list, within, side, set) {
+        (Some(list), None, None, None) => listed(document, mesh, &format!("{path}.faces"), list),
+        (None, Some(within), None, None) => {
+            let inside = in_box(mesh, within);
+            boundary("faces_in", "in the box", &|f| inside(f.centre(mesh)))
+        }
+        (None, None, Some(side), None) => {
+            let on = on_side(mesh, side);
+            boundary("side", "on this side", &|f| f.nodes().iter().all(|n| on(mesh.coordinates[*n as usize])))
+        }
+        (None, None, None, Some(name)) => {
+            let set = node_set(document, geometry, path, name)?;
+            let mut member = vec![false; mesh.node_count()];
+            set.iter().for_each(|n| member[*n as usize] = true);
+            boundary("set", "with all its nodes in the set", &|f| {
+                f.nodes().iter().all(|n| member[*n as usize])
+            })
+        }
+        _ => {
+            let found = "none or several of `faces`, `faces_in`, `side` and `set`";
+            Err(document.error(path, found, "one of them"))
+        }
+    }
+}
+
+fn node_set<'g>(
+    document: &Document,
+    geometry: &'g Geometry,
+    path: &str,
+    name: &str,
+) -> Result<&'g Vec<u32>, SceneError> {
+    geometry.node_sets.get(name).ok_or_else(|| {
+        let known: Vec<&str> = geometry.node_sets.keys().map(String::as_str).collect();
+        let expected = if known.is_empty() {
+            "a node set of the mesh file, which has none".into()
+        } else {
+            format!("a node set of the mesh file: {}", known.join(", "))
+        };
+        document.error(&format!("{path}.set"), format!("\"{name}\""), expected)
+    })
+}
+
+fn listed(document: &Document, mesh: &Mesh, key: &str, list: &[[u32; 2]]) -> Result<Vec<Face>, SceneError> {
+    let elements: HashMap<u32, usize> = mesh.element_ids.iter().enumerate().map(|(i, &id)| (id, i)).collect();
+    list.iter()
+        .map(|&[element, side]| {
+            let e = *elements.get(&element).ok_or_else(|| {
+                document.error(key, format!("element {element}"), "the number of an element of the mesh")
+            })?;
+            let faces = mesh.connectivity.kind(e).faces().len();
+            if !(1..=faces as u32).contains(&side) {
+                let expected = if faces == 6 {
+                    "a SOLID186 face, 1 to 6".to_string()
+                } else {
+                    format!("a face of the {}, 1 to {faces}", mesh.connectivity.kind(e).name())
+                };
+                return Err(document.error(key, format!("face {side}"), expected));
+            }
+            Ok(mesh.face(e, side as usize - 1))
+        })
+        .collect()
+}
+
+fn on_side(mesh: &Mesh, side: Side) -> impl Fn([f64; 3]) -> bool {
+    let (low, high) = mesh.bounding_box();
+    let (axis, upper) = side.axis();
+    let near = ON_SIDE * (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    let at = if upper { high[axis] } else { low[axis] };
+    move |x| (x[axis] - at).abs() <= near
+}
+
+/// Whether a point lies in a box; a millionth of the mesh's size counts as inside.
+fn in_box(mesh: &Mesh, [low, high]: SceneBox) -> impl Fn([f64; 3]) -> bool {
+    let (least, greatest) = mesh.bounding_box();
+    let near = 1e-9 * (0..3).map(|k| greatest[k] - least[k]).fold(0.0, f64::max);
+    let (low, high) = (vector(&low), vector(&high));
+    move |x| (0..3).all(|d| low[d] - near <= x[d] && x[d] <= high[d] + near)
+}
