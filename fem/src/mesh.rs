@@ -179,6 +179,14 @@ impl Mesh {
         values
     }
 
+    /// The middle of element `element` (index) [m].
+    pub fn element_centre(&self, element: usize) -> [f64; 3] {
+        let kind = self.connectivity.kind(element);
+        let n = kind.shape_functions(kind.natural_centre());
+        let x = self.element_coordinates(element);
+        std::array::from_fn(|k| x.iter().zip(&n).map(|(x, n)| n * x[k]).sum())
+    }
+
     /// Volume of element `element` [m³], by the rule of the mass.
     pub fn element_volume(&self, element: usize) -> f64 {
         let x = self.element_coordinates(element);

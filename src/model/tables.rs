@@ -70,6 +70,38 @@ pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
     Ok(spheres)
 }
 
+/// Rows `time, factor` [s, -] of a history; a first row that is not numbers is a heading.
+///
+/// # Errors
+/// The file is missing, a row has too few columns, a value is no finite number, or times do not ascend.
+pub fn history(file: &Path) -> Result<Vec<(f64, f64)>, ReadError> {
+    let content = text(file, "history")?;
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for (n, (line, fields)) in rows(&content).enumerate() {
+        if n == 0 && fields[0].parse::<f64>().is_err() {
+            continue;
+        }
+        if fields.len() < 2 {
+            return Err(fault(file, Some(line), "row", format!("{} columns", fields.len()), "time, factor"));
+        }
+        let number = |k: usize, name: &str| {
+            let value = fields[k].parse::<f64>().ok().filter(|v| v.is_finite());
+            value.ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", fields[k]), "a number"))
+        };
+        let (time, factor) = (number(0, "time")?, number(1, "factor")?);
+        if let Some(&(before, _)) = points.last()
+            && time <= before
+        {
+            return Err(fault(file, Some(line), "time", time.to_string(), format!("a time after {before} s")));
+        }
+        points.push((time, factor));
+    }
+    if points.is_empty() {
+        return Err(fault(file, None, "history", "no row", "at least one row of time, factor"));
+    }
+    Ok(points)
+}
+
 /// The middle of the limits of one grade of a sieve table.
 ///
 /// # Errors

@@ -2,6 +2,7 @@
 
 use super::units::{Frequency, Quantity, Time};
 use serde::Deserialize;
+use std::path::PathBuf;
 use std::f64::consts::TAU;
 
 /// Shape of a load in time.
@@ -16,6 +17,8 @@ pub enum HistoryKind {
     Sine,
     /// (1 − cos 2πft)/2 = sin² πft: from 0 to 1 and back in each period.
     Haversine,
+    /// Straight lines between given points.
+    Table,
 }
 
 /// A dimensionless factor as a function of time.
@@ -30,32 +33,68 @@ pub struct History {
     pub cycles: Option<f64>,
     /// Rise time of `ramp` [s].
     pub duration: Option<Quantity<Time>>,
+    /// Points of `table`: [[time, factor], …], times ascending; constant before the first and after the last.
+    pub points: Option<Vec<(Quantity<Time>, f64)>>,
+    /// CSV file with the points of `table`: rows time [s], factor.
+    pub file: Option<PathBuf>,
     /// Time before which the factor is 0 [s]; default 0.
     pub start: Option<Quantity<Time>>,
 }
 
 /// A checked history.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct TimeFunction {
     kind: HistoryKind,
     frequency: f64,
     start: f64,
     end: f64,
+    /// (time [s], factor) of a table, times ascending.
+    points: Vec<(f64, f64)>,
 }
 
 impl TimeFunction {
     /// The factor 1 at all times.
-    pub const CONSTANT: TimeFunction =
-        TimeFunction { kind: HistoryKind::Constant, frequency: 0.0, start: 0.0, end: f64::INFINITY };
+    pub const CONSTANT: TimeFunction = TimeFunction {
+        kind: HistoryKind::Constant,
+        frequency: 0.0,
+        start: 0.0,
+        end: f64::INFINITY,
+        points: Vec::new(),
+    };
 
-    /// Checks what a scene wrote; the error names the key, what was found and what was expected.
+    /// Checks what a scene wrote; the error names the key, what was found and what was expected. `rows` are those of
+    /// `history.file`, which the caller has read.
     ///
     /// # Errors
     /// A key that the kind needs is missing, one it does not use is there, or a value is out of range.
-    pub fn new(history: &History) -> Result<TimeFunction, (&'static str, String, &'static str)> {
+    pub fn new(
+        history: &History,
+        rows: Option<Vec<(f64, f64)>>,
+    ) -> Result<TimeFunction, (&'static str, String, &'static str)> {
         let periodic = matches!(history.kind, HistoryKind::Sine | HistoryKind::Haversine);
         let start = history.start.map_or(0.0, |s| s.si);
-        let mut function = TimeFunction { kind: history.kind, frequency: 0.0, start, end: f64::INFINITY };
+        let mut function = TimeFunction { kind: history.kind, start, ..TimeFunction::CONSTANT };
+        let table = history.kind == HistoryKind::Table;
+        for (key, present) in [("points", history.points.is_some()), ("file", history.file.is_some())] {
+            if present && !table {
+                return Err((key, "a value".into(), "no such key for this kind of history"));
+            }
+        }
+        if table {
+            let points = history.points.as_ref().map(|p| p.iter().map(|(t, f)| (t.si, *f)).collect());
+            function.points = match (points, rows) {
+                (Some(points), None) => points,
+                (None, Some(rows)) => rows,
+                _ => return Err(("points", "both or none of `points` and `file`".into(), "one of them")),
+            };
+            let points = &function.points;
+            if points.is_empty() || points.windows(2).any(|w| w[1].0 <= w[0].0) {
+                return Err(("points", format!("{} points", points.len()), "points with ascending times"));
+            }
+            if points.iter().any(|p| !p.1.is_finite()) {
+                return Err(("points", "a factor that is not finite".into(), "finite factors"));
+            }
+        }
         match history.frequency {
             Some(f) if !periodic => {
                 return Err(("frequency", format!("{}", f.si), "no such key for this kind of history"));
@@ -102,6 +141,17 @@ impl TimeFunction {
             HistoryKind::Ramp => phase.min(1.0),
             HistoryKind::Sine => (TAU * phase).sin(),
             HistoryKind::Haversine => 0.5 * (1.0 - (TAU * phase).cos()),
+            HistoryKind::Table => self.between(t - self.start),
+        }
+    }
+
+    /// Straight between the points of a table, constant beyond them.
+    fn between(&self, t: f64) -> f64 {
+        let next = self.points.partition_point(|p| p.0 <= t);
+        match (next.checked_sub(1).map(|i| self.points[i]), self.points.get(next)) {
+            (Some((t0, f0)), Some(&(t1, f1))) => f0 + (f1 - f0) * (t - t0) / (t1 - t0),
+            (Some((_, f)), None) | (None, Some(&(_, f))) => f,
+            (None, None) => 0.0,
         }
     }
 }
@@ -111,14 +161,29 @@ mod tests {
     use super::*;
 
     fn history(kind: HistoryKind, frequency: f64, cycles: f64) -> TimeFunction {
-        TimeFunction::new(&History {
+        let history = History {
             kind,
             frequency: Some(Quantity::new(frequency)),
             cycles: Some(cycles),
             duration: None,
+            points: None,
+            file: None,
             start: None,
-        })
-        .unwrap()
+        };
+        TimeFunction::new(&history, None).unwrap()
+    }
+
+    #[test]
+    fn a_table_is_straight_between_its_points_and_constant_beyond() {
+        let f = TimeFunction {
+            kind: HistoryKind::Table,
+            start: 1.0,
+            points: vec![(0.0, 2.0), (1.0, 4.0), (3.0, -2.0)],
+            ..TimeFunction::CONSTANT
+        };
+        for (t, expected) in [(0.5, 0.0), (1.0, 2.0), (1.5, 3.0), (2.0, 4.0), (3.0, 1.0), (4.0, -2.0), (9.0, -2.0)] {
+            assert_eq!(f.factor(t), expected, "{t}");
+        }
     }
 
     #[test]

@@ -63,7 +63,7 @@ pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Resu
                     given.insert(dof, (value, Some(i)));
                     all.constraints.push(Constraint { node, direction, value: start });
                     if s.history.is_some() {
-                        all.moving.insert(dof, (value, function));
+                        all.moving.insert(dof, (value, function.clone()));
                     }
                 }
             }

@@ -157,14 +157,12 @@ fn block(document: &Document, block: &Block) -> Result<Mesh, SceneError> {
         }
         from = to;
     }
-    if let Some(crest) = block.crest {
+    if let Some([from, to]) = block.crest.map(|c| c.map(|x| x.si)) {
         let (low, high) = ends(&planes[0]);
-        let width = high - low;
-        check(document, "solid.block.crest", crest.si, crest.si > 0.0, "a width above 0")?;
+        check(document, "solid.block.crest", to, to > from, "an end beyond its beginning")?;
         for x in &mut mesh.coordinates {
-            let share = (x[2] - bottom) / (top - bottom);
-            let middle = 0.5 * (low + high);
-            x[0] = middle + (x[0] - middle) * (1.0 + share * (crest.si / width - 1.0));
+            let (up, along) = ((x[2] - bottom) / (top - bottom), (x[0] - low) / (high - low));
+            x[0] += up * (from + along * (to - from) - x[0]);
         }
     }
     Ok(mesh)

@@ -14,6 +14,7 @@ pub use selection::find_node;
 
 use crate::failure::Failure;
 use crate::mesh_tools;
+use crate::model::tables;
 use crate::scene::history::{History, TimeFunction};
 use crate::scene::solid::{Integration, Mass, Rayleigh, Solid};
 use crate::scene::{Document, SceneError};
@@ -131,7 +132,7 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         let fixed = model.supports().fixed();
         fixed.binary_search_by_key(&dof, |(d, _)| *d).expect("a support of the model")
     };
-    let moving = supports.moving.iter().map(|(&dof, &(value, f))| (position(dof), value, f)).collect();
+    let moving = supports.moving.iter().map(|(dof, (value, f))| (position(*dof), *value, f.clone())).collect();
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(model.mesh(), model.constraints());
     let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
@@ -176,9 +177,12 @@ fn time_function(
 ) -> Result<TimeFunction, SceneError> {
     match history {
         None => Ok(TimeFunction::CONSTANT),
-        Some(h) => TimeFunction::new(h).map_err(|(k, found, expected)| {
-            document.error(&format!("{path}.history.{k}"), found, expected)
-        }),
+        Some(h) => {
+            let rows = h.file.as_ref().map(|f| tables::history(&document.resolve(f))).transpose()?;
+            TimeFunction::new(h, rows).map_err(|(k, found, expected)| {
+                document.error(&format!("{path}.history.{k}"), found, expected)
+            })
+        }
     }
 }
 

@@ -13,8 +13,8 @@ pub struct Block {
     pub y: Axis,
     /// Grid along z.
     pub z: Axis,
-    /// Width along x at the top [m], with the middle kept: an embankment with straight slopes. Default: a box.
-    pub crest: Option<Quantity<Length>>,
+    /// Where the top begins and ends along x [m]: an embankment or a slope with straight sides. Default: a box.
+    pub crest: Option<[Quantity<Length>; 2]>,
     /// Materials by layers from below; the last reaches the top. Default: material 1 everywhere.
     #[serde(default)]
     pub layer: Vec<Layer>,
