@@ -17,8 +17,11 @@ pub struct Cli {
 pub enum Command {
     /// Run a scene: fill, settle, load, and write the results.
     Run(RunArgs),
-    /// Validate a scene without running it, and say what a run would do.
+    /// Validate a scene without running it, and say what a run would do and need.
+    #[command(alias = "explain")]
     Check(CheckArgs),
+    /// Natural frequencies and modes of the solid part of a scene.
+    Modal(ModalArgs),
     /// Read a mesh: count and measure it, find its faults, or convert it.
     Mesh {
         /// What to do with the mesh.
@@ -41,9 +44,31 @@ pub struct RunArgs {
     /// Replace one key of the scene, as key.path=value; may be given again.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Refuse a solid that needs more memory than this, such as 8GB; default: what the machine has free.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<String>,
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Arguments of `modal`.
+#[derive(Debug, Args)]
+pub struct ModalArgs {
+    /// Scene file (TOML) with a solid.
+    pub scene: PathBuf,
+    /// Number of modes.
+    #[arg(short = 'n', long, default_value_t = 6)]
+    pub count: usize,
+    /// Folder of the results; default `results/<name>_modes`.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads; default all cores. The results do not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Replace one key of the scene, as key.path=value; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
 }
 
 /// Arguments of `check`.

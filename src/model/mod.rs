@@ -70,10 +70,11 @@ impl Job {
         }
         refuse_idle_keys(document, scene)?;
         let gravity = vector(&scene.gravity);
-        let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity)).transpose()?;
-        // A static solve stands at the start of every run but that of a moving solid alone.
+        let coupled = !scene.grains.is_empty();
+        let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity, coupled)).transpose()?;
+        // A static solve stands at the start of every run but that of an elastic moving solid alone.
         if let Some(part) = &solid
-            && (part.newmark.is_none() || !scene.grains.is_empty())
+            && (coupled || !matches!(part.analysis, solid::Analysis::Dynamic(_)) || !part.is_linear())
         {
             fem::statics::check_held(&part.model).map_err(|e| part.failure(&e))?;
         }
@@ -136,9 +137,17 @@ fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError
                 return Err(document.error(key, "a value", "no such key without [[grains]]"));
             }
         }
-    } else if scene.solid.as_ref().is_some_and(|s| s.dynamics.is_some()) {
+    } else if let Some(solid) = &scene.solid {
         let expected = "no such key beside [[grains]]: coupling.theta tells how the solid is integrated";
-        return Err(document.error("solid.dynamics", "a value", expected));
+        for (key, present) in [
+            ("solid.dynamics", solid.dynamics.is_some()),
+            ("solid.quasi_static", solid.quasi_static.is_some()),
+            ("solid.strength_reduction", solid.strength_reduction.is_some()),
+        ] {
+            if present {
+                return Err(document.error(key, "a value", expected));
+            }
+        }
     }
     Ok(())
 }
@@ -219,7 +228,8 @@ fn end_time(
     grains: Option<&grains::GrainsPart>,
 ) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.load.as_ref()).map(seat_load::CyclicLoad::end);
-    let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(|s| s.dynamics.is_some());
+    let steps = |s: &crate::scene::solid::Solid| s.dynamics.is_some() || s.quasi_static.is_some();
+    let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
     match (scene.time.end, counted, dynamic) {
         (Some(end), _, _) if end.si <= 0.0 => {
             Err(document.error("time.end", end.si.to_string(), "a time above 0"))
@@ -230,7 +240,7 @@ fn end_time(
             format!("at least {counted} s, when the last load cycle ends"),
         )),
         (Some(_), None, false) => {
-            Err(document.error("time.end", "a time", "no such key for a static solid, or [solid.dynamics]"))
+            Err(document.error("time.end", "a time", "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]"))
         }
         (Some(end), _, true) => Ok(end.si),
         (None, Some(counted), _) => Ok(counted),

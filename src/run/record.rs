@@ -67,6 +67,13 @@ impl<'a> Recorder<'a> {
         for name in ENERGY_COLUMNS {
             columns.push(Column::new(name, "J"));
         }
+        if let Some(part) = &job.solid
+            && system.reactions().is_some()
+        {
+            for (name, _) in &part.named_supports {
+                vector(&mut columns, &format!("{name}_reaction"), "N");
+            }
+        }
         for (name, _) in &job.probes {
             vector(&mut columns, &format!("{name}_u"), "m");
             vector(&mut columns, &format!("{name}_v"), "m/s");
@@ -127,6 +134,12 @@ impl<'a> Recorder<'a> {
             spent.interface(),
             error,
         ]);
+        if let Some(part) = &self.job.solid
+            && !part.named_supports.is_empty()
+            && let Some(reactions) = system.reactions()
+        {
+            part.named_sums(&reactions).for_each(|(_, force)| row.extend(force));
+        }
         if let Some(solid) = system.solid() {
             for &(_, node) in &self.job.probes {
                 row.extend_from_slice(&solid.state.u[3 * node..3 * node + 3]);

@@ -7,6 +7,7 @@ use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::step::Stability;
 use trackbed_coupling::transfer::TransferAudit;
+use trackbed_fem::nonlinear::Statistics;
 
 /// The content of `summary.json`.
 #[derive(Debug, Default, Serialize)]
@@ -41,6 +42,15 @@ pub struct Summary {
     /// Static equilibrium of a solid that ran alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub statics: Option<StaticsRecord>,
+    /// How equilibrium was found in a plastic solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton: Option<NewtonRecord>,
+    /// Sums of the reactions of named supports at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reactions: Vec<ReactionRecord>,
+    /// Search for the factor of safety.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub safety: Option<SafetyRecord>,
     /// Settlement per load cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
@@ -84,6 +94,8 @@ pub struct ModelRecord {
     pub grain_step_set_by: Option<String>,
     /// Step of the solid [s].
     pub solid_step: Option<f64>,
+    /// Memory that the solid was predicted to need [bytes].
+    pub predicted_memory: Option<u64>,
     /// Mean number of touching partners per grain at the start of the run proper.
     pub coordination: Option<f64>,
 }
@@ -146,6 +158,76 @@ pub struct StaticsRecord {
     pub strain_energy: f64,
 }
 
+/// How equilibrium was found in a plastic solid.
+#[derive(Debug, Serialize)]
+pub struct NewtonRecord {
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps given up and halved.
+    pub halvings: u64,
+    /// Iterations in all.
+    pub iterations: u64,
+    /// Factorizations of a symmetric matrix.
+    pub factorizations_symmetric: u64,
+    /// Factorizations of an unsymmetric matrix.
+    pub factorizations_unsymmetric: u64,
+    /// Seconds in stresses and matrices.
+    pub assembly_seconds: f64,
+    /// Seconds in factorizations.
+    pub factor_seconds: f64,
+    /// Seconds in solves.
+    pub solve_seconds: f64,
+}
+
+impl NewtonRecord {
+    /// Of the counts of a solver.
+    pub fn of(s: &Statistics) -> NewtonRecord {
+        NewtonRecord {
+            steps: s.steps,
+            halvings: s.halvings,
+            iterations: s.iterations,
+            factorizations_symmetric: s.factorizations_symmetric,
+            factorizations_unsymmetric: s.factorizations_unsymmetric,
+            assembly_seconds: s.assembly_seconds,
+            factor_seconds: s.factor_seconds,
+            solve_seconds: s.solve_seconds,
+        }
+    }
+}
+
+/// Sum of the reactions of a named support.
+#[derive(Debug, Serialize)]
+pub struct ReactionRecord {
+    /// Name.
+    pub name: String,
+    /// Force of the support on the solid [N].
+    pub force: [f64; 3],
+}
+
+/// Search for the factor of safety.
+#[derive(Debug, Serialize)]
+pub struct SafetyRecord {
+    /// Largest factor at which the solid found equilibrium.
+    pub stands_at: f64,
+    /// Smallest factor at which it did not.
+    pub fails_at: f64,
+    /// Every factor tried.
+    pub trials: Vec<TrialRecord>,
+}
+
+/// One factor tried.
+#[derive(Debug, Serialize)]
+pub struct TrialRecord {
+    /// Factor by which the strength was divided.
+    pub factor: f64,
+    /// Whether equilibrium was found.
+    pub stands: bool,
+    /// Newton iterations.
+    pub iterations: u64,
+    /// Largest displacement reached [m].
+    pub largest_displacement: f64,
+}
+
 /// Settlement under a cyclic load.
 #[derive(Debug, Serialize)]
 pub struct SettlementRecord {
@@ -198,6 +280,32 @@ impl Summary {
             let (u, node) = s.largest_displacement;
             lines.push(format!("largest displacement {u:.6e} m at node {node}"));
             lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
+        }
+        if let Some(n) = &self.newton {
+            lines.push(format!(
+                "Newton: {} steps ({} halved), {} iterations, {} symmetric and {} unsymmetric factorizations; seconds in \
+                 assembly {:.1}, factorization {:.1}, solves {:.1}",
+                n.steps,
+                n.halvings,
+                n.iterations,
+                n.factorizations_symmetric,
+                n.factorizations_unsymmetric,
+                n.assembly_seconds,
+                n.factor_seconds,
+                n.solve_seconds
+            ));
+        }
+        for r in &self.reactions {
+            let [x, y, z] = r.force;
+            lines.push(format!("reaction of {}: ({x:.6e}, {y:.6e}, {z:.6e}) N", r.name));
+        }
+        if let Some(s) = &self.safety {
+            lines.push(format!(
+                "factor of safety: stands at {:.4}, fails at {:.4} ({} trials)",
+                s.stands_at,
+                s.fails_at,
+                s.trials.len()
+            ));
         }
         if let Some(e) = &self.energy {
             let relative = e

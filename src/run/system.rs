@@ -48,6 +48,10 @@ pub trait System {
     fn grains(&self) -> Option<GrainsView<'_>> {
         None
     }
+    /// Forces of the supports on the solid [N], shape `[3·nodes]`, where they are known.
+    fn reactions(&self) -> Option<Vec<f64>> {
+        None
+    }
     /// Force of the grains on the solid, mean over the last window [N].
     fn contact_force(&self) -> [f64; 3] {
         [0.0; 3]

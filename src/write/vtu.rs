@@ -48,6 +48,17 @@ pub fn write_solid(file: &Path, frame: &SolidFrame) -> Result<(), WriteError> {
     write_grid(file, frame.mesh, fields)
 }
 
+/// Writes the shape of a natural mode: point data `displacement` (largest component 1) and `node_id`.
+///
+/// # Errors
+/// As [`write_solid`].
+pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteError> {
+    let mut fields = Fields::new(file, mesh.node_count());
+    fields.vector("displacement", shape)?;
+    fields.ids("node_id", &mesh.node_ids)?;
+    write_grid(file, mesh, fields)
+}
+
 /// Writes a mesh alone: point data `node_id` and `constraint` (1 for x, plus 2 for y, plus 4 for z); cell
 /// data `material`, `element_id`.
 ///

@@ -5,12 +5,13 @@
 //! not come into being, and once into the folder of the good run, which must keep every byte. The whole line is
 //! compared. `check` must refuse the scene with the same line, except for what only a solve or a settled bed shows.
 
-use super::support::{COUPLED, Folder, GRAINS, SOLID, run, scene_folder, snapshot, trackbed};
+use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder, snapshot, trackbed};
 use std::fs;
 
 mod grains;
 mod lists;
 mod scene;
+mod solid;
 
 const SCENE: &str = "scene.toml";
 const NODES: &str = "NODECOORD.DAT";
@@ -118,6 +119,10 @@ impl Good {
 
 fn solid() -> Good {
     Good::new(SOLID)
+}
+
+fn plastic() -> Good {
+    Good::new(PLASTIC)
 }
 
 fn grains_scene() -> Good {

@@ -231,6 +231,58 @@ node = 1
 tables = true
 "#;
 
+/// A scene of a plastic block that is pressed together between rough plates.
+pub const PLASTIC: &str = r#"title = "pressed block"
+
+[solid]
+gravity = false
+
+[solid.block]
+x = { lines = [0.0, 1.0], counts = [2] }
+y = { lines = [0.0, 1.0], counts = [1] }
+z = { lines = [0.0, 0.4, 1.0], counts = [1, 1] }
+layer = [{ material = 1, top = 0.4 }, { material = 2 }]
+
+[[solid.material]]
+id = 1
+name = "base"
+young = "50 MPa"
+poisson = 0.3
+density = 2000
+
+[[solid.material]]
+id = 2
+name = "soil"
+model = "mohr_coulomb"
+young = "20 MPa"
+poisson = 0.3
+density = 1900
+cohesion = "20 kPa"
+friction = "25 deg"
+dilation = "5 deg"
+
+[[solid.support]]
+name = "base"
+side = "z-"
+directions = ["x", "y", "z"]
+
+[[solid.support]]
+name = "plate"
+side = "z+"
+directions = ["z"]
+displacement = "-10 mm"
+history = { kind = "ramp", duration = 1.0 }
+
+[solid.quasi_static]
+
+[time]
+end = 1.0
+solid_step = 0.1
+
+[output]
+frames = 2
+"#;
+
 /// A scene of two spheres above a plane.
 pub const GRAINS: &str = r#"title = "two spheres"
 

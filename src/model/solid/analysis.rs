@@ -9,7 +9,7 @@ use crate::scene::solid::{
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
 use trackbed_fem::newmark::Newmark;
-use trackbed_fem::nonlinear::{NewtonOptions, SolverChoice, Variant};
+use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Variant};
 
 /// How a solid that runs alone is solved.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +91,8 @@ pub struct Plans {
     pub newton: NewtonPlan,
 }
 
-/// Resolves what a scene says about how its solid is solved. `linear`: no material yields.
+/// Resolves what a scene says about how its solid is solved. `linear`: no material yields;
+/// `coupled`: grains lie on it.
 ///
 /// # Errors
 /// Tables that exclude each other, a value out of range, or a plastic solid without steps.
@@ -100,6 +101,7 @@ pub fn plans(
     solid: &Solid,
     materials: &Materials,
     linear: bool,
+    coupled: bool,
 ) -> Result<Plans, SceneError> {
     let chosen = [
         ("dynamics", solid.dynamics.is_some()),
@@ -123,6 +125,16 @@ pub fn plans(
         }
         _ => Analysis::Static,
     };
+    if matches!(analysis, Analysis::Static) && !coupled {
+        let expected = "[solid.quasi_static], [solid.dynamics] or [solid.strength_reduction]";
+        if !linear {
+            return Err(document.error("solid", "a material that yields, and one static solve", expected));
+        }
+        if solid.initial_stress.is_some() {
+            let found = "a table, and one static solve";
+            return Err(document.error("solid.initial_stress", found, expected));
+        }
+    }
     if solid.newton.is_some() && linear && solid.initial_stress.is_none() {
         let expected = "no such table for an elastic solid without initial stress";
         return Err(document.error("solid.newton", "a table", expected));
@@ -239,15 +251,12 @@ fn initial_stress(
 }
 
 fn newton(document: &Document, newton: Option<&Newton>) -> Result<NewtonPlan, SceneError> {
-    let mut plan = NewtonOptions::default();
-    let Some(n) = newton else { return Ok(plan) };
-    if let Some(v) = n.variant {
-        plan.variant = match v {
-            NewtonVariant::Full => Variant::Full,
-            NewtonVariant::Modified => Variant::Modified,
-            NewtonVariant::InitialStiffness => Variant::InitialStiffness,
-        };
-    }
+    let Some(n) = newton else { return Ok(NewtonOptions::default()) };
+    let mut plan = NewtonOptions::new(match n.variant.unwrap_or(NewtonVariant::Full) {
+        NewtonVariant::Full => Variant::Full,
+        NewtonVariant::Modified => Variant::Modified(0),
+        NewtonVariant::InitialStiffness => Variant::InitialStiffness,
+    });
     if let Some(l) = n.line_search {
         plan.line_search = l;
     }
@@ -258,13 +267,13 @@ fn newton(document: &Document, newton: Option<&Newton>) -> Result<NewtonPlan, Sc
     if let Some(m) = n.max_iterations {
         let good = (1..=10_000).contains(&m);
         check(document, "solid.newton.max_iterations", f64::from(m), good, "1 to 10000")?;
-        plan.max_iterations = m as usize;
+        plan.max_iterations = m;
     }
     if let Some(s) = n.solver {
-        plan.solver = match s {
-            LinearSolver::Auto => SolverChoice::Auto,
-            LinearSolver::Direct => SolverChoice::Direct,
-            LinearSolver::Krylov => SolverChoice::Krylov,
+        plan.linear = match s {
+            LinearSolver::Auto => LinearMethod::Auto,
+            LinearSolver::Direct => LinearMethod::Direct,
+            LinearSolver::Krylov => LinearMethod::Krylov,
         };
     }
     Ok(plan)

@@ -73,7 +73,14 @@ pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Resu
                 let expected = "a name without commas or quotes";
                 return Err(document.error(&format!("{path}.name"), format!("\"{name}\""), expected));
             }
-            all.named.push((name.clone(), dofs));
+            match all.named.iter_mut().find(|(n, _)| n == name) {
+                Some((_, known)) => {
+                    known.extend(dofs);
+                    known.sort_unstable();
+                    known.dedup();
+                }
+                None => all.named.push((name.clone(), dofs)),
+            }
         }
     }
     Ok(all)

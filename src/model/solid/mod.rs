@@ -67,16 +67,22 @@ impl SolidPart {
         self.loads.iter().for_each(|l| l.add(t, load));
     }
 
-    /// Displacements of the fixed dofs at time `t` [m], in the model's order; nothing when no support moves.
-    pub fn prescribed(&self, t: f64) -> Option<Vec<f64>> {
-        if self.moving.is_empty() {
-            return None;
-        }
-        let mut all: Vec<f64> = self.model.supports().fixed().iter().map(|(_, value)| *value).collect();
+    /// Sets the displacements of moving supports at time `t` [m], in the model's order of fixed dofs.
+    pub fn prescribe(&self, t: f64, values: &mut [f64]) {
         for (position, value, function) in &self.moving {
-            all[*position] = value * function.factor(t);
+            values[*position] = value * function.factor(t);
         }
-        Some(all)
+    }
+
+    /// Names and sums of the reactions of named supports, those of one name together. Shape of `reactions` `[3·nodes]`.
+    pub fn named_sums<'a>(&'a self, reactions: &'a [f64]) -> impl Iterator<Item = (&'a str, [f64; 3])> {
+        self.named_supports.iter().map(|(name, dofs)| {
+            let mut sum = [0.0; 3];
+            for &dof in dofs {
+                sum[dof as usize % 3] += reactions.get(dof as usize).copied().unwrap_or(0.0);
+            }
+            (name.as_str(), sum)
+        })
     }
 
     /// Whether the linear solvers can take it: no yield surface and no initial stress.
@@ -85,11 +91,16 @@ impl SolidPart {
     }
 }
 
-/// Resolves `[solid]`.
+/// Resolves `[solid]`. `coupled`: grains lie on it.
 ///
 /// # Errors
 /// Bad input in the scene or in the mesh files.
-pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<SolidPart, Failure> {
+pub fn build(
+    document: &Document,
+    solid: &Solid,
+    gravity: [f64; 3],
+    coupled: bool,
+) -> Result<SolidPart, Failure> {
     let geometry = geometry(document, solid)?;
     let materials = material::materials(document, solid)?;
     for (number, element) in geometry.mesh.materials.iter().zip(&geometry.mesh.element_ids) {
@@ -112,7 +123,7 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
     let supports = boundary::supports(document, solid, &geometry)?;
     let boundaries = boundary::absorbing(document, solid, &geometry, &materials.constants)?;
     let linear = materials.constants.values().all(|m| m.is_linear());
-    let plans = analysis::plans(document, solid, &materials, linear)?;
+    let plans = analysis::plans(document, solid, &materials, linear, coupled)?;
     let Geometry { mesh, element_file, constraint_file, warnings, .. } = geometry;
     let model = fem::model::Model::new(fem::model::ModelInput {
         mesh,

@@ -1,0 +1,82 @@
+//! `trackbed modal`: natural frequencies and modes of the solid part of a scene.
+
+use crate::cli::ModalArgs;
+use crate::failure::Failure;
+use crate::model::solid;
+use crate::run;
+use crate::scene::units::vector;
+use crate::scene::{Document, Scene};
+use crate::write;
+use crate::write::csv::{Column, History};
+use crate::write::pvd;
+use std::fmt::Write;
+use std::path::Path;
+use trackbed_fem as fem;
+use trackbed_fem::modal::Modes;
+
+/// Finds the lowest modes and writes `modes.csv`, `results.pvd` and a `.vtu` for each mode.
+///
+/// # Errors
+/// Bad input, or modes that were not found.
+pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
+    let mut document = Document::open(&args.scene)?;
+    for assignment in &args.set {
+        document.set(assignment)?;
+    }
+    let scene: Scene = document.read()?;
+    let Some(part) = &scene.solid else {
+        return Err(document.error("solid", "nothing", "a solid").into());
+    };
+    run::thread_pool(args.threads)?.install(|| {
+        let part = solid::build(&document, part, vector(&scene.gravity), true)?;
+        let unknowns = part.model.free_dof_count();
+        if args.count == 0 || args.count > unknowns {
+            let expected = format!("1 to {unknowns}, the number of unknowns");
+            return Err(Failure::Input(format!("-n: found {}, expected {expected}", args.count)));
+        }
+        let modes = fem::modal::solve(&part.model, args.count).map_err(|e| part.failure(&e))?;
+        let dir = args.out.clone().unwrap_or_else(|| {
+            let mut folder = run::default_folder(&args.scene).into_os_string();
+            folder.push("_modes");
+            folder.into()
+        });
+        write_modes(&part.model, &modes, &dir)?;
+        let mut text = format!("{}\n  mode  frequency [Hz]  effective mass x, y, z [kg]\n", scene.title);
+        for (i, f) in modes.frequencies.iter().enumerate() {
+            let [x, y, z] = modes.effective_masses[i];
+            writeln!(text, "  {:4}  {f:14.6}  {x:.4e} {y:.4e} {z:.4e}", i + 1)
+                .expect("writing to a string does not fail");
+        }
+        let total = part.model.total_mass();
+        writeln!(text, "  total mass {total:.6e} kg; modes are in {}", dir.display())
+            .expect("writing to a string does not fail");
+        Ok(text)
+    })
+}
+
+fn write_modes(model: &fem::Model, modes: &Modes, dir: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(dir.join("frames"))
+        .map_err(|e| Failure::Other(format!("{}: {e}", dir.display())))?;
+    let columns = [
+        ("mode", ""),
+        ("frequency", "Hz"),
+        ("residual", ""),
+        ("effective_mass_x", "kg"),
+        ("effective_mass_y", "kg"),
+        ("effective_mass_z", "kg"),
+    ];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let mut table = History::create(&dir.join("modes.csv"), columns)?;
+    let mut series = pvd::Series::new(&dir.join("results.pvd"));
+    for (i, shape) in modes.shapes.iter().enumerate() {
+        let [x, y, z] = modes.effective_masses[i];
+        table.row(&[(i + 1) as f64, modes.frequencies[i], modes.residuals[i], x, y, z])?;
+        let largest = shape.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let unit: Vec<f64> = shape.iter().map(|u| u / largest).collect();
+        let name = format!("frames/mode_{:03}.vtu", i + 1);
+        write::vtu::write_mode(&dir.join(&name), model.mesh(), &unit)?;
+        series.push((i + 1) as f64, 0, "mode", &name);
+    }
+    series.write()?;
+    Ok(())
+}

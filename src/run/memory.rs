@@ -1,0 +1,133 @@
+//! How much memory a solid will need, told before it is solved.
+//!
+//! What the model takes is there already and is asked of the system; what the factorization will take follows from the
+//! structure of its equations; what the results take is a handful of nodal vectors. A run that will not fit is refused.
+
+use crate::failure::Failure;
+use crate::model::solid::{Analysis, SolidPart};
+use std::path::Path;
+
+/// Bytes of a nodal vector's worth of results for each node: state, stresses, and the text of a frame.
+const RESULT_BYTES_PER_NODE: u64 = 1200;
+
+/// The memory that a solid will need [bytes].
+#[derive(Clone, Copy, Debug)]
+pub struct Prediction {
+    /// Taken by the model by now.
+    pub model: u64,
+    /// Factor and fronts of the equations.
+    pub solver: u64,
+    /// State and results.
+    pub results: u64,
+    /// Floating-point operations of one factorization.
+    pub flops: f64,
+}
+
+impl Prediction {
+    /// Predicts for a solid whose model is made.
+    ///
+    /// # Errors
+    /// The equations cannot be analysed.
+    pub fn of(part: &SolidPart) -> Result<Prediction, Failure> {
+        let symmetric = part.model.symmetric_tangent() || matches!(part.analysis, Analysis::Static);
+        let demand = part.model.solver_demand(symmetric).map_err(|e| part.failure(&e))?;
+        Ok(Prediction {
+            model: resident().unwrap_or(0),
+            solver: demand.bytes as u64,
+            results: RESULT_BYTES_PER_NODE * part.model.mesh().node_count() as u64,
+            flops: demand.flops,
+        })
+    }
+
+    /// All of it [bytes].
+    pub fn total(&self) -> u64 {
+        self.model + self.solver + self.results
+    }
+
+    /// Refuses what will not fit into `limit` bytes, or into the memory that the machine has free.
+    ///
+    /// # Errors
+    /// Bad input, with both figures.
+    pub fn check(&self, limit: Option<u64>) -> Result<(), Failure> {
+        let further = self.solver + self.results;
+        if let Some(limit) = limit
+            && self.total() > limit
+        {
+            return Err(refused(self.total(), &format!("at most {}, by --memory", size(limit))));
+        }
+        match available() {
+            Some(free) if further > free => {
+                Err(refused(self.total(), &format!("at most {}, which are free", size(free + self.model))))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn refused(total: u64, expected: &str) -> Failure {
+    Failure::Input(format!(
+        "memory: found a solid that needs {}, expected {expected}; use a coarser mesh or `solid.order = \"linear\"`",
+        size(total)
+    ))
+}
+
+/// A size for people.
+pub fn size(bytes: u64) -> String {
+    let bytes = bytes as f64;
+    if bytes >= 1e9 { format!("{:.2} GB", bytes / 1e9) } else { format!("{:.0} MB", (bytes / 1e6).ceil()) }
+}
+
+/// Reads a size such as `800MB`, `2 GB` or a number of bytes.
+pub fn parse_size(text: &str) -> Option<u64> {
+    let text = text.trim();
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let number: f64 = text[..split].trim().parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0)?;
+    let factor = match text[split..].to_ascii_uppercase().as_str() {
+        "" | "B" => 1.0,
+        "KB" => 1e3,
+        "MB" => 1e6,
+        "GB" => 1e9,
+        "MIB" => 1024.0 * 1024.0,
+        "GIB" => 1024.0 * 1024.0 * 1024.0,
+        _ => return None,
+    };
+    Some((number * factor) as u64)
+}
+
+/// Resident memory of this process now [bytes].
+fn resident() -> Option<u64> {
+    field(Path::new("/proc/self/status"), "VmRSS:")
+}
+
+/// Memory that the machine, or the group that this process belongs to, has free [bytes].
+fn available() -> Option<u64> {
+    let machine = field(Path::new("/proc/meminfo"), "MemAvailable:");
+    let number = |file: &str| std::fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
+    let group = number("/sys/fs/cgroup/memory.max")
+        .zip(number("/sys/fs/cgroup/memory.current"))
+        .map(|(max, current)| max.saturating_sub(current));
+    match (machine, group) {
+        (Some(m), Some(g)) => Some(m.min(g)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// The field of a status file that is given in kB [bytes].
+fn field(file: &Path, name: &str) -> Option<u64> {
+    let text = std::fs::read_to_string(file).ok()?;
+    let line = text.lines().find(|l| l.starts_with(name))?;
+    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_and_told() {
+        assert_eq!(parse_size("800MB"), Some(800_000_000));
+        assert_eq!(parse_size(" 1.5 GiB"), Some(1_610_612_736));
+        assert_eq!((parse_size("4096"), parse_size("2 parsec"), parse_size("-1")), (Some(4096), None, None));
+        assert_eq!((size(1_610_612_736), size(7_300_000)), ("1.61 GB".into(), "8 MB".into()));
+    }
+}

@@ -1,0 +1,63 @@
+//! A solid that runs alone: static, quasi-static, dynamic, or brought to failure.
+
+use super::memory::Prediction;
+use super::plastic::{PlasticDynamics, QuasiStaticSystem};
+use super::summary::{NewtonRecord, Summary};
+use super::system::{SolidSystem, System};
+use super::{Stage, failure_factor, statics};
+use crate::failure::Failure;
+use crate::model::solid::{Analysis, SolidPart};
+
+impl Stage<'_> {
+    /// Runs a solid without grains.
+    pub(super) fn solid_alone(&self, solid: &SolidPart, summary: &mut Summary) -> Result<(), Failure> {
+        let prediction = Prediction::of(solid)?;
+        summary.model.predicted_memory = Some(prediction.total());
+        prediction.check(self.memory)?;
+        match &solid.analysis {
+            Analysis::Static => statics::run(self.job, solid, self.dir, || self.prepare(), summary),
+            Analysis::StrengthReduction(plan) => failure_factor::run(self, solid, plan, summary),
+            Analysis::Dynamic(method) if solid.is_linear() => {
+                let dt = self.job.solid_step.expect("a dynamic solid has a step");
+                let mut system = SolidSystem::new(solid, *method, dt).map_err(|e| solid.failure(&e))?;
+                self.march(solid, &mut system, summary)
+            }
+            Analysis::Dynamic(method) => {
+                let dt = self.job.solid_step.expect("a dynamic solid has a step");
+                let mut system = PlasticDynamics::new(solid, *method, dt)?;
+                let outcome = self.march(solid, &mut system, summary);
+                summary.newton = Some(NewtonRecord::of(&system.statistics()));
+                outcome
+            }
+            Analysis::QuasiStatic(plan) => {
+                let step = self.job.solid_step.expect("a quasi-static solid has a step");
+                let mut system = QuasiStaticSystem::new(solid, plan, step)?;
+                let outcome = self.march(solid, &mut system, summary);
+                summary.newton = Some(NewtonRecord::of(&system.statistics()));
+                outcome
+            }
+        }
+    }
+
+    /// Advances a system to the end of the run and writes its last state.
+    fn march<S: System>(
+        &self,
+        solid: &SolidPart,
+        system: &mut S,
+        summary: &mut Summary,
+    ) -> Result<(), Failure> {
+        summary.model.solid_step = self.job.solid_step;
+        self.prepare()?;
+        self.main_stage(system, None, summary)?;
+        let reactions = system.reactions().unwrap_or_default();
+        summary.reactions = solid
+            .named_sums(&reactions)
+            .map(|(name, force)| super::summary::ReactionRecord { name: name.to_string(), force })
+            .collect();
+        if self.job.output.tables {
+            let state = system.solid().expect("a system with a solid").state;
+            statics::write_tables(&solid.model, state, &reactions, self.dir)?;
+        }
+        Ok(())
+    }
+}
