@@ -53,6 +53,10 @@ pub use damping::Rayleigh;
 pub use element::quadrature::Quadrature;
 pub use element::{ElementKind, FaceShape};
 pub use material::elastic::Elastic;
+pub use material::{
+    Cone, DruckerPrager, Hardening, Material, MohrCoulomb, Plasticity, PointState, Region, Response,
+    ReturnError,
+};
 pub use mesh::{Constraint, Face, Mesh};
 pub use model::{Model, ModelError, ModelInput};
 pub use solver::SolveError;

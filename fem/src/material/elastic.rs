@@ -38,6 +38,20 @@ impl Elastic {
         ]
     }
 
+    /// The elastic matrix D [Pa] between stress and strain with engineering shear.
+    pub fn matrix(&self) -> [[f64; 6]; 6] {
+        let (lambda, mu) = self.lame();
+        let mut matrix = [[0.0; 6]; 6];
+        for i in 0..3 {
+            for j in 0..3 {
+                matrix[i][j] = lambda;
+            }
+            matrix[i][i] += 2.0 * mu;
+            matrix[3 + i][3 + i] = mu;
+        }
+        matrix
+    }
+
     /// Speed of the compression wave, `sqrt((lambda + 2 mu) / rho)` [m/s].
     pub fn compression_wave_speed(&self) -> f64 {
         let (lambda, mu) = self.lame();
@@ -69,6 +83,17 @@ mod tests {
         let s = steel.stress(&[1e-3, -0.3e-3, -0.3e-3, 2e-4, 0.0, -1e-4]);
         assert!((s[0] - 210e6).abs() < 1e-3 && s[1].abs() < 1e-3 && s[2].abs() < 1e-3);
         assert!((s[3] - 210e9 / 2.6 * 2e-4).abs() < 1e-3 && s[4] == 0.0 && s[5] < 0.0);
+    }
+
+    #[test]
+    fn the_matrix_gives_the_stress() {
+        let steel = Elastic { young: 210e9, poisson: 0.3, density: 7850.0 };
+        let e = [1e-3, -0.3e-3, 2e-3, 2e-4, 5e-4, -1e-4];
+        let (matrix, s) = (steel.matrix(), steel.stress(&e));
+        for i in 0..6 {
+            let product: f64 = (0..6).map(|j| matrix[i][j] * e[j]).sum();
+            assert!((product - s[i]).abs() < 1e-12 * s[0].abs());
+        }
     }
 
     #[test]

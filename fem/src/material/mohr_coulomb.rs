@@ -1,0 +1,239 @@
+//! Mohr–Coulomb plasticity: six planes in principal stresses, exact return on planes, edges and apex, an optional
+//! Rankine tension cut-off, non-associated flow, hardening of cohesion and friction angle. Zero friction is Tresca.
+//!
+//! `(s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi) <= 0`, `s1 <= tension`; flow by the same functions, with psi in place
+//! of phi in the first. Source: de Souza Neto, Peric and Owen (2008), section 8.2; see also the sibling module with the
+//! return at fixed strength. Limits: `0 <= psi <= phi < 90°`. A cut-off that comes to lie beyond the apex as `c cot(phi)`
+//! falls is not active; the apex holds there.
+
+use super::elastic::Elastic;
+use super::hardening::Hardening;
+use super::principal_return::{self, Moduli, Strength};
+use super::spectral::{self, Voigt};
+use super::{
+    Fault, PointState, Region, Response, ReturnError, YIELD_TOLERANCE, elastic_response, local,
+    strength_fault,
+};
+use serde::{Deserialize, Serialize};
+
+/// Constants of Mohr–Coulomb.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MohrCoulomb {
+    /// Cohesion c [Pa], 0 or above; above 0 where the friction angle is 0.
+    pub cohesion: Hardening,
+    /// Friction angle phi [rad], in [0, pi/2).
+    pub friction: Hardening,
+    /// Dilation angle psi [rad], between 0 and the smallest friction angle.
+    pub dilation: f64,
+    /// Largest principal stress [Pa], between 0 and the apex `c cot(phi)`; none for no cut-off.
+    pub tension: Option<f64>,
+}
+
+const ROOT_TWO_THIRDS: f64 = 0.816496580927726;
+
+impl MohrCoulomb {
+    /// Tresca: the difference of the largest and smallest principal stress reaches `yield_stress` [Pa].
+    pub fn tresca(yield_stress: f64) -> MohrCoulomb {
+        MohrCoulomb {
+            cohesion: Hardening::Constant(0.5 * yield_stress),
+            friction: Hardening::Constant(0.0),
+            dilation: 0.0,
+            tension: None,
+        }
+    }
+
+    /// What makes the constants unusable, if anything. Softening of the cohesion must stay above
+    /// [`MohrCoulomb::softening_limit`]; softening of the friction angle can only be judged at a stress and fails in
+    /// [`super::update`] with [`ReturnError::Softening`].
+    pub fn fault(&self, elastic: &Elastic) -> Option<Fault> {
+        strength_fault(&self.cohesion, &self.friction, self.dilation, self.tension).or_else(|| {
+            let fall = self.cohesion.steepest_fall();
+            (fall < 0.0 && fall <= self.softening_limit(elastic)).then_some((
+                "cohesion",
+                fall,
+                "softening less steep than the limit at which a point snaps back",
+            ))
+        })
+    }
+
+    /// The slope `dc/dkappa` [Pa] (below 0) at or below which the return may have no unique solution: in some region
+    /// `dh/dkappa = sqrt(2/3) |D^-1 ds/dc| |dc/dkappa|` reaches 1. On the plane it is
+    /// `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)` with the normal `n` and the flow `m`.
+    pub fn softening_limit(&self, elastic: &Elastic) -> f64 {
+        let moduli = Moduli::new(elastic);
+        let (low, high) = self.friction.range();
+        let mut most = 0.0_f64;
+        for phi in [low, high] {
+            let strength = Strength::new((1.0, 1.0), (phi, 0.0), self.dilation.sin(), None);
+            for region in [
+                Region::Plane,
+                Region::EdgeCompression,
+                Region::EdgeExtension,
+                Region::Apex,
+                Region::PlaneTension,
+                Region::EdgeCompressionTension,
+                Region::EdgeExtensionTension,
+            ] {
+                let absent = if region == Region::Apex { phi == 0.0 } else { false };
+                let cut = matches!(
+                    region,
+                    Region::PlaneTension | Region::EdgeCompressionTension | Region::EdgeExtensionTension
+                );
+                if absent || cut && self.tension.is_none() {
+                    continue;
+                }
+                let rate = principal_return::rate(region, &[0.0; 3], &strength, &moduli);
+                let strain = moduli.scaled_strain(&rate);
+                let norm = strain.iter().map(|x| x * x).sum::<f64>().sqrt() / (2.0 * moduli.mu);
+                most = most.max(ROOT_TWO_THIRDS * norm);
+            }
+        }
+        -1.0 / most
+    }
+
+    fn strength(&self, kappa: f64) -> Strength {
+        Strength::new(self.cohesion.at(kappa), self.friction.at(kappa), self.dilation.sin(), self.tension)
+    }
+
+    pub(super) fn yield_function(&self, stress: &Voigt, kappa: f64) -> f64 {
+        let strength = self.strength(kappa);
+        let s = spectral::principal(stress).values;
+        (0.5 * strength.plane(&s)).max(s[0] - strength.tension.unwrap_or(f64::INFINITY))
+    }
+
+    pub(super) fn update(
+        &self,
+        elastic: &Elastic,
+        old: &PointState,
+        trial: &Voigt,
+        want_tangent: bool,
+    ) -> Result<Response, ReturnError> {
+        let mut strength = self.strength(old.kappa);
+        if clearly_inside(trial, &strength) {
+            return Ok(elastic_response(elastic, old, trial, want_tangent));
+        }
+        let spectrum = spectral::principal(trial);
+        let t = spectrum.values;
+        let size = t[0].abs().max(t[2].abs());
+        let cut = strength.tension.unwrap_or(f64::INFINITY);
+        if strength.plane(&t) <= YIELD_TOLERANCE * size && t[0] - cut <= YIELD_TOLERANCE * size {
+            return Ok(elastic_response(elastic, old, trial, want_tangent));
+        }
+        let moduli = Moduli::new(elastic);
+        let (mut s, mut region) = principal_return::project(&t, &strength, &moduli);
+        let mut flow = plastic(&moduli, &t, &s);
+        let mut kappa = old.kappa + equivalent(&flow);
+        let hardens = !(self.cohesion.is_constant() && self.friction.is_constant());
+        if hardens {
+            kappa = local::solve_kappa(old.kappa, |kappa| {
+                strength = self.strength(kappa);
+                (s, region) = principal_return::project(&t, &strength, &moduli);
+                flow = plastic(&moduli, &t, &s);
+                let rate = principal_return::rate(region, &s, &strength, &moduli);
+                (equivalent(&flow), -by_stress(&moduli, &flow, &rate))
+            })?;
+        }
+        let mut state = PointState {
+            stress: spectral::tensor(&s, &spectrum.axes),
+            plastic_strain: spectral::tensor(&flow, &spectrum.axes),
+            kappa,
+        };
+        for k in 0..6 {
+            let strain = if k < 3 { 1.0 } else { 2.0 } * state.plastic_strain[k];
+            state.plastic_strain[k] = old.plastic_strain[k] + strain;
+        }
+        if !(state.kappa + state.stress.iter().sum::<f64>()).is_finite() {
+            return Err(ReturnError::NotFinite);
+        }
+        let mut tangent = [[0.0; 6]; 6];
+        if want_tangent {
+            let mut a = principal_return::tangent(region, &strength, &moduli);
+            if hardens {
+                add_hardening(&mut a, &s, &flow, region, &strength, &moduli);
+            }
+            tangent = spectral::stiffness(&spectrum.axes, &a, &shear_moduli(&t, &s, region, moduli.mu));
+        }
+        Ok(Response { state, region, tangent })
+    }
+}
+
+/// A bound without principal values: with `q = sqrt(J2)`, `s1 <= p + 2 q / sqrt(3)`, and over all Lode angles
+/// `f <= q sqrt(1 + sin²(phi)/3) + p sin(phi) - c cos(phi)`.
+fn clearly_inside(t: &Voigt, strength: &Strength) -> bool {
+    let (p, j2) = invariants(t);
+    let q = j2.sqrt();
+    let sin = strength.sin;
+    q * (1.0 + sin * sin / 3.0).sqrt() + p * sin <= 0.5 * strength.k
+        && strength.tension.is_none_or(|cut| p + 1.1547005383792517 * q <= cut)
+}
+
+/// Mean stress and the second invariant of the deviator.
+pub(super) fn invariants(t: &Voigt) -> (f64, f64) {
+    let p = (t[0] + t[1] + t[2]) / 3.0;
+    let d = [t[0] - p, t[1] - p, t[2] - p];
+    let j2 = 0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + t[3] * t[3] + t[4] * t[4] + t[5] * t[5];
+    (p, j2)
+}
+
+/// Principal plastic strain of the step.
+fn plastic(moduli: &Moduli, trial: &[f64; 3], s: &[f64; 3]) -> [f64; 3] {
+    moduli.scaled_strain(&[trial[0] - s[0], trial[1] - s[1], trial[2] - s[2]]).map(|x| x / (2.0 * moduli.mu))
+}
+
+fn equivalent(flow: &[f64; 3]) -> f64 {
+    ROOT_TWO_THIRDS * (flow[0] * flow[0] + flow[1] * flow[1] + flow[2] * flow[2]).sqrt()
+}
+
+/// Derivative of the equivalent plastic strain along a plastic strain `D^-1 x`.
+fn by_stress(moduli: &Moduli, flow: &[f64; 3], x: &[f64; 3]) -> f64 {
+    let h = equivalent(flow);
+    if h == 0.0 {
+        return 0.0;
+    }
+    let strain = moduli.scaled_strain(x);
+    let product: f64 = (0..3).map(|i| flow[i] * strain[i]).sum();
+    product / (3.0 * moduli.mu * h)
+}
+
+/// Adds `ds/dkappa dkappa/de`; `dkappa/de` follows from `kappa - h(e, kappa) = const`.
+fn add_hardening(
+    a: &mut [[f64; 3]; 3],
+    s: &[f64; 3],
+    flow: &[f64; 3],
+    region: Region,
+    strength: &Strength,
+    moduli: &Moduli,
+) {
+    let h = equivalent(flow);
+    if h == 0.0 {
+        return;
+    }
+    let rate = principal_return::rate(region, s, strength, moduli);
+    let v = moduli.scaled_strain(flow).map(|x| x / (2.0 * moduli.mu));
+    let scale = 2.0 / (3.0 * h * (1.0 + by_stress(moduli, flow, &rate)));
+    let kappa: [f64; 3] =
+        std::array::from_fn(|j| scale * (flow[j] - v[0] * a[0][j] - v[1] * a[1][j] - v[2] * a[2][j]));
+    for i in 0..3 {
+        for j in 0..3 {
+            a[i][j] += rate[i] * kappa[j];
+        }
+    }
+}
+
+/// Shear moduli in the planes of the principal axes, `mu (s_i - s_j) / (t_i - t_j)`: the spin terms of the tangent.
+/// Where two trial values coincide, the limit: 0 where the region keeps them equal, else `mu`.
+fn shear_moduli(t: &[f64; 3], s: &[f64; 3], region: Region, mu: f64) -> [f64; 3] {
+    let (first, second) = principal_return::equal_pairs(region);
+    let size = t[0].abs().max(t[2].abs());
+    let ratio = |i: usize, j: usize, equal: bool| {
+        let gap = t[i] - t[j];
+        if equal {
+            0.0
+        } else if gap <= 1e-14 * size {
+            mu
+        } else {
+            mu * ((s[i] - s[j]) / gap).clamp(0.0, 1.0)
+        }
+    };
+    [ratio(0, 1, first), ratio(1, 2, second), ratio(0, 2, first && second)]
+}

@@ -1,0 +1,284 @@
+//! Return to the Mohr–Coulomb surface with a Rankine cut-off, in principal stresses and at fixed strength.
+//!
+//! Each region of the return is an affine piece of the surface (plane, line or point) together with the cone of its
+//! flow directions. With `L` the directions inside the piece and `W` the directions at right angles to all its flow
+//! vectors, the returned stress fulfils `W^T D^-1 (s_trial - s) = 0` on the piece, in closed form, and its derivative is
+//! `A = L (W^T D^-1 L)^-1 W^T`. A region is the right one when its stress lies on the piece (order of the principal
+//! stresses kept) and the plastic strain lies in its cone (multipliers not negative). For `0 <= psi <= phi` the regions
+//! cover the stress space without overlap, except that for `psi = 0` the cone of the apex shrinks to a plane; its region
+//! is then the limit for `psi -> 0`, a half-space.
+//!
+//! Source: Clausen, Damkilde and Andersen, Engineering Computations 23 (2006) 1–22 and Computers and Structures 85
+//! (2007) 1795–1807 for lines and points; de Souza Neto, Peric and Owen (2008), section 8.2; the regions of the cut-off
+//! follow the same construction.
+
+use super::Region;
+use super::elastic::Elastic;
+
+/// Elastic constants in the form the return needs.
+#[derive(Clone, Copy)]
+pub(super) struct Moduli {
+    pub lambda: f64,
+    pub mu: f64,
+    /// `lambda / (3 lambda + 2 mu)`, so that `2 mu D^-1 x = x - ratio tr(x)`.
+    ratio: f64,
+}
+
+impl Moduli {
+    pub fn new(elastic: &Elastic) -> Moduli {
+        let (lambda, mu) = elastic.lame();
+        Moduli { lambda, mu, ratio: lambda / (3.0 * lambda + 2.0 * mu) }
+    }
+
+    /// `D x` of principal strains.
+    fn stress(&self, x: &[f64; 3]) -> [f64; 3] {
+        let mean = self.lambda * (x[0] + x[1] + x[2]);
+        x.map(|x| mean + 2.0 * self.mu * x)
+    }
+
+    /// `2 mu D^-1 x` of principal stresses.
+    pub fn scaled_strain(&self, x: &[f64; 3]) -> [f64; 3] {
+        let mean = self.ratio * (x[0] + x[1] + x[2]);
+        x.map(|x| x - mean)
+    }
+}
+
+/// Strength at one `kappa`, with the derivatives by `kappa` (names with `_rate`).
+///
+/// Plane: `a s1 - b s3 = k` with `a = 1 + sin(phi)`, `b = 1 - sin(phi)`, `k = 2 c cos(phi)`. Flow: the same with psi.
+#[derive(Clone, Copy)]
+pub(super) struct Strength {
+    pub sin: f64,
+    pub a: f64,
+    pub b: f64,
+    pub k: f64,
+    pub sin_rate: f64,
+    pub k_rate: f64,
+    /// `1 + sin(psi)` and `1 - sin(psi)`.
+    pub flow_a: f64,
+    pub flow_b: f64,
+    /// Cut-off, only where it lies below the apex.
+    pub tension: Option<f64>,
+}
+
+impl Strength {
+    pub fn new(cohesion: (f64, f64), friction: (f64, f64), sin_psi: f64, tension: Option<f64>) -> Strength {
+        let ((c, c_rate), (phi, phi_rate)) = (cohesion, friction);
+        let (sin, cos) = phi.sin_cos();
+        let k = 2.0 * c * cos;
+        Strength {
+            sin,
+            a: 1.0 + sin,
+            b: 1.0 - sin,
+            k,
+            sin_rate: cos * phi_rate,
+            k_rate: 2.0 * (c_rate * cos - c * sin * phi_rate),
+            flow_a: 1.0 + sin_psi,
+            flow_b: 1.0 - sin_psi,
+            tension: tension.filter(|t| 2.0 * t * sin < k),
+        }
+    }
+
+    /// The plane's function, `a s1 - b s3 - k` [Pa], twice the usual one.
+    pub fn plane(&self, s: &[f64; 3]) -> f64 {
+        self.a * s[0] - self.b * s[2] - self.k
+    }
+
+    /// `s3` where the plane meets the cut-off `t`.
+    fn corner(&self, t: f64) -> f64 {
+        (self.a * t - self.k) / self.b
+    }
+}
+
+/// The best region so far. A margin [Pa] is the smallest of a region's conditions; 0 or above means all hold.
+struct Choice {
+    stress: [f64; 3],
+    region: Region,
+    margin: f64,
+}
+
+impl Choice {
+    /// True when the region is admissible.
+    #[inline(always)]
+    fn offer(&mut self, region: Region, stress: [f64; 3], conditions: [f64; 4]) -> bool {
+        let margin = conditions[0].min(conditions[1]).min(conditions[2].min(conditions[3]));
+        if margin > self.margin {
+            *self = Choice { stress, region, margin };
+        }
+        margin >= 0.0
+    }
+}
+
+/// Returned principal stress and region of a sorted trial stress outside the surface. Between two regions rounding may
+/// leave none admissible; then the one that fails by least is taken.
+pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], Region) {
+    let mut choice = Choice { stress: *trial, region: Region::Elastic, margin: f64::NEG_INFINITY };
+    let _ = plane_and_edges(trial, strength, moduli, &mut choice)
+        || match strength.tension {
+            Some(t) => cut_off(t, trial, strength, moduli, &mut choice),
+            None => apex(trial, strength, moduli, &mut choice),
+        };
+    (choice.stress, choice.region)
+}
+
+/// Twice the shear modulus times the plastic strain.
+fn flow(moduli: &Moduli, trial: &[f64; 3], s: &[f64; 3]) -> [f64; 3] {
+    moduli.scaled_strain(&[trial[0] - s[0], trial[1] - s[1], trial[2] - s[2]])
+}
+
+fn dot(x: &[f64; 3], y: &[f64; 3]) -> f64 {
+    x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+}
+
+fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
+    let cut = q.tension.unwrap_or(f64::INFINITY);
+    // Plane. s1 is taken from s3, so that the stress stays on the surface after very large steps.
+    let r = moduli.stress(&[q.flow_a, 0.0, -q.flow_b]);
+    let f = q.plane(trial);
+    let multiplier = f / (q.a * r[0] - q.b * r[2]);
+    let s3 = trial[2] - multiplier * r[2];
+    let s = [(q.b * s3 + q.k) / q.a, trial[1] - multiplier * r[1], s3];
+    if choice.offer(Region::Plane, s, [f, s[0] - s[1], s[1] - s[2], cut - s[0]]) {
+        return true;
+    }
+    // Edges: s = start + s3 * line. Both lie on the same side of the apex as long as s1 >= s3.
+    let (start, slope) = (q.k / q.a, q.b / q.a);
+    let u = moduli.scaled_strain(&[q.flow_b, q.flow_b, q.flow_a]);
+    let s3 = (dot(&u, trial) - (u[0] + u[1]) * start) / ((u[0] + u[1]) * slope + u[2]);
+    let s1 = start + slope * s3;
+    let s = [s1, s1, s3];
+    let e = flow(moduli, trial, &s);
+    if choice.offer(Region::EdgeCompression, s, [e[1], -e[2], s1 - s3, cut - s1]) {
+        return true;
+    }
+    let u = moduli.scaled_strain(&[q.flow_b, q.flow_a, q.flow_a]);
+    let s3 = (dot(&u, trial) - u[0] * start) / (u[0] * slope + u[1] + u[2]);
+    let s1 = start + slope * s3;
+    let s = [s1, s3, s3];
+    let e = flow(moduli, trial, &s);
+    choice.offer(Region::EdgeExtension, s, [-e[1], e[0], s1 - s3, cut - s1])
+}
+
+fn apex(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
+    if q.sin == 0.0 {
+        return false;
+    }
+    let s = [q.k / (2.0 * q.sin); 3];
+    let e = flow(moduli, trial, &s);
+    let (low, high) = (q.flow_b, q.flow_a);
+    let compression = low * (e[0] + e[1]) + high * e[2];
+    let extension = low * e[0] + high * (e[1] + e[2]);
+    choice.offer(Region::Apex, s, [compression, extension, compression, extension])
+}
+
+fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
+    let s3 = q.corner(t);
+    let steep = q.flow_a / q.flow_b;
+    // s1 = t alone.
+    let drop = (trial[0] - t) * moduli.lambda / (moduli.lambda + 2.0 * moduli.mu);
+    let s = [t, trial[1] - drop, trial[2] - drop];
+    if choice.offer(Region::TensionPlane, s, [trial[0] - t, t - s[1], s[2] - s3, trial[0] - t]) {
+        return true;
+    }
+    // Line of s1 = t and the plane: no plastic strain along axis 2.
+    let (d1, d3) = (trial[0] - t, trial[2] - s3);
+    let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d3);
+    let s = [t, trial[1] - drop, s3];
+    let (e1, e3) = (d1 - drop, d3 - drop);
+    if choice.offer(Region::PlaneTension, s, [-e3, e1 + steep * e3, t - s[1], s[1] - s3]) {
+        return true;
+    }
+    // s1 = s2 = t: no plastic strain along axis 3.
+    let (d1, d2) = (trial[0] - t, trial[1] - t);
+    let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d2);
+    let s = [t, t, trial[2] - drop];
+    if choice.offer(Region::TensionEdge, s, [d2 - drop, d1 - drop, t - s[2], s[2] - s3]) {
+        return true;
+    }
+    let s = [t, t, s3];
+    let e = flow(moduli, trial, &s);
+    if choice.offer(Region::EdgeCompressionTension, s, [-e[2], e[1], e[0], e[0] + e[1] + steep * e[2]]) {
+        return true;
+    }
+    let s = [t, s3, s3];
+    let e = flow(moduli, trial, &s);
+    if choice.offer(Region::EdgeExtensionTension, s, [-e[1], -e[2], e[0], e[0] + steep * (e[1] + e[2])]) {
+        return true;
+    }
+    let s = [t; 3];
+    let e = flow(moduli, trial, &s);
+    choice.offer(Region::TensionCorner, s, [e[2], e[1], e[0], e[2]])
+}
+
+/// Which neighbouring pairs of principal stresses a region makes equal: (1,2) and (2,3).
+pub(super) fn equal_pairs(region: Region) -> (bool, bool) {
+    match region {
+        Region::EdgeCompression | Region::TensionEdge | Region::EdgeCompressionTension => (true, false),
+        Region::EdgeExtension | Region::EdgeExtensionTension => (false, true),
+        Region::Apex | Region::TensionCorner => (true, true),
+        _ => (false, false),
+    }
+}
+
+/// How fast the piece of the surface moves with `kappa` at the stress `s`, along any direction.
+fn drift(region: Region, s: &[f64; 3], q: &Strength) -> [f64; 3] {
+    // a' = sin', b' = -sin'.
+    let along_s1 = (q.k_rate - q.sin_rate * (s[0] + s[2])) / q.a;
+    let corner = (q.sin_rate * (s[0] + s[2]) - q.k_rate) / q.b;
+    match region {
+        Region::EdgeCompression => [along_s1, along_s1, 0.0],
+        Region::EdgeExtension => [along_s1, 0.0, 0.0],
+        Region::Apex => [(q.k_rate - 2.0 * s[0] * q.sin_rate) / (2.0 * q.sin); 3],
+        Region::PlaneTension | Region::EdgeCompressionTension => [0.0, 0.0, corner],
+        Region::EdgeExtensionTension => [0.0, corner, corner],
+        _ => [0.0; 3],
+    }
+}
+
+/// Direction `l` of a line region and its partner `w`, at right angles to the flow vectors.
+fn line(region: Region, q: &Strength) -> Option<([f64; 3], [f64; 3])> {
+    match region {
+        Region::EdgeCompression => Some(([q.b, q.b, q.a], [q.flow_b, q.flow_b, q.flow_a])),
+        Region::EdgeExtension => Some(([q.b, q.a, q.a], [q.flow_b, q.flow_a, q.flow_a])),
+        Region::PlaneTension => Some(([0.0, 1.0, 0.0], [0.0, 1.0, 0.0])),
+        Region::TensionEdge => Some(([0.0, 0.0, 1.0], [0.0, 0.0, 1.0])),
+        _ => None,
+    }
+}
+
+/// Derivative of the returned stress by `kappa` at fixed trial stress.
+pub(super) fn rate(region: Region, s: &[f64; 3], q: &Strength, moduli: &Moduli) -> [f64; 3] {
+    if region == Region::Plane {
+        let r = moduli.stress(&[q.flow_a, 0.0, -q.flow_b]);
+        let multiplier = (q.k_rate - q.sin_rate * (s[0] + s[2])) / (q.a * r[0] - q.b * r[2]);
+        return r.map(|r| r * multiplier);
+    }
+    let mut rate = drift(region, s, q);
+    if let Some((l, w)) = line(region, q) {
+        let u = moduli.scaled_strain(&w);
+        let back = dot(&u, &rate) / dot(&u, &l);
+        for i in 0..3 {
+            rate[i] -= l[i] * back;
+        }
+    }
+    rate
+}
+
+/// `A[i][j] = d s_i / d e_j` at fixed strength, `e` the principal strain of the trial.
+pub(super) fn tangent(region: Region, q: &Strength, moduli: &Moduli) -> [[f64; 3]; 3] {
+    if let Some((l, w)) = line(region, q) {
+        let scale = 2.0 * moduli.mu / dot(&moduli.scaled_strain(&w), &l);
+        return l.map(|l| w.map(|w| scale * l * w));
+    }
+    let elastic: [[f64; 3]; 3] =
+        std::array::from_fn(|i| moduli.stress(&std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 })));
+    let (normal, flow) = match region {
+        Region::Elastic => return elastic,
+        Region::Plane => ([q.a, 0.0, -q.b], [q.flow_a, 0.0, -q.flow_b]),
+        Region::TensionPlane => ([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
+        _ => return [[0.0; 3]; 3],
+    };
+    let (r, n) = (moduli.stress(&flow), moduli.stress(&normal));
+    let scale = 1.0 / dot(&normal, &r);
+    std::array::from_fn(|i| std::array::from_fn(|j| elastic[i][j] - scale * r[i] * n[j]))
+}
