@@ -37,7 +37,7 @@ pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f6
         }
         strain[..3].iter_mut().for_each(|e| *e += correction);
     }
-    model.material(element).stress(&strain)
+    model.elastic(element).stress(&strain)
 }
 
 /// Natural points whose stresses are extrapolated to the nodes of a kind of element.

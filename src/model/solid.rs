@@ -106,7 +106,7 @@ pub fn build(document: &Document, solid: &Solid, gravity: [f64; 3]) -> Result<So
         check(document, &key("density"), m.density.si, m.density.si > 0.0, "a density above 0")?;
         let elastic =
             fem::material::elastic::Elastic { young: m.young.si, poisson: m.poisson, density: m.density.si };
-        if materials.insert(m.id, elastic).is_some() {
+        if materials.insert(m.id, elastic.into()).is_some() {
             return Err(document
                 .error(&key("id"), format!("material {} again", m.id), "each number once")
                 .into());

@@ -6,6 +6,7 @@ pub mod cholesky;
 pub mod conjugate_gradient;
 pub mod ordering;
 
+use crate::material::Region;
 use crate::newmark::NewmarkError;
 use thiserror::Error;
 
@@ -37,6 +38,25 @@ pub enum SolveError {
     Length { what: &'static str, found: usize, expected: usize },
     #[error("{what} is not a finite number at node {node} in {direction}, at time {time} s")]
     NotFinite { what: &'static str, node: u32, direction: &'static str, time: f64 },
+    #[error(
+        "material {material} is plastic: this solver is linear and would treat it as elastic; use the nonlinear one"
+    )]
+    Plastic { material: u32 },
+    #[error(
+        "no equilibrium after time {time}: {iterations} iterations left a residual of {residual:.3e} of the forces; worst at \
+         element {element}, Gauss point {point} (natural coordinates {xi:?}), which returned to: {region:?}"
+    )]
+    Diverged {
+        time: f64,
+        iterations: u32,
+        residual: f64,
+        element: u32,
+        point: u32,
+        xi: [f64; 3],
+        region: Region,
+    },
+    #[error("{what} is {value}, expected {expected}")]
+    Option { what: &'static str, value: f64, expected: &'static str },
     #[error("the time step is {dt} s, expected a finite number above 0")]
     TimeStep { dt: f64 },
     #[error("theta is {theta}, expected 0.5 to 1")]
