@@ -2,9 +2,17 @@
 //!
 //! [`ordering`] numbers the nodes so that the factor stays small, [`cholesky`] factors and solves, and
 //! [`conjugate_gradient`] solves with the mass matrix alone, which needs no factor.
+pub mod analysis;
 pub mod cholesky;
 pub mod conjugate_gradient;
+mod dense;
+mod front;
+mod kernels;
+pub mod multifrontal;
 pub mod ordering;
+mod pattern;
+mod solution;
+mod structure;
 
 use crate::material::Region;
 use crate::newmark::NewmarkError;
@@ -69,4 +77,17 @@ pub enum SolveError {
     MassNotSolved { residual: f64, iterations: usize },
     #[error("there is not enough memory to factor {equations} equations")]
     Memory { equations: usize },
+    #[error("the pattern of the matrix cannot be used: {what}")]
+    Pattern { what: &'static str },
+}
+
+/// A pivot that ended a factorization.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the pivot of equation {equation} is {ratio:.3e} of its scale: the matrix cannot be factored")]
+pub struct PivotError {
+    /// The equation, numbered as in the pattern.
+    pub equation: usize,
+    /// The pivot over the diagonal (symmetric) or over the largest entry of its column (unsymmetric); 0 when the
+    /// factorization could not tell more than that it is not usable.
+    pub ratio: f64,
 }
