@@ -41,6 +41,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod newmark;
+pub mod nonlinear;
 pub mod solver;
 pub mod state;
 pub mod statics;

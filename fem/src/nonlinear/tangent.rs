@@ -103,13 +103,18 @@ impl Tangent {
         let mut yielding = std::mem::take(&mut self.yielding);
         yielding.clear();
         let elements = 0..model.mesh().element_count();
-        yielding.extend(elements.filter(|&e| self.slot_start[e] != NONE && force.yields(e)).map(|e| e as u32));
+        yielding
+            .extend(elements.filter(|&e| self.slot_start[e] != NONE && force.yields(e)).map(|e| e as u32));
         let input = Input { model, force, old, increment, symmetric: self.symmetric };
         let mut buffer = std::mem::take(&mut self.element);
         for chunk in yielding.chunks(CHUNK) {
             input.run(chunk, &mut buffer[..chunk.len() * ELEMENT]);
             for (&e, matrix) in chunk.iter().zip(buffer.chunks_exact(ELEMENT)) {
-                self.add(&model.mesh().connectivity[e as usize], self.slot_start[e as usize] as usize, matrix);
+                self.add(
+                    &model.mesh().connectivity[e as usize],
+                    self.slot_start[e as usize] as usize,
+                    matrix,
+                );
             }
         }
         (self.yielding, self.element) = (yielding, buffer);
@@ -231,7 +236,9 @@ impl Input<'_> {
                 continue;
             }
             // The same call has succeeded for the force.
-            let Ok(response) = update(material, &self.old[p], &table.strain(e, i, &moved), true) else { continue };
+            let Ok(response) = update(material, &self.old[p], &table.strain(e, i, &moved), true) else {
+                continue;
+            };
             let factor = (1.0 - REGULARISATION) * table.volume(p);
             let d: [[f64; 6]; 6] = std::array::from_fn(|r| {
                 std::array::from_fn(|c| factor * (response.tangent[r][c] - elastic[r][c]))

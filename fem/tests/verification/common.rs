@@ -59,7 +59,12 @@ pub fn soils() -> BTreeMap<u32, Material> {
 }
 
 /// A model of one material without gravity and damping.
-pub fn model(mesh: Mesh, constraints: Vec<Constraint>, material: impl Into<Material>, quadrature: Quadrature) -> Model {
+pub fn model(
+    mesh: Mesh,
+    constraints: Vec<Constraint>,
+    material: impl Into<Material>,
+    quadrature: Quadrature,
+) -> Model {
     Model::new(ModelInput {
         mesh,
         materials: [(1, material.into())].into(),
