@@ -29,7 +29,7 @@ fn reduced(bencher: Bencher<'_, '_>, (side, threads): (usize, usize)) {
 fn assemble(bencher: Bencher<'_, '_>, side: usize, threads: usize, quadrature: Quadrature) {
     let input = ModelInput {
         mesh: Mesh::block([side; 3], [1.0; 3]),
-        materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 })].into(),
+        materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 }.into())].into(),
         quadrature,
         constraints: Vec::new(),
         gravity: [0.0; 3],

@@ -69,7 +69,7 @@ fn block([width, height]: [f64; 2]) -> trackbed_fem::Model {
         .collect();
     trackbed_fem::Model::new(trackbed_fem::ModelInput {
         mesh,
-        materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 1800.0 })].into(),
+        materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 1800.0 }.into())].into(),
         quadrature: Quadrature::Gauss3,
         constraints,
         gravity: [0.0; 3],

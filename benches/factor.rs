@@ -55,7 +55,7 @@ impl Case {
     fn new(name: &'static str, mesh: Mesh, constraints: Vec<Constraint>) -> Case {
         let soil = Elastic { young: 60e6, poisson: 0.3, density: 1900.0 };
         let model = Model::new(ModelInput {
-            materials: mesh.materials.iter().map(|&number| (number, soil)).collect(),
+            materials: mesh.materials.iter().map(|&number| (number, soil.into())).collect(),
             mesh,
             quadrature: Quadrature::Gauss3,
             constraints,

@@ -249,7 +249,7 @@ pub fn resting_load(
 pub fn face_masses(solid: &fem::model::Model, faces: &[fem::mesh::Face]) -> impl Iterator<Item = f64> {
     faces.iter().map(|f| {
         let element = f.element as usize;
-        solid.material(element).density * solid.mesh().element_volume(element)
+        solid.elastic(element).density * solid.mesh().element_volume(element)
     })
 }
 

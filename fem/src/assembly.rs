@@ -107,6 +107,27 @@ impl Matrices {
         &self.column[self.row_start[p]..self.row_start[p + 1]]
     }
 
+    /// Slot of the node pair (p, q), p <= q, that share an element.
+    pub(crate) fn slot(&self, p: u32, q: u32) -> usize {
+        let row = self.row_start[p as usize]..self.row_start[p as usize + 1];
+        row.start + self.column[row].partition_point(|&c| c < q)
+    }
+
+    /// Slots of the row of node `p`.
+    pub(crate) fn slots(&self, p: usize) -> std::ops::Range<usize> {
+        self.row_start[p]..self.row_start[p + 1]
+    }
+
+    /// Stiffness blocks by slots [N/m].
+    pub(crate) fn stiffness_blocks(&self) -> &[[f64; 9]] {
+        &self.stiffness
+    }
+
+    /// Mass entries by slots [kg].
+    pub(crate) fn mass_entries(&self) -> &[f64] {
+        &self.mass
+    }
+
     /// `y = K x` [N] over all dofs; `x` in m. Shapes `[3 * nodes]`.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);

@@ -15,7 +15,7 @@
 //!     .collect();
 //! let model = Model::new(ModelInput {
 //!     mesh,
-//!     materials: [(1, Elastic { young: 20e6, poisson: 0.0, density: 2000.0 })].into(),
+//!     materials: [(1, Elastic { young: 20e6, poisson: 0.0, density: 2000.0 }.into())].into(),
 //!     quadrature: Quadrature::Gauss3,
 //!     constraints,
 //!     gravity: [0.0, 0.0, -9.81],
@@ -41,6 +41,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod newmark;
+pub mod nonlinear;
 pub mod solver;
 pub mod state;
 pub mod statics;

@@ -5,7 +5,7 @@ use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
 use crate::element::{mass_points, stiffness_points};
 use crate::kinematics::jacobian;
-use crate::material::elastic::Elastic;
+use crate::material::{Elastic, Material};
 use crate::mesh::{Constraint, Mesh};
 use crate::solver::SolveError;
 use crate::solver::cholesky::Analysis;
@@ -20,7 +20,7 @@ pub struct ModelInput {
     /// The mesh [m].
     pub mesh: Mesh,
     /// Materials by the number that the mesh uses.
-    pub materials: BTreeMap<u32, Elastic>,
+    pub materials: BTreeMap<u32, Material>,
     /// Rule of the stiffness.
     pub quadrature: Quadrature,
     /// Supports and prescribed displacements, constant in time.
@@ -69,10 +69,10 @@ pub enum ModelError {
 }
 
 /// A checked solid with its matrices.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Model {
     mesh: Mesh,
-    materials: BTreeMap<u32, Elastic>,
+    materials: BTreeMap<u32, Material>,
     quadrature: Quadrature,
     constraints: Vec<Constraint>,
     gravity: [f64; 3],
@@ -80,6 +80,8 @@ pub struct Model {
     supports: Supports,
     matrices: Matrices,
     analysis: OnceLock<Arc<Analysis>>,
+    /// First Gauss point of each element, and the number of all. Shape `[elements + 1]`.
+    point_start: Vec<u32>,
 }
 
 impl Model {
@@ -102,7 +104,8 @@ impl Model {
             }
         }
         let supports = Supports::new(&mesh, &constraints)?;
-        let matrices = Matrices::assemble(&mesh, quadrature, |e| &materials[&mesh.materials[e]]);
+        let matrices = Matrices::assemble(&mesh, quadrature, |e| &materials[&mesh.materials[e]].elastic);
+        let point_start = point_start(&mesh, quadrature);
         Ok(Model {
             mesh,
             materials,
@@ -113,6 +116,7 @@ impl Model {
             supports,
             matrices,
             analysis: OnceLock::new(),
+            point_start,
         })
     }
 
@@ -122,13 +126,56 @@ impl Model {
     }
 
     /// The materials by number.
-    pub fn materials(&self) -> &BTreeMap<u32, Elastic> {
+    pub fn materials(&self) -> &BTreeMap<u32, Material> {
         &self.materials
     }
 
     /// The material of element `element` (index).
-    pub fn material(&self, element: usize) -> &Elastic {
+    pub fn material(&self, element: usize) -> &Material {
         &self.materials[&self.mesh.materials[element]]
+    }
+
+    /// The elastic constants and the density of element `element` (index).
+    pub fn elastic(&self, element: usize) -> &Elastic {
+        &self.material(element).elastic
+    }
+
+    /// Whether stress is proportional to strain in every element. Only such a model may be given to the linear solvers.
+    pub fn is_linear(&self) -> bool {
+        self.plastic_material().is_none()
+    }
+
+    /// The first material number in use that is plastic, if any.
+    pub fn plastic_material(&self) -> Option<u32> {
+        let used = |number: &u32| self.mesh.materials.contains(number);
+        self.materials.iter().find(|(number, m)| !m.is_linear() && used(number)).map(|(&number, _)| number)
+    }
+
+    /// Whether the consistent tangent is symmetric whatever yields.
+    pub fn symmetric_tangent(&self) -> bool {
+        self.materials.values().all(Material::symmetric_tangent)
+    }
+
+    /// The same body with other constants under the same numbers; the elastic parts must be those of this model, because the
+    /// matrices are kept.
+    ///
+    /// # Errors
+    /// A constant out of range, or a material that is missing.
+    pub(crate) fn with_plasticity(&self, materials: BTreeMap<u32, Material>) -> Result<Model, ModelError> {
+        check_materials(&self.mesh, &materials)?;
+        Ok(Model { materials, ..self.clone() })
+    }
+
+    /// Index of the first Gauss point of element `element` (index) in [`crate::State::points`]; for the number of elements,
+    /// the number of all points. The points of an element follow
+    /// [`stiffness_points`](crate::element::stiffness_points).
+    pub fn point_start(&self, element: usize) -> usize {
+        self.point_start[element] as usize
+    }
+
+    /// Number of Gauss points of all elements.
+    pub fn point_count(&self) -> usize {
+        self.point_start(self.mesh.element_count())
     }
 
     /// The rule of the stiffness.
@@ -191,7 +238,7 @@ impl Model {
 
     /// Mass of the whole body [kg].
     pub fn total_mass(&self) -> f64 {
-        (0..self.mesh.element_count()).map(|e| self.material(e).density * self.mesh.element_volume(e)).sum()
+        (0..self.mesh.element_count()).map(|e| self.elastic(e).density * self.mesh.element_volume(e)).sum()
     }
 
     /// The ordering and symbolic factorization, made once and shared by all solvers of this model.
@@ -249,7 +296,7 @@ fn check_mesh(mesh: &Mesh) -> Result<(), ModelError> {
     }
 }
 
-fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Elastic>) -> Result<(), ModelError> {
+fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Material>) -> Result<(), ModelError> {
     for (&material, constants) in materials {
         if let Some((constant, value, expected)) = constants.fault() {
             return Err(ModelError::MaterialConstant { material, constant, value, expected });
@@ -261,6 +308,16 @@ fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Elastic>) -> Result<()
         }
         None => Ok(()),
     }
+}
+
+fn point_start(mesh: &Mesh, rule: Quadrature) -> Vec<u32> {
+    let mut start = vec![0];
+    let mut count = 0;
+    for &kind in mesh.connectivity.kinds() {
+        count += stiffness_points(kind, rule).len() as u32;
+        start.push(count);
+    }
+    start
 }
 
 /// Every Gauss point of the mass and of the stiffness must have a positive volume.
@@ -288,7 +345,7 @@ mod tests {
     fn input() -> ModelInput {
         ModelInput {
             mesh: Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]),
-            materials: [(1, Elastic { young: 1e7, poisson: 0.3, density: 2000.0 })].into(),
+            materials: [(1, Elastic { young: 1e7, poisson: 0.3, density: 2000.0 }.into())].into(),
             quadrature: Quadrature::Gauss3,
             constraints: Vec::new(),
             gravity: [0.0, 0.0, -9.81],
@@ -307,7 +364,7 @@ mod tests {
         assert!(matches!(refused(|i| i.mesh = Mesh::default()), ModelError::EmptyMesh { what: "nodes" }));
         let e = refused(|i| i.mesh.materials[1] = 7);
         assert_eq!(e, ModelError::MissingMaterial { element: 2, material: 7 });
-        let e = refused(|i| i.materials.get_mut(&1).unwrap().poisson = 0.5);
+        let e = refused(|i| i.materials.get_mut(&1).unwrap().elastic.poisson = 0.5);
         assert!(e.to_string().contains("Poisson's ratio is 0.5"), "{e}");
         let e = refused(|i| i.mesh.connectivity[1].swap(0, 6));
         assert!(

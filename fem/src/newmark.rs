@@ -20,7 +20,7 @@ use crate::solver::conjugate_gradient::solve_mass;
 use crate::solver::{LinearSolver, SolveError};
 use crate::state::State;
 pub use crate::state::StepAudit;
-use crate::statics::{check_finite, check_load};
+use crate::statics::{check_finite, check_linear, check_load};
 use thiserror::Error;
 
 /// The two parameters of Newmark's method.
@@ -113,13 +113,14 @@ impl NewmarkSolver {
     /// As [`NewmarkSolver::new`], but accepts methods that are stable for small steps only; the caller answers for `dt`.
     ///
     /// # Errors
-    /// Parameters below 0, a step that is not above 0, a material without density.
+    /// Parameters below 0, a step that is not above 0, a material without density or with plasticity.
     pub fn conditionally_stable(
         model: &Model,
         method: Newmark,
         dt: f64,
     ) -> Result<NewmarkSolver, SolveError> {
         method.check_range()?;
+        check_linear(model)?;
         check_dynamics(model, dt)?;
         let c = model.rayleigh();
         let stiffness = method.alpha * dt * dt + method.delta * dt * c.beta_k;
@@ -200,6 +201,7 @@ impl NewmarkSolver {
 /// A load of the wrong length or not finite, a material without density, or a mass matrix that cannot be solved.
 pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> Result<(), SolveError> {
     check_load(model, load, state.time)?;
+    check_linear(model)?;
     check_density(model)?;
     let c = model.rayleigh();
     let n = model.dof_count();
@@ -263,7 +265,7 @@ pub(crate) fn check_dynamics(model: &Model, dt: f64) -> Result<(), SolveError> {
 
 fn check_density(model: &Model) -> Result<(), SolveError> {
     let used = |m: &u32| model.mesh().materials.contains(m);
-    match model.materials().iter().find(|(m, constants)| constants.density <= 0.0 && used(m)) {
+    match model.materials().iter().find(|(m, constants)| constants.elastic.density <= 0.0 && used(m)) {
         Some((&material, _)) => Err(SolveError::NoMass { material }),
         None => Ok(()),
     }

@@ -1,9 +1,10 @@
 //! The state of the solid: what a checkpoint holds.
 
+use crate::material::PointState;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
-/// Motion of all nodes at one time. Shapes `[3 * nodes]`.
+/// Motion of all nodes at one time, shapes `[3 * nodes]`, and history of the material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time [s].
@@ -14,13 +15,21 @@ pub struct State {
     pub v: Vec<f64>,
     /// Accelerations [m/s²].
     pub a: Vec<f64>,
+    /// Stress and history of the Gauss points, element by element in the order of
+    /// [`stiffness_points`](crate::element::stiffness_points), see [`Model::point_start`]. Empty for a linear model
+    /// without initial stress. Shape `[points]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<PointState>,
 }
 
 impl State {
-    /// The body at rest at time 0, undeformed but for the prescribed displacements.
+    /// The body at rest at time 0, undeformed but for the prescribed displacements, without stress at the Gauss points of
+    /// a plastic model.
     pub fn new(model: &Model) -> State {
         let n = model.dof_count();
-        let mut state = State { time: 0.0, u: vec![0.0; n], v: vec![0.0; n], a: vec![0.0; n] };
+        let points = if model.is_linear() { 0 } else { model.point_count() };
+        let points = vec![PointState::default(); points];
+        let mut state = State { time: 0.0, u: vec![0.0; n], v: vec![0.0; n], a: vec![0.0; n], points };
         for &(dof, value) in model.supports().fixed() {
             state.u[dof as usize] = value;
         }

@@ -57,8 +57,10 @@ impl StaticSolver {
     /// Checks that the body is held, and factors its stiffness.
     ///
     /// # Errors
-    /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely.
+    /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely;
+    /// [`SolveError::Plastic`] refuses a plastic material.
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
+        check_linear(model)?;
         check_held(model)?;
         let (mesh, supports) = (model.mesh(), model.supports());
         let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, 1.0, 0.0)?;
@@ -131,6 +133,11 @@ impl StaticSolver {
 /// As [`StaticSolver::new`] and [`StaticSolver::solve`].
 pub fn solve(model: &Model, load: &[f64]) -> Result<Static, SolveError> {
     StaticSolver::new(model)?.solve(model, load)
+}
+
+/// A linear solver must not be given a plastic material.
+pub(crate) fn check_linear(model: &Model) -> Result<(), SolveError> {
+    model.plastic_material().map_or(Ok(()), |material| Err(SolveError::Plastic { material }))
 }
 
 /// A load must have a finite value for every dof.

@@ -9,10 +9,14 @@
 
 use crate::element::quadrature::{GAUSS2, LINE2, Quadrature};
 use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
-use crate::kinematics::{mean_gradients, spatial_gradients, strain};
+use crate::kinematics::{jacobian, mean_gradients, spatial_gradients, strain};
+use crate::material::yield_function;
 use crate::model::Model;
+use crate::state::State;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// Stress at the points of the model's rule in element `element` (index), in the order of the rule.
 pub fn gauss(model: &Model, u: &[f64], element: usize) -> Vec<[f64; 6]> {
@@ -37,7 +41,7 @@ pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f6
         }
         strain[..3].iter_mut().for_each(|e| *e += correction);
     }
-    model.material(element).stress(&strain)
+    model.elastic(element).stress(&strain)
 }
 
 /// Natural points whose stresses are extrapolated to the nodes of a kind of element.
@@ -60,6 +64,99 @@ pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
         let stresses: Vec<_> =
             sampling_points(kind).into_iter().map(|xi| at_natural(model, u, e, xi)).collect();
         extrapolate(kind, &stresses)
+    })
+}
+
+/// Nodal values from values at the Gauss points, `of_point(element, index in State::points)`: the linear (on hexahedra
+/// trilinear) least-squares fit through the points of each element, averaged over the elements of each material, then over
+/// the materials. Shape `[nodes][C]`.
+///
+/// Under the 2×2×2 rule the fit goes through the points. A fit in place of an interpolation, because plastic stresses are not
+/// smooth within an element.
+pub fn nodal_from_points<const C: usize>(
+    model: &Model,
+    of_point: impl Fn(usize, usize) -> [f64; C] + Send + Sync,
+) -> Vec<[f64; C]> {
+    nodal_mean(model, |e| {
+        let kind = model.mesh().connectivity.kind(e);
+        let start = model.point_start(e);
+        let mut values = [[0.0; C]; MAX_NODES];
+        for (value, weights) in values.iter_mut().zip(fit_weights(kind, model.quadrature())) {
+            for (i, weight) in weights.iter().enumerate() {
+                let point = of_point(e, start + i);
+                for c in 0..C {
+                    value[c] += weight * point[c];
+                }
+            }
+        }
+        values
+    })
+}
+
+/// Stress at every node from the states of the points. Shape `[nodes][6]`.
+pub fn nodal_of_points(model: &Model, state: &State) -> Vec<[f64; 6]> {
+    nodal_from_points(model, |_, p| state.points[p].stress)
+}
+
+/// Equivalent plastic strain at every node [-], not below 0. Shape `[nodes]`.
+pub fn nodal_kappa(model: &Model, state: &State) -> Vec<f64> {
+    nodal_from_points(model, |_, p| [state.points[p].kappa]).into_iter().map(|[k]| k.max(0.0)).collect()
+}
+
+/// Yield function at every node [Pa], at most 0 at the points and near them; minus infinity at nodes of an element without
+/// plasticity. Shape `[nodes]`.
+pub fn nodal_yield_function(model: &Model, state: &State) -> Vec<f64> {
+    nodal_from_points(model, |e, p| [yield_function(model.material(e), &state.points[p])])
+        .into_iter()
+        .map(|[f]| if f.is_nan() { f64::NEG_INFINITY } else { f })
+        .collect()
+}
+
+/// Where the middle of element `element` (index) is [m], and the mean of the stresses of its points over its volume [Pa].
+pub fn centroid_of_points(model: &Model, state: &State, element: usize) -> ([f64; 3], [f64; 6]) {
+    let mesh = model.mesh();
+    let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
+    let shape = kind.shape_functions(kind.natural_centre());
+    let centre = std::array::from_fn(|k| shape.iter().zip(&x).map(|(n, x)| n * x[k]).sum());
+    let (mut mean, mut volume) = ([0.0; 6], 0.0);
+    let first = model.point_start(element);
+    for (i, point) in stiffness_points(kind, model.quadrature()).iter().enumerate() {
+        let part = point.weight * jacobian(&x, &point.gradients).1;
+        volume += part;
+        for (mean, s) in mean.iter_mut().zip(&state.points[first + i].stress) {
+            *mean += part * s;
+        }
+    }
+    (centre, mean.map(|m| m / volume))
+}
+
+/// Weights of the Gauss points at each node in the least-squares fit. Shape `[nodes][points]`.
+fn fit_weights(kind: ElementKind, rule: Quadrature) -> &'static [Vec<f64>] {
+    static TABLES: [[OnceLock<Vec<Vec<f64>>>; 3]; 8] = [const { [const { OnceLock::new() }; 3] }; 8];
+    TABLES[kind as usize][rule as usize].get_or_init(|| {
+        let terms = |x: [f64; 3]| -> Vec<f64> {
+            let [r, s, t] = x;
+            match kind {
+                ElementKind::Hex20 | ElementKind::Hex8 => {
+                    vec![1.0, r, s, t, r * s, s * t, t * r, r * s * t]
+                }
+                ElementKind::Wedge15 | ElementKind::Wedge6 => vec![1.0, r, s, t, r * t, s * t],
+                ElementKind::Tet10 => vec![1.0, r, s, t],
+                ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => vec![1.0],
+            }
+        };
+        let points: Vec<Vec<f64>> = stiffness_points(kind, rule).iter().map(|p| terms(p.xi)).collect();
+        let a = DMatrix::from_fn(points.len(), points[0].len(), |i, j| points[i][j]);
+        // The points of every rule tell these polynomials apart, so the normal matrix can be inverted.
+        let fit = (a.transpose() * &a).try_inverse().map(|inverse| inverse * a.transpose());
+        let weights = |x: &[f64; 3]| {
+            let at = DMatrix::from_row_slice(1, points[0].len(), &terms(*x));
+            fit.as_ref().map_or_else(
+                || vec![1.0 / points.len() as f64; points.len()],
+                |fit| (at * fit).iter().copied().collect(),
+            )
+        };
+        kind.natural().iter().map(weights).collect()
     })
 }
 
@@ -158,6 +255,25 @@ mod tests {
             for (node, s) in kind.natural().iter().zip(extrapolate(kind, &points)) {
                 let name = kind.name();
                 assert!((s[0] - field(*node)).abs() < 1e-13 && (s[5] - field(*node)).abs() < 1e-13, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_fit_through_the_points_keeps_its_polynomials_under_every_rule() {
+        for kind in ElementKind::ALL {
+            let field = |x: [f64; 3]| match kind.linear() {
+                ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
+                ElementKind::Wedge6 => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
+                ElementKind::Tet4 if kind == ElementKind::Tet10 => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
+                _ => 2.0,
+            };
+            for rule in [Quadrature::Gauss2, Quadrature::Irons14, Quadrature::Gauss3] {
+                let points = stiffness_points(kind, rule);
+                for (node, weights) in kind.natural().iter().zip(fit_weights(kind, rule)) {
+                    let value: f64 = weights.iter().zip(points).map(|(w, p)| w * field(p.xi)).sum();
+                    assert!((value - field(*node)).abs() < 1e-12, "{} {rule:?}: {value}", kind.name());
+                }
             }
         }
     }

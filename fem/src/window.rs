@@ -22,7 +22,7 @@ use crate::newmark::{check_dynamics, factor};
 use crate::solver::cholesky::Cholesky;
 use crate::solver::{LinearSolver, SolveError};
 use crate::state::{State, StepAudit};
-use crate::statics::{check_finite, check_load};
+use crate::statics::{check_finite, check_linear, check_load};
 
 /// Holds the factor for one window length, and scratch.
 pub struct WindowSolver {
@@ -39,11 +39,12 @@ impl WindowSolver {
     /// Factors the matrix of windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
     ///
     /// # Errors
-    /// theta out of range, a length that is not above 0, a material without density.
+    /// theta out of range, a length that is not above 0, a material without density or with plasticity.
     pub fn new(model: &Model, theta: f64, dt: f64) -> Result<WindowSolver, SolveError> {
         if !(0.5..=1.0).contains(&theta) {
             return Err(SolveError::Theta { theta });
         }
+        check_linear(model)?;
         check_dynamics(model, dt)?;
         let c = model.rayleigh();
         // The equation is multiplied by theta dt, so that the mass has the factor 1 as in Newmark's method.

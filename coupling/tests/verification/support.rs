@@ -68,7 +68,7 @@ pub fn model(
     }
     fem::Model::new(fem::ModelInput {
         mesh,
-        materials: [(1, fem::Elastic { young, poisson, density })].into(),
+        materials: [(1, fem::Elastic { young, poisson, density }.into())].into(),
         quadrature: fem::Quadrature::Gauss3,
         constraints,
         gravity: [0.0; 3],

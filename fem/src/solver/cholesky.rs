@@ -1,88 +1,20 @@
-//! Supernodal Cholesky factorization `P A P^T = L L^T` of `A = k K + m M` on the free dofs.
+//! Cholesky factorization `P A P^T = L L^T` of `A = k K + m M` on the free dofs.
 //!
-//! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Analysis`], made once per model);
-//! numbers are factored when k, m change ([`Cholesky::factor`]); solves allocate nothing. The dense kernels run with a
-//! constant, sequential setting, so the bits are the same on any number of threads.
+//! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Analysis`], made once per model); numbers are
+//! factored when k, m change ([`Cholesky::factor`]); solves allocate nothing. The bits are the same on any number of
+//! threads. See [`super::multifrontal`] for the method.
 //!
-//! Source: faer, sparse::linalg::cholesky (supernodal left-looking LLT). Limits: A must be positive definite. A pivot of
-//! zero or below is reported with its node and direction. A pivot that is only *tiny* does not stop a factorization; its
-//! size against the diagonal is kept in [`Cholesky::weakest_pivot`] for the caller to judge.
+//! Limits: A must be positive definite. A pivot of zero or below is reported with its node and direction. A pivot that
+//! is only *tiny* does not stop a factorization; its size against the diagonal is kept in [`Cholesky::weakest_pivot`]
+//! for the caller to judge.
 
 use crate::assembly::Matrices;
 use crate::mesh::Mesh;
-use crate::solver::ordering::nested_dissection;
+pub use crate::solver::analysis::Analysis;
+use crate::solver::multifrontal::DirectSolver;
 use crate::solver::{LinearSolver, SolveError};
-use crate::supports::{CONSTRAINED, Supports, name};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltError;
-use faer::perm::PermRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use crate::supports::{Supports, name};
 use std::sync::Arc;
-
-/// Ordering, pattern and symbolic factor of the equation system of a model.
-#[derive(Debug)]
-pub struct Analysis {
-    column_start: Vec<usize>,
-    row: Vec<usize>,
-    /// Elimination position → equation.
-    order: Vec<usize>,
-    symbolic: SymbolicCholesky<usize>,
-}
-
-impl Analysis {
-    /// Orders and analyses the free dofs.
-    ///
-    /// # Errors
-    /// Only when memory runs out.
-    pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
-        let equations = supports.free().len();
-        let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
-        matrices.visit_free(supports, |c, r, _, _| {
-            row.push(r);
-            column_start[c + 1] = row.len();
-        });
-        let index = supports.free_index();
-        let order: Vec<usize> = nested_dissection(mesh)
-            .iter()
-            .flat_map(|&n| (0..3).map(move |k| index[3 * n as usize + k]))
-            .filter(|&e| e != CONSTRAINED)
-            .map(|e| e as usize)
-            .collect();
-        let mut position = vec![0; equations];
-        for (i, &e) in order.iter().enumerate() {
-            position[e] = i;
-        }
-        let pattern = SymbolicSparseColMatRef::new_checked(equations, equations, &column_start, None, &row);
-        let symbolic = factorize_symbolic_cholesky(
-            pattern,
-            Side::Lower,
-            SymmetricOrdering::Custom(PermRef::new_checked(&order, &position, equations)),
-            CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..Default::default()
-            },
-        )
-        .map_err(|_| SolveError::Memory { equations })?;
-        Ok(Analysis { column_start, row, order, symbolic })
-    }
-
-    /// Number of equations.
-    pub fn size(&self) -> usize {
-        self.order.len()
-    }
-
-    /// Number of values that the factor stores.
-    pub fn factor_len(&self) -> usize {
-        self.symbolic.len_val()
-    }
-}
 
 /// The smallest pivot of a factor against the diagonal entry of its dof.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,9 +27,7 @@ pub struct WeakestPivot {
 
 /// A factor, ready to solve.
 pub struct Cholesky {
-    analysis: Arc<Analysis>,
-    values: Vec<f64>,
-    scratch: MemBuffer,
+    solver: DirectSolver,
     weakest: WeakestPivot,
 }
 
@@ -114,39 +44,17 @@ impl Cholesky {
         stiffness: f64,
         mass: f64,
     ) -> Result<Cholesky, SolveError> {
-        let equations = analysis.size();
-        let mut a = Vec::with_capacity(analysis.row.len());
+        let mut a = Vec::with_capacity(analysis.entries());
         matrices.visit_free(supports, |_, _, k, m| a.push(stiffness * k + mass * m));
-        let pattern = SymbolicSparseColMatRef::new_checked(
-            equations,
-            equations,
-            &analysis.column_start,
-            None,
-            &analysis.row,
-        );
-        let symbolic = &analysis.symbolic;
-        let mut values = vec![0.0; symbolic.len_val()];
-        let work = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut work = MemBuffer::try_new(work).map_err(|_| SolveError::Memory { equations })?;
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(pattern, &a),
-                Side::Lower,
-                Default::default(),
-                Par::Seq,
-                MemStack::new(&mut work),
-                Default::default(),
-            )
-            .map_err(|LltError::NonPositivePivot { index }| {
-                let (node, direction) = name(mesh, supports.free()[analysis.order[index]] as usize);
-                SolveError::NoStiffness { node, direction, pivot: 0.0 }
-            })?;
-        let diagonal = |equation: usize| a[analysis.column_start[equation]];
-        let weakest = weakest_pivot(&analysis, &values, diagonal, supports);
-        let scratch = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let scratch = MemBuffer::try_new(scratch).map_err(|_| SolveError::Memory { equations })?;
-        Ok(Cholesky { analysis, values, scratch, weakest })
+        let free = supports.free();
+        let mut solver = DirectSolver::new(analysis);
+        solver.factor_symmetric(&a).map_err(|pivot| {
+            let (node, direction) = name(mesh, free[pivot.equation] as usize);
+            SolveError::NoStiffness { node, direction, pivot: pivot.ratio }
+        })?;
+        let (ratio, equation) = solver.weakest_pivot();
+        let weakest = WeakestPivot { ratio, dof: free.get(equation).map_or(0, |&d| d as usize) };
+        Ok(Cholesky { solver, weakest })
     }
 
     /// The smallest pivot against its diagonal entry; the last dof with ratio 1 when there are no equations.
@@ -157,45 +65,12 @@ impl Cholesky {
 
 impl LinearSolver for Cholesky {
     fn size(&self) -> usize {
-        self.analysis.size()
+        self.solver.size()
     }
 
     fn solve_in_place(&mut self, x: &mut [f64]) {
-        let size = x.len();
-        if size == 0 {
-            return;
-        }
-        LltRef::new(&self.analysis.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, size, 1),
-            Par::Seq,
-            MemStack::new(&mut self.scratch),
-        );
+        self.solver.solve_in_place(x);
     }
-}
-
-fn weakest_pivot(
-    analysis: &Analysis,
-    values: &[f64],
-    diagonal: impl Fn(usize) -> f64,
-    supports: &Supports,
-) -> WeakestPivot {
-    let mut weakest = WeakestPivot { ratio: 1.0, dof: supports.free().last().map_or(0, |&d| d as usize) };
-    // The analysis forces supernodes, so there is no other form to look into.
-    if let SymbolicCholeskyRaw::Supernodal(symbolic) = analysis.symbolic.raw() {
-        let factor = SupernodalLltRef::new(symbolic, values);
-        for s in 0..symbolic.n_supernodes() {
-            let (panel, start) = (factor.supernode(s).val(), symbolic.supernode_begin()[s]);
-            for j in 0..panel.ncols() {
-                let equation = analysis.order[start + j];
-                let ratio = panel[(j, j)] * panel[(j, j)] / diagonal(equation);
-                if ratio < weakest.ratio {
-                    weakest = WeakestPivot { ratio, dof: supports.free()[equation] as usize };
-                }
-            }
-        }
-    }
-    weakest
 }
 
 #[cfg(test)]

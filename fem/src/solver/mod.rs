@@ -2,10 +2,19 @@
 //!
 //! [`ordering`] numbers the nodes so that the factor stays small, [`cholesky`] factors and solves, and
 //! [`conjugate_gradient`] solves with the mass matrix alone, which needs no factor.
+pub mod analysis;
 pub mod cholesky;
 pub mod conjugate_gradient;
+mod dense;
+mod front;
+mod kernels;
+pub mod multifrontal;
 pub mod ordering;
+mod pattern;
+mod solution;
+mod structure;
 
+use crate::material::Region;
 use crate::newmark::NewmarkError;
 use thiserror::Error;
 
@@ -37,6 +46,25 @@ pub enum SolveError {
     Length { what: &'static str, found: usize, expected: usize },
     #[error("{what} is not a finite number at node {node} in {direction}, at time {time} s")]
     NotFinite { what: &'static str, node: u32, direction: &'static str, time: f64 },
+    #[error(
+        "material {material} is plastic: this solver is linear and would treat it as elastic; use the nonlinear one"
+    )]
+    Plastic { material: u32 },
+    #[error(
+        "no equilibrium after time {time}: {iterations} iterations left a residual of {residual:.3e} of the forces; worst at \
+         element {element}, Gauss point {point} (natural coordinates {xi:?}), which returned to: {region:?}"
+    )]
+    Diverged {
+        time: f64,
+        iterations: u32,
+        residual: f64,
+        element: u32,
+        point: u32,
+        xi: [f64; 3],
+        region: Region,
+    },
+    #[error("{what} is {value}, expected {expected}")]
+    Option { what: &'static str, value: f64, expected: &'static str },
     #[error("the time step is {dt} s, expected a finite number above 0")]
     TimeStep { dt: f64 },
     #[error("theta is {theta}, expected 0.5 to 1")]
@@ -49,4 +77,17 @@ pub enum SolveError {
     MassNotSolved { residual: f64, iterations: usize },
     #[error("there is not enough memory to factor {equations} equations")]
     Memory { equations: usize },
+    #[error("the pattern of the matrix cannot be used: {what}")]
+    Pattern { what: &'static str },
+}
+
+/// A pivot that ended a factorization.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the pivot of equation {equation} is {ratio:.3e} of its scale: the matrix cannot be factored")]
+pub struct PivotError {
+    /// The equation, numbered as in the pattern.
+    pub equation: usize,
+    /// The pivot over the diagonal (symmetric) or over the largest entry of its column (unsymmetric); 0 when the
+    /// factorization could not tell more than that it is not usable.
+    pub ratio: f64,
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use trackbed_fem::ElementKind;
 use trackbed_fem::element::quadrature::Quadrature;
-use trackbed_fem::material::elastic::Elastic;
+use trackbed_fem::material::{Elastic, Material};
 use trackbed_fem::mesh::{Constraint, Mesh};
 use trackbed_fem::model::{Model, ModelInput};
 
@@ -53,16 +53,21 @@ pub fn read_mesh(case: &str) -> (Mesh, Vec<Constraint>) {
 }
 
 /// The three soils of the embankment and of the column.
-pub fn soils() -> BTreeMap<u32, Elastic> {
-    let soil = |young, poisson, density| Elastic { young, poisson, density };
+pub fn soils() -> BTreeMap<u32, Material> {
+    let soil = |young, poisson, density| Elastic { young, poisson, density }.into();
     [(1, soil(60e6, 0.35, 1900.0)), (2, soil(110e6, 0.3, 2000.0)), (3, soil(180e6, 0.25, 2100.0))].into()
 }
 
 /// A model of one material without gravity and damping.
-pub fn model(mesh: Mesh, constraints: Vec<Constraint>, material: Elastic, quadrature: Quadrature) -> Model {
+pub fn model(
+    mesh: Mesh,
+    constraints: Vec<Constraint>,
+    material: impl Into<Material>,
+    quadrature: Quadrature,
+) -> Model {
     Model::new(ModelInput {
         mesh,
-        materials: [(1, material)].into(),
+        materials: [(1, material.into())].into(),
         quadrature,
         constraints,
         gravity: [0.0; 3],

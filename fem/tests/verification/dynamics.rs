@@ -64,7 +64,7 @@ fn free_vibration_keeps_its_energy_and_lengthens_its_period_as_theory_says() {
 fn column(rayleigh: Rayleigh) -> Model {
     let mesh = Mesh::block([2, 1, 4], [1.0, 0.5, 2.0]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
-    let materials = [(1, SOIL)].into();
+    let materials = [(1, SOIL.into())].into();
     Model::new(ModelInput {
         mesh,
         materials,
@@ -156,7 +156,7 @@ fn a_body_at_rest_under_gravity_stays_at_rest() {
     constraints.iter_mut().filter(|c| c.direction == 2).for_each(|c| c.value = -1e-3);
     let model = Model::new(ModelInput {
         mesh,
-        materials: [(1, SOIL)].into(),
+        materials: [(1, SOIL.into())].into(),
         quadrature: Gauss2,
         constraints,
         gravity: [0.0, 0.0, -9.81],

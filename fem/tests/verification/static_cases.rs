@@ -8,14 +8,14 @@ use crate::common::{difference, read_mesh, soils, table};
 use std::collections::BTreeMap;
 use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::loads;
-use trackbed_fem::material::elastic::Elastic;
+use trackbed_fem::material::{Elastic, Material};
 use trackbed_fem::model::{Model, ModelInput};
 use trackbed_fem::statics::{self, Static};
 use trackbed_fem::stress;
 
 struct Case {
     name: &'static str,
-    materials: BTreeMap<u32, Elastic>,
+    materials: BTreeMap<u32, Material>,
     gravity: [f64; 3],
     /// Element number, SOLID186 face, and pressure [Pa] or traction [Pa].
     loads: Vec<(usize, usize, Surface)>,
@@ -97,7 +97,7 @@ fn cantilever_bends_as_tabled() {
     let traction = Surface::Traction([0.0, 0.0, -166666.6666666667]);
     assert_tables_met(&Case {
         name: "E2_cantilever",
-        materials: [(1, Elastic { young: 210e9, poisson: 0.3, density: 7850.0 })].into(),
+        materials: [(1, Elastic { young: 210e9, poisson: 0.3, density: 7850.0 }.into())].into(),
         gravity: [0.0; 3],
         loads: vec![(10, 3, traction), (20, 3, traction)],
         reduced: vec![(171, [3.1544232e-05, -3.9333427e-09, -0.00028356206])],
@@ -145,7 +145,7 @@ fn embankment_under_its_own_weight_settles_as_tabled() {
 fn thick_cylinder_widens_as_tabled_and_as_lame_says() {
     let (model, _, solution) = assert_tables_met(&Case {
         name: "E6_thick_cylinder",
-        materials: [(1, Elastic { young: 200e9, poisson: 0.3, density: 7850.0 })].into(),
+        materials: [(1, Elastic { young: 200e9, poisson: 0.3, density: 7850.0 }.into())].into(),
         gravity: [0.0; 3],
         loads: [1, 5, 9, 13, 17, 21].map(|e| (e, 5, Surface::Pressure(10e6))).to_vec(),
         reduced: vec![(1, [4.7669692e-05, 0.0, 0.0]), (9, [3.0333896e-05, 0.0, 0.0])],

@@ -161,7 +161,8 @@ fn a_million_times_stiffer_plate_on_soft_ground_is_solved() {
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     let model = trackbed_fem::model::Model::new(trackbed_fem::model::ModelInput {
         mesh,
-        materials: [(1, Elastic { young: 2e5, ..SOIL }), (2, Elastic { young: 2e11, ..SOIL })].into(),
+        materials: [(1, Elastic { young: 2e5, ..SOIL }.into()), (2, Elastic { young: 2e11, ..SOIL }.into())]
+            .into(),
         quadrature: Gauss2,
         constraints,
         gravity: [0.0, 0.0, -9.81],

@@ -17,7 +17,7 @@ const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 fn block(rayleigh: Rayleigh) -> Model {
     let mesh = Mesh::block([2, 2, 2], [1.0, 0.8, 0.6]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
-    let materials = [(1, SOIL)].into();
+    let materials = [(1, SOIL.into())].into();
     Model::new(ModelInput {
         mesh,
         materials,

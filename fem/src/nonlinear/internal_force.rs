@@ -1,0 +1,181 @@
+//! Internal force: strain increments at the Gauss points, return to the yield surface, and `f_a = ∫ sigma·g_a dV`.
+//!
+//! Linear kinds of elements take the strain with mean dilatation and the transposed of it for the force (B-bar, Hughes,
+//! Int. J. Numer. Methods Eng. 15 (1980) 1413-1418). Elements without plasticity skip the return. Elements are worked on in
+//! fixed halves as tasks and their forces added in element order, so the bits do not depend on the number of threads.
+
+use super::points::{Moved, PointTable};
+use crate::element::MAX_NODES;
+use crate::material::{self, PointState, Region};
+use crate::mesh::Mesh;
+use crate::model::Model;
+
+/// Elements that one task works on.
+const CHUNK: usize = 32;
+
+/// A Gauss point whose return failed: element (index) and point in the element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PointFailure {
+    pub element: usize,
+    pub point: usize,
+}
+
+/// Stresses and forces of a trial displacement increment, with their buffers.
+pub(crate) struct InternalForce {
+    pub table: PointTable,
+    /// State of the points at the trial. Shape `[points]`.
+    pub points: Vec<PointState>,
+    /// Where each point ended. Shape `[points]`.
+    pub regions: Vec<Region>,
+    /// Nodal forces [N]. Shape `[3 * nodes]`.
+    pub force: Vec<f64>,
+    /// Number of points that yielded.
+    pub plastic: usize,
+    element_force: Vec<[f64; 3]>,
+}
+
+/// What a range of elements writes.
+struct Slice<'a> {
+    first: usize,
+    end: usize,
+    points: &'a mut [PointState],
+    regions: &'a mut [Region],
+    forces: &'a mut [[f64; 3]],
+}
+
+/// What all elements read.
+struct Input<'a> {
+    model: &'a Model,
+    table: &'a PointTable,
+    old: &'a [PointState],
+    increment: &'a [f64],
+}
+
+impl InternalForce {
+    pub fn new(model: &Model) -> InternalForce {
+        let points = model.point_count();
+        InternalForce {
+            table: PointTable::new(model),
+            points: vec![PointState::default(); points],
+            regions: vec![Region::Elastic; points],
+            force: vec![0.0; model.dof_count()],
+            plastic: 0,
+            element_force: vec![[0.0; 3]; model.mesh().connectivity.nodes().len()],
+        }
+    }
+
+    /// Stresses and forces after the displacement increment `increment` [m] (shape `[3 * nodes]`) from the states `old`.
+    pub fn evaluate(
+        &mut self,
+        model: &Model,
+        old: &[PointState],
+        increment: &[f64],
+    ) -> Result<(), PointFailure> {
+        let input = Input { model, table: &self.table, old, increment };
+        let all = Slice {
+            first: 0,
+            end: model.mesh().element_count(),
+            points: &mut self.points,
+            regions: &mut self.regions,
+            forces: &mut self.element_force,
+        };
+        self.plastic = input.run(all)?;
+        self.gather(model.mesh());
+        Ok(())
+    }
+
+    /// Forces of given stresses, without any return. Shape of `states` `[points]`.
+    pub fn of_states(&mut self, model: &Model, states: &[PointState]) {
+        self.element_force.fill([0.0; 3]);
+        for e in 0..model.mesh().element_count() {
+            let forces = &mut self.element_force[self.table.nodes(e)];
+            for (i, p) in self.table.points(e).enumerate() {
+                self.table.add_force(e, i, self.table.volume(p), &states[p].stress, forces);
+            }
+        }
+        self.gather(model.mesh());
+    }
+
+    fn gather(&mut self, mesh: &Mesh) {
+        let force = self.force.as_chunks_mut::<3>().0;
+        force.fill([0.0; 3]);
+        for (f, &node) in self.element_force.iter().zip(mesh.connectivity.nodes()) {
+            let sum = &mut force[node as usize];
+            for k in 0..3 {
+                sum[k] += f[k];
+            }
+        }
+    }
+
+    /// Whether any point of element `e` yielded.
+    pub fn yields(&self, e: usize) -> bool {
+        self.plastic > 0 && self.regions[self.table.points(e)].iter().any(|r| *r != Region::Elastic)
+    }
+}
+
+impl Input<'_> {
+    fn run(&self, slice: Slice<'_>) -> Result<usize, PointFailure> {
+        let Slice { first, end, points, regions, forces } = slice;
+        if end - first > CHUNK {
+            let middle = first + (end - first) / 2;
+            let (at, node) = (self.table.points(first).start, self.table.nodes(first).start);
+            let (p, q) = points.split_at_mut(self.table.points(middle).start - at);
+            let (r, s) = regions.split_at_mut(self.table.points(middle).start - at);
+            let (f, g) = forces.split_at_mut(self.table.nodes(middle).start - node);
+            let low = Slice { first, end: middle, points: p, regions: r, forces: f };
+            let high = Slice { first: middle, end, points: q, regions: s, forces: g };
+            let (low, high) = rayon::join(|| self.run(low), || self.run(high));
+            return Ok(low? + high?);
+        }
+        let (mut at, mut node, mut plastic) = (0, 0, 0);
+        for e in first..end {
+            let (p, n) = (self.table.points(e).len(), self.table.nodes(e).len());
+            let (points, regions) = (&mut points[at..at + p], &mut regions[at..at + p]);
+            plastic += self.element(e, points, regions, &mut forces[node..node + n])?;
+            (at, node) = (at + p, node + n);
+        }
+        Ok(plastic)
+    }
+
+    fn element(
+        &self,
+        e: usize,
+        points: &mut [PointState],
+        regions: &mut [Region],
+        forces: &mut [[f64; 3]],
+    ) -> Result<usize, PointFailure> {
+        let moved = element_increment(self.model.mesh(), e, self.increment);
+        let (material, at) = (self.model.material(e), self.table.points(e).start);
+        forces.fill([0.0; 3]);
+        let mut plastic = 0;
+        for i in 0..points.len() {
+            let (old, strain) = (&self.old[at + i], self.table.strain(e, i, &moved));
+            if material.is_linear() {
+                let step = material.elastic.stress(&strain);
+                points[i] = PointState { stress: std::array::from_fn(|k| old.stress[k] + step[k]), ..*old };
+            } else {
+                let response = material::update(material, old, &strain, false)
+                    .map_err(|_| PointFailure { element: e, point: i })?;
+                (points[i], regions[i]) = (response.state, response.region);
+                plastic += usize::from(response.region != Region::Elastic);
+            }
+            self.table.add_force(e, i, self.table.volume(at + i), &points[i].stress, forces);
+        }
+        if forces.iter().flatten().sum::<f64>().is_finite() {
+            Ok(plastic)
+        } else {
+            Err(PointFailure { element: e, point: 0 })
+        }
+    }
+}
+
+/// The increments at the nodes of element `e`.
+#[inline]
+pub(crate) fn element_increment(mesh: &Mesh, e: usize, increment: &[f64]) -> Moved {
+    let mut moved = [[0.0; 3]; MAX_NODES];
+    for (m, &n) in moved.iter_mut().zip(&mesh.connectivity[e]) {
+        let n = 3 * n as usize;
+        *m = [increment[n], increment[n + 1], increment[n + 2]];
+    }
+    moved
+}

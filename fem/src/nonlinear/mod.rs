@@ -1,0 +1,17 @@
+//! Elastoplastic bodies: internal force, tangent, Newton's iteration, and the drivers on top of it.
+//!
+//! Stress and history live at the Gauss points of [`State::points`](crate::State::points); a step starts from the committed
+//! ones, so that a step given up leaves no trace. Source of the structure: Simo and Hughes, Computational Inelasticity (1998),
+//! chapters 1 and 4; de Souza Neto, Peric and Owen, Computational Methods for Plasticity (2008), chapter 4. Limits: small strain
+//! and rotation.
+mod internal_force;
+mod linear_system;
+mod newton;
+mod points;
+mod quasi_static;
+mod step_control;
+mod tangent;
+
+pub use newton::{LinearMethod, NewtonOptions, Statistics, StepReport, Variant};
+pub use quasi_static::{Driven, Loading, QuasiStatic};
+pub use step_control::StepControl;

@@ -1,0 +1,489 @@
+//! Newton's iteration for the equilibrium of one step: full, modified, or with the elastic matrix; with or without line
+//! search; force and energy criteria.
+//!
+//! Unknown is the displacement increment `w` of the step; its part at the constrained dofs is prescribed:
+//!
+//! ```text
+//! r(w) = rhs - f(w) - (stiffness K + mass M) w = 0 on the free dofs
+//! ```
+//!
+//! f is the internal force of the stresses after w, K the elastic stiffness. The linear part is empty in a
+//! quasi-static step. The first iteration of a step goes out from the committed stresses with the elastic matrix (whether a
+//! point that lies exactly on the yield surface counts as yielding would be left to rounding), so the prescribed increments
+//! spread over the body before any stress is returned. A step without a yielding point needs no other.
+//!
+//! Converged when the residual on the free dofs is at most `force_tolerance` of the forces (the larger of |rhs| and |f| over all
+//! dofs, so that reactions count) *and* the work of the residual on the last correction is at most `energy_tolerance` of the largest
+//! such work before a correction in the step.
+//!
+//! Line search: the step length is sought for which the work of the residual on the correction falls to
+//! half of that before it (Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section 9.2), within bounds.
+//! Where an unsymmetric tangent gives a correction along which the residual does no positive work, the size of the
+//! residual decides instead.
+
+use super::internal_force::{InternalForce, PointFailure};
+use super::linear_system::{LinearSystem, Matrix};
+use super::tangent::{LinearPart, Tangent};
+use crate::element::stiffness_points;
+use crate::material::{PointState, Region};
+use crate::model::Model;
+use crate::solver::SolveError;
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// Which matrix the iterations after the first of a step take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Variant {
+    /// The consistent tangent of every iteration: quadratic convergence.
+    Full,
+    /// The tangent after the first iteration, renewed after every so many further ones (0: kept to the end of the step).
+    Modified(u32),
+    /// The elastic matrix: factored once, linear convergence.
+    InitialStiffness,
+}
+
+/// How systems with an unsymmetric tangent are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LinearMethod {
+    /// L U up to 30,000 free dofs, iteration above.
+    #[default]
+    Auto,
+    /// L U.
+    Direct,
+    /// GMRES, preconditioned with the elastic factor.
+    Krylov,
+}
+
+/// Choices of the iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NewtonOptions {
+    /// Matrix of the iterations.
+    pub variant: Variant,
+    /// Whether the length of each correction is searched.
+    pub line_search: bool,
+    /// Residual at convergence, over the forces [-].
+    pub force_tolerance: f64,
+    /// Work of the residual on the last correction at convergence, over the largest work before a correction [-].
+    pub energy_tolerance: f64,
+    /// Iterations after which a step has failed.
+    pub max_iterations: u32,
+    /// Solver of unsymmetric systems.
+    pub linear: LinearMethod,
+}
+
+impl NewtonOptions {
+    /// The usual choices for a variant: tolerances 1e-6 and 1e-8, line search, 25 iterations (full), 60 (modified) or 400
+    /// (elastic matrix).
+    pub fn new(variant: Variant) -> NewtonOptions {
+        let max_iterations = match variant {
+            Variant::Full => 25,
+            Variant::Modified(_) => 60,
+            Variant::InitialStiffness => 400,
+        };
+        NewtonOptions {
+            variant,
+            line_search: true,
+            force_tolerance: 1e-6,
+            energy_tolerance: 1e-8,
+            max_iterations,
+            linear: LinearMethod::Auto,
+        }
+    }
+
+    /// Refuses tolerances that are not above 0 and no iterations.
+    ///
+    /// # Errors
+    /// [`SolveError::Option`].
+    pub fn check(&self) -> Result<(), SolveError> {
+        for (what, value) in
+            [("the force tolerance", self.force_tolerance), ("the energy tolerance", self.energy_tolerance)]
+        {
+            if !(value > 0.0 && value < 1.0) {
+                return Err(SolveError::Option { what, value, expected: "a number between 0 and 1" });
+            }
+        }
+        if self.max_iterations == 0 {
+            return Err(SolveError::Option {
+                what: "the limit of iterations",
+                value: 0.0,
+                expected: "1 or more",
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Default for NewtonOptions {
+    fn default() -> Self {
+        NewtonOptions::new(Variant::Full)
+    }
+}
+
+/// Counts and times of a run. Seconds are those of the clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps given up and repeated with half the length.
+    pub halvings: u64,
+    /// Iterations, those of steps given up included.
+    pub iterations: u64,
+    /// Evaluations of the stresses.
+    pub evaluations: u64,
+    /// Factorizations L L^T.
+    pub factorizations_symmetric: u64,
+    /// Factorizations L U.
+    pub factorizations_unsymmetric: u64,
+    /// Symmetric tangents that were not positive definite, and taken by L U.
+    pub not_positive: u64,
+    /// Tangents that L U failed on, and the elastic matrix replaced.
+    pub singular: u64,
+    /// Solves with a factor.
+    pub solves: u64,
+    /// Seconds of stresses, internal forces and tangents.
+    pub assembly_seconds: f64,
+    /// Seconds of factorizations.
+    pub factor_seconds: f64,
+    /// Seconds of solves.
+    pub solve_seconds: f64,
+}
+
+/// How one step converged.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepReport {
+    /// Time at the end of the step.
+    pub time: f64,
+    /// Length of the step.
+    pub dt: f64,
+    /// Solves with a matrix in this step.
+    pub iterations: u32,
+    /// Residual on the free dofs over the forces: at the start, then after each iteration.
+    pub residuals: Vec<f64>,
+    /// Gauss points that yielded in the step.
+    pub plastic_points: usize,
+}
+
+/// Where a step got stuck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stuck {
+    pub residual: f64,
+    pub iterations: u32,
+    element: usize,
+    point: usize,
+    region: Region,
+}
+
+/// Why a step has no result.
+pub(crate) enum Failure {
+    /// No convergence: a smaller step may pass.
+    Stuck(Stuck),
+    /// Not a matter of the step's size.
+    Fatal(SolveError),
+}
+
+impl Stuck {
+    /// The error that names the place, as the user's files number it.
+    pub fn error(&self, model: &Model, time: f64) -> SolveError {
+        let mesh = model.mesh();
+        let points = stiffness_points(mesh.connectivity.kind(self.element), model.quadrature());
+        SolveError::Diverged {
+            time,
+            iterations: self.iterations,
+            residual: self.residual,
+            element: mesh.element_ids[self.element],
+            point: self.point as u32 + 1,
+            xi: points[self.point].xi,
+            region: self.region,
+        }
+    }
+}
+
+/// One step to be solved.
+#[derive(Clone, Copy)]
+pub(crate) struct Problem<'a> {
+    /// Committed states of the points. Shape `[points]`.
+    pub old: &'a [PointState],
+    /// Right-hand side [N]. Shape `[3 * nodes]`.
+    pub rhs: &'a [f64],
+    /// Prescribed increments [m] in the order of the constrained dofs.
+    pub fixed: &'a [f64],
+    /// What is added to the internal force.
+    pub linear: LinearPart,
+}
+
+/// Smallest length of a correction.
+const SHORTEST: f64 = 0.1;
+/// Longest length of a correction with a matrix that is not the tangent.
+const LONGEST: f64 = 4.0;
+/// Share of the work that ends a line search.
+const ENOUGH: f64 = 0.5;
+/// Evaluations of a line search at most.
+const SEARCHES: u32 = 5;
+/// Residual over the forces at which an iteration is given up.
+const HOPELESS: f64 = 1e6;
+
+/// The iteration with its matrices and buffers.
+pub(crate) struct Newton {
+    pub options: NewtonOptions,
+    pub force: InternalForce,
+    pub system: LinearSystem,
+    pub tangent: Tangent,
+    /// The increment [m]. Shape `[3 * nodes]`.
+    pub w: Vec<f64>,
+    /// Residual [N] over all dofs; at the constrained ones minus the reaction.
+    pub residual: Vec<f64>,
+    pub statistics: Statistics,
+    pub report: StepReport,
+    base: Vec<f64>,
+    correction: Vec<f64>,
+    product: Vec<f64>,
+    equations: Vec<f64>,
+}
+
+impl Newton {
+    pub fn new(model: &Model, options: NewtonOptions) -> Result<Newton, SolveError> {
+        options.check()?;
+        let n = model.dof_count();
+        let report = StepReport {
+            residuals: Vec::with_capacity(options.max_iterations as usize + 1),
+            ..Default::default()
+        };
+        Ok(Newton {
+            options,
+            force: InternalForce::new(model),
+            system: LinearSystem::new(model)?,
+            tangent: Tangent::new(model),
+            w: vec![0.0; n],
+            residual: vec![0.0; n],
+            statistics: Statistics::default(),
+            report,
+            base: vec![0.0; n],
+            correction: vec![0.0; n],
+            product: vec![0.0; n],
+            equations: vec![0.0; model.free_dof_count()],
+        })
+    }
+
+    /// Solves a step; the increment is left in `w`, the states in `force.points`, the course in `report`.
+    pub fn solve(&mut self, model: &Model, problem: &Problem<'_>) -> Result<(), Failure> {
+        self.system
+            .factor_elastic(model, &mut self.tangent, problem.linear, &mut self.statistics)
+            .map_err(Failure::Fatal)?;
+        self.report.residuals.clear();
+        self.report.iterations = 0;
+        self.w.fill(0.0);
+        self.evaluate(model, problem, 0.0)?;
+        let moving = problem.fixed.iter().any(|f| *f != 0.0);
+        let mut size = self.measure(model, problem);
+        if !moving && size <= self.options.force_tolerance {
+            self.report.plastic_points = 0;
+            return Ok(());
+        }
+        let mut most = 0.0_f64;
+        let mut matrix = Matrix::Elastic;
+        for iteration in 1..=self.options.max_iterations {
+            self.correction.fill(0.0);
+            if iteration == 1 {
+                self.predict(model, problem, moving);
+            } else {
+                matrix = self.choose(model, problem, iteration, matrix);
+                model.supports().gather(&self.residual, &mut self.equations);
+            }
+            self.system.solve(matrix, &mut self.equations, &mut self.statistics);
+            model.supports().scatter(&self.equations, &mut self.correction);
+            let work = self.work(model);
+            self.base.copy_from_slice(&self.w);
+            self.evaluate(model, problem, 1.0)?;
+            // The prescribed increments of the first iteration are not to be scaled.
+            if self.options.line_search && iteration > 1 {
+                self.search(model, problem, work, matrix)?;
+            }
+            self.report.iterations = iteration;
+            self.statistics.iterations += 1;
+            size = self.measure(model, problem);
+            if !size.is_finite() || size > HOPELESS {
+                break;
+            }
+            let left = self.work(model).abs();
+            most = most.max(work.abs());
+            if size <= self.options.force_tolerance && left <= self.options.energy_tolerance * most {
+                self.report.plastic_points = self.force.plastic;
+                return Ok(());
+            }
+        }
+        Err(Failure::Stuck(self.stuck(model, problem, size)))
+    }
+
+    /// Right-hand side of the first iteration: the prescribed increments act through the elastic matrix.
+    fn predict(&mut self, model: &Model, problem: &Problem<'_>, moving: bool) {
+        if moving {
+            for (&(dof, _), value) in model.supports().fixed().iter().zip(problem.fixed) {
+                self.w[dof as usize] = *value;
+            }
+            self.add_linear(model, 1.0 + problem.linear.stiffness, problem.linear.mass);
+        }
+        model.supports().gather(&self.residual, &mut self.equations);
+    }
+
+    /// `residual -= (stiffness K + mass M) w`.
+    fn add_linear(&mut self, model: &Model, stiffness: f64, mass: f64) {
+        if stiffness != 0.0 {
+            model.stiffness_times(&self.w, &mut self.product);
+            self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= stiffness * p);
+        }
+        if mass != 0.0 {
+            model.mass_times(&self.w, &mut self.product);
+            self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= mass * p);
+        }
+    }
+
+    /// Forms and factors the tangent if its turn has come.
+    fn choose(&mut self, model: &Model, problem: &Problem<'_>, iteration: u32, last: Matrix) -> Matrix {
+        let due = match self.options.variant {
+            Variant::Full => true,
+            Variant::Modified(0) => iteration == 2,
+            Variant::Modified(every) => (iteration - 2).is_multiple_of(every),
+            Variant::InitialStiffness => return Matrix::Elastic,
+        };
+        if !due {
+            return last;
+        }
+        if self.force.plastic == 0 {
+            return Matrix::Elastic;
+        }
+        let start = Instant::now();
+        self.tangent.assemble(model, &self.force, problem.old, &self.w, problem.linear);
+        self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
+        self.system.factor_tangent(model, &self.tangent, &mut self.statistics)
+    }
+
+    /// Stresses, forces and residual at `base + length * correction`; at `w` as it is for length 0.
+    fn evaluate(&mut self, model: &Model, problem: &Problem<'_>, length: f64) -> Result<(), Failure> {
+        if length > 0.0 {
+            for d in 0..self.w.len() {
+                self.w[d] = self.base[d] + length * self.correction[d];
+            }
+        }
+        let start = Instant::now();
+        let outcome = self.force.evaluate(model, problem.old, &self.w);
+        self.statistics.evaluations += 1;
+        self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
+        if let Err(PointFailure { element, point }) = outcome {
+            let (residual, iterations) = (f64::NAN, self.report.iterations + 1);
+            let region = Region::Elastic;
+            return Err(Failure::Stuck(Stuck { residual, iterations, element, point, region }));
+        }
+        for d in 0..self.w.len() {
+            self.residual[d] = problem.rhs[d] - self.force.force[d];
+        }
+        self.add_linear(model, problem.linear.stiffness, problem.linear.mass);
+        Ok(())
+    }
+
+    /// Residual on the free dofs over the forces; appends it to the report.
+    fn measure(&mut self, model: &Model, problem: &Problem<'_>) -> f64 {
+        let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+        let forces = square(problem.rhs).max(square(&self.force.force)).sqrt();
+        let residual = self.size(model);
+        let size = if residual == 0.0 { 0.0 } else { residual / forces };
+        self.report.residuals.push(size);
+        size
+    }
+
+    fn size(&self, model: &Model) -> f64 {
+        let free = model.supports().free();
+        free.iter().map(|&d| self.residual[d as usize].powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Work of the residual on the correction.
+    fn work(&self, model: &Model) -> f64 {
+        let free = model.supports().free();
+        free.iter().map(|&d| self.residual[d as usize] * self.correction[d as usize]).sum()
+    }
+
+    /// Searches the length of the correction; stands at length 1 when called. `before` is the work at length 0.
+    fn search(
+        &mut self,
+        model: &Model,
+        problem: &Problem<'_>,
+        before: f64,
+        matrix: Matrix,
+    ) -> Result<(), Failure> {
+        if before <= 0.0 {
+            return self.search_by_size(model, problem);
+        }
+        let tangent = self.options.variant == Variant::Full && matrix == Matrix::Tangent;
+        let longest = if tangent { 1.0 } else { LONGEST };
+        let (mut low, mut high) = ((0.0, before), None);
+        let mut now = (1.0, self.work(model));
+        for _ in 0..SEARCHES {
+            if now.1.abs() <= ENOUGH * before || (now.1 > 0.0 && now.0 >= longest) {
+                break;
+            }
+            if now.1 > 0.0 {
+                low = now;
+            } else {
+                high = Some(now);
+            }
+            let next: f64 = match high {
+                Some(high) => {
+                    let cut = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+                    let margin = 0.1 * (high.0 - low.0);
+                    cut.clamp(low.0 + margin, high.0 - margin)
+                }
+                None => longest.min(2.0 * now.0),
+            };
+            let next = next.max(SHORTEST);
+            if next == now.0 {
+                break;
+            }
+            self.evaluate(model, problem, next)?;
+            now = (next, self.work(model));
+        }
+        Ok(())
+    }
+
+    /// Halves the correction while the residual is larger than without it.
+    fn search_by_size(&mut self, model: &Model, problem: &Problem<'_>) -> Result<(), Failure> {
+        let forces = self.report.residuals.last().copied().unwrap_or(0.0);
+        let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+        let mut length = 1.0;
+        while length > 2.0 * SHORTEST {
+            let scale = square(problem.rhs).max(square(&self.force.force)).sqrt();
+            if self.size(model) <= forces * scale {
+                break;
+            }
+            length *= 0.5;
+            self.evaluate(model, problem, length)?;
+        }
+        Ok(())
+    }
+
+    /// The place to be named: among the elements at the node with the largest residual, the point whose equivalent plastic
+    /// strain grew most in the step.
+    fn stuck(&self, model: &Model, problem: &Problem<'_>, residual: f64) -> Stuck {
+        let mut worst = (0.0, 0);
+        for &d in model.supports().free() {
+            let r = self.residual[d as usize].abs();
+            if r.is_nan() || r > worst.0 {
+                worst = (if r.is_nan() { f64::INFINITY } else { r }, d / 3);
+            }
+        }
+        let (mut element, mut point, mut most) = (usize::MAX, 0, -1.0);
+        for (e, nodes) in model.mesh().connectivity.iter().enumerate() {
+            if nodes.contains(&worst.1) {
+                for (i, p) in self.force.table.points(e).enumerate() {
+                    let growth = self.force.points[p].kappa - problem.old[p].kappa;
+                    if growth > most {
+                        (element, point, most) = (e, i, growth);
+                    }
+                }
+            }
+        }
+        let element = if element == usize::MAX { 0 } else { element };
+        let region = self.force.regions[self.force.table.points(element).start + point];
+        Stuck { residual, iterations: self.report.iterations, element, point, region }
+    }
+}

@@ -1,0 +1,124 @@
+//! Length of steps: halved when a step fails, grown again when steps converge with ease.
+
+use crate::solver::SolveError;
+use serde::{Deserialize, Serialize};
+
+/// Limits of the step length. Times are those of the loading, seconds or pseudo-time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepControl {
+    /// Length of the first step.
+    pub initial: f64,
+    /// Smallest length: a failure at this length ends the run.
+    pub min: f64,
+    /// Largest length.
+    pub max: f64,
+    /// Iterations that a step should take: with fewer the next one grows by up to 2, with more it shrinks by the square
+    /// root of the ratio.
+    pub target_iterations: u32,
+}
+
+impl StepControl {
+    /// Steps of the length `dt` that may be halved ten times, and never grow beyond it.
+    pub fn fixed(dt: f64) -> StepControl {
+        StepControl { initial: dt, min: dt / 1024.0, max: dt, target_iterations: 12 }
+    }
+
+    /// Refuses lengths that are not above 0 or out of order.
+    ///
+    /// # Errors
+    /// [`SolveError::Option`].
+    pub fn check(&self) -> Result<(), SolveError> {
+        let usable = |x: f64| x > 0.0 && x.is_finite();
+        for (what, value, fine) in [
+            ("the smallest step", self.min, usable(self.min)),
+            ("the largest step", self.max, usable(self.max) && self.max >= self.min),
+            ("the first step", self.initial, self.initial >= self.min && self.initial <= self.max),
+        ] {
+            if !fine {
+                let expected = "a finite number above 0, with smallest <= first <= largest";
+                return Err(SolveError::Option { what, value, expected });
+            }
+        }
+        if self.target_iterations == 0 {
+            let (what, expected) = ("the iterations aimed at", "1 or more");
+            return Err(SolveError::Option { what, value: 0.0, expected });
+        }
+        Ok(())
+    }
+}
+
+/// The length of the next step, from the course of those before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepLength {
+    control: StepControl,
+    length: f64,
+    /// Steps to pass before it may grow again.
+    wait: u32,
+}
+
+impl StepLength {
+    pub fn new(control: StepControl) -> StepLength {
+        StepLength { control, length: control.initial, wait: 0 }
+    }
+
+    /// Length of the step from `time` that must not pass `end`. The last two steps share what is left.
+    pub fn next(&self, time: f64, end: f64) -> f64 {
+        let left = end - time;
+        if left <= self.length * (1.0 + 1e-9) {
+            left
+        } else if left < 2.0 * self.length {
+            0.5 * left
+        } else {
+            self.length
+        }
+    }
+
+    /// After a step of length `dt` converged.
+    pub fn accept(&mut self, dt: f64, iterations: u32) {
+        if self.wait > 0 {
+            self.wait -= 1;
+            return;
+        }
+        let target = f64::from(self.control.target_iterations);
+        let ratio = (target / f64::from(iterations.max(1))).sqrt().clamp(0.5, 2.0);
+        // A step cut short by the end of the run says nothing against the length.
+        let base = if ratio >= 1.0 { self.length } else { dt };
+        self.length = (base * ratio).clamp(self.control.min, self.control.max);
+    }
+
+    /// After a step of length `dt` failed: whether there is a shorter one to try.
+    pub fn halve(&mut self, dt: f64) -> bool {
+        if dt <= self.control.min * (1.0 + 1e-9) {
+            return false;
+        }
+        self.length = (0.5 * dt).max(self.control.min);
+        self.wait = 1;
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_end_exactly_and_halve_down_to_the_smallest() {
+        let control = StepControl { initial: 0.4, min: 0.1, max: 0.8, target_iterations: 4 };
+        let mut length = StepLength::new(control);
+        assert_eq!((length.next(0.0, 1.0), length.next(0.0, 0.4), length.next(0.0, 0.5)), (0.4, 0.4, 0.25));
+        assert!(length.halve(0.4) && length.next(0.0, 1.0) == 0.2);
+        assert!(length.halve(0.2) && length.next(0.0, 1.0) == 0.1 && !length.halve(0.1));
+        length.accept(0.1, 1);
+        assert_eq!(length.next(0.0, 1.0), 0.1);
+        length.accept(0.1, 1);
+        assert_eq!(length.next(0.0, 1.0), 0.2);
+        length.accept(0.2, 16);
+        assert_eq!(length.next(0.0, 1.0), 0.1);
+        for _ in 0..9 {
+            length.accept(0.1, 1);
+        }
+        assert_eq!(length.next(0.0, 10.0), 0.8);
+        assert!(control.check().is_ok() && StepControl { min: 0.5, ..control }.check().is_err());
+        assert!(StepControl { target_iterations: 0, ..control }.check().is_err());
+    }
+}

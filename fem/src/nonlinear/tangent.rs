@@ -1,0 +1,286 @@
+//! The global tangent: elastic matrix plus, at every Gauss point that yields, `∫ B^T (D_ep - D) B dV`.
+//!
+//! Elastic points cost nothing, because the elastic blocks are at hand in [`Matrices`](crate::assembly::Matrices). Values are 3×3
+//! blocks of node pairs on the same pattern: (p, q) with p <= q, and for an unsymmetric tangent the transposed of the block (q, p) as well,
+//! so that both have the layout of the symmetric elastic block. Slots of the pairs of every plastic element are
+//! worked out once.
+//!
+//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 2 (2000), chapter 3; B-bar as in the internal force.
+//! Where the strength fixes the stress the consistent tangent is singular: a share
+//! [`REGULARISATION`] of the elastic matrix is mixed in at every yielding point, which
+//! slows the last digits of the iteration and does not move its solution.
+
+use super::internal_force::{InternalForce, element_increment};
+use crate::element::MAX_NODES;
+use crate::material::{PointState, REGULARISATION, Region, update};
+use crate::model::Model;
+use crate::supports::CONSTRAINED;
+
+/// Rows of an element matrix in memory.
+const ROWS: usize = 3 * MAX_NODES;
+const ELEMENT: usize = ROWS * ROWS;
+/// Element matrices formed before they are added.
+const CHUNK: usize = 64;
+/// Element matrices that one task forms.
+const TASK: usize = 8;
+/// No slots: an element without plasticity.
+const NONE: u32 = u32::MAX;
+
+/// Factors of the elastic stiffness and of the mass that are added to the tangent of the internal force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LinearPart {
+    pub stiffness: f64,
+    pub mass: f64,
+}
+
+/// The tangent of a model, with its buffers.
+pub(crate) struct Tangent {
+    symmetric: bool,
+    upper: Vec<[f64; 9]>,
+    /// Transposed blocks (q, p); empty when symmetric.
+    mirrored: Vec<[f64; 9]>,
+    slot_start: Vec<u32>,
+    slots: Vec<u32>,
+    yielding: Vec<u32>,
+    element: Vec<f64>,
+}
+
+impl Tangent {
+    pub fn new(model: &Model) -> Tangent {
+        let (mesh, matrices, symmetric) = (model.mesh(), model.matrices(), model.symmetric_tangent());
+        let (mut slot_start, mut slots) = (Vec::new(), Vec::new());
+        for (e, nodes) in mesh.connectivity.iter().enumerate() {
+            if model.material(e).is_linear() {
+                slot_start.push(NONE);
+                continue;
+            }
+            slot_start.push(slots.len() as u32);
+            for (a, &p) in nodes.iter().enumerate() {
+                slots.extend(nodes[a..].iter().map(|&q| matrices.slot(p.min(q), p.max(q)) as u32));
+            }
+        }
+        let blocks = matrices.stiffness_blocks().len();
+        Tangent {
+            symmetric,
+            upper: vec![[0.0; 9]; blocks],
+            mirrored: vec![[0.0; 9]; if symmetric { 0 } else { blocks }],
+            slot_start,
+            slots,
+            yielding: Vec::with_capacity(mesh.element_count()),
+            element: vec![0.0; CHUNK * ELEMENT],
+        }
+    }
+
+    /// Whether the tangent is symmetric whatever yields.
+    pub fn symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// Sets the elastic matrix `(1 + stiffness) K + mass M`.
+    pub fn set_elastic(&mut self, model: &Model, linear: LinearPart) {
+        let (matrices, factor) = (model.matrices(), 1.0 + linear.stiffness);
+        for ((block, k), m) in
+            self.upper.iter_mut().zip(matrices.stiffness_blocks()).zip(matrices.mass_entries())
+        {
+            *block = k.map(|k| factor * k);
+            for i in 0..3 {
+                block[4 * i] += linear.mass * m;
+            }
+        }
+        self.mirrored.copy_from_slice(if self.symmetric { &[] } else { &self.upper });
+    }
+
+    /// Sets the tangent at the trial that `force` was evaluated for: `increment` from `old`.
+    pub fn assemble(
+        &mut self,
+        model: &Model,
+        force: &InternalForce,
+        old: &[PointState],
+        increment: &[f64],
+        linear: LinearPart,
+    ) {
+        self.set_elastic(model, linear);
+        let mut yielding = std::mem::take(&mut self.yielding);
+        yielding.clear();
+        let elements = 0..model.mesh().element_count();
+        yielding
+            .extend(elements.filter(|&e| self.slot_start[e] != NONE && force.yields(e)).map(|e| e as u32));
+        let input = Input { model, force, old, increment, symmetric: self.symmetric };
+        let mut buffer = std::mem::take(&mut self.element);
+        for chunk in yielding.chunks(CHUNK) {
+            input.run(chunk, &mut buffer[..chunk.len() * ELEMENT]);
+            for (&e, matrix) in chunk.iter().zip(buffer.chunks_exact(ELEMENT)) {
+                self.add(
+                    &model.mesh().connectivity[e as usize],
+                    self.slot_start[e as usize] as usize,
+                    matrix,
+                );
+            }
+        }
+        (self.yielding, self.element) = (yielding, buffer);
+    }
+
+    fn add(&mut self, nodes: &[u32], first: usize, matrix: &[f64]) {
+        let mut slots = self.slots[first..].iter();
+        for a in 0..nodes.len() {
+            for b in a..nodes.len() {
+                let slot = slots.next().map_or(0, |s| *s as usize);
+                let (p, q) = if nodes[a] <= nodes[b] { (a, b) } else { (b, a) };
+                let upper = &mut self.upper[slot];
+                if !self.symmetric {
+                    let mirrored = &mut self.mirrored[slot];
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            upper[3 * i + j] += matrix[(3 * p + i) * ROWS + 3 * q + j];
+                            mirrored[3 * i + j] += matrix[(3 * q + j) * ROWS + 3 * p + i];
+                        }
+                    }
+                } else if p == a {
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            upper[3 * i + j] += matrix[(3 * a + i) * ROWS + 3 * b + j];
+                        }
+                    }
+                } else {
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            upper[3 * i + j] += matrix[(3 * a + j) * ROWS + 3 * b + i];
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes the entries of the free dofs in the order of the lower triangle by columns: `lower` those of (row, column),
+    /// and, where the tangent is unsymmetric, `upper` those of (column, row).
+    pub fn write(&self, model: &Model, lower: &mut [f64], upper: &mut [f64]) {
+        let (matrices, index) = (model.matrices(), model.supports().free_index());
+        let mut at = 0;
+        for &dof in model.supports().free() {
+            let (p, i) = (dof as usize / 3, dof as usize % 3);
+            for (slot, &q) in matrices.slots(p).zip(matrices.row(p)) {
+                let q = q as usize;
+                for j in if q == p { i } else { 0 }..3 {
+                    if index[3 * q + j] != CONSTRAINED {
+                        if self.symmetric {
+                            lower[at] = self.upper[slot][3 * i + j];
+                        } else {
+                            lower[at] = self.mirrored[slot][3 * i + j];
+                            upper[at] = self.upper[slot][3 * i + j];
+                        }
+                        at += 1;
+                    }
+                }
+            }
+        }
+    }
+
+    /// `y = A x` over all dofs. Shapes `[3 * nodes]`.
+    pub fn times(&self, model: &Model, x: &[f64], y: &mut [f64]) {
+        let matrices = model.matrices();
+        let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
+        y.fill([0.0; 3]);
+        let mirrored = if self.symmetric { &self.upper } else { &self.mirrored };
+        for (p, xp) in x.iter().enumerate() {
+            let mut sum = [0.0; 3];
+            for (slot, &q) in matrices.slots(p).zip(matrices.row(p)) {
+                let (k, xq) = (&self.upper[slot], &x[q as usize]);
+                for i in 0..3 {
+                    sum[i] += k[3 * i] * xq[0] + k[3 * i + 1] * xq[1] + k[3 * i + 2] * xq[2];
+                }
+                if q as usize != p {
+                    let (k, w) = (&mirrored[slot], &mut y[q as usize]);
+                    for j in 0..3 {
+                        w[j] += k[j] * xp[0] + k[3 + j] * xp[1] + k[6 + j] * xp[2];
+                    }
+                }
+            }
+            for i in 0..3 {
+                y[p][i] += sum[i];
+            }
+        }
+    }
+}
+
+/// What all element matrices read.
+struct Input<'a> {
+    model: &'a Model,
+    force: &'a InternalForce,
+    old: &'a [PointState],
+    increment: &'a [f64],
+    symmetric: bool,
+}
+
+impl Input<'_> {
+    fn run(&self, elements: &[u32], matrices: &mut [f64]) {
+        if elements.len() > TASK {
+            let (low, high) = elements.split_at(elements.len() / 2);
+            let (m, n) = matrices.split_at_mut(low.len() * ELEMENT);
+            rayon::join(|| self.run(low, m), || self.run(high, n));
+            return;
+        }
+        for (&e, matrix) in elements.iter().zip(matrices.chunks_exact_mut(ELEMENT)) {
+            self.element(e as usize, matrix);
+        }
+    }
+
+    /// Sum over the yielding points of `B^T (D_ep - D) B dV`; only the upper blocks when symmetric.
+    fn element(&self, e: usize, matrix: &mut [f64]) {
+        let (table, material) = (&self.force.table, self.model.material(e));
+        let moved = element_increment(self.model.mesh(), e, self.increment);
+        let elastic = material.elastic.matrix();
+        matrix.fill(0.0);
+        for (i, p) in table.points(e).enumerate() {
+            if self.force.regions[p] == Region::Elastic {
+                continue;
+            }
+            // The same call has succeeded for the force.
+            let Ok(response) = update(material, &self.old[p], &table.strain(e, i, &moved), true) else {
+                continue;
+            };
+            let factor = (1.0 - REGULARISATION) * table.volume(p);
+            let d: [[f64; 6]; 6] = std::array::from_fn(|r| {
+                std::array::from_fn(|c| factor * (response.tangent[r][c] - elastic[r][c]))
+            });
+            add_point(matrix, table.gradients(e, i), table.means(e), &d, self.symmetric);
+        }
+    }
+}
+
+/// Adds `B^T d B`, using the zeros of B; with mean gradients the B of mean dilatation.
+fn add_point(matrix: &mut [f64], g: &[[f64; 3]], means: &[[f64; 3]], d: &[[f64; 6]; 6], symmetric: bool) {
+    let mut c = [[0.0; ROWS]; 6];
+    for (r, d) in d.iter().enumerate() {
+        for (b, g) in g.iter().enumerate() {
+            c[r][3 * b] = d[0] * g[0] + d[3] * g[1] + d[5] * g[2];
+            c[r][3 * b + 1] = d[1] * g[1] + d[3] * g[0] + d[4] * g[2];
+            c[r][3 * b + 2] = d[2] * g[2] + d[4] * g[1] + d[5] * g[0];
+        }
+        let third = (d[0] + d[1] + d[2]) / 3.0;
+        for (b, (m, g)) in means.iter().zip(g).enumerate() {
+            for k in 0..3 {
+                c[r][3 * b + k] += third * (m[k] - g[k]);
+            }
+        }
+    }
+    let end = 3 * g.len();
+    for (a, g) in g.iter().enumerate() {
+        let first = if symmetric { 3 * a } else { 0 };
+        // Which rows of B^T hold which gradient.
+        let rows = [[(0, 0), (3, 1), (5, 2)], [(1, 1), (3, 0), (4, 2)], [(2, 2), (4, 1), (5, 0)]];
+        for (i, row) in rows.iter().enumerate() {
+            let out = &mut matrix[(3 * a + i) * ROWS..][first..end];
+            let [(x, gx), (y, gy), (z, gz)] = row.map(|(r, k)| (&c[r][first..end], g[k]));
+            for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+                *out += gx * x + gy * y + gz * z;
+            }
+            if let Some(m) = means.get(a) {
+                let third = (m[i] - g[i]) / 3.0;
+                for (k, out) in out.iter_mut().enumerate() {
+                    *out += third * (c[0][first + k] + c[1][first + k] + c[2][first + k]);
+                }
+            }
+        }
+    }
+}

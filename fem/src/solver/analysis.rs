@@ -1,0 +1,204 @@
+//! Ordering, pattern and symbolic factorization of an equation system; made once, used by every factorization.
+//!
+//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, fundamental supernodes with relaxed amalgamation) on
+//! a postordered elimination tree. Limits: fewer than 2^31 entries in the pattern.
+
+use super::SolveError;
+use super::ordering::nested_dissection;
+use super::pattern::{MIRRORED, Upper, postorder};
+use super::structure::Structure;
+use crate::assembly::Matrices;
+use crate::mesh::Mesh;
+use crate::supports::{CONSTRAINED, Supports};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::SymbolicSupernodalParams;
+use faer::sparse::linalg::cholesky::simplicial::{
+    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
+};
+use faer::sparse::linalg::cholesky::supernodal::{
+    SymbolicSupernodalCholesky, factorize_supernodal_symbolic_cholesky,
+    factorize_supernodal_symbolic_cholesky_scratch,
+};
+
+/// Supernodes are merged while they have at most so many columns and less than this share of zeros.
+const AMALGAMATION: [(usize, f64); 4] = [(4, 1.0), (16, 0.8), (48, 0.1), (usize::MAX, 0.05)];
+
+/// Ordering, pattern and symbolic factor of an equation system.
+#[derive(Debug)]
+pub struct Analysis {
+    column_start: Vec<usize>,
+    row: Vec<usize>,
+    /// Elimination position → equation.
+    pub(super) order: Vec<usize>,
+    structure: Structure,
+}
+
+impl Analysis {
+    /// Orders and analyses the free dofs of a model.
+    ///
+    /// # Errors
+    /// Only when memory runs out.
+    pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
+        let equations = supports.free().len();
+        let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
+        matrices.visit_free(supports, |c, r, _, _| {
+            row.push(r);
+            column_start[c + 1] = row.len();
+        });
+        let index = supports.free_index();
+        let order: Vec<usize> = nested_dissection(mesh)
+            .iter()
+            .flat_map(|&n| (0..3).map(move |k| index[3 * n as usize + k]))
+            .filter(|&e| e != CONSTRAINED)
+            .map(|e| e as usize)
+            .collect();
+        Analysis::from_pattern(column_start, row, order)
+    }
+
+    /// Analyses a structurally symmetric matrix.
+    ///
+    /// * `column_start` `[equations + 1]`, `row` `[entries]`: the lower triangle in compressed columns; the rows of a column
+    ///   ascend from its diagonal, which is always stored.
+    /// * `order` `[equations]`: the equation that is to be eliminated i-th. Equations may still be moved where that
+    ///   leaves the factor as it is (postorder of the elimination tree).
+    ///
+    /// # Errors
+    /// [`SolveError::Pattern`] when the pattern or the order is not as described, [`SolveError::Memory`] when the factor cannot be
+    /// addressed.
+    pub fn from_pattern(
+        column_start: Vec<usize>,
+        row: Vec<usize>,
+        mut order: Vec<usize>,
+    ) -> Result<Analysis, SolveError> {
+        check(&column_start, &row, &order)?;
+        let equations = order.len();
+        let memory = || SolveError::Memory { equations };
+        if row.len() >= MIRRORED as usize || equations >= MIRRORED as usize {
+            return Err(memory());
+        }
+        let mut upper = Upper::new(&column_start, &row, &positions(&order));
+        let post = postorder(&upper.elimination_tree());
+        if post.iter().enumerate().any(|(i, &p)| i != p as usize) {
+            order = post.iter().map(|&p| order[p as usize]).collect();
+            upper = Upper::new(&column_start, &row, &positions(&order));
+        }
+        let symbolic = supernodes(&upper, equations).ok_or_else(memory)?;
+        let count = symbolic.n_supernodes();
+        let mut begin: Vec<u32> = symbolic.supernode_begin().iter().map(|&b| b as u32).collect();
+        begin.push(equations as u32);
+        let (mut rows_start, mut rows) = (vec![0], Vec::with_capacity(symbolic.row_idx().len()));
+        for s in 0..count {
+            rows.extend(symbolic.supernode(s).pattern().iter().map(|&r| r as u32));
+            rows_start.push(rows.len());
+        }
+        drop(symbolic);
+        let structure = Structure::new(begin, rows_start, rows, &upper);
+        Ok(Analysis { column_start, row, order, structure })
+    }
+
+    /// Number of equations.
+    pub fn size(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Number of values that the factor of a symmetric matrix stores.
+    pub fn factor_len(&self) -> usize {
+        self.structure.panel[self.structure.count()]
+    }
+
+    /// Floating-point operations of the factorization of a symmetric matrix, additions and multiplications: the sum of
+    /// the squared lengths of the factor's columns. An unsymmetric one takes twice as many.
+    pub fn flops(&self) -> f64 {
+        self.structure.flops
+    }
+
+    /// Column starts `[equations + 1]` and rows `[entries]` of the lower triangle: the order in which values are given.
+    pub fn pattern(&self) -> (&[usize], &[usize]) {
+        (&self.column_start, &self.row)
+    }
+
+    /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and solved for one
+    /// right-hand side at a time. All of it is taken before the first front, so this is the peak, too.
+    pub fn memory(&self, symmetric: bool) -> usize {
+        let structure = &self.structure;
+        let triangles = if symmetric { 1 } else { 2 };
+        let fronts = triangles * (structure.work_len + structure.handed_len);
+        let second = if symmetric { 0 } else { structure.second[structure.count()] };
+        let rows = if symmetric { 0 } else { 4 * self.size() };
+        8 * (self.factor_len() + second + fronts + self.size() + structure.rows.len()) + rows
+    }
+
+    pub(super) fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    pub(super) fn entries(&self) -> usize {
+        self.row.len()
+    }
+
+    /// The equation at a position in the elimination.
+    pub(super) fn equation(&self, position: usize) -> usize {
+        self.order[position]
+    }
+
+    /// Largest absolute value of every column of an unsymmetric matrix; 1 for a column of zeros.
+    pub(super) fn column_scale(&self, lower: &[f64], upper: &[f64]) -> Vec<f64> {
+        let mut scale = vec![0.0_f64; self.size()];
+        for c in 0..self.size() {
+            for k in self.column_start[c]..self.column_start[c + 1] {
+                let r = self.row[k];
+                scale[c] = scale[c].max(lower[k].abs());
+                if r != c {
+                    scale[r] = scale[r].max(upper[k].abs());
+                }
+            }
+        }
+        scale.iter_mut().filter(|s| **s == 0.0).for_each(|s| *s = 1.0);
+        scale
+    }
+}
+
+fn check(column_start: &[usize], row: &[usize], order: &[usize]) -> Result<(), SolveError> {
+    let n = order.len();
+    let wrong = |what| Err(SolveError::Pattern { what });
+    if column_start.len() != n + 1 || column_start[0] != 0 || column_start[n] != row.len() {
+        return wrong("the column starts do not span the rows");
+    }
+    for c in 0..n {
+        let (first, end) = (column_start[c], column_start[c + 1]);
+        if first >= end || end > row.len() || row[first] != c {
+            return wrong("a column does not begin with its diagonal");
+        }
+        if row[end - 1] >= n || row[first..end].windows(2).any(|pair| pair[0] >= pair[1]) {
+            return wrong("the rows of a column do not ascend");
+        }
+    }
+    let mut seen = vec![false; n];
+    if order.iter().any(|&e| e >= n || std::mem::replace(&mut seen[e], true)) {
+        return wrong("the order is not a permutation of the equations");
+    }
+    Ok(())
+}
+
+fn positions(order: &[usize]) -> Vec<u32> {
+    let mut position = vec![0; order.len()];
+    for (i, &e) in order.iter().enumerate() {
+        position[e] = i as u32;
+    }
+    position
+}
+
+fn supernodes(upper: &Upper, n: usize) -> Option<SymbolicSupernodalCholesky<usize>> {
+    let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &upper.start, None, &upper.row);
+    let need = StackReq::or(
+        prefactorize_symbolic_cholesky_scratch::<usize>(n, upper.row.len()),
+        factorize_supernodal_symbolic_cholesky_scratch::<usize>(n),
+    );
+    let mut memory = MemBuffer::try_new(need).ok()?;
+    let stack = MemStack::new(&mut memory);
+    let (mut tree, mut counts) = (vec![0_isize; n], vec![0; n]);
+    let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern, stack);
+    let params = SymbolicSupernodalParams { relax: Some(&AMALGAMATION) };
+    factorize_supernodal_symbolic_cholesky(pattern, tree, &counts, stack, params).ok()
+}

@@ -1,0 +1,440 @@
+//! Multifrontal factorization `P A P^T = L L^T` or `P A P^T = L U` on one symbolic structure, and solves with it.
+//!
+//! Branches of the elimination tree run as tasks, the fronts above them one after another in tiles (see
+//! `structure`). All buffers are made once and reused by every factorization. The bits of factors and solutions are the
+//! same on any number of threads, and the same for a first factorization and a later one.
+//!
+//! Source: Duff and Reid, ACM Trans. Math. Software 9 (1983) 302-325; Liu, SIAM Review 34 (1992) 82-109. Limits: rows are
+//! exchanged within a pivot block only, so a nonsingular unsymmetric matrix whose pivot block is singular fails with
+//! [`PivotError`]; [`DirectSolver::weakest_pivot`] tells how near that was.
+
+use super::analysis::Analysis;
+use super::front::{self, Panels, Scratch, Updates};
+use super::solution::{Solution, Vectors};
+use super::structure::{Structure, Task};
+use super::{LinearSolver, PivotError};
+use std::sync::Arc;
+
+/// A numeric factor with its buffers; factored anew in place.
+pub struct DirectSolver {
+    analysis: Arc<Analysis>,
+    kind: Kind,
+    first: Buffer,
+    second: Buffer,
+    /// Row that changes places with the i-th of its pivot block, in turn.
+    rows: Vec<u32>,
+    work: Buffer,
+    handed: Buffer,
+    scratch: Vec<Scratch>,
+    solution: Solution,
+    weakest: (f64, usize),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    None,
+    Symmetric,
+    Unsymmetric,
+}
+
+impl DirectSolver {
+    /// A solver without a factor; memory is taken by the first factorization.
+    pub fn new(analysis: Arc<Analysis>) -> DirectSolver {
+        let last = analysis.size().saturating_sub(1);
+        DirectSolver {
+            analysis,
+            kind: Kind::None,
+            first: Buffer::default(),
+            second: Buffer::default(),
+            rows: Vec::new(),
+            work: Buffer::default(),
+            handed: Buffer::default(),
+            scratch: Vec::new(),
+            solution: Solution::default(),
+            weakest: (1.0, last),
+        }
+    }
+
+    /// The analysis that the factor follows.
+    pub fn analysis(&self) -> &Arc<Analysis> {
+        &self.analysis
+    }
+
+    /// Factors the symmetric matrix with the values `lower` `[pattern entries]`, in the order of
+    /// [`Analysis::pattern`].
+    ///
+    /// # Errors
+    /// [`PivotError`] names the first equation (in the order of elimination) whose pivot is not positive; there is no
+    /// factor then.
+    ///
+    /// # Panics
+    /// When `lower` has another length than the pattern.
+    pub fn factor_symmetric(&mut self, lower: &[f64]) -> Result<(), PivotError> {
+        assert_eq!(lower.len(), self.analysis.entries(), "one value for every entry of the pattern");
+        let analysis = self.analysis.clone();
+        let structure = analysis.structure();
+        self.reserve(structure, 1);
+        let run = |s: usize, store: Store<'_>, children: Updates<'_>, shared, scratch: &mut Scratch| {
+            front::factor_symmetric(structure, s, lower, store.first, store.update, children, shared, scratch)
+        };
+        self.run(structure, 1, &run).map_err(|position| {
+            let equation = analysis.equation(position);
+            PivotError { equation, ratio: 0.0 }
+        })?;
+        self.kind = Kind::Symmetric;
+        let start = analysis.pattern().0;
+        self.find_weakest(|pivot, position| pivot * pivot / lower[start[analysis.equation(position)]]);
+        Ok(())
+    }
+
+    /// Factors the unsymmetric matrix: `lower` and `upper` `[pattern entries]` hold, for the entry (r, c) of the pattern, the
+    /// values of (r, c) and (c, r). On the diagonal `lower` counts. Rows are exchanged within pivot blocks.
+    ///
+    /// # Errors
+    /// [`PivotError`] names the first equation (in the order of elimination) whose pivot is zero or not finite; there is
+    /// no factor then.
+    ///
+    /// # Panics
+    /// When `lower` or `upper` have another length than the pattern.
+    pub fn factor_unsymmetric(&mut self, lower: &[f64], upper: &[f64]) -> Result<(), PivotError> {
+        let entries = self.analysis.entries();
+        assert!(
+            lower.len() == entries && upper.len() == entries,
+            "two values for every entry of the pattern"
+        );
+        let analysis = self.analysis.clone();
+        let structure = analysis.structure();
+        self.reserve(structure, 2);
+        let values = (lower, upper);
+        let run = |s: usize, store: Store<'_>, children: Updates<'_>, shared, scratch: &mut Scratch| {
+            let panels = Panels { first: store.first, second: store.second, rows: store.rows };
+            front::factor_unsymmetric(structure, s, values, panels, store.update, children, shared, scratch)
+        };
+        self.run(structure, 2, &run).map_err(|position| {
+            let equation = analysis.equation(position);
+            PivotError { equation, ratio: 0.0 }
+        })?;
+        self.kind = Kind::Unsymmetric;
+        let scale = analysis.column_scale(lower, upper);
+        self.find_weakest(|pivot, position| pivot.abs() / scale[analysis.equation(position)]);
+        Ok(())
+    }
+
+    /// The smallest pivot and its equation: for a symmetric matrix over its diagonal entry, for an unsymmetric one in
+    /// absolute value over the largest entry of its column. (1, last equation) without a factor or equations.
+    pub fn weakest_pivot(&self) -> (f64, usize) {
+        self.weakest
+    }
+
+    /// Bytes that the buffers of this solver hold.
+    pub fn allocated(&self) -> usize {
+        let values = self.first.values.capacity()
+            + self.second.values.capacity()
+            + self.work.values.capacity()
+            + self.handed.values.capacity();
+        8 * (values + self.solution.capacity()) + 4 * self.rows.capacity()
+    }
+
+    /// Solves for `count` right-hand sides, column-major `[equations x count]`, in place. Eight at a time share the
+    /// reading of the factor. A solution may differ from [`DirectSolver::solve_in_place`] by rounding, but not with the number of threads.
+    ///
+    /// # Panics
+    /// When there is no factor, or when `x` has another length.
+    pub fn solve_many(&mut self, x: &mut [f64], count: usize) {
+        let n = self.analysis.size();
+        assert!(self.kind != Kind::None, "factor the matrix before a solve");
+        assert_eq!(x.len(), n * count, "one value for every equation and right-hand side");
+        let factor = Vectors {
+            analysis: &self.analysis,
+            first: &self.first,
+            second: &self.second,
+            rows: (self.kind == Kind::Unsymmetric).then_some(&self.rows[..]),
+        };
+        let mut rest = x;
+        while n > 0 && !rest.is_empty() {
+            let width = [8, 4, 2, 1].into_iter().find(|w| w * n <= rest.len()).unwrap_or(1);
+            let (now, later) = rest.split_at_mut(width * n);
+            match width {
+                8 => self.solution.solve::<8>(&factor, now),
+                4 => self.solution.solve::<4>(&factor, now),
+                2 => self.solution.solve::<2>(&factor, now),
+                _ => self.solution.solve::<1>(&factor, now),
+            }
+            rest = later;
+        }
+    }
+
+    fn reserve(&mut self, structure: &Structure, triangles: usize) {
+        self.kind = Kind::None;
+        self.weakest = (1.0, self.analysis.size().saturating_sub(1));
+        let count = structure.count();
+        self.first.reserve(structure.panel[count]);
+        self.work.reserve(triangles * structure.work_len);
+        self.handed.reserve(triangles * structure.handed_len);
+        if triangles == 2 {
+            self.second.reserve(structure.second[count]);
+            self.rows.resize(self.analysis.size(), 0);
+        }
+        self.solution.reserve(structure, 1);
+        if self.scratch.is_empty() {
+            let width = structure.branch_width;
+            self.scratch.extend(structure.tasks.iter().map(|_| Scratch::new(width)));
+            self.scratch.push(Scratch::new(structure.max_width));
+        }
+    }
+
+    /// Runs `front` on every front; the error is the first position (in the order of elimination) that failed.
+    fn run<F>(&mut self, structure: &Structure, triangles: usize, front: &F) -> Result<(), usize>
+    where
+        F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
+    {
+        let drive = Drive { structure, triangles, front };
+        let tasks = &structure.tasks;
+        let (crown_scratch, scratch) = self.scratch.split_last_mut().expect("one for the crown");
+        let branches = Space {
+            first: &mut self.first[..],
+            second: &mut self.second[..],
+            rows: &mut self.rows[..],
+            handed: &mut self.handed[..],
+            work: &mut self.work[..],
+            start: Start::default(),
+        };
+        drive.branches(tasks, branches, scratch).map_or(Ok(()), Err)?;
+        let (first, second) = (&mut self.first[..], &mut self.second[..]);
+        for &s in &structure.crown {
+            let s = s as usize;
+            let store = (&mut *first, &mut *second, &mut self.rows[..]);
+            let (update, children) = drive.cut(s, &mut self.work, 0, &self.handed);
+            drive.one(s, store, Start::default(), update, children, true, crown_scratch)?;
+        }
+        Ok(())
+    }
+
+    fn find_weakest(&mut self, ratio: impl Fn(f64, usize) -> f64) {
+        let analysis = self.analysis.clone();
+        let structure = analysis.structure();
+        for s in 0..structure.count() {
+            let panel = front::pivots(structure, s, &self.first);
+            for (j, position) in structure.columns(s).enumerate() {
+                let ratio = ratio(panel[(j, j)], position);
+                if ratio < self.weakest.0 {
+                    self.weakest = (ratio, analysis.equation(position));
+                }
+            }
+        }
+    }
+}
+
+impl LinearSolver for DirectSolver {
+    fn size(&self) -> usize {
+        self.analysis.size()
+    }
+
+    /// # Panics
+    /// When there is no factor, or when `x` has another length.
+    fn solve_in_place(&mut self, x: &mut [f64]) {
+        self.solve_many(x, 1);
+    }
+}
+
+/// Where one front writes.
+struct Store<'a> {
+    first: &'a mut [f64],
+    second: &'a mut [f64],
+    rows: &'a mut [u32],
+    update: &'a mut [f64],
+}
+
+/// Places at which the slices of a [`Space`] begin.
+#[derive(Clone, Copy, Default)]
+struct Start {
+    first: usize,
+    second: usize,
+    rows: usize,
+    handed: usize,
+    work: usize,
+}
+
+/// The part of the buffers that a range of tasks owns.
+struct Space<'a> {
+    first: &'a mut [f64],
+    second: &'a mut [f64],
+    rows: &'a mut [u32],
+    handed: &'a mut [f64],
+    work: &'a mut [f64],
+    start: Start,
+}
+
+struct Drive<'a, F> {
+    structure: &'a Structure,
+    triangles: usize,
+    front: &'a F,
+}
+
+impl<F> Drive<'_, F>
+where
+    F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
+{
+    /// Runs the tasks, halving their range; the least position that failed, if any.
+    fn branches(&self, tasks: &[Task], space: Space<'_>, scratch: &mut [Scratch]) -> Option<usize> {
+        match tasks {
+            [] => None,
+            [task] => self.branch(task, space, &mut scratch[0]),
+            _ => {
+                let (low, high) = tasks.split_at(tasks.len() / 2);
+                let (low_scratch, high_scratch) = scratch.split_at_mut(low.len());
+                let (left, right) = self.halve(space, &high[0]);
+                let (a, b) = rayon::join(
+                    || self.branches(low, left, low_scratch),
+                    || self.branches(high, right, high_scratch),
+                );
+                // Positions ascend with the tasks.
+                a.or(b)
+            }
+        }
+    }
+
+    fn halve<'a>(&self, space: Space<'a>, next: &Task) -> (Space<'a>, Space<'a>) {
+        let (structure, triangles, start) = (self.structure, self.triangles, space.start);
+        let s = next.first;
+        let first_handed = (s..next.end).find(|&s| structure.handed[s]).expect("a branch ends in the task");
+        let middle = Start {
+            first: structure.panel[s],
+            second: if triangles == 2 { structure.second[s] } else { 0 },
+            rows: if triangles == 2 { structure.begin[s] as usize } else { 0 },
+            handed: triangles * structure.update[first_handed],
+            work: triangles * next.work.0,
+        };
+        let first = space.first.split_at_mut(middle.first - start.first);
+        let second = space.second.split_at_mut(middle.second - start.second);
+        let rows = space.rows.split_at_mut(middle.rows - start.rows);
+        let handed = space.handed.split_at_mut(middle.handed - start.handed);
+        let work = space.work.split_at_mut(middle.work - start.work);
+        (
+            Space { first: first.0, second: second.0, rows: rows.0, handed: handed.0, work: work.0, start },
+            Space {
+                first: first.1,
+                second: second.1,
+                rows: rows.1,
+                handed: handed.1,
+                work: work.1,
+                start: middle,
+            },
+        )
+    }
+
+    fn branch(&self, task: &Task, space: Space<'_>, scratch: &mut Scratch) -> Option<usize> {
+        let Space { first, second, rows, handed, work, start } = space;
+        for s in task.first..task.end {
+            let store = (&mut *first, &mut *second, &mut *rows);
+            let result = if self.structure.handed[s] {
+                let update = self.range(s, start.handed);
+                let children =
+                    Updates { work, work_start: start.work, handed: &[], triangles: self.triangles };
+                self.one(s, store, start, &mut handed[update], children, false, scratch)
+            } else {
+                let (update, children) = self.cut(s, work, start.work, &[]);
+                self.one(s, store, start, update, children, false, scratch)
+            };
+            if let Err(position) = result {
+                return Some(position);
+            }
+        }
+        None
+    }
+
+    /// Range of the update of `s` in a slice that begins at `start`.
+    fn range(&self, s: usize, start: usize) -> std::ops::Range<usize> {
+        let (structure, triangles) = (self.structure, self.triangles);
+        let begin = triangles * structure.update[s] - start;
+        begin..begin + triangles * super::dense::update_len(structure.below(s))
+    }
+
+    /// The front's own update, and the stack with those of its children.
+    fn cut<'a>(
+        &self,
+        s: usize,
+        work: &'a mut [f64],
+        start: usize,
+        handed: &'a [f64],
+    ) -> (&'a mut [f64], Updates<'a>) {
+        let triangles = self.triangles;
+        let split = triangles * self.structure.split[s] - start;
+        let own = self.range(s, start);
+        let (left, right) = work.split_at_mut(split);
+        if self.structure.left[s] {
+            let children = Updates { work: right, work_start: start + split, handed, triangles };
+            (&mut left[own], children)
+        } else {
+            let children = Updates { work: left, work_start: start, handed, triangles };
+            (&mut right[own.start - split..own.end - split], children)
+        }
+    }
+
+    /// Runs one front; the error is a position in the elimination.
+    fn one(
+        &self,
+        s: usize,
+        (first, second, rows): (&mut [f64], &mut [f64], &mut [u32]),
+        start: Start,
+        update: &mut [f64],
+        children: Updates<'_>,
+        shared: bool,
+        scratch: &mut Scratch,
+    ) -> Result<(), usize> {
+        let structure = self.structure;
+        let (second, rows) = if self.triangles == 2 {
+            let columns = structure.columns(s);
+            (
+                &mut second[structure.second[s] - start.second..structure.second[s + 1] - start.second],
+                &mut rows[columns.start - start.rows..columns.end - start.rows],
+            )
+        } else {
+            (&mut [][..], &mut [][..])
+        };
+        let first = &mut first[structure.panel[s] - start.first..structure.panel[s + 1] - start.first];
+        let store = Store { first, second, rows, update };
+        (self.front)(s, store, children, shared, scratch).map_err(|j| structure.columns(s).start + j)
+    }
+}
+
+/// Values on whole cache lines, so that kernels meet the same alignment in every run.
+#[derive(Debug, Default)]
+pub(super) struct Buffer {
+    values: Vec<f64>,
+    skip: usize,
+    len: usize,
+}
+
+const LINE: usize = 8;
+
+impl Buffer {
+    /// Makes the buffer `len` long; the values are whatever they were.
+    pub fn reserve(&mut self, len: usize) {
+        if self.len != len {
+            // Fresh zeroed memory costs nothing before it is used; growing would copy.
+            self.values = Vec::new();
+            self.values = vec![0.0; len + LINE];
+            self.skip = self.values.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE);
+            self.len = len;
+        }
+    }
+
+    pub fn capacity(&self) -> usize {
+        self.values.capacity()
+    }
+}
+
+impl std::ops::Deref for Buffer {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.values[self.skip..self.skip + self.len]
+    }
+}
+
+impl std::ops::DerefMut for Buffer {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.values[self.skip..self.skip + self.len]
+    }
+}
