@@ -24,6 +24,15 @@ impl Failure {
         }
     }
 
+    /// The same; a numerical failure also says in which stage it happened.
+    #[must_use]
+    pub fn in_stage(self, stage: &str) -> Failure {
+        match self {
+            Failure::Numerical(text) => Failure::Numerical(format!("{stage}: {text}")),
+            other => other,
+        }
+    }
+
     /// The same; a numerical failure also says that it happened at `time` [s].
     #[must_use]
     pub fn at(self, time: f64) -> Failure {

@@ -57,6 +57,9 @@ pub struct Spent {
     pub local_damping: f64,
     /// Dissipated by Rayleigh damping of the solid.
     pub rayleigh: f64,
+    /// Dissipated by plastic flow of the solid.
+    #[serde(default)]
+    pub plastic: f64,
     /// Dissipated by the solid's time integration (zero for θ = ½).
     pub numerical: f64,
     /// Work that the surface did on the grains, as the grains saw it.
@@ -73,7 +76,7 @@ impl Spent {
 
     /// Energy dissipated [J].
     pub fn dissipated(&self) -> f64 {
-        self.dashpot + self.friction + self.local_damping + self.rayleigh + self.numerical
+        self.dashpot + self.friction + self.local_damping + self.rayleigh + self.plastic + self.numerical
     }
 
     /// Interface work of both sides, which should cancel [J].

@@ -22,7 +22,18 @@ pub fn write_solid(
     tecplot: Option<(&Path, f64)>,
 ) -> Result<(), Failure> {
     let mesh = view.model.mesh();
-    let stress = stress::nodal(view.model, &view.state.u);
+    let plastic = !view.state.points.is_empty();
+    let (stress, kappa, yield_function) = if plastic {
+        (
+            stress::nodal_of_points(view.model, view.state),
+            stress::nodal_kappa(view.model, view.state),
+            stress::nodal_yield_function(view.model, view.state),
+        )
+    } else {
+        let nodes = mesh.node_count();
+        let stress = stress::nodal(view.model, &view.state.u);
+        (stress, vec![0.0; nodes], vec![NO_YIELD_SURFACE; nodes])
+    };
     let von_mises: Vec<f64> = stress.iter().map(stress::von_mises).collect();
     let frame = SolidFrame {
         mesh,
@@ -30,8 +41,8 @@ pub fn write_solid(
         velocity: &view.state.v,
         stress: &stress,
         von_mises: &von_mises,
-        equivalent_plastic_strain: &vec![0.0; mesh.node_count()],
-        yield_function: &vec![NO_YIELD_SURFACE; mesh.node_count()],
+        equivalent_plastic_strain: &kappa,
+        yield_function: &yield_function,
     };
     if let Some(file) = vtu {
         write::vtu::write_solid(file, &frame)?;

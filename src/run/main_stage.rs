@@ -98,6 +98,14 @@ impl Stage<'_> {
             done = k;
             Ok(())
         });
+        // A step that found no equilibrium leaves the last one: it is what the user wants to see.
+        if matches!(outcome, Err(Failure::Numerical(_)))
+            && system.keeps_its_state()
+            && let Some(time) = system.solid().map(|s| s.state.time)
+        {
+            recorder.row(time, system, at(time))?;
+            recorder.frame(time, system)?;
+        }
         let (grain_steps, solid_steps) = system.steps_per_window();
         let seconds = progress.finish(&format!("{:.3} s simulated", done as f64 * window));
         summary.stages.push(StageRecord {

@@ -1,58 +1,163 @@
-//! A plastic solid that runs alone: in quasi-static steps, or through time.
+//! A plastic solid that runs alone, in quasi-static steps.
 
 use super::system::{Applied, SolidView, System};
 use crate::failure::Failure;
-use crate::model::solid::{InitialStress, InitialStressKind, QuasiStaticPlan, SolidPart, TimeMethod};
+use crate::model::solid::{QuasiStaticPlan, SolidPart};
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_fem as fem;
 use trackbed_fem::State;
-use trackbed_fem::nonlinear::{
-    Dynamics, DynamicsMethod, Loading, QuasiStatic, Statistics, StepControl, initial_stress,
-};
-use trackbed_fem::nonlinear::energy;
+use trackbed_fem::nonlinear::{Loading, QuasiStatic, Statistics, StepControl, energy};
 
-/// Loads and supports of a solid in time.
-struct Course<'a> {
-    part: &'a SolidPart,
-    gravity: &'a [f64],
-    /// The share of dead weight, and of the loads and supports at time 0, while these are brought on; none afterwards.
-    share: Option<f64>,
+/// Loads and supports of a solid in time; before time 0 they are brought on from nothing.
+pub struct Course<'a> {
+    /// The solid.
+    pub part: &'a SolidPart,
+    /// Weight [N]. Shape `[3·nodes]`.
+    pub gravity: &'a [f64],
+    /// Share of the weight that acts at the beginning of the time before 0: 1 where the initial stress carries it.
+    pub carried: f64,
+}
+
+impl Course<'_> {
+    /// The time at which loads and supports are taken, their share, and that of the weight.
+    fn shares(&self, time: f64) -> (f64, f64, f64) {
+        let share = (1.0 + time).clamp(0.0, 1.0);
+        (time.max(0.0), share, self.carried + (1.0 - self.carried) * share)
+    }
 }
 
 impl Loading for Course<'_> {
     fn load(&mut self, time: f64, load: &mut [f64]) {
-        let (share, time) = match self.share {
-            Some(_) => (time, 0.0),
-            None => (1.0, time),
-        };
+        let (time, share, weight) = self.shares(time);
         self.part.add_loads(time, load);
         for (l, g) in load.iter_mut().zip(self.gravity) {
-            *l = share * (*l + g);
+            *l = share * *l + weight * g;
         }
     }
 
     fn prescribed(&mut self, time: f64, values: &mut [f64]) {
-        match self.share {
-            Some(_) => values.iter_mut().for_each(|v| *v *= time),
-            None => self.part.prescribe(time, values),
-        }
+        let (time, share, _) = self.shares(time);
+        self.part.prescribe(time, values);
+        values.iter_mut().for_each(|v| *v *= share);
     }
 }
 
-/// A solid brought into equilibrium with its initial stress, its weight, and the loads and supports at time 0.
-///
-/// # Errors
-/// It finds no equilibrium.
-pub fn at_rest(part: &SolidPart, gravity: &[f64]) -> Result<State, Failure> {
-    let model = &part.model;
-    let mut state = State::new(model);
-    if let Some(InitialStress { kind, .. }) = &part.initial_stress {
-        match kind {
-            InitialStressKind::Gravity => {}
-            InitialStressKind::Uniform(stress) => initial_stress::uniform(model, &mut state, *stress),
-            InitialStressKind::K0 { k0, surface } => initial_stress::k0(model, &mut state, k0, *surface),
-        }
-        .map_err(|e| part.failure(&e))?;
+/// A solid at every step in equilibrium.
+pub struct QuasiStaticSystem<'a> {
+    part: &'a SolidPart,
+    state: State,
+    solver: QuasiStatic,
+    gravity: Vec<f64>,
+    carried: f64,
+    step: f64,
+    steps: u64,
+    load: Vec<f64>,
+    reactions: Vec<f64>,
+    spent: Spent,
+}
+
+impl<'a> QuasiStaticSystem<'a> {
+    /// The solid with its initial stress, in equilibrium with its weight and the loads and supports at time 0.
+    ///
+    /// # Errors
+    /// The body is not held, or finds no equilibrium at time 0.
+    pub fn new(part: &'a SolidPart, plan: &QuasiStaticPlan, step: f64) -> Result<Self, Failure> {
+        let model = &part.model;
+        let gravity = model.gravity_load();
+        let (mut state, carried) = super::initial::state(part, &gravity)?;
+        // What acts at time 0 is brought on over one unit of time before it.
+        let control = StepControl {
+            initial: 0.25,
+            min: 0.25 * plan.smallest_step,
+            max: 1.0,
+            target_iterations: plan.target_iterations,
+        };
+        let mut begin = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
+        state.time = -1.0;
+        let mut course = Course { part, gravity: &gravity, carried };
+        begin
+            .advance(model, &mut state, 0.0, &mut course, |_, _| {})
+            .map_err(|e| part.failure(&e).in_stage("before time 0, while weight and loads are brought on"))?;
+        state.time = 0.0;
+        let control = StepControl { initial: step, min: step * plan.smallest_step, max: step, ..control };
+        let solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
+        let reactions = begin.reactions(model);
+        let mut load = vec![0.0; model.dof_count()];
+        course.load(0.0, &mut load);
+        Ok(QuasiStaticSystem {
+            part,
+            state,
+            solver,
+            carried,
+            step,
+            steps: 0,
+            load,
+            reactions,
+            spent: Spent::default(),
+            gravity,
+        })
     }
-    Ok(state)
+
+    /// Counts of the iteration.
+    pub fn statistics(&self) -> Statistics {
+        self.solver.statistics()
+    }
+}
+
+impl System for QuasiStaticSystem<'_> {
+    fn window(&self) -> f64 {
+        self.step
+    }
+
+    fn steps_per_window(&self) -> (u64, u64) {
+        (0, 1)
+    }
+
+    fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
+        let (part, model) = (self.part, &self.part.model);
+        let before = self.state.clone();
+        let to = (self.steps + 1) as f64 * self.step;
+        let mut course = Course { part, gravity: &self.gravity, carried: self.carried };
+        self.solver
+            .advance(model, &mut self.state, to, &mut course, |_, _| {})
+            .map_err(|e| part.failure(&e))?;
+        self.steps += 1;
+        let mut load = vec![0.0; self.load.len()];
+        course.load(to, &mut load);
+        let reactions = self.solver.reactions(model);
+        // The mean of the forces at both ends does exactly the work of the mean stresses (virtual work).
+        let mut work = 0.0;
+        for d in 0..load.len() {
+            let ends = self.load[d] + load[d] - 2.0 * self.gravity[d] + self.reactions[d] + reactions[d];
+            work += 0.5 * ends * (self.state.u[d] - before.u[d]);
+        }
+        self.spent.solid_load_work += work;
+        self.spent.plastic += energy::plastic_work(model, &before.points, &self.state.points);
+        (self.load, self.reactions) = (load, reactions);
+        Ok(())
+    }
+
+    fn stored(&self) -> Stored {
+        Stored {
+            solid_strain: energy::elastic(&self.part.model, &self.state.points),
+            solid_gravity: -self.gravity.iter().zip(&self.state.u).map(|(f, u)| f * u).sum::<f64>(),
+            ..Stored::default()
+        }
+    }
+
+    fn spent(&self) -> Spent {
+        self.spent
+    }
+
+    fn solid(&self) -> Option<SolidView<'_>> {
+        Some(SolidView { model: &self.part.model, state: &self.state })
+    }
+
+    fn reactions(&self) -> Option<Vec<f64>> {
+        Some(self.reactions.clone())
+    }
+
+    fn keeps_its_state(&self) -> bool {
+        true
+    }
 }

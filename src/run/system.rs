@@ -48,6 +48,10 @@ pub trait System {
     fn grains(&self) -> Option<GrainsView<'_>> {
         None
     }
+    /// Whether a window that fails leaves the state of the last good step behind.
+    fn keeps_its_state(&self) -> bool {
+        false
+    }
     /// Forces of the supports on the solid [N], shape `[3·nodes]`, where they are known.
     fn reactions(&self) -> Option<Vec<f64>> {
         None
