@@ -79,6 +79,9 @@ pub struct CheckArgs {
     /// Replace one key of the scene, as key.path=value; may be given again.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Refuse a solid that needs more memory than this, such as 8GB; default: what the machine has free.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<String>,
 }
 
 /// The commands of `mesh`.

@@ -1,8 +1,9 @@
 //! What each command does.
 
 mod check;
+mod modal;
 
-use crate::cli::{CheckArgs, Command, MeshArgs, MeshCommand, RunArgs};
+use crate::cli::{Command, MeshArgs, MeshCommand, RunArgs};
 use crate::failure::Failure;
 use crate::model::solid::read_mesh;
 use crate::read::{ListLayout, Lists, read_lists};
@@ -17,7 +18,8 @@ use std::io::Write;
 pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
-        Command::Check(CheckArgs { scene, set }) => print(&check::check(&scene, &set)?),
+        Command::Check(args) => print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?),
+        Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => {
             let lists = lists(&args)?;
             let info = mesh_tools::info(&lists.mesh, &lists.constraints);
@@ -48,9 +50,20 @@ pub fn execute(command: Command) -> Result<(), Failure> {
 }
 
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
-    let options = run::Options { out: args.out, threads: args.threads, set: args.set, quiet: args.quiet };
+    let memory = memory(args.memory.as_deref())?;
+    let options =
+        run::Options { out: args.out, threads: args.threads, set: args.set, memory, quiet: args.quiet };
     let summary = run::run(&args.scene, &options)?;
     if args.quiet { Ok(()) } else { print(&summary.report()) }
+}
+
+/// The size that `--memory` names [bytes].
+fn memory(text: Option<&str>) -> Result<Option<u64>, Failure> {
+    let parse = |t: &str| {
+        let expected = "a size above 0 such as 800MB or 8GB";
+        run::parse_size(t).ok_or_else(|| Failure::Input(format!("--memory: found {t}, expected {expected}")))
+    };
+    text.map(parse).transpose()
 }
 
 /// Reads a mesh from a folder of lists, or the one that a scene names.

@@ -3,6 +3,8 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::refused;
+use crate::model::solid::Analysis;
+use crate::run;
 use crate::scene::{Document, Scene};
 use std::fmt::Write;
 use std::path::Path;
@@ -12,7 +14,7 @@ use trackbed_dem as dem;
 ///
 /// # Errors
 /// The same bad input that a run would refuse.
-pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
+pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String, Failure> {
     let mut document = Document::open(scene)?;
     for assignment in set {
         document.set(assignment)?;
@@ -22,6 +24,8 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
     let mut text = format!("{}\n", job.title);
     let mut line = |t: String| writeln!(text, "  {t}").expect("writing to a string does not fail");
     if let Some(solid) = &job.solid {
+        let prediction = run::Prediction::of(solid)?;
+        prediction.check(memory)?;
         let mesh = solid.model.mesh();
         line(format!(
             "solid: {} nodes, {} elements, {} unknowns, {:?} rule, {:.3e} kg",
@@ -34,6 +38,12 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
         for (id, name) in &solid.material_names {
             line(format!("  material {id}: {name}"));
         }
+        line(format!(
+            "  memory: {} in all, {} of it for the equations; one factorization {:.2} Gflop",
+            run::size(prediction.total()),
+            run::size(prediction.solver),
+            1e-9 * prediction.flops
+        ));
         for warning in &solid.warnings {
             line(format!("  note: {warning}"));
         }
@@ -63,10 +73,16 @@ pub fn check(scene: &Path, set: &[String]) -> Result<String, Failure> {
                 s.damping,
             ));
         }
-    } else if let Some(step) = job.solid_step {
-        line(format!("dynamics: {} s in {:.0} steps of {step} s", job.end, job.end / step));
-    } else {
-        line("statics: one solve".into());
+    } else if let Some(solid) = &job.solid {
+        let steps = |step: f64| format!("{} s in {:.0} steps of {step} s", job.end, job.end / step);
+        line(match (&solid.analysis, job.solid_step) {
+            (Analysis::Dynamic(_), Some(step)) => format!("dynamics: {}", steps(step)),
+            (Analysis::QuasiStatic(_), Some(step)) => format!("quasi-static: {}", steps(step)),
+            (Analysis::StrengthReduction(plan), _) => {
+                format!("strength reduction: factor between {} and {}", plan.from, plan.to)
+            }
+            _ => "statics: one solve".into(),
+        });
     }
     Ok(text)
 }

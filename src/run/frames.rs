@@ -27,7 +27,7 @@ pub fn write_solid(
         (
             stress::nodal_of_points(view.model, view.state),
             stress::nodal_kappa(view.model, view.state),
-            stress::nodal_yield_function(view.model, view.state),
+            finite_yield_function(stress::nodal_yield_function(view.model, view.state)),
         )
     } else {
         let nodes = mesh.node_count();
@@ -51,6 +51,11 @@ pub fn write_solid(
         write::tecplot::write_solid(file, &frame, "solid", time, 1)?;
     }
     Ok(())
+}
+
+/// A node of an elastic element has no yield function: it counts as inside.
+fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
+    values.into_iter().map(|f| if f == f64::NEG_INFINITY { NO_YIELD_SURFACE } else { f }).collect()
 }
 
 /// The grains: one point per sphere.

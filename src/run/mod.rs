@@ -2,14 +2,20 @@
 
 mod cycles;
 mod frames;
+mod failure_factor;
+mod initial;
 mod main_stage;
+mod memory;
+mod plastic;
 mod record;
 mod settle;
+mod solid_alone;
 mod statics;
 mod summary;
 mod system;
 
 pub use cycles::{Cycle, CycleRecorder};
+pub use memory::{Prediction, parse_size, size};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
@@ -20,7 +26,7 @@ use crate::scene::{Document, Scene};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use summary::{CouplingRecord, Hash};
-use system::{CoupledSystem, GrainsSystem, SolidSystem, System};
+use system::{CoupledSystem, GrainsSystem, System};
 use trackbed_coupling as coupling;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -35,6 +41,8 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Overrides `key.path=value`.
     pub set: Vec<String>,
+    /// Most memory that a solid may need [bytes]; default what the machine has free.
+    pub memory: Option<u64>,
     /// Print nothing.
     pub quiet: bool,
 }
@@ -67,6 +75,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
             job: &job,
             dir: &dir,
             quiet: options.quiet,
+            memory: options.memory,
             prepared: Cell::new(false),
         };
         let result = stage.run(&mut summary);
@@ -89,7 +98,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
 }
 
 /// The pool that a run works in: as many threads as asked for, with stacks deep enough for recursive elimination.
-fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     if threads == Some(0) {
         return Err(Failure::Input("--threads: found 0, expected 1 or more".into()));
     }
@@ -101,7 +110,7 @@ fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
 }
 
 /// `results/` and the name of the scene file, or of its folder when the file is just called `scene.toml`.
-fn default_folder(scene: &Path) -> PathBuf {
+pub(crate) fn default_folder(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = scene.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     let name = match (stem.as_str(), folder) {
@@ -121,8 +130,9 @@ fn hash(document: &Document, scene: &Scene) -> String {
     }
     let mut files: Vec<&Path> = Vec::new();
     if let Some(s) = &scene.solid {
-        files.extend([s.nodes.as_path(), s.elements.as_path()]);
-        files.extend(s.constraints.as_deref());
+        files.extend([&s.mesh, &s.nodes, &s.elements, &s.constraints].into_iter().flatten().map(PathBuf::as_path));
+        let histories = s.load.iter().map(|l| &l.history).chain(s.support.iter().map(|l| &l.history));
+        files.extend(histories.flatten().filter_map(|h| h.file.as_deref()));
     }
     for g in &scene.grains {
         files.extend(g.library.as_deref());
@@ -142,6 +152,7 @@ struct Stage<'a> {
     job: &'a Job,
     dir: &'a Path,
     quiet: bool,
+    memory: Option<u64>,
     /// Whether the folder is cleared of earlier results and holds those of this run.
     prepared: Cell<bool>,
 }
@@ -160,24 +171,7 @@ impl Stage<'_> {
             summary.sources.extend(GRAIN_SOURCES);
         }
         match (&self.job.solid, &self.job.grains, &self.job.coupling) {
-            (Some(solid), None, _) => match &solid.newmark {
-                None => statics::run(self.job, solid, self.dir, || self.prepare(), summary),
-                Some(method) => {
-                    let dt = self.job.solid_step.expect("a dynamic solid has a step");
-                    let solver = fem::newmark::NewmarkSolver::conditionally_stable(&solid.model, *method, dt)
-                        .map_err(|e| solid.failure(&e))?;
-                    let mut system = SolidSystem::new(solid, solver).map_err(|e| solid.failure(&e))?;
-                    summary.model.solid_step = Some(dt);
-                    self.prepare()?;
-                    self.main_stage(&mut system, None, summary)?;
-                    if self.job.output.tables {
-                        let load = system.load();
-                        let reactions = fem::energy::reactions(&solid.model, &system.state, load);
-                        statics::write_tables(&solid.model, &system.state.u, &reactions, self.dir)?;
-                    }
-                    Ok(())
-                }
-            },
+            (Some(solid), None, _) => self.solid_alone(solid, summary),
             (None, Some(grains), _) => {
                 let deposited = self.deposit(grains, None, summary)?;
                 let bodies = self.with_sleeper(grains, deposited, None)?;
@@ -210,7 +204,7 @@ impl Stage<'_> {
                 if self.job.output.tables {
                     let moved = &system.state.solid;
                     let reactions = fem::energy::reactions(&solid.model, moved, system.work.load());
-                    statics::write_tables(&solid.model, &moved.u, &reactions, self.dir)?;
+                    statics::write_tables(&solid.model, moved, &reactions, self.dir)?;
                 }
                 summary.coupling = Some(CouplingRecord {
                     transfer: system.state.audit,
@@ -282,7 +276,8 @@ impl Stage<'_> {
 const SOLID_SOURCES: [&str; 3] = [
     "20-node hexahedron: serendipity functions, Zienkiewicz & Taylor, The Finite Element Method",
     "time integration: Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959",
-    "sparse Cholesky: supernodal LLT of the crate faer, nested dissection by coordinates (George 1973)",
+    "sparse factorization: multifrontal (Duff & Reid 1983) over dense kernels of the crate faer, nested dissection by \
+     coordinates (George 1973)",
 ];
 
 const GRAIN_SOURCES: [&str; 3] = [

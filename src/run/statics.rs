@@ -10,6 +10,8 @@ use crate::write::pvd;
 use std::path::Path;
 use std::time::Instant;
 use trackbed_fem as fem;
+use trackbed_fem::State;
+use trackbed_fem::element::stiffness_points;
 use trackbed_fem::model::Model;
 
 /// Solves the static problem of a scene and writes its results into `dir`, which `prepare` makes once there is a
@@ -47,7 +49,7 @@ pub fn run(
         series.write()?;
     }
     if job.output.tables {
-        write_tables(model, &result.u, &result.reactions, dir)?;
+        write_tables(model, &state, &result.reactions, dir)?;
     }
 
     let (mut total, mut reaction, mut scale) = ([0.0; 3], [0.0; 3], 0.0);
@@ -76,12 +78,13 @@ pub fn run(
     Ok(())
 }
 
-/// Writes `nodes.csv` (displacement and reaction of every node) and `gauss.csv` (stress at every Gauss point).
+/// Writes `nodes.csv` (displacement and reaction of every node) and `gauss.csv` (stress at every Gauss point; of a plastic
+/// solid also the equivalent plastic strain).
 ///
 /// # Errors
 /// A value is not finite, or the disk refuses.
-pub fn write_tables(model: &Model, u: &[f64], reactions: &[f64], dir: &Path) -> Result<(), Failure> {
-    let mesh = model.mesh();
+pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path) -> Result<(), Failure> {
+    let (mesh, u) = (model.mesh(), &state.u);
     let columns =
         |names: &[(&str, &str)]| names.iter().map(|(n, unit)| Column::new(*n, *unit)).collect::<Vec<_>>();
     let mut nodes = History::create(
@@ -102,26 +105,36 @@ pub fn write_tables(model: &Model, u: &[f64], reactions: &[f64], dir: &Path) -> 
         row.extend_from_slice(&reactions[3 * n..3 * n + 3]);
         nodes.row(&row)?;
     }
-    let mut gauss = History::create(
-        &dir.join("gauss.csv"),
-        columns(&[
-            ("element", ""),
-            ("xi", ""),
-            ("eta", ""),
-            ("zeta", ""),
-            ("sxx", "Pa"),
-            ("syy", "Pa"),
-            ("szz", "Pa"),
-            ("sxy", "Pa"),
-            ("syz", "Pa"),
-            ("szx", "Pa"),
-        ]),
-    )?;
+    let mut names = vec![
+        ("element", ""),
+        ("xi", ""),
+        ("eta", ""),
+        ("zeta", ""),
+        ("sxx", "Pa"),
+        ("syy", "Pa"),
+        ("szz", "Pa"),
+        ("sxy", "Pa"),
+        ("syz", "Pa"),
+        ("szx", "Pa"),
+    ];
+    let plastic = !state.points.is_empty();
+    if plastic {
+        names.push(("equivalent_plastic_strain", ""));
+    }
+    let mut gauss = History::create(&dir.join("gauss.csv"), columns(&names))?;
     for (e, &id) in mesh.element_ids.iter().enumerate() {
-        for ((xi, _), stress) in model.quadrature().points().iter().zip(fem::stress::gauss(model, u, e)) {
+        let points = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
+        let elastic = if plastic { Vec::new() } else { fem::stress::gauss(model, u, e) };
+        for (i, point) in points.iter().enumerate() {
             let mut row = vec![f64::from(id)];
-            row.extend_from_slice(xi);
-            row.extend_from_slice(&stress);
+            row.extend_from_slice(&point.xi);
+            if plastic {
+                let at = &state.points[model.point_start(e) + i];
+                row.extend_from_slice(&at.stress);
+                row.push(at.kappa);
+            } else {
+                row.extend_from_slice(&elastic[i]);
+            }
             gauss.row(&row)?;
         }
     }
