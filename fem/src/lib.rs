@@ -39,6 +39,7 @@ pub mod kinematics;
 pub mod loads;
 pub mod material;
 pub mod mesh;
+pub mod mesh_order;
 pub mod model;
 pub mod newmark;
 pub mod nonlinear;

@@ -197,13 +197,13 @@ impl Mesh {
     }
 
     /// Quality of element `element`: smallest over largest determinant of the Jacobian at the nodes and the points of the
-    /// mass. 1 is a parallelepiped; 0 or below is degenerate or inverted somewhere. The apex of a pyramid, where the
-    /// map is singular by nature, is left out.
+    /// mass. 1 is a parallelepiped; 0 or below is degenerate or inverted somewhere. At the apex of a pyramid, the limits
+    /// along its four uprights count ([`ElementKind::limits_at_node`]).
     pub fn jacobian_ratio(&self, element: usize) -> f64 {
         let (x, kind) = (self.element_coordinates(element), self.connectivity.kind(element));
-        let apex = |n: usize| kind.linear() == ElementKind::Pyramid5 && n == 4;
-        let nodes = kind.natural().iter().enumerate().filter(|(n, _)| !apex(*n));
-        let at_nodes = nodes.map(|(_, xi)| jacobian(&x, &kind.gradients(*xi)).1);
+        let at_nodes = (0..kind.node_count())
+            .flat_map(|n| kind.limits_at_node(n))
+            .map(|xi| jacobian(&x, &kind.gradients(*xi)).1);
         let at_points = mass_points(kind).iter().map(|p| jacobian(&x, &p.gradients).1);
         let (low, high) = at_nodes
             .chain(at_points)

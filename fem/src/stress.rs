@@ -7,7 +7,7 @@
 //! outweigh its neighbour. Limits: at a material border the true stress jumps in some components; the mean hides that, and
 //! [`at_natural`] on either side shows it.
 
-use crate::element::quadrature::{GAUSS2, LINE2, Quadrature};
+use crate::element::quadrature::{GAUSS2, LINE2, PYRAMID8, Quadrature};
 use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
 use crate::kinematics::{jacobian, mean_gradients, spatial_gradients, strain};
 use crate::material::yield_function;
@@ -52,8 +52,9 @@ pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
             mass_points(ElementKind::Wedge6).iter().map(|p| p.xi).collect()
         }
         ElementKind::Tet10 => stiffness_points(kind, Quadrature::Gauss2).iter().map(|p| p.xi).collect(),
-        // One value: at the apex of a pyramid the stress of the element has no limit.
-        ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => vec![kind.natural_centre()],
+        // Not the nodes: at the apex of a pyramid the stress of the element has no limit.
+        ElementKind::Pyramid13 => PYRAMID8.map(|p| p.0).to_vec(),
+        ElementKind::Pyramid5 | ElementKind::Tet4 => vec![kind.natural_centre()],
     }
 }
 
@@ -198,7 +199,8 @@ pub fn von_mises(s: &[f64; 6]) -> f64 {
 }
 
 /// Values at the sampling points of a kind → values at its nodes: by the trilinear polynomial through the points of a
-/// hexahedron, the linear one (times linear along the axis of a wedge) through those of the others.
+/// hexahedron, the linear one (times linear along the axis of a wedge) through those of the others, in the sense of least
+/// squares for the pyramid13; one value for the pyramid5 and the tet4.
 pub(crate) fn extrapolate<const C: usize>(kind: ElementKind, points: &[[f64; C]]) -> [[f64; C]; MAX_NODES] {
     let mut nodes = [[0.0; C]; MAX_NODES];
     for (value, node) in nodes.iter_mut().zip(kind.natural()) {
@@ -234,7 +236,17 @@ fn extrapolation_weight(kind: ElementKind, i: usize, x: [f64; 3]) -> f64 {
             let (far, near) = ((5.0 - 5.0_f64.sqrt()) / 20.0, (5.0 + 3.0 * 5.0_f64.sqrt()) / 20.0);
             (volume(x)[corner] - far) / (near - far)
         }
-        ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => 1.0,
+        ElementKind::Pyramid13 => {
+            // Least squares through the eight points: the constant, x, y and t - middle are orthogonal on them.
+            let middle = PYRAMID8.iter().map(|p| p.0[2]).sum::<f64>() / 8.0;
+            let functions = |at: [f64; 3]| [1.0, at[0], at[1], at[2] - middle];
+            let term = |k: usize| {
+                let norm: f64 = PYRAMID8.iter().map(|p| functions(p.0)[k].powi(2)).sum();
+                functions(x)[k] * functions(PYRAMID8[i].0)[k] / norm
+            };
+            (0..4).map(term).sum()
+        }
+        ElementKind::Pyramid5 | ElementKind::Tet4 => 1.0,
     }
 }
 
@@ -248,7 +260,7 @@ mod tests {
             let field = |x: [f64; 3]| match kind.linear() {
                 ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
                 ElementKind::Wedge6 => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
-                ElementKind::Tet4 if kind == ElementKind::Tet10 => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
+                _ if !kind.is_linear() => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
                 _ => 2.0,
             };
             let points: Vec<_> = sampling_points(kind).into_iter().map(|xi| [field(xi); 6]).collect();

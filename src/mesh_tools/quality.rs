@@ -2,8 +2,8 @@
 //!
 //! Scaled Jacobian: the least of det J / (|g1| |g2| |g3|) over the corners and the Gauss points of the mass, g the
 //! columns of J = dx/dξ (Knupp 2000 takes the corners only, which misses curved edges), so that it is 1 for a
-//! brick and for the natural tetrahedron. It is not positive for an element that is turned inside out at one of these points. The apex of a pyramid, where the map is
-//! singular by nature, is left out.
+//! brick and for the natural tetrahedron. It is not positive for an element that is turned inside out at one of these
+//! points. At the apex of a pyramid, where the gradients depend on the direction, the limits along the four uprights count.
 //!
 //! Aspect ratio: longest over shortest of the edges, measured from corner to corner.
 //!
@@ -36,12 +36,11 @@ pub fn element_quality(mesh: &Mesh, element: usize) -> Quality {
 }
 
 fn quality(kind: ElementKind, x: &ElementCoordinates) -> Quality {
-    let apex = |corner: usize| kind.linear() == ElementKind::Pyramid5 && corner == 4;
-    let corners = kind.natural()[..kind.corner_count()]
-        .iter()
-        .enumerate()
-        .map(|(corner, xi)| (kind.gradients(if apex(corner) { kind.natural_centre() } else { *xi }), 0.0));
-    let points = mass_points(kind).iter().map(|p| (p.gradients, p.weight));
+    let corners = kind.corner_count();
+    let at_corners = (0..corners).flat_map(|corner| {
+        kind.limits_at_node(corner).iter().map(move |xi| (corner, kind.gradients(*xi), 0.0))
+    });
+    let at_points = mass_points(kind).iter().enumerate().map(|(i, p)| (corners + i, p.gradients, p.weight));
     let mut quality = Quality {
         scaled_jacobian: f64::INFINITY,
         aspect_ratio: aspect_ratio(kind, x),
@@ -49,7 +48,7 @@ fn quality(kind: ElementKind, x: &ElementCoordinates) -> Quality {
         determinant: f64::INFINITY,
         worst_point: 0,
     };
-    for (point, (gradients, weight)) in corners.chain(points).enumerate() {
+    for (point, gradients, weight) in at_corners.chain(at_points) {
         let columns = columns(x, &gradients);
         let determinant = determinant(&columns);
         let size: f64 = columns.iter().map(norm).product();
@@ -155,6 +154,16 @@ mod tests {
         assert!(found.scaled_jacobian < 0.0 && found.worst_point == 0, "{found:?}");
         x[8][0] = 0.3;
         assert!(quality(ElementKind::Hex20, &x).scaled_jacobian > 0.0);
+        // The same at the apex of a pyramid, which is its fifth corner: upright 0-4.
+        let mut x = ElementCoordinates::default();
+        x[..13].copy_from_slice(ElementKind::Pyramid13.natural());
+        assert!((quality(ElementKind::Pyramid13, &x).scaled_jacobian - 1.0).abs() < 1e-6);
+        for (along, inverted) in [(0.70, false), (0.80, true)] {
+            x[9] = [along - 1.0, along - 1.0, along];
+            let found = quality(ElementKind::Pyramid13, &x);
+            assert_eq!(found.scaled_jacobian <= 0.0, inverted, "{found:?}");
+            assert_eq!(found.worst_point == 4, inverted, "{found:?}");
+        }
         let mirrored = brick([1.0; 3]).map(|[x, y, z]| [x, y, -z]);
         assert!(quality(ElementKind::Hex20, &mirrored).volume < 0.0);
     }

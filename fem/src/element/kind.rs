@@ -128,6 +128,16 @@ impl ElementKind {
         }
     }
 
+    /// The kind of the same shape with mid-side nodes.
+    pub const fn quadratic(self) -> ElementKind {
+        match self {
+            ElementKind::Hex20 | ElementKind::Hex8 => ElementKind::Hex20,
+            ElementKind::Wedge15 | ElementKind::Wedge6 => ElementKind::Wedge15,
+            ElementKind::Pyramid13 | ElementKind::Pyramid5 => ElementKind::Pyramid13,
+            ElementKind::Tet10 | ElementKind::Tet4 => ElementKind::Tet10,
+        }
+    }
+
     /// Name, as in scenes and reports.
     pub const fn name(self) -> &'static str {
         match self {
@@ -145,6 +155,17 @@ impl ElementKind {
     /// Natural coordinates of the nodes. Shape `[nodes][3]`.
     pub fn natural(self) -> &'static [[f64; 3]] {
         on_kind!(self, element => &element::NATURAL)
+    }
+
+    /// Where the map of the element is looked at for local node `node`: the node itself. At the apex of a pyramid the
+    /// gradients depend on the direction, and the four points just below it on the uprights stand for it: the
+    /// determinant there is bilinear in the direction, so that it is positive around the apex when it is at these four.
+    pub fn limits_at_node(self, node: usize) -> &'static [[f64; 3]] {
+        if matches!(self.linear(), ElementKind::Pyramid5) && node == 4 {
+            &pyramid13::APEX_LIMITS
+        } else {
+            std::slice::from_ref(&self.natural()[node])
+        }
     }
 
     /// Local nodes of each face: corners counter-clockwise seen from outside, then the mid-side node after each corner.

@@ -14,7 +14,8 @@
 //! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108 (5-node pyramid).
 //! Limits: rational functions. Their values are continuous at the apex, their gradients depend on the direction from
 //! which the apex is reached: there, this module takes the limit along the axis (p = q = 0), as
-//! [`super::pyramid13`] does. Gradients of linear fields are exact at the apex all the same.
+//! [`super::pyramid13`] does. Gradients of linear fields are exact at the apex all the same. A mesh of pyramids alone
+//! still locks to some degree near incompressibility, in spite of mean dilatation.
 
 use super::pyramid13::section;
 

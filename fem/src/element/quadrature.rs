@@ -192,14 +192,14 @@ const fn wedge_rule<const T: usize, const L: usize, const P: usize>(
     points
 }
 
-const fn pyramid_rule<const N: usize, const P: usize>(
+const fn pyramid_rule<const N: usize, const L: usize, const P: usize>(
     line: [(f64, f64); N],
-    cone: [(f64, f64); N],
+    cone: [(f64, f64); L],
 ) -> [VolumePoint; P] {
     let mut points = [([0.0; 3], 0.0); P];
     let mut p = 0;
     while p < P {
-        let (x, y, (t, w)) = (line[p / (N * N)], line[p / N % N], cone[p % N]);
+        let (x, y, (t, w)) = (line[p / (N * L)], line[p / L % N], cone[p % L]);
         points[p] = ([x.0 * (1.0 - t), y.0 * (1.0 - t), t], x.1 * y.1 * w);
         p += 1;
     }
@@ -257,6 +257,9 @@ pub static WEDGE9: [VolumePoint; 9] = wedge_rule(TRIANGLE3, LINE3);
 pub static WEDGE21: [VolumePoint; 21] = wedge_rule(TRIANGLE7, LINE3);
 /// 8 points inside a pyramid: 2×2 across × 2 along t; weights sum to 4/3. Exact to total degree 3.
 pub static PYRAMID8: [VolumePoint; 8] = pyramid_rule(LINE2, CONE2);
+/// 18 points inside a pyramid: 3×3 across × 2 along t; weights sum to 4/3. Exact to total degree 3
+/// (degree 5 across). The lean rule of the pyramid13, which under 8 points has a mode without stiffness where its base is a parallelogram.
+pub static PYRAMID18: [VolumePoint; 18] = pyramid_rule(LINE3, CONE2);
 /// 27 points inside a pyramid: 3×3 across × 3 along t; weights sum to 4/3. Exact to total degree 5.
 pub static PYRAMID27: [VolumePoint; 27] = pyramid_rule(LINE3, CONE3);
 

@@ -115,8 +115,9 @@ fn wedge_rules_integrate_their_degree_exactly() {
 fn pyramid_rules_integrate_their_degree_exactly() {
     let total: fn([i32; 3]) -> i32 = |p| p.iter().sum();
     assert_degree("pyramid 8", &PYRAMID8, pyramid, total, 3);
+    assert_degree("pyramid 18", &PYRAMID18, pyramid, total, 3);
     assert_degree("pyramid 27", &PYRAMID27, pyramid, total, 5);
-    for rule in [PYRAMID8.as_slice(), &PYRAMID27] {
+    for rule in [PYRAMID8.as_slice(), &PYRAMID18, &PYRAMID27] {
         assert!(rule.iter().all(|(x, _)| x[2] > 0.0 && x[0].abs().max(x[1].abs()) < 1.0 - x[2]));
     }
 }

@@ -1,13 +1,14 @@
 //! Integration points of each kind of element, with the shape functions there worked out once.
 //!
 //! The stiffness of the 20-node hexahedron takes the rule that the user names. The companions have two rules: the lean
-//! one that leaves no mode without stiffness (9 points for the wedge, 8 for the pyramid, 4 for the tetrahedron, as in
-//! SOLID186), and under the full rule one that is exact for the products of linear strains. Linear elements have
+//! one that leaves no mode without stiffness (9 points for the wedge, 18 for the pyramid, 4 for the tetrahedron), and
+//! under the full rule one that is exact for the products of linear strains. Linear elements have
 //! one rule. The mass takes a rule that is exact for products of shape functions on elements with flat faces.
 
 use super::kind::{ElementKind, MAX_NODES};
 use super::quadrature::{
-    GAUSS2, GAUSS3, PYRAMID8, PYRAMID27, Quadrature, TET1, TET4, TET14, VolumePoint, WEDGE6, WEDGE9, WEDGE21,
+    GAUSS2, GAUSS3, PYRAMID8, PYRAMID18, PYRAMID27, Quadrature, TET1, TET4, TET14, VolumePoint, WEDGE6,
+    WEDGE9, WEDGE21,
 };
 use std::sync::OnceLock;
 
@@ -45,7 +46,7 @@ fn stiffness_rule(kind: ElementKind, rule: Quadrature) -> &'static [VolumePoint]
         ElementKind::Wedge15 if full => &WEDGE21,
         ElementKind::Wedge15 => &WEDGE9,
         ElementKind::Pyramid13 if full => &PYRAMID27,
-        ElementKind::Pyramid13 => &PYRAMID8,
+        ElementKind::Pyramid13 => &PYRAMID18,
         ElementKind::Tet10 if full => &TET14,
         ElementKind::Tet10 => &TET4,
         ElementKind::Hex8 => &GAUSS2,

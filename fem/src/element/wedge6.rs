@@ -13,7 +13,8 @@
 //! With the area coordinates `L = (1 - r - s, r, s)`: `N = L (1 + t_a t) / 2`.
 //!
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular prisms).
-//! Limits: complete linear polynomials only; too stiff in bending. Use wedge15 where accuracy counts.
+//! Limits: complete linear polynomials only; too stiff in bending. The strain in the plane of its triangle is constant, so
+//! that mean dilatation does not keep it from locking near incompressibility. Use wedge15 where accuracy counts.
 
 use super::tri3;
 

@@ -13,13 +13,13 @@ use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::{Constraint, Mesh};
 use trackbed_fem::{loads, statics};
 
-const SOIL: Elastic = Elastic { young: 3.0, poisson: 0.3, density: 1.0 };
+pub const SOIL: Elastic = Elastic { young: 3.0, poisson: 0.3, density: 1.0 };
 /// Waves `A sin(k·x)` that add up to the solution.
 const WAVES: [([f64; 3], [f64; 3]); 2] =
     [([1.0, -0.5, 0.3], [2.0, 1.0, -1.5]), ([0.2, 0.7, -0.4], [-1.0, 2.5, 1.0])];
 
 /// Points and weights of the four-point rule: exact enough that it does not flatter the element.
-const LINE4: [(f64, f64); 4] = [
+pub const LINE4: [(f64, f64); 4] = [
     (-0.8611363115940526, 0.3478548451374538),
     (-0.3399810435848563, 0.6521451548625461),
     (0.3399810435848563, 0.6521451548625461),
@@ -31,7 +31,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Displacement, strain (engineering shear) and body force of the exact solution.
-fn exact(x: [f64; 3]) -> ([f64; 3], [f64; 6], [f64; 3]) {
+pub fn exact(x: [f64; 3]) -> ([f64; 3], [f64; 6], [f64; 3]) {
     let (lambda, mu) = SOIL.lame();
     let (mut u, mut e, mut f) = ([0.0; 3], [0.0; 6], [0.0; 3]);
     for (a, k) in WAVES {

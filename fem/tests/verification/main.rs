@@ -3,10 +3,14 @@
 //! The tables are in `tests/data/fem` of the workspace; each folder's `case.json` tells how they were made.
 
 mod common;
+mod companion_cases;
+mod companion_orders;
+mod companions;
 mod convergence;
 mod determinism;
 mod dynamics;
 mod element;
+mod mixed;
 mod patch;
 mod plastic_common;
 mod plastic_cylinder;
