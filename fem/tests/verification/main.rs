@@ -8,6 +8,7 @@ mod determinism;
 mod dynamics;
 mod element;
 mod patch;
+mod plasticity_point;
 mod static_cases;
 mod support;
 mod window;
