@@ -129,7 +129,7 @@ fn associated_returns_are_closest_points() {
         while points.len() < 300 {
             let state =
                 step(&material, &PointState::default(), &random_strain(&mut random, 5e-3, 5e-3)).state;
-            let shrink = if points.len() % 3 == 0 { 0.5 + 0.5 * random.next() } else { 1.0 };
+            let shrink = if points.len().is_multiple_of(3) { 0.5 + 0.5 * random.next() } else { 1.0 };
             points.push(state.stress.map(|s| s * shrink));
         }
         for _ in 0..60 {
