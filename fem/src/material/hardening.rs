@@ -38,7 +38,7 @@ impl Hardening {
             Hardening::Linear { initial, modulus, limit } => {
                 let value = initial + modulus * kappa;
                 match *limit {
-                    Some(limit) if (value - limit) * modulus >= 0.0 => (limit, 0.0),
+                    Some(limit) if *modulus != 0.0 && (value - limit) * modulus >= 0.0 => (limit, 0.0),
                     _ => (value, *modulus),
                 }
             }
@@ -171,6 +171,8 @@ mod tests {
         assert!((table.at(0.15).0 - 2.0).abs() < 1e-14 && (table.at(0.15).1 - 20.0).abs() < 1e-12);
         assert!((table.steepest_fall() + 5.0).abs() < 1e-12);
         assert_eq!(table.range(), (1.0, 3.0));
+        let flat = Hardening::Linear { initial: 2.0, modulus: 0.0, limit: Some(3.0) };
+        assert!(flat.at(1.0) == (2.0, 0.0) && flat.is_constant() && flat.range() == (2.0, 2.0));
         let free = Hardening::Linear { initial: 2.0, modulus: 10.0, limit: None };
         assert_eq!(free.range(), (2.0, f64::INFINITY));
         assert!(Hardening::Table(vec![(0.0, 1.0), (1.0, 1.0)]).is_constant() && !table.is_constant());

@@ -185,6 +185,13 @@ pub enum Region {
     ConeCap,
 }
 
+impl Region {
+    /// Whether the step had plastic flow.
+    pub fn is_plastic(self) -> bool {
+        self != Region::Elastic
+    }
+}
+
 /// What [`update`] returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {

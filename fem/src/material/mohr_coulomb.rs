@@ -74,12 +74,12 @@ impl MohrCoulomb {
                 Region::EdgeCompressionTension,
                 Region::EdgeExtensionTension,
             ] {
-                let absent = if region == Region::Apex { phi == 0.0 } else { false };
-                let cut = matches!(
-                    region,
-                    Region::PlaneTension | Region::EdgeCompressionTension | Region::EdgeExtensionTension
-                );
-                if absent || cut && self.tension.is_none() {
+                let absent = match region {
+                    Region::Apex => phi == 0.0,
+                    Region::Plane | Region::EdgeCompression | Region::EdgeExtension => false,
+                    _ => self.tension.is_none(),
+                };
+                if absent {
                     continue;
                 }
                 let rate = principal_return::rate(region, &[0.0; 3], &strength, &moduli);
