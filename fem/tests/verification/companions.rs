@@ -238,7 +238,7 @@ fn pressure_all_around_a_curved_body_cancels() {
 }
 
 fn refusal(mesh: Mesh) -> Option<ModelError> {
-    let materials = [(1, SOIL)].into();
+    let materials = [(1, SOIL.into())].into();
     Model::new(ModelInput { mesh, materials, ..Default::default() }).err()
 }
 
