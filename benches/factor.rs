@@ -13,6 +13,7 @@ use divan::Bencher;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 use trackbed::read::{ListLayout, read_lists};
+use trackbed_fem::assembly::Combination;
 use trackbed_fem::solver::LinearSolver;
 use trackbed_fem::solver::cholesky::{Analysis, Cholesky};
 use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature};
@@ -75,7 +76,8 @@ impl Case {
     /// Factors K dt²/4 + M for dt = 1 ms.
     fn factor(&self) -> Cholesky {
         let model = &self.model;
-        Cholesky::factor(self.analysis.clone(), model.mesh(), model.matrices(), model.supports(), 2.5e-7, 1.0)
+        let newmark = Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 };
+        Cholesky::factor(self.analysis.clone(), model.mesh(), model.matrices(), model.supports(), newmark)
             .expect("the matrix is positive definite")
     }
 }

@@ -1,14 +1,14 @@
-//! Supernodal Cholesky factorization `P A P^T = L L^T` of `A = k K + m M` on the free dofs.
+//! Supernodal Cholesky factorization `P A P^T = L L^T` of `A = k K + m M + d D` on the free dofs.
 //!
 //! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Analysis`], made once per model);
-//! numbers are factored when k, m change ([`Cholesky::factor`]); solves allocate nothing. The dense kernels run with a
+//! numbers are factored when k, m, d change ([`Cholesky::factor`]); solves allocate nothing. The dense kernels run with a
 //! constant, sequential setting, so the bits are the same on any number of threads.
 //!
 //! Source: faer, sparse::linalg::cholesky (supernodal left-looking LLT). Limits: A must be positive definite. A pivot of
 //! zero or below is reported with its node and direction. A pivot that is only *tiny* does not stop a factorization; its
 //! size against the diagonal is kept in [`Cholesky::weakest_pivot`] for the caller to judge.
 
-use crate::assembly::Matrices;
+use crate::assembly::{Combination, Matrices};
 use crate::mesh::Mesh;
 use crate::solver::ordering::nested_dissection;
 use crate::solver::{LinearSolver, SolveError};
@@ -44,7 +44,7 @@ impl Analysis {
     pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
         let equations = supports.free().len();
         let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
-        matrices.visit_free(supports, |c, r, _, _| {
+        matrices.visit_free(supports, |c, r, _, _, _| {
             row.push(r);
             column_start[c + 1] = row.len();
         });
@@ -102,7 +102,7 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factors `A = stiffness K + mass M` on the free dofs.
+    /// Factors `A = stiffness K + mass M + dashpots D` on the free dofs.
     ///
     /// # Errors
     /// [`SolveError::NoStiffness`] names the node and direction of a pivot that is not positive.
@@ -111,12 +111,12 @@ impl Cholesky {
         mesh: &Mesh,
         matrices: &Matrices,
         supports: &Supports,
-        stiffness: f64,
-        mass: f64,
+        combination: Combination,
     ) -> Result<Cholesky, SolveError> {
         let equations = analysis.size();
         let mut a = Vec::with_capacity(analysis.row.len());
-        matrices.visit_free(supports, |_, _, k, m| a.push(stiffness * k + mass * m));
+        let Combination { stiffness, mass, dashpots } = combination;
+        matrices.visit_free(supports, |_, _, k, m, d| a.push(stiffness * k + mass * m + dashpots * d));
         let pattern = SymbolicSparseColMatRef::new_checked(
             equations,
             equations,
@@ -205,6 +205,10 @@ mod tests {
     use crate::material::elastic::Elastic;
     use crate::mesh::Constraint;
 
+    fn of(stiffness: f64, mass: f64) -> Combination {
+        Combination { stiffness, mass, dashpots: 0.0 }
+    }
+
     fn block() -> (Mesh, Matrices) {
         let mesh = Mesh::block([4, 3, 3], [4.0, 3.0, 3.0]);
         let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
@@ -218,7 +222,7 @@ mod tests {
         let constraint = |node| Constraint { node, direction: 1, value: 0.0 };
         let supports = Supports::new(&mesh, &[constraint(7), constraint(50)]).unwrap();
         let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
-        let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, 1e-4, 1.0).unwrap();
+        let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(1e-4, 1.0)).unwrap();
         let n = 3 * mesh.node_count();
         let exact: Vec<f64> =
             (0..n).map(|i| if i == 22 || i == 151 { 0.0 } else { (i as f64).cos() }).collect();
@@ -241,7 +245,7 @@ mod tests {
         let supports = Supports::new(&mesh, &[]).unwrap();
         let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
         let first = supports.free()[analysis.order[0]] as usize;
-        let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, -1.0, 0.0).err().unwrap();
+        let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(-1.0, 0.0)).err().unwrap();
         let (node, direction) = name(&mesh, first);
         assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
     }
@@ -259,7 +263,7 @@ mod tests {
         let mut position = vec![0; n];
         analysis.order.iter().enumerate().for_each(|(i, &e)| position[e] = i);
         let mut a = vec![vec![0.0; n]; n];
-        matrices.visit_free(&supports, |c, r, k, m| {
+        matrices.visit_free(&supports, |c, r, k, m, _| {
             let (c, r) = (position[c], position[r]);
             a[c][r] = k + 1e3 * m;
             a[r][c] = a[c][r];
@@ -277,7 +281,7 @@ mod tests {
                 }
             }
         }
-        let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, 1.0, 1e3).unwrap();
+        let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, of(1.0, 1e3)).unwrap();
         let found = solver.weakest_pivot();
         assert!((found.ratio / least.0 - 1.0).abs() < 1e-9, "{found:?} {least:?}");
         assert_eq!(found.dof, supports.free()[analysis.order[least.1]] as usize);
