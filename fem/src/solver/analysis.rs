@@ -7,7 +7,7 @@ use super::SolveError;
 use super::ordering::nested_dissection;
 use super::pattern::{MIRRORED, Upper, postorder};
 use super::structure::Structure;
-use crate::assembly::Matrices;
+use crate::assembly::{Combination, Matrices};
 use crate::mesh::Mesh;
 use crate::supports::{CONSTRAINED, Supports};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
@@ -42,7 +42,7 @@ impl Analysis {
     pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
         let equations = supports.free().len();
         let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
-        matrices.visit_free(supports, |c, r, _, _| {
+        matrices.visit_free(supports, |c, r, _, _, _| {
             row.push(r);
             column_start[c + 1] = row.len();
         });
@@ -95,9 +95,27 @@ impl Analysis {
         drop(symbolic);
         let structure = Structure::new(begin, rows_start, rows, &upper);
         if std::env::var_os("DBG").is_some() {
-            eprintln!("supernodes {} rows {} tasks {} crown {} work {} branches {} handed {} panel {} second {} entries {} runs {} maxw {} brw {}", structure.count(), structure.rows.len(), structure.tasks.len(), structure.crown.len(), structure.work_len, structure.tasks.last().map_or(0,|t|t.work.1), structure.handed_len, structure.panel[structure.count()], structure.second[structure.count()], structure.entry_row.len(), structure.runs.len(), structure.max_width, structure.branch_width);
-            for lim in [1e4,1e5,1e6,1e7,1e8,1e9,1e10,1e12] {
-                let v: Vec<f64> = (0..structure.count()).map(|s| structure.front_flops(s)).filter(|&f| f<lim && f>=lim/10.0).collect();
+            eprintln!(
+                "supernodes {} rows {} tasks {} crown {} work {} branches {} handed {} panel {} second {} entries {} runs {} maxw {} brw {}",
+                structure.count(),
+                structure.rows.len(),
+                structure.tasks.len(),
+                structure.crown.len(),
+                structure.work_len,
+                structure.tasks.last().map_or(0, |t| t.work.1),
+                structure.handed_len,
+                structure.panel[structure.count()],
+                structure.second[structure.count()],
+                structure.entry_row.len(),
+                structure.runs.len(),
+                structure.max_width,
+                structure.branch_width
+            );
+            for lim in [1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e12] {
+                let v: Vec<f64> = (0..structure.count())
+                    .map(|s| structure.front_flops(s))
+                    .filter(|&f| f < lim && f >= lim / 10.0)
+                    .collect();
                 eprintln!("  fronts with flops < {lim:e}: {} sum {:.3e}", v.len(), v.iter().sum::<f64>());
             }
         }
@@ -130,11 +148,14 @@ impl Analysis {
         &self.order
     }
 
-    /// The values of `stiffness K + mass M` on the free dofs, in the order of [`Analysis::pattern`], for the model that
-    /// was analysed.
-    pub fn values(&self, matrices: &Matrices, supports: &Supports, stiffness: f64, mass: f64) -> Vec<f64> {
+    /// The values of a combination of matrices on the free dofs, in the order of [`Analysis::pattern`], for the model
+    /// that was analysed.
+    pub fn values(&self, matrices: &Matrices, supports: &Supports, combination: Combination) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.entries());
-        matrices.visit_free(supports, |_, _, k, m| values.push(stiffness * k + mass * m));
+        let Combination { stiffness, mass, dashpots } = combination;
+        matrices.visit_free(supports, |_, _, k, m, d| {
+            values.push(stiffness * k + mass * m + dashpots * d);
+        });
         values
     }
 

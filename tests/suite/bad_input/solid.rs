@@ -35,23 +35,23 @@ fn block_counts_for_another_number_of_intervals() {
 
 #[test]
 fn block_layer_above_the_top() {
-    plastic().scene("{ material = 2 }", "{ material = 2, top = 1.5 }").refused(
-        "scene.toml:10: solid.block.layer.1.top: found 1.5 m, expected above 0.4 m, at most 1 m",
-    );
+    plastic()
+        .scene("{ material = 2 }", "{ material = 2, top = 1.5 }")
+        .refused("scene.toml:10: solid.block.layer.1.top: found 1.5 m, expected above 0.4 m, at most 1 m");
 }
 
 #[test]
 fn block_turned_inside_out_by_its_crest() {
-    plastic().set("solid.block.crest=[0.9, 0.1]").refused(
-        "--set: solid.block.crest: found 0.1, expected an end beyond its beginning",
-    );
+    plastic()
+        .set("solid.block.crest=[0.9, 0.1]")
+        .refused("--set: solid.block.crest: found 0.1, expected an end beyond its beginning");
 }
 
 #[test]
 fn constraints_of_a_block() {
-    plastic().set("solid.constraints=DOF.DAT").refused(
-        "--set: solid.constraints: found a value, expected no such key: it goes with lists alone",
-    );
+    plastic()
+        .set("solid.constraints=DOF.DAT")
+        .refused("--set: solid.constraints: found a value, expected no such key: it goes with lists alone");
 }
 
 // --- yield criteria -----------------------------------------------------------------------------------------------
@@ -118,7 +118,8 @@ fn hardening_table_that_turns_back() {
     let good = plastic().scene("cohesion = \"20 kPa\"", table);
     let outcome = run(&good.folder.join(SCENE), &good.folder.join("fresh"), &[]);
     assert!(
-        outcome.code == 2 && outcome.stderr.contains("scene.toml:24: solid.material.1.hardening_table: found"),
+        outcome.code == 2
+            && outcome.stderr.contains("scene.toml:24: solid.material.1.hardening_table: found"),
         "{}",
         outcome.stderr
     );
@@ -142,9 +143,9 @@ fn support_without_a_place() {
 
 #[test]
 fn support_where_no_node_is() {
-    plastic().scene("side = \"z-\"", "nodes_in = [[0, 0, 2], [1, 1, 3]]").refused(
-        "scene.toml:30: solid.support.0.nodes_in: found no node in the box, expected at least one",
-    );
+    plastic()
+        .scene("side = \"z-\"", "nodes_in = [[0, 0, 2], [1, 1, 3]]")
+        .refused("scene.toml:30: solid.support.0.nodes_in: found no node in the box, expected at least one");
 }
 
 #[test]
@@ -172,7 +173,8 @@ fn an_unheld_block() {
 
 #[test]
 fn absorbing_faces_inside() {
-    let absorbing = "[[solid.absorbing]]\nfaces_in = [[0.2, 0.2, 0.2], [0.3, 0.3, 0.3]]\n\n[solid.quasi_static]";
+    let absorbing =
+        "[[solid.absorbing]]\nfaces_in = [[0.2, 0.2, 0.2], [0.3, 0.3, 0.3]]\n\n[solid.quasi_static]";
     plastic().scene("[solid.quasi_static]", absorbing).refused(
         "scene.toml:41: solid.absorbing.0.faces_in: found no boundary face in the box, expected at least one",
     );
@@ -207,9 +209,9 @@ fn newton_of_an_elastic_solid() {
 
 #[test]
 fn newton_tolerance_of_one() {
-    plastic().set("solid.newton.tolerance=1").refused(
-        "--set: solid.newton.tolerance: found 1, expected above 0, below 1",
-    );
+    plastic()
+        .set("solid.newton.tolerance=1")
+        .refused("--set: solid.newton.tolerance: found 1, expected above 0, below 1");
 }
 
 #[test]
@@ -221,9 +223,9 @@ fn strength_reduction_of_an_elastic_solid() {
 
 #[test]
 fn hht_beside_newmark() {
-    solid().set("solid.dynamics={hht_alpha=-0.1, delta=0.6}").refused(
-        "--set: solid.dynamics.delta: found a value, expected no such key beside `hht_alpha`",
-    );
+    solid()
+        .set("solid.dynamics={hht_alpha=-0.1, delta=0.6}")
+        .refused("--set: solid.dynamics.delta: found a value, expected no such key beside `hht_alpha`");
 }
 
 #[test]
@@ -271,8 +273,7 @@ fn a_solid_that_will_not_fit() {
     let good = plastic();
     let scene = good.folder.join(SCENE);
     for command in ["run", "check"] {
-        let outcome =
-            trackbed([command, &scene.display().to_string(), "--memory", "1MB"].map(String::from));
+        let outcome = trackbed([command, &scene.display().to_string(), "--memory", "1MB"].map(String::from));
         assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""));
         assert!(
             outcome.stderr.starts_with("error: memory: found a solid that needs ")
