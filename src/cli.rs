@@ -1,6 +1,6 @@
 //! The command line.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Coupled DEM–FEM solver for ballasted railway track.
@@ -91,19 +91,32 @@ pub enum MeshCommand {
     Info(MeshArgs),
     /// Faults of the mesh; exit code 2 when there are any.
     Check(MeshArgs),
-    /// Write the mesh as a VTK file (.vtu).
+    /// Write the mesh in another form.
     Convert {
         /// The mesh.
         #[command(flatten)]
         mesh: MeshArgs,
-        /// File to write, ending in .vtu.
+        /// File to write, ending in .cdb, .msh, .inp, .vtu or .vtk; without an ending a folder with the ANSYS lists.
         output: PathBuf,
+        /// Version of a .msh file; default 4.1.
+        #[arg(long)]
+        format: Option<MeshFormat>,
     },
+}
+
+/// Versions of Gmsh's format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MeshFormat {
+    /// Gmsh 4.1.
+    Msh4,
+    /// Gmsh 2.2.
+    Msh2,
 }
 
 /// Where a mesh is.
 #[derive(Debug, Args)]
 pub struct MeshArgs {
-    /// Folder with NODECOORD.DAT, ELEMENTNUM.DAT and DOF.DAT, or a scene file whose solid is meant.
+    /// File ending in .cdb, .msh, .inp, .vtu or .vtk, folder with NODECOORD.DAT, ELEMENTNUM.DAT and DOF.DAT, or scene file
+    /// (.toml) whose solid is meant.
     pub input: PathBuf,
 }

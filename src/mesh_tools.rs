@@ -1,16 +1,14 @@
-//! What the `mesh` commands tell and do: counts and quality, problems, conversion.
+//! What the `mesh` commands tell: counts and quality, problems.
 
 mod check;
 mod quality;
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::path::Path;
 
 use serde::Serialize;
+use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, Mesh};
-
-use crate::write::{WriteError, vtu};
 
 pub use check::{Part, Problem, check};
 pub use quality::{Quality, element_quality};
@@ -22,6 +20,8 @@ pub struct MeshInfo {
     pub nodes: usize,
     /// Number of elements.
     pub elements: usize,
+    /// The kinds of elements, in the order of [`ElementKind::ALL`].
+    pub kinds: Vec<KindInfo>,
     /// Lowest and highest coordinates of the nodes [m]; zero without nodes.
     pub bounds: [[f64; 3]; 2],
     /// Volume of all elements [m³].
@@ -38,6 +38,21 @@ pub struct MeshInfo {
     pub constrained_dofs: usize,
     /// Numbers of nodes in no element.
     pub unused_nodes: Vec<u32>,
+}
+
+/// The elements of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KindInfo {
+    /// The kind.
+    pub kind: ElementKind,
+    /// Number of elements.
+    pub elements: usize,
+    /// Volume [m³].
+    pub volume: f64,
+    /// Scaled Jacobian.
+    pub scaled_jacobian: Range,
+    /// Longest over shortest edge.
+    pub aspect_ratio: Range,
 }
 
 /// One material of a mesh.
@@ -122,9 +137,23 @@ pub fn info(mesh: &Mesh, constraints: &[Constraint]) -> MeshInfo {
     let by_element = |measure: fn(&Quality) -> f64| {
         Range::over(mesh.element_ids.iter().copied().zip(qualities.iter().map(measure)))
     };
+    let of_kind = |kind: ElementKind| {
+        let members = || {
+            let all = mesh.connectivity.kinds().iter().zip(&mesh.element_ids).zip(&qualities);
+            all.filter(move |((k, _), _)| **k == kind).map(|((_, id), quality)| (*id, quality))
+        };
+        KindInfo {
+            kind,
+            elements: members().count(),
+            volume: members().map(|(_, q)| q.volume).sum(),
+            scaled_jacobian: Range::over(members().map(|(id, q)| (id, q.scaled_jacobian))),
+            aspect_ratio: Range::over(members().map(|(id, q)| (id, q.aspect_ratio))),
+        }
+    };
     MeshInfo {
         nodes: mesh.node_count(),
         elements: mesh.element_count(),
+        kinds: ElementKind::ALL.into_iter().map(of_kind).filter(|k| k.elements > 0).collect(),
         bounds,
         volume: qualities.iter().map(|q| q.volume).sum(),
         materials: materials.into_values().collect(),
@@ -140,7 +169,21 @@ impl fmt::Display for MeshInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.bounds;
         writeln!(f, "nodes             {:>10}", self.nodes)?;
-        writeln!(f, "elements          {:>10}   20-node hexahedra", self.elements)?;
+        writeln!(f, "elements          {:>10}", self.elements)?;
+        for k in &self.kinds {
+            let (jacobian, aspect) = (k.scaled_jacobian, k.aspect_ratio);
+            writeln!(
+                f,
+                "  {:<15} {:>10}   {:.4} m³, scaled Jacobian {:.4} to {:.4}, aspect ratio {:.4} to {:.4}",
+                k.kind.name(),
+                k.elements,
+                k.volume,
+                jacobian.least,
+                jacobian.greatest,
+                aspect.least,
+                aspect.greatest
+            )?;
+        }
         writeln!(f, "boundary faces    {:>10}", self.boundary_faces)?;
         writeln!(f, "constrained dofs  {:>10}", self.constrained_dofs)?;
         for (axis, name) in ["x", "y", "z"].iter().enumerate() {
@@ -166,19 +209,10 @@ impl fmt::Display for MeshInfo {
     }
 }
 
-/// Writes a mesh as `.vtu` (see [`vtu::write_mesh`] for its fields).
-///
-/// # Errors
-/// A file name with another ending; what the writer refuses.
-pub fn convert(mesh: &Mesh, constraints: &[Constraint], out: &Path) -> Result<(), WriteError> {
-    if !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtu")) {
-        return Err(WriteError::format(out, "expected a file name that ends with .vtu"));
-    }
-    vtu::write_mesh(out, mesh, constraints)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
     use crate::write::sample;
 
@@ -239,16 +273,5 @@ mod tests {
     fn an_empty_mesh_has_no_numbers() {
         let info = info(&Mesh::default(), &[]);
         assert_eq!((info.nodes, info.volume, info.scaled_jacobian.least), (0, 0.0, 0.0));
-    }
-
-    #[test]
-    fn only_vtu_is_written() {
-        let dir = sample::folder("convert");
-        let mesh = sample::block([1, 1, 1]);
-        let error = convert(&mesh, &[], &dir.join("mesh.msh")).unwrap_err();
-        assert!(error.to_string().ends_with("expected a file name that ends with .vtu"), "{error}");
-        convert(&mesh, &[], &dir.join("mesh.vtu")).unwrap();
-        assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 1);
-        std::fs::remove_dir_all(&dir).unwrap();
     }
 }

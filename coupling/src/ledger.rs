@@ -57,6 +57,9 @@ pub struct Spent {
     pub local_damping: f64,
     /// Dissipated by Rayleigh damping of the solid.
     pub rayleigh: f64,
+    /// Taken up by the solid's absorbing boundaries.
+    #[serde(default)]
+    pub absorbed: f64,
     /// Dissipated by plastic flow of the solid.
     #[serde(default)]
     pub plastic: f64,
@@ -76,7 +79,8 @@ impl Spent {
 
     /// Energy dissipated [J].
     pub fn dissipated(&self) -> f64 {
-        self.dashpot + self.friction + self.local_damping + self.rayleigh + self.plastic + self.numerical
+        let grains = self.dashpot + self.friction + self.local_damping;
+        grains + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 
     /// Interface work of both sides, which should cancel [J].

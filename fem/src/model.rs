@@ -78,6 +78,17 @@ pub enum ModelError {
     BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
 }
 
+/// What a factorization takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverDemand {
+    /// Memory of factor and fronts [bytes].
+    pub bytes: usize,
+    /// Floating-point operations.
+    pub flops: f64,
+    /// Numbers in a triangle of the factor.
+    pub factor_len: usize,
+}
+
 /// A checked solid with its matrices.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -279,6 +290,19 @@ impl Model {
     /// Mass of the whole body [kg].
     pub fn total_mass(&self) -> f64 {
         (0..self.mesh.element_count()).map(|e| self.elastic(e).density * self.mesh.element_volume(e)).sum()
+    }
+
+    /// What a factorization of the model's equations will take, told before it is made.
+    ///
+    /// # Errors
+    /// The equations cannot be analysed.
+    pub fn solver_demand(&self, symmetric: bool) -> Result<SolverDemand, SolveError> {
+        let analysis = self.analysis()?;
+        Ok(SolverDemand {
+            bytes: analysis.memory(symmetric),
+            flops: analysis.flops() * if symmetric { 1.0 } else { 2.0 },
+            factor_len: analysis.factor_len(),
+        })
     }
 
     /// The ordering and symbolic factorization, made once and shared by all solvers of this model.

@@ -12,18 +12,23 @@
 //! listings of the commands NLIST, ELIST and DLIST. How numbers, separators, comments and headers may be
 //! written is said in the `number` and `table` modules beside this one.
 //!
-//! Limits: full 20-node hexahedra only; nodes in rotated coordinate systems are refused, since constraints
-//! would be in rotated directions.
+//! Bricks with repeated nodes are wedges, pyramids and tetrahedra, as in SOLID186, and bricks whose mid-side nodes are all
+//! 0 are of the linear kinds (see `degenerate` beside this module). Lines of 8 nodes are linear bricks too.
+//!
+//! Limits: nodes in rotated coordinate systems are
+//! refused, since constraints would be in rotated directions.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use trackbed_fem::ElementKind;
-use trackbed_fem::mesh::{Constraint, HEX20_NODES, Mesh};
+use trackbed_fem::mesh::{Constraint, Mesh};
 
+use super::degenerate;
 use super::element_list::{self, Columns, Record};
 use super::error::ReadError;
+use super::mesh_file::{MeshFile, drop_unused_nodes};
 use super::number;
 use super::table::{self, Row, Table};
 
@@ -89,8 +94,25 @@ pub fn read_lists(
     if let Some(file) = constraints {
         read_constraints(file, &index, &mut lists)?;
     }
-    drop_unused_nodes(nodes, &mut lists);
+    let Lists { mesh, constraints, warnings } = &mut lists;
+    drop_unused_nodes(nodes, mesh, constraints, &mut BTreeMap::new(), warnings);
     Ok(lists)
+}
+
+impl From<Lists> for MeshFile {
+    fn from(lists: Lists) -> MeshFile {
+        let Lists { mesh, constraints, warnings } = lists;
+        let mut element_types: Vec<(String, usize)> = Vec::new();
+        for kind in mesh.connectivity.kinds() {
+            let (family, nodes) = if kind.is_linear() { (185, 8) } else { (186, 20) };
+            let name = format!("SOLID{family} form of {nodes} nodes {}", kind.name());
+            match element_types.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, count)) => *count += 1,
+                None => element_types.push((name, 1)),
+            }
+        }
+        MeshFile { mesh, constraints, element_types, warnings, ..MeshFile::default() }
+    }
 }
 
 /// Index of each node number.
@@ -100,7 +122,7 @@ fn read_nodes(file: &Path, lists: &mut Lists) -> Result<NodeIndex, ReadError> {
     let table = Table::read(file, "node list")?;
     lists.warnings.extend(table.warnings.iter().cloned());
     if table.rows.is_empty() {
-        return Err(ReadError::whole(file, "nodes", "none", "at least 20 rows of id x y z"));
+        return Err(ReadError::whole(file, "nodes", "none", "at least 4 rows of id x y z"));
     }
     let mut index = NodeIndex::with_capacity(table.rows.len());
     for (i, row) in table.rows.iter().enumerate() {
@@ -148,17 +170,17 @@ fn read_elements(
     let (columns, records) = element_list::split(&table, layout.columns, &mut lists.warnings)?;
     let mut lines = HashMap::with_capacity(records.len());
     for (i, record) in records.into_iter().enumerate() {
-        let (id, material, nodes) = read_element(&table, columns, record, i, index)?;
+        let (id, material, kind, nodes) = read_element(&table, columns, record, i, index)?;
         let line = table.rows[record.first].line;
         if let Some(first) = lines.insert(id, line) {
             return Err(named_twice(&table, "element", id, first, line));
         }
-        lists.mesh.push_element(id, material.unwrap_or(layout.material), ElementKind::Hex20, &nodes);
+        lists.mesh.push_element(id, material.unwrap_or(layout.material), kind, &nodes);
     }
     Ok(())
 }
 
-type Element = (u32, Option<u32>, [u32; HEX20_NODES]);
+type Element = (u32, Option<u32>, ElementKind, Vec<u32>);
 
 fn read_element(
     table: &Table,
@@ -170,8 +192,7 @@ fn read_element(
     let file = &table.file;
     let mut id = position as u32 + 1;
     let mut material = None;
-    let mut nodes = [0; HEX20_NODES];
-    let mut ids = [0; HEX20_NODES];
+    let mut ids = Vec::with_capacity(columns.count);
     for (column, (line, text)) in element_list::fields(table, record).enumerate() {
         let value = |key: &str| table::whole(file, line, text, key);
         if Some(column) == columns.id {
@@ -180,38 +201,21 @@ fn read_element(
             material = Some(value(&format!("material of element {id}"))?);
         } else if let Some(n) = column.checked_sub(columns.nodes) {
             let key = format!("element {id}, node n{}", n + 1);
-            ids[n] = value(&key)?;
-            nodes[n] = *index.get(&ids[n]).ok_or_else(|| {
-                let found = match ids[n] {
-                    0 => "0, a dropped mid-side node".to_string(),
-                    absent => format!("{absent}"),
-                };
-                ReadError::at(file, line, key, found, "a node of the node list")
-            })?;
+            let node = value(&key)?;
+            // 0 is a mid-side node that is not there.
+            if node != 0 && !index.contains_key(&node) {
+                return Err(ReadError::at(file, line, key, node.to_string(), "a node of the node list"));
+            }
+            ids.push(node);
         }
     }
-    let mut sorted = ids;
-    sorted.sort_unstable();
-    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        let distinct = sorted.chunk_by(|a, b| a == b).count();
-        let form = match distinct {
-            15 => "a wedge",
-            13 => "a pyramid",
-            10 => "a tetrahedron",
-            _ => "no known form",
-        };
-        let found = format!("node {} more than once ({distinct} different nodes: {form})", pair[0]);
-        let expected =
-            "20 different nodes (wedges, pyramids and tetrahedra are not supported in this version)";
-        return Err(ReadError::at(
-            file,
-            table.rows[record.first].line,
-            format!("element {id}"),
-            found,
-            expected,
-        ));
-    }
-    Ok((id, material, nodes))
+    let (kind, nodes) = degenerate::from_brick(&ids).map_err(|fault| {
+        let line = table.rows[record.first].line;
+        ReadError::at(file, line, format!("element {id}"), fault.found, fault.expected)
+    })?;
+    // from_brick leaves no 0, and every other number was found above.
+    let nodes = nodes.iter().map(|node| index[node]).collect();
+    Ok((id, material, kind, nodes))
 }
 
 fn read_constraints(file: &Path, index: &NodeIndex, lists: &mut Lists) -> Result<(), ReadError> {
@@ -273,47 +277,6 @@ fn directions(table: &Table, row: &Row) -> Result<&'static [u8], ReadError> {
             Err(ReadError::at(&table.file, row.line, "direction", found, "1, 2, 3, UX, UY, UZ or ALL"))
         }
     }
-}
-
-/// Leaves out nodes that belong to no element, with their constraints: they have no stiffness, and meshing
-/// often leaves some behind.
-fn drop_unused_nodes(file: &Path, lists: &mut Lists) {
-    let mesh = &mut lists.mesh;
-    let mut used = vec![false; mesh.node_count()];
-    for node in mesh.connectivity.nodes() {
-        used[*node as usize] = true;
-    }
-    let unused: Vec<u32> =
-        used.iter().zip(&mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect();
-    if unused.is_empty() {
-        return;
-    }
-    let mut next = 0;
-    let renumbered: Vec<u32> = used
-        .iter()
-        .map(|used| {
-            next += u32::from(*used);
-            next.wrapping_sub(1)
-        })
-        .collect();
-    let mut keep = used.iter();
-    mesh.node_ids.retain(|_| keep.next().copied().unwrap_or(false));
-    let mut keep = used.iter();
-    mesh.coordinates.retain(|_| keep.next().copied().unwrap_or(false));
-    for node in mesh.connectivity.nodes_mut() {
-        *node = renumbered[*node as usize];
-    }
-    lists.constraints.retain(|c| used[c.node as usize]);
-    for constraint in &mut lists.constraints {
-        constraint.node = renumbered[constraint.node as usize];
-    }
-    let shown = unused.iter().take(5).map(u32::to_string).collect::<Vec<_>>().join(", ");
-    let sentence = match unused.len() {
-        1 => format!("node {shown} belongs to no element and is left out"),
-        count if count <= 5 => format!("{count} nodes belong to no element and are left out: {shown}"),
-        count => format!("{count} nodes belong to no element and are left out: {shown}, …"),
-    };
-    lists.warnings.push(format!("{}: {sentence}", file.display()));
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The columns of an element list: which there are, and which rows belong to one element.
 //!
 //! An element may take one line or several. The number of columns of an element is the one that divides the
-//! lines of the file into whole elements; the first of 22, 21, 20 and 26 that fits is taken. Where none does,
-//! the message is about the one that most lines have, or else about the one that gets furthest, so that it
-//! names the first damaged element.
+//! lines of the file into whole elements; the first of 22, 21, 20 and 26 that fits is taken. Where none does, and all
+//! lines have the same 10, 9, 8 or 14 columns, they are elements of 8 nodes. Otherwise the message is about the
+//! number of columns that most lines have, or else about the one that gets furthest, so that it names the first damaged
+//! element.
 
 use super::ansys_lists::ElementColumns;
 use super::error::ReadError;
@@ -16,20 +17,27 @@ pub struct Columns {
     pub id: Option<usize>,
     /// Column of the material number.
     pub material: Option<usize>,
-    /// First of the 20 node columns.
+    /// First of the node columns.
     pub nodes: usize,
+    /// Number of nodes: 20 or 8.
+    pub count: usize,
 }
 
-const ID_MATERIAL: Columns = Columns { id: Some(0), material: Some(1), nodes: 2 };
-const ID: Columns = Columns { id: Some(0), material: None, nodes: 1 };
-const MATERIAL: Columns = Columns { id: None, material: Some(0), nodes: 1 };
-const NEITHER: Columns = Columns { id: None, material: None, nodes: 0 };
+const ID_MATERIAL: Columns = Columns { id: Some(0), material: Some(1), nodes: 2, count: 20 };
+const ID: Columns = Columns { id: Some(0), material: None, nodes: 1, count: 20 };
+const MATERIAL: Columns = Columns { id: None, material: Some(0), nodes: 1, count: 20 };
+const NEITHER: Columns = Columns { id: None, material: None, nodes: 0, count: 20 };
 /// Element, material, type, real constant, coordinate system, section: a listing of ELIST.
-const LISTING: Columns = Columns { id: Some(0), material: Some(1), nodes: 6 };
+const LISTING: Columns = Columns { id: Some(0), material: Some(1), nodes: 6, count: 20 };
 
 impl Columns {
     fn width(self) -> usize {
-        self.nodes + 20
+        self.nodes + self.count
+    }
+
+    /// The same columns before 8 nodes.
+    fn of_eight(self) -> Columns {
+        Columns { count: 8, ..self }
     }
 
     fn describe(self) -> &'static str {
@@ -67,6 +75,8 @@ pub fn split(
         ElementColumns::Auto => None,
     };
     if let Some(columns) = told {
+        let eight = table.rows.iter().all(|row| row.width() == columns.of_eight().width());
+        let columns = if eight { columns.of_eight() } else { columns };
         let (records, fault) = group(table, columns);
         return fault.map_or(Ok((columns, records)), Err);
     }
@@ -86,12 +96,15 @@ pub fn split(
             best = Some((columns, records, fault));
         }
     }
-    let (mut columns, records, fault) = best.expect("the loop above tries four candidates");
+    let (mut columns, mut records, fault) = best.expect("the loop above tries four candidates");
     if let Some(fault) = fault {
-        return Err(fault);
+        let widths = [ID_MATERIAL, ID, NEITHER, LISTING].map(Columns::of_eight);
+        let same = |c: &Columns| table.rows.iter().all(|row| row.width() == c.width());
+        let Some(eight) = widths.into_iter().find(same) else { return Err(fault) };
+        (columns, records) = (eight, group(table, eight).0);
     }
-    if columns == ID {
-        columns = id_or_material(table, &records, warnings)?;
+    if columns == ID || columns == ID.of_eight() {
+        columns = id_or_material(table, columns.count, &records, warnings)?;
     }
     Ok((columns, records))
 }
@@ -135,10 +148,11 @@ fn wrong_width(table: &Table, columns: Columns, first: usize, end: usize, count:
     ReadError::at(&table.file, line, key, found, expected)
 }
 
-/// Of 21 columns the first is a material number where its values repeat (few different ones), and an element
+/// Of 21 columns (9 with 8 nodes) the first is a material number where its values repeat (few different ones), and an element
 /// number where they differ.
 fn id_or_material(
     table: &Table,
+    count: usize,
     records: &[Record],
     warnings: &mut Vec<String>,
 ) -> Result<Columns, ReadError> {
@@ -154,13 +168,14 @@ fn id_or_material(
         (MATERIAL, "material number", "id_nodes")
     };
     warnings.push(format!(
-        "{}: 21 columns: the first is read as the {read} ({} different values in {} elements); \
+        "{}: {} columns: the first is read as the {read} ({} different values in {} elements); \
          columns = \"{other}\" reads it the other way",
         table.file.display(),
+        count + 1,
         first.len(),
         records.len()
     ));
-    Ok(columns)
+    Ok(Columns { count, ..columns })
 }
 
 /// The fields of one element with the line of each, in order.

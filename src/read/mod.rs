@@ -3,11 +3,72 @@
 //! Every reader returns the mesh with node numbers mapped to indices in file order, and refuses what it does
 //! not understand with one sentence that names file, line, field, what stands there and what belongs there.
 
+mod abaqus;
+mod abaqus_data;
+mod abaqus_lines;
 pub mod ansys_lists;
+mod cdb;
+mod cdb_blocks;
+mod cdb_elements;
+pub(crate) mod degenerate;
 mod element_list;
 mod error;
+pub(crate) mod gmsh;
+mod gmsh4;
+mod mesh_file;
 mod number;
 mod table;
+mod tokens;
+pub(crate) mod vtk_grid;
+mod vtk_legacy;
+mod vtu;
+mod vtu_data;
+mod xml;
 
+use std::path::Path;
+
+pub use abaqus::read_inp;
 pub use ansys_lists::{ElementColumns, ListLayout, Lists, read_lists};
+pub use cdb::read_cdb;
 pub use error::ReadError;
+pub use gmsh::read_gmsh;
+pub use mesh_file::{FileMaterial, MeshFile};
+pub use vtk_legacy::read_vtk;
+pub use vtu::read_vtu;
+
+/// Endings of mesh files that can be read and written.
+pub const MESH_ENDINGS: [&str; 5] = ["cdb", "msh", "inp", "vtu", "vtk"];
+
+/// Reads a mesh of any form, told by the ending of its name: `.cdb` (ANSYS archive), `.msh` (Gmsh), `.inp` (Abaqus,
+/// CalculiX), `.vtu`, `.vtk`; a folder holds `NODECOORD.DAT`, `ELEMENTNUM.DAT` and, where there are constraints,
+/// `DOF.DAT`.
+///
+/// # Errors
+/// Another ending, and what the reader of the form refuses.
+pub fn read_mesh_file(path: &Path) -> Result<MeshFile, ReadError> {
+    if path.is_dir() {
+        let constraints = path.join("DOF.DAT");
+        let constraints = constraints.exists().then_some(constraints);
+        let nodes = path.join("NODECOORD.DAT");
+        let lists =
+            read_lists(&nodes, &path.join("ELEMENTNUM.DAT"), constraints.as_deref(), &ListLayout::default())?;
+        return Ok(lists.into());
+    }
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    match ending.as_str() {
+        "cdb" => read_cdb(path),
+        "msh" => read_gmsh(path),
+        "inp" => read_inp(path),
+        "vtu" => read_vtu(path),
+        "vtk" => read_vtk(path),
+        _ => {
+            let found = if ending.is_empty() { "no ending".to_string() } else { format!("\".{ending}\"") };
+            let expected = ".cdb, .msh, .inp, .vtu, .vtk, or a folder with the three ANSYS lists";
+            Err(ReadError::whole(path, "ending of the file name", found, expected))
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "forms_tests.rs"]
+mod forms_tests;

@@ -2,7 +2,6 @@
 
 mod cycles;
 mod frames;
-mod failure_factor;
 mod initial;
 mod main_stage;
 mod memory;

@@ -4,7 +4,6 @@ use super::system::{Applied, SolidView, System};
 use crate::failure::Failure;
 use crate::model::solid::{QuasiStaticPlan, SolidPart};
 use trackbed_coupling::ledger::{Spent, Stored};
-use trackbed_fem as fem;
 use trackbed_fem::State;
 use trackbed_fem::nonlinear::{Loading, QuasiStatic, Statistics, StepControl, energy};
 

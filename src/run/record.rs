@@ -130,7 +130,7 @@ impl<'a> Recorder<'a> {
             spent.work(),
             spent.dashpot,
             spent.friction,
-            spent.rayleigh + spent.plastic + spent.numerical,
+            spent.rayleigh + spent.absorbed + spent.plastic + spent.numerical,
             spent.interface(),
             error,
         ]);

@@ -1,10 +1,10 @@
 //! A solid that runs alone: static, quasi-static, dynamic, or brought to failure.
 
 use super::memory::Prediction;
-use super::plastic::{PlasticDynamics, QuasiStaticSystem};
+use super::plastic::QuasiStaticSystem;
 use super::summary::{NewtonRecord, Summary};
 use super::system::{SolidSystem, System};
-use super::{Stage, failure_factor, statics};
+use super::{Stage, statics};
 use crate::failure::Failure;
 use crate::model::solid::{Analysis, SolidPart};
 
@@ -16,18 +16,10 @@ impl Stage<'_> {
         prediction.check(self.memory)?;
         match &solid.analysis {
             Analysis::Static => statics::run(self.job, solid, self.dir, || self.prepare(), summary),
-            Analysis::StrengthReduction(plan) => failure_factor::run(self, solid, plan, summary),
             Analysis::Dynamic(method) if solid.is_linear() => {
                 let dt = self.job.solid_step.expect("a dynamic solid has a step");
                 let mut system = SolidSystem::new(solid, *method, dt).map_err(|e| solid.failure(&e))?;
                 self.march(solid, &mut system, summary)
-            }
-            Analysis::Dynamic(method) => {
-                let dt = self.job.solid_step.expect("a dynamic solid has a step");
-                let mut system = PlasticDynamics::new(solid, *method, dt)?;
-                let outcome = self.march(solid, &mut system, summary);
-                summary.newton = Some(NewtonRecord::of(&system.statistics()));
-                outcome
             }
             Analysis::QuasiStatic(plan) => {
                 let step = self.job.solid_step.expect("a quasi-static solid has a step");
@@ -36,6 +28,7 @@ impl Stage<'_> {
                 summary.newton = Some(NewtonRecord::of(&system.statistics()));
                 outcome
             }
+            _ => todo!(),
         }
     }
 

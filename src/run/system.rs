@@ -1,7 +1,7 @@
 //! What the main loop needs of a model, whatever it consists of: solid, grains, or both.
 
 use crate::failure::Failure;
-use crate::model::solid::SolidPart;
+use crate::model::solid::{SolidPart, TimeMethod};
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
@@ -66,7 +66,7 @@ pub trait System {
     }
 }
 
-/// A solid alone, by Newmark's method.
+/// An elastic solid alone, through time.
 pub struct SolidSystem<'a> {
     part: &'a SolidPart,
     /// Displacement, velocity, acceleration.
@@ -74,6 +74,7 @@ pub struct SolidSystem<'a> {
     solver: fem::newmark::NewmarkSolver,
     gravity: Vec<f64>,
     load: Vec<f64>,
+    next_load: Vec<f64>,
     spent: Spent,
 }
 
@@ -82,23 +83,19 @@ impl<'a> SolidSystem<'a> {
     ///
     /// # Errors
     /// A matrix cannot be factored.
-    pub fn new(
-        part: &'a SolidPart,
-        solver: fem::newmark::NewmarkSolver,
-    ) -> Result<Self, fem::solver::SolveError> {
-        let mut state = fem::state::State::new(&part.model);
-        let gravity = part.model.gravity_load();
+    pub fn new(part: &'a SolidPart, method: TimeMethod, dt: f64) -> Result<Self, fem::solver::SolveError> {
+        let model = &part.model;
+        let solver = match method {
+            TimeMethod::Newmark(m) => fem::newmark::NewmarkSolver::conditionally_stable(model, m, dt)?,
+            TimeMethod::Hht(alpha) => fem::newmark::NewmarkSolver::hht(model, alpha, dt)?,
+        };
+        let mut state = fem::state::State::new(model);
+        let gravity = model.gravity_load();
         let mut load = gravity.clone();
         part.add_loads(0.0, &mut load);
-        fem::newmark::initial_acceleration(&part.model, &mut state, &load)?;
-        Ok(SolidSystem { part, state, solver, gravity, load, spent: Spent::default() })
-    }
-}
-
-impl SolidSystem<'_> {
-    /// Load at the end of the last step [N]. Shape `[3·nodes]`.
-    pub fn load(&self) -> &[f64] {
-        &self.load
+        fem::newmark::initial_acceleration(model, &mut state, &load)?;
+        let next_load = vec![0.0; load.len()];
+        Ok(SolidSystem { part, state, solver, gravity, load, next_load, spent: Spent::default() })
     }
 }
 
@@ -112,18 +109,32 @@ impl System for SolidSystem<'_> {
     }
 
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
-        let time = self.state.time;
-        self.load.copy_from_slice(&self.gravity);
-        self.part.add_loads(time + self.solver.dt(), &mut self.load);
+        let (part, time) = (self.part, self.state.time);
+        let end = time + self.solver.dt();
+        self.next_load.copy_from_slice(&self.gravity);
+        part.add_loads(end, &mut self.next_load);
         let before = self.state.u.clone();
+        let prescribed = (!part.moving.is_empty()).then(|| {
+            let fixed = part.model.supports().fixed();
+            let mut values: Vec<f64> = fixed.iter().map(|(_, value)| *value).collect();
+            part.prescribe(end, &mut values);
+            values
+        });
+        let drive = fem::newmark::Drive {
+            load_start: Some(&self.load),
+            load_end: &self.next_load,
+            prescribed: prescribed.as_deref(),
+        };
         let audit = self
             .solver
-            .step(&self.part.model, &mut self.state, &self.load)
+            .advance(&part.model, &mut self.state, drive)
             .map_err(|e| Failure::Numerical(format!("solid at t = {time:.6e} s: {e}")))?;
+        std::mem::swap(&mut self.load, &mut self.next_load);
         let gravity_work: f64 =
             self.gravity.iter().zip(self.state.u.iter().zip(&before)).map(|(f, (u, b))| f * (u - b)).sum();
-        self.spent.solid_load_work += audit.external_work - gravity_work;
+        self.spent.solid_load_work += audit.external_work + audit.support_work - gravity_work;
         self.spent.rayleigh += audit.damping_dissipation;
+        self.spent.absorbed += audit.boundary_dissipation;
         self.spent.numerical += audit.numerical_dissipation;
         Ok(())
     }
@@ -143,6 +154,10 @@ impl System for SolidSystem<'_> {
 
     fn solid(&self) -> Option<SolidView<'_>> {
         Some(SolidView { model: &self.part.model, state: &self.state })
+    }
+
+    fn reactions(&self) -> Option<Vec<f64>> {
+        Some(fem::energy::reactions(&self.part.model, &self.state, &self.load))
     }
 }
 

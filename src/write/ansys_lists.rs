@@ -6,9 +6,10 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::atomic;
 use super::error::{WriteError, check_field};
+use crate::read::degenerate::to_brick;
 
 /// Writes `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT` into the folder `dir`; reading them back gives the
-/// same bits.
+/// same bits. Wedges, pyramids and tetrahedra are bricks with repeated nodes; linear kinds have mid-side nodes of 0.
 ///
 /// # Errors
 /// A coordinate or value that is not finite, and what the system refuses.
@@ -26,8 +27,11 @@ pub fn write_lists(mesh: &Mesh, constraints: &[Constraint], dir: &Path) -> Resul
     atomic::write(&elements, |out| {
         for (e, row) in mesh.connectivity.iter().enumerate() {
             let mut line = format!("{:8} {:4}", mesh.element_ids[e], mesh.materials[e]);
-            for node in row {
-                line += &format!(" {:7}", mesh.node_ids[*node as usize]);
+            let ids: Vec<u32> = row.iter().map(|node| mesh.node_ids[*node as usize]).collect();
+            let mut brick = to_brick(mesh.connectivity.kind(e), &ids);
+            brick.resize(20, 0);
+            for node in brick {
+                line += &format!(" {node:7}");
             }
             writeln!(out, "{line}").map_err(WriteError::io(&elements))?;
         }

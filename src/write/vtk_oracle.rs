@@ -11,6 +11,7 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 use super::pvd::Series;
 use super::{ChainFrame, GrainFrame, SolidFrame, WallFrame, sample, vtp, vtu};
 use crate::mesh_tools;
+use crate::read::MeshFile;
 
 /// The interpreter, or `None` where there is no VTK and none was asked for.
 fn python() -> Option<PathBuf> {
@@ -117,7 +118,8 @@ fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
     }
     series.write().unwrap();
     let constraint = Constraint { node: 3, direction: 1, value: 0.0 };
-    mesh_tools::convert(&mesh, &[constraint], &path("mesh.vtu")).unwrap();
+    let content = MeshFile { mesh: mesh.clone(), constraints: vec![constraint], ..Default::default() };
+    vtu::write_mesh_file(&path("mesh.vtu"), &content).unwrap();
     let all = [path("results.pvd").display().to_string(), path("mesh.vtu").display().to_string()];
     let volume = ["--volume".to_string(), info.volume.to_string()];
     passes(&python, &[&all[..], &volume[..]].concat());

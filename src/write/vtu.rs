@@ -1,13 +1,16 @@
-//! The solid as a VTK unstructured grid (`.vtu`): hex20 cells with the fields of one moment.
+//! The solid as a VTK unstructured grid (`.vtu`) with the fields of one moment, and meshes alone.
 //!
-//! VTK_QUADRATIC_HEXAHEDRON (cell type 25) numbers its nodes as SOLID186 does: corners of the bottom, corners
-//! of the top, mid-sides of the bottom, of the top, uprights. So the connectivity goes out unchanged.
+//! VTK numbers the nodes of all eight kinds as this program does: VTK_QUADRATIC_HEXAHEDRON as SOLID186, and VTK_WEDGE,
+//! whatever old documentation says, with the first triangle seen from inside. So the connectivity goes out unchanged.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use trackbed_fem::ElementKind;
-use trackbed_fem::mesh::{Constraint, Mesh};
+use trackbed_fem::mesh::Mesh;
 use vtkio::model::{Attributes, CellType, Cells, UnstructuredGridPiece, VertexNumbers};
+
+use crate::read::MeshFile;
 
 use super::error::WriteError;
 use super::vtk::{self, Fields};
@@ -45,7 +48,7 @@ pub fn write_solid(file: &Path, frame: &SolidFrame) -> Result<(), WriteError> {
     fields.scalar("equivalent_plastic_strain", frame.equivalent_plastic_strain)?;
     fields.scalar("yield_function", frame.yield_function)?;
     fields.ids("node_id", &frame.mesh.node_ids)?;
-    write_grid(file, frame.mesh, fields)
+    write_grid(file, frame.mesh, fields, &BTreeMap::new())
 }
 
 /// Writes the shape of a natural mode: point data `displacement` (largest component 1) and `node_id`.
@@ -56,30 +59,60 @@ pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteEr
     let mut fields = Fields::new(file, mesh.node_count());
     fields.vector("displacement", shape)?;
     fields.ids("node_id", &mesh.node_ids)?;
-    write_grid(file, mesh, fields)
+    write_grid(file, mesh, fields, &BTreeMap::new())
 }
 
-/// Writes a mesh alone: point data `node_id` and `constraint` (1 for x, plus 2 for y, plus 4 for z); cell
-/// data `material`, `element_id`.
+/// Writes a mesh alone: point data `node_id`, `constraint` (1 for x, plus 2 for y, plus 4 for z), `constraint_value` [m]
+/// and `node_set:NAME`; cell data `material`, `element_id` and `element_set:NAME` (1 for members of a set, else 0).
 ///
 /// # Errors
 /// As [`write_solid`].
-pub fn write_mesh(file: &Path, mesh: &Mesh, constraints: &[Constraint]) -> Result<(), WriteError> {
-    let mut mask = vec![0_u32; mesh.node_count()];
-    for constraint in constraints {
-        mask[constraint.node as usize] |= 1 << constraint.direction;
-    }
+pub fn write_mesh_file(file: &Path, content: &MeshFile) -> Result<(), WriteError> {
+    let mesh = &content.mesh;
+    let (mask, values) = constraint_arrays(content);
     let mut fields = Fields::new(file, mesh.node_count());
     fields.ids("node_id", &mesh.node_ids)?;
     fields.ids("constraint", &mask)?;
-    write_grid(file, mesh, fields)
+    fields.vector("constraint_value", values.as_flattened())?;
+    for (name, members) in &content.node_sets {
+        fields.ids(&format!("node_set:{name}"), &membership(members, mesh.node_count()))?;
+    }
+    write_grid(file, mesh, fields, &content.element_sets)
 }
 
-fn write_grid(file: &Path, mesh: &Mesh, point_fields: Fields) -> Result<(), WriteError> {
+/// For each node the directions that are constrained, as bits, and the values.
+pub(super) fn constraint_arrays(content: &MeshFile) -> (Vec<u32>, Vec<[f64; 3]>) {
+    let nodes = content.mesh.node_count();
+    let (mut mask, mut values) = (vec![0_u32; nodes], vec![[0.0; 3]; nodes]);
+    for c in &content.constraints {
+        mask[c.node as usize] |= 1 << c.direction;
+        values[c.node as usize][c.direction as usize] = c.value;
+    }
+    (mask, values)
+}
+
+/// 1 for the members of a set of `count` items, else 0.
+pub(super) fn membership(members: &[u32], count: usize) -> Vec<u32> {
+    let mut flags = vec![0; count];
+    for member in members {
+        flags[*member as usize] = 1;
+    }
+    flags
+}
+
+fn write_grid(
+    file: &Path,
+    mesh: &Mesh,
+    point_fields: Fields,
+    element_sets: &BTreeMap<String, Vec<u32>>,
+) -> Result<(), WriteError> {
     let elements = mesh.element_count();
     let mut cell_fields = Fields::new(file, elements);
     cell_fields.ids("material", &mesh.materials)?;
     cell_fields.ids("element_id", &mesh.element_ids)?;
+    for (name, members) in element_sets {
+        cell_fields.ids(&format!("element_set:{name}"), &membership(members, elements))?;
+    }
     let point = point_fields.finish();
     let cell = cell_fields.finish();
     let connectivity: Vec<u64> = mesh.connectivity.nodes().iter().map(|n| u64::from(*n)).collect();
@@ -120,6 +153,7 @@ fn cell_type(kind: ElementKind) -> CellType {
 
 #[cfg(test)]
 mod tests {
+    use trackbed_fem::mesh::Constraint;
     use vtkio::model::DataSet;
 
     use super::*;
@@ -164,7 +198,9 @@ mod tests {
         let mesh = sample::block([3, 2, 2]);
         let constraints =
             [(0, 0), (0, 2), (4, 1)].map(|(node, direction)| Constraint { node, direction, value: 0.0 });
-        write_mesh(&file, &mesh, &constraints).unwrap();
+        let content =
+            MeshFile { mesh: mesh.clone(), constraints: constraints.to_vec(), ..Default::default() };
+        write_mesh_file(&file, &content).unwrap();
         let vtk = vtkio::Vtk::import(&file).unwrap();
         let DataSet::UnstructuredGrid { mut pieces, .. } = vtk.data else { panic!("not a grid") };
         let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();

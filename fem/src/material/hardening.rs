@@ -91,7 +91,7 @@ impl Hardening {
 
     /// Every value passed through `change`, the same `kappa`. A line with a limit keeps the `kappa` at which the limit is
     /// reached; a line without one gets the slope that `change` has at the initial value.
-    pub(super) fn map(&self, change: impl Fn(f64) -> f64) -> Hardening {
+    pub fn map(&self, change: impl Fn(f64) -> f64) -> Hardening {
         match self {
             Hardening::Constant(value) => Hardening::Constant(change(*value)),
             Hardening::Table(points) => {

@@ -6,7 +6,7 @@ use crate::scene::history::TimeFunction;
 use crate::scene::solid::Solid;
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
-use trackbed_fem::boundary::BoundaryLayer;
+use trackbed_fem::boundary::{BoundaryLayer, SpringFactors};
 use trackbed_fem::material::Material;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
@@ -129,12 +129,13 @@ pub fn absorbing(
         }
         for (number, faces) in by_material {
             let Some(material) = materials.get(&number) else { continue };
-            let mut layer = BoundaryLayer::absorbing(faces, &material.elastic);
+            let elastic = &material.elastic;
+            let mut layer = match a.radius {
+                Some(r) => BoundaryLayer::viscous_spring(faces, elastic, r.si, SpringFactors::SPATIAL),
+                None => BoundaryLayer::absorbing(faces, elastic),
+            };
             layer.dashpot_normal *= a.normal;
             layer.dashpot_tangential *= a.tangential;
-            if let Some(r) = a.radius {
-                layer = layer.with_springs(&material.elastic, r.si);
-            }
             layers.push(layer);
         }
     }

@@ -15,6 +15,7 @@ pub use selection::find_node;
 use crate::failure::Failure;
 use crate::mesh_tools;
 use crate::model::tables;
+use crate::read::MeshFile;
 use crate::scene::history::{History, TimeFunction};
 use crate::scene::solid::{Integration, Mass, Rayleigh, Solid};
 use crate::scene::{Document, SceneError};
@@ -159,6 +160,17 @@ pub fn build(
         material_names: materials.names,
         warnings,
     })
+}
+
+/// The mesh of a scene's solid with all its constraints, as a mesh file holds it.
+///
+/// # Errors
+/// As [`geometry`], and supports that contradict each other.
+pub fn mesh_file(document: &Document, solid: &Solid) -> Result<MeshFile, Failure> {
+    let geometry = geometry(document, solid)?;
+    let constraints = boundary::supports(document, solid, &geometry)?.constraints;
+    let Geometry { mesh, node_sets, warnings, .. } = geometry;
+    Ok(MeshFile { mesh, constraints, node_sets, warnings, ..MeshFile::default() })
 }
 
 /// What is wrong with the mesh, which shows only when its model is made.

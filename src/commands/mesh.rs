@@ -1,0 +1,82 @@
+//! `trackbed mesh`: counts and measures a mesh, finds its faults, converts it.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::print;
+use crate::cli::{MeshArgs, MeshFormat};
+use crate::failure::Failure;
+use crate::mesh_tools;
+use crate::model::solid::mesh_file;
+use crate::read::{MESH_ENDINGS, MeshFile, read_mesh_file};
+use crate::scene::{Document, Scene};
+use crate::write::{MeshOptions, write_mesh_file};
+
+/// Prints counts, sizes, materials, sets and quality.
+pub(super) fn info(args: &MeshArgs) -> Result<(), Failure> {
+    let file = read(args)?;
+    let mut text = mesh_tools::info(&file.mesh, &file.constraints).to_string();
+    let mut line = |told: String| writeln!(text, "{told}").expect("writing to a string does not fail");
+    for (name, count) in &file.element_types {
+        line(format!("in the file       {count:>10}   {name}"));
+    }
+    for (number, m) in &file.materials {
+        let density = m.density.map_or(String::new(), |d| format!(", density {d}"));
+        line(format!("constants of material {number}: E {}, nu {}{density}", m.young, m.poisson));
+    }
+    for (what, sets) in [("nodes", &file.node_sets), ("elements", &file.element_sets)] {
+        for (name, members) in sets {
+            line(format!("set               {:>10}   {what} in {name}", members.len()));
+        }
+    }
+    print(&format!("{text}\n{}", remarks(&file.warnings)))
+}
+
+/// Prints that there is no fault, or fails with all of them.
+pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
+    let file = read(args)?;
+    let problems = mesh_tools::check(&file.mesh, &file.constraints);
+    if problems.is_empty() {
+        return print(&format!("{}: no fault found\n{}", args.input.display(), remarks(&file.warnings)));
+    }
+    let text = problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+    Err(Failure::Input(format!("{}: found {text}, expected a mesh without faults", args.input.display())))
+}
+
+/// Writes the mesh in another form.
+pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>) -> Result<(), Failure> {
+    let ending = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    if !ending.is_empty() && !MESH_ENDINGS.contains(&ending.as_str()) {
+        let found = output.display();
+        return Err(Failure::Input(format!(
+            "output: found {found}, expected a file ending in .cdb, .msh, .inp, .vtu or .vtk, or a folder for the lists"
+        )));
+    }
+    if format.is_some() && ending != "msh" {
+        let found = output.display();
+        return Err(Failure::Input(format!(
+            "--format: found {found}, expected a file ending in .msh with it"
+        )));
+    }
+    let file = read(args)?;
+    let options = MeshOptions { msh2: format == Some(MeshFormat::Msh2) };
+    let lost = write_mesh_file(output, &file, options)?;
+    print(&format!("{} written\n{}{}", output.display(), remarks(&file.warnings), remarks(&lost)))
+}
+
+/// Reads a mesh of any form, or the one of a scene's solid.
+fn read(args: &MeshArgs) -> Result<MeshFile, Failure> {
+    if !args.input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        return Ok(read_mesh_file(&args.input)?);
+    }
+    let document = Document::open(&args.input)?;
+    let scene: Scene = document.read()?;
+    match &scene.solid {
+        Some(solid) => mesh_file(&document, solid),
+        None => Err(document.error("solid", "nothing", "a solid with a mesh").into()),
+    }
+}
+
+fn remarks(warnings: &[String]) -> String {
+    warnings.iter().map(|w| format!("note: {w}\n")).collect()
+}

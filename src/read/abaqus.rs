@@ -1,0 +1,307 @@
+//! Abaqus input files (`.inp`), also in CalculiX' dialect.
+//!
+//! Read are *NODE, *ELEMENT, *NSET, *ELSET (both with GENERATE), *MATERIAL with *ELASTIC and *DENSITY, *SOLID SECTION,
+//! *BOUNDARY (numbers and sets, ranges of directions, ENCASTRE, PINNED, XSYMM and its like), *INCLUDE (followed), and
+//! one *PART with one *INSTANCE that is not moved. Everything else is passed over; what would change geometry or
+//! directions is refused.
+//!
+//! Material numbers: the number at the end of the name where all names end in different numbers (`MATERIAL_3`),
+//! else the order of the *MATERIAL keywords; elements without a section get 1 where there are no sections at all.
+//!
+//! Source: Abaqus Keywords Reference and Analysis User's Guide, "Three-dimensional solid element library": C3D20, C3D15
+//! and C3D10 number mid-side nodes as SOLID186 and VTK do. Abaqus has no 13-node pyramid: C3D20 with repeated nodes
+//! is read as one.
+//!
+//! Limits: constraints of the model and of the first step; no local coordinate systems.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use trackbed_fem::ElementKind;
+
+use super::abaqus_data as data;
+use super::abaqus_lines::{Block, read_blocks};
+use super::degenerate::from_brick;
+use super::error::ReadError;
+use super::mesh_file::{Builder, MeshFile};
+
+/// Keywords that make or move nodes and elements, or turn directions.
+const REFUSED: [&str; 12] = [
+    "NGEN",
+    "NFILL",
+    "NCOPY",
+    "NMAP",
+    "ELGEN",
+    "ELCOPY",
+    "UEL",
+    "USERELEMENT",
+    "SYSTEM",
+    "TRANSFORM",
+    "IMPORT",
+    "ELPROGRESSIVE",
+];
+
+/// Keywords whose meaning is lost when they are passed over.
+const MECHANICAL: [&str; 16] = [
+    "EQUATION",
+    "MPC",
+    "TIE",
+    "COUPLING",
+    "KINEMATICCOUPLING",
+    "RIGIDBODY",
+    "EMBEDDEDELEMENT",
+    "CLOAD",
+    "DLOAD",
+    "DSLOAD",
+    "CONTACTPAIR",
+    "INITIALCONDITIONS",
+    "PLASTIC",
+    "AMPLITUDE",
+    "SPRING",
+    "SURFACEINTERACTION",
+];
+
+/// What the keywords tell, before it is put together.
+#[derive(Default)]
+pub(super) struct Deck {
+    /// Element sets by number.
+    pub element_sets: BTreeMap<String, Vec<u32>>,
+    /// Node sets by number.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Names of sets as first written, by upper case.
+    pub names: BTreeMap<String, String>,
+    /// Materials in file order.
+    pub materials: Vec<data::Material>,
+    /// Element set and material of each section, with its line.
+    pub sections: Vec<(usize, String, String)>,
+    pub boundaries: Vec<data::Boundary>,
+    /// Elements left out, so that sets may name them.
+    pub left_out: std::collections::HashSet<u32>,
+    /// Elements: index in the mesh, in file order.
+    pub parts: Vec<String>,
+    pub instances: Vec<String>,
+    pub steps: usize,
+    pub skipped: BTreeMap<String, usize>,
+}
+
+/// Reads an Abaqus input file.
+///
+/// # Errors
+/// A keyword that changes geometry or directions, several parts, an element that is no stress solid of the known kinds,
+/// wrong counts, unreadable numbers, absent nodes, elements, sets and materials.
+pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
+    let mut builder = Builder::new(file);
+    let mut deck = Deck::default();
+    let blocks = read_blocks(file)?;
+    if blocks.is_empty() {
+        return Err(ReadError::whole(file, "Abaqus input", "no keyword", "keywords such as *NODE"));
+    }
+    for block in &blocks {
+        // Faults are told with the file that the keyword stands in.
+        builder.file.clone_from(&block.file);
+        keyword(&mut builder, &mut deck, block)?;
+    }
+    builder.file = file.to_path_buf();
+    data::sections(&mut builder, &deck)?;
+    data::boundaries(&mut builder, &deck)?;
+    data::sets(&mut builder, &deck);
+    if !deck.skipped.is_empty() {
+        let told: Vec<String> = deck.skipped.iter().map(|(name, n)| format!("*{name} ({n})")).collect();
+        builder.warn(format!("keywords that were not read: {}", told.join(", ")));
+    }
+    builder.finish()
+}
+
+fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    match block.keyword.as_str() {
+        "NODE" => nodes(builder, deck, block),
+        "ELEMENT" => elements(builder, deck, block),
+        "NSET" => data::node_set(builder, deck, block),
+        "ELSET" => data::element_set(builder, deck, block),
+        "MATERIAL" => {
+            let name = block.required(builder, "NAME")?.to_string();
+            deck.materials.push(data::Material { name, ..Default::default() });
+            Ok(())
+        }
+        "ELASTIC" | "DENSITY" => data::property(builder, deck, block),
+        "SOLIDSECTION" => {
+            let set = block.required(builder, "ELSET")?.to_uppercase();
+            let material = block.required(builder, "MATERIAL")?.to_uppercase();
+            deck.sections.push((block.line, set, material));
+            Ok(())
+        }
+        "BOUNDARY" => data::boundary(builder, deck, block),
+        "STEP" => {
+            deck.steps += 1;
+            Ok(())
+        }
+        "PART" => {
+            let name = block.required(builder, "NAME")?.to_string();
+            deck.parts.push(name);
+            one_only(builder, block, "parts", &deck.parts)
+        }
+        "INSTANCE" => {
+            let name = block.required(builder, "NAME")?.to_string();
+            deck.instances.push(name);
+            one_only(builder, block, "instances", &deck.instances)?;
+            for (line, row) in block.rows() {
+                if row.iter().any(|text| !text.is_empty() && super::number::real(text) != Some(0.0)) {
+                    let expected = "an instance that is neither moved nor turned";
+                    return Err(builder.fault(line, "*INSTANCE", row.join(", "), expected));
+                }
+            }
+            Ok(())
+        }
+        name if REFUSED.contains(&name) => {
+            let expected = "a file that lists every node and element in global axes";
+            Err(builder.fault(block.line, "keyword", format!("*{name}"), expected))
+        }
+        name => {
+            if MECHANICAL.contains(&name) || name.ends_with("SECTION") {
+                *deck.skipped.entry(name.to_string()).or_insert(0) += 1;
+            }
+            Ok(())
+        }
+    }
+}
+
+fn one_only(builder: &Builder, block: &Block, what: &str, names: &[String]) -> Result<(), ReadError> {
+    if names.len() < 2 {
+        return Ok(());
+    }
+    let found = format!("several {what}: {}", names.join(", "));
+    Err(builder.fault(block.line, format!("*{}", block.keyword), found, "one"))
+}
+
+fn nodes(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    if let Some(system) = block.option("SYSTEM").filter(|s| !s.eq_ignore_ascii_case("R")) {
+        return Err(builder.fault(block.line, "*NODE", format!("SYSTEM={system}"), "Cartesian coordinates"));
+    }
+    let mut ids = Vec::with_capacity(block.len());
+    for (line, row) in block.rows() {
+        let id = data::whole(builder, line, "node number", row.first().copied())?;
+        let mut point = [0.0; 3];
+        for (axis, x) in point.iter_mut().enumerate() {
+            // Coordinates that are left out are zero.
+            if let Some(text) = row.get(axis + 1).filter(|t| !t.is_empty()) {
+                *x = data::real(builder, line, &format!("coordinates of node {id}"), text)?;
+            }
+        }
+        builder.node(line, id, point)?;
+        ids.push(id);
+    }
+    if let Some(set) = block.option("NSET") {
+        let name = deck.name(set);
+        deck.node_sets.entry(name).or_default().extend(ids);
+    }
+    Ok(())
+}
+
+/// What an element type is here.
+enum Type {
+    /// A kind of this program.
+    Solid(ElementKind),
+    /// A brick whose nodes may repeat.
+    Brick(usize),
+    /// Nothing with volume.
+    Other,
+    /// A volume that is not known here.
+    Unknown,
+}
+
+fn element_type(name: &str) -> Type {
+    let Some(rest) = name.strip_prefix("C3D") else {
+        let volumes = ["AC3D", "DC3D", "DCC3D", "CIN3D", "COH3D", "SC6", "SC8", "CSS8", "CCL", "EC3D"];
+        return if volumes.iter().any(|v| name.starts_with(v)) { Type::Unknown } else { Type::Other };
+    };
+    let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    let (count, suffix) = rest.split_at(digits);
+    if !["", "R", "H", "RH", "I", "IH", "M", "MH", "S", "HS"].contains(&suffix) {
+        return Type::Unknown;
+    }
+    match count {
+        "20" => Type::Brick(20),
+        "8" => Type::Brick(8),
+        "15" => Type::Solid(ElementKind::Wedge15),
+        "10" => Type::Solid(ElementKind::Tet10),
+        "6" => Type::Solid(ElementKind::Wedge6),
+        "5" => Type::Solid(ElementKind::Pyramid5),
+        "4" => Type::Solid(ElementKind::Tet4),
+        _ => Type::Unknown,
+    }
+}
+
+fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    let name = block.required(builder, "TYPE")?.to_uppercase();
+    let kind = element_type(&name);
+    if let Type::Unknown = kind {
+        let expected = "C3D20, C3D15, C3D10, C3D8, C3D6, C3D5 or C3D4, with or without R, I, H, M";
+        return Err(builder.fault(block.line, "element type", name, expected));
+    }
+    let count = match &kind {
+        Type::Solid(kind) => kind.node_count(),
+        Type::Brick(count) => *count,
+        _ => 0,
+    };
+    let mut ids = Vec::with_capacity(block.len());
+    let mut at = 0;
+    while let Some((line, first)) = block.row(at) {
+        let id = data::whole(builder, line, "element number", first.first().copied())?;
+        ids.push(id);
+        let mut nodes: Vec<u32> = Vec::with_capacity(count);
+        let mut row = first[1..].to_vec();
+        loop {
+            for text in row.iter().filter(|t| !t.is_empty()) {
+                nodes.push(data::whole(builder, line, &format!("node of element {id}"), Some(*text))?);
+            }
+            at += 1;
+            // An element of many nodes goes on in the next line.
+            let more = if count > 0 { nodes.len() < count } else { row.last().is_some_and(|t| t.is_empty()) };
+            match block.row(at) {
+                Some((_, next)) if more => row = next,
+                _ => break,
+            }
+        }
+        if count == 0 {
+            builder.leave_out(&name);
+            deck.left_out.insert(id);
+            continue;
+        }
+        if nodes.len() != count {
+            let found = format!("{} nodes", nodes.len());
+            let key = format!("element {id} ({name})");
+            return Err(builder.fault(line, key, found, count.to_string()));
+        }
+        let (kind, nodes) = match &kind {
+            Type::Solid(kind) => (*kind, nodes),
+            _ => from_brick(&nodes).map_err(|fault| {
+                builder.fault(line, format!("element {id} ({name})"), fault.found, fault.expected)
+            })?,
+        };
+        let told = format!("{name} {}", kind.name());
+        builder.element(line, id, 0, (kind, &told), &nodes)?;
+    }
+    if let Some(set) = block.option("ELSET") {
+        let name = deck.name(set);
+        deck.element_sets.entry(name).or_default().extend(ids);
+    }
+    Ok(())
+}
+
+impl Deck {
+    /// The upper-case name of a set, which keeps its first spelling, without the name of the instance in front.
+    pub fn name(&mut self, written: &str) -> String {
+        let written = self.without_instance(written).to_string();
+        let upper = written.to_uppercase();
+        self.names.entry(upper.clone()).or_insert(written);
+        upper
+    }
+
+    /// `Part-1-1.Top` as `Top`.
+    pub fn without_instance<'a>(&self, written: &'a str) -> &'a str {
+        match written.split_once('.') {
+            Some((instance, rest)) if self.instances.iter().any(|i| i.eq_ignore_ascii_case(instance)) => rest,
+            _ => written,
+        }
+    }
+}

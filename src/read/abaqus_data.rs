@@ -1,0 +1,311 @@
+//! Sets, materials, sections and constraints of an Abaqus input file.
+
+use std::collections::HashSet;
+
+use super::abaqus::Deck;
+use super::abaqus_lines::Block;
+use super::error::ReadError;
+use super::mesh_file::{Builder, FileMaterial};
+use super::number;
+
+/// Members of the longest range that is taken for no mistake.
+const LONGEST_RANGE: u32 = 100_000_000;
+
+/// A material as its keywords tell it.
+#[derive(Default)]
+pub(super) struct Material {
+    pub name: String,
+    pub elastic: Option<(f64, f64)>,
+    pub density: Option<f64>,
+}
+
+/// A row of *BOUNDARY.
+pub(super) struct Boundary {
+    line: usize,
+    /// Node number or name of a set, as written.
+    target: String,
+    directions: Vec<u8>,
+    value: f64,
+}
+
+pub(super) fn whole(builder: &Builder, line: usize, key: &str, text: Option<&str>) -> Result<u32, ReadError> {
+    let text = text.unwrap_or_default();
+    number::whole(text)
+        .ok_or_else(|| builder.fault(line, key, format!("\"{text}\""), "a whole number of 0 or more"))
+}
+
+pub(super) fn real(builder: &Builder, line: usize, key: &str, text: &str) -> Result<f64, ReadError> {
+    let value = number::real(text).filter(|v| v.is_finite());
+    value.ok_or_else(|| builder.fault(line, key, format!("\"{text}\""), "a finite number"))
+}
+
+/// Members of a set as its rows list them; names of other sets are resolved by `sets`.
+fn members(
+    builder: &Builder,
+    deck: &Deck,
+    block: &Block,
+    sets: &std::collections::BTreeMap<String, Vec<u32>>,
+) -> Result<Vec<u32>, ReadError> {
+    let mut ids = Vec::new();
+    let generate = block.option("GENERATE").is_some();
+    for (line, row) in block.rows() {
+        let key = format!("*{}", block.keyword);
+        let row: Vec<&str> =
+            row.into_iter().filter(|t| !t.is_empty()).map(|t| deck.without_instance(t)).collect();
+        if generate {
+            if row.len() < 2 {
+                return Err(builder.fault(line, key, row.join(", "), "first, last, step"));
+            }
+            let (first, last) =
+                (whole(builder, line, &key, Some(row[0]))?, whole(builder, line, &key, Some(row[1]))?);
+            let step = if row.len() > 2 { whole(builder, line, &key, Some(row[2]))? } else { 1 };
+            // A damaged range must not fill the memory.
+            if step == 0 || last < first || (last - first) / step > LONGEST_RANGE {
+                let found = format!("{first} to {last} in steps of {step}");
+                return Err(builder.fault(line, key, found, "a range of at most 100 million, upwards"));
+            }
+            ids.extend((first..=last).step_by(step as usize));
+            continue;
+        }
+        for text in row {
+            if let Some(id) = number::whole(text) {
+                ids.push(id);
+            } else if let Some(set) = sets.get(&text.to_uppercase()) {
+                ids.extend(set);
+            } else {
+                return Err(builder.fault(line, key, format!("\"{text}\""), "a number or the name of a set"));
+            }
+        }
+    }
+    Ok(ids)
+}
+
+pub(super) fn node_set(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    let name = block.required(builder, "NSET")?.to_string();
+    let mut ids = members(builder, deck, block, &deck.node_sets)?;
+    if let Some(of) = block.option("ELSET") {
+        let of = deck.without_instance(of).to_uppercase();
+        let Some(elements) = deck.element_sets.get(&of) else {
+            return Err(builder.fault(block.line, "*NSET", format!("ELSET={of}"), "a set of elements"));
+        };
+        let mesh = &builder.made.mesh;
+        let nodes = elements.iter().filter_map(|id| builder.element_index(*id));
+        ids.extend(
+            nodes.flat_map(|e| mesh.connectivity[e as usize].iter().map(|n| mesh.node_ids[*n as usize])),
+        );
+    }
+    let name = deck.name(&name);
+    deck.node_sets.entry(name).or_default().extend(ids);
+    Ok(())
+}
+
+pub(super) fn element_set(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    let name = block.required(builder, "ELSET")?.to_string();
+    let ids = members(builder, deck, block, &deck.element_sets)?;
+    let name = deck.name(&name);
+    deck.element_sets.entry(name).or_default().extend(ids);
+    Ok(())
+}
+
+/// *ELASTIC and *DENSITY of the last material.
+pub(super) fn property(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    let key = format!("*{}", block.keyword);
+    let Some(material) = deck.materials.last_mut() else {
+        return Err(builder.fault(block.line, key, "it before any material", "*MATERIAL first"));
+    };
+    let kind = block.option("TYPE").unwrap_or("ISOTROPIC");
+    if block.keyword == "ELASTIC" && !kind.to_uppercase().starts_with("ISO") {
+        let sentence = format!(
+            "line {}: the elastic constants of {} are {kind} and are left out",
+            block.line, material.name
+        );
+        builder.warn(sentence);
+        return Ok(());
+    }
+    let Some((line, row)) = block.row(0) else {
+        return Err(builder.fault(block.line, key, "no data line", "numbers"));
+    };
+    if block.len() > 1 {
+        builder.warn(format!("line {line}: of the {key} of {} the first row is taken", material.name));
+    }
+    let first = real(builder, line, &key, row[0])?;
+    if block.keyword == "DENSITY" {
+        material.density = Some(first);
+    } else {
+        let poisson =
+            row.get(1).filter(|t| !t.is_empty()).map_or(Ok(0.0), |t| real(builder, line, &key, t))?;
+        material.elastic = Some((first, poisson));
+    }
+    Ok(())
+}
+
+/// The numbers of the materials, in file order.
+fn numbers(materials: &[Material]) -> Vec<u32> {
+    let trailing = |name: &str| {
+        let digits = name.len() - name.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        name[name.len() - digits..].parse::<u32>().ok()
+    };
+    let told: Option<Vec<u32>> = materials.iter().map(|m| trailing(&m.name)).collect();
+    match told {
+        Some(told) if told.iter().collect::<HashSet<_>>().len() == told.len() => told,
+        _ => (1..=materials.len() as u32).collect(),
+    }
+}
+
+/// Gives the elements the materials of their sections.
+pub(super) fn sections(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
+    let numbers = numbers(&deck.materials);
+    let mut told = Vec::new();
+    for (material, number) in deck.materials.iter().zip(&numbers) {
+        if !material.name.ends_with(&number.to_string()) {
+            told.push(format!("{} is material {number}", material.name));
+        }
+        if let Some((young, poisson)) = material.elastic {
+            let constants = FileMaterial { young, poisson, density: material.density };
+            builder.made.materials.insert(*number, constants);
+        }
+    }
+    if !told.is_empty() {
+        builder.warn(told.join(", "));
+    }
+    let mesh = &mut builder.made.mesh;
+    if deck.sections.is_empty() {
+        mesh.materials.fill(1);
+        let count = mesh.element_count();
+        builder.warn(format!("no sections: all {count} elements get material number 1"));
+        return Ok(());
+    }
+    let mut with = vec![false; mesh.element_count()];
+    for (line, set, material) in &deck.sections {
+        let set_key = deck.without_instance(set).to_uppercase();
+        let Some(ids) = deck.element_sets.get(&set_key) else {
+            return Err(builder.fault(*line, "*SOLID SECTION", format!("ELSET={set}"), "a set of elements"));
+        };
+        let at = deck.materials.iter().position(|m| m.name.eq_ignore_ascii_case(material));
+        let Some(at) = at else {
+            return Err(builder.fault(
+                *line,
+                "*SOLID SECTION",
+                format!("MATERIAL={material}"),
+                "a *MATERIAL",
+            ));
+        };
+        for id in ids {
+            let Some(index) = builder.element_index(*id) else { continue };
+            builder.made.mesh.materials[index as usize] = numbers[at];
+            with[index as usize] = true;
+        }
+    }
+    let without = with.iter().filter(|w| !**w).count();
+    if without > 0 {
+        builder.warn(format!("{without} elements have no section and get material number 0"));
+    }
+    Ok(())
+}
+
+/// Keeps the rows of *BOUNDARY of the model and of the first step.
+pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    if deck.steps > 1 {
+        *deck.skipped.entry("BOUNDARY of later steps".into()).or_insert(0) += 1;
+        return Ok(());
+    }
+    if let Some(kind) = block.option("TYPE").filter(|k| !k.to_uppercase().starts_with("DISP")) {
+        return Err(builder.fault(block.line, "*BOUNDARY", format!("TYPE={kind}"), "displacements"));
+    }
+    for (line, row) in block.rows() {
+        let target = row[0].to_string();
+        let second = row.get(1).copied().unwrap_or_default().to_uppercase();
+        let named: Option<&[u8]> = match second.as_str() {
+            "ENCASTRE" | "PINNED" => Some(&[0, 1, 2]),
+            "XSYMM" => Some(&[0]),
+            "YSYMM" => Some(&[1]),
+            "ZSYMM" => Some(&[2]),
+            "XASYMM" => Some(&[1, 2]),
+            "YASYMM" => Some(&[0, 2]),
+            "ZASYMM" => Some(&[0, 1]),
+            _ => None,
+        };
+        let (directions, value) = match named {
+            Some(directions) => (directions.to_vec(), 0.0),
+            None => {
+                let first = whole(builder, line, "direction of *BOUNDARY", Some(&second))?;
+                let last = match row.get(2).filter(|t| !t.is_empty()) {
+                    Some(text) => whole(builder, line, "last direction of *BOUNDARY", Some(text))?,
+                    None => first,
+                };
+                let value = match row.get(3).filter(|t| !t.is_empty()) {
+                    Some(text) => real(builder, line, "value of *BOUNDARY", text)?,
+                    None => 0.0,
+                };
+                if first == 0 || last < first || last > 11 {
+                    let found = format!("{first} to {last}");
+                    return Err(builder.fault(line, "directions of *BOUNDARY", found, "1 to 3"));
+                }
+                // Rotations and temperatures mean nothing to solids.
+                ((first..=last.min(3)).map(|d| d as u8 - 1).collect(), value)
+            }
+        };
+        deck.boundaries.push(Boundary { line, target, directions, value });
+    }
+    Ok(())
+}
+
+/// Constraints of nodes and sets of nodes.
+pub(super) fn boundaries(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
+    for row in &deck.boundaries {
+        let target = deck.without_instance(&row.target);
+        let one;
+        let ids: &[u32] = match number::whole(target) {
+            Some(id) => {
+                one = [id];
+                &one
+            }
+            None => match deck.node_sets.get(&target.to_uppercase()) {
+                Some(set) => set,
+                None => {
+                    let found = format!("\"{}\"", row.target);
+                    return Err(builder.fault(row.line, "*BOUNDARY", found, "a node or a set of nodes"));
+                }
+            },
+        };
+        for id in ids {
+            let Some(node) = builder.node_index(*id) else {
+                let found = format!("node {id}");
+                return Err(builder.fault(row.line, "*BOUNDARY", found, "a node of the file"));
+            };
+            for direction in &row.directions {
+                builder.constrain(row.line, node, *direction, row.value)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Hands the sets over, but for those that only serve a section of the same name as a material.
+pub(super) fn sets(builder: &mut Builder, deck: &Deck) {
+    let spelled = |upper: &String| deck.names.get(upper).unwrap_or(upper).clone();
+    for (upper, ids) in &deck.node_sets {
+        let nodes: Vec<u32> = ids.iter().filter_map(|id| builder.node_index(*id)).collect();
+        if nodes.len() < ids.len() {
+            let absent = ids.len() - nodes.len();
+            builder.warn(format!("set {} names {absent} nodes that are not there", spelled(upper)));
+        }
+        builder.node_set(&spelled(upper), nodes);
+    }
+    for (upper, ids) in &deck.element_sets {
+        if deck.sections.iter().any(|(_, set, material)| set == upper && material == upper) {
+            continue;
+        }
+        let elements: Vec<u32> = ids.iter().filter_map(|id| builder.element_index(*id)).collect();
+        let absent = ids
+            .iter()
+            .filter(|id| builder.element_index(**id).is_none() && !deck.left_out.contains(id))
+            .count();
+        if absent > 0 {
+            builder.warn(format!("set {} names {absent} elements that are not there", spelled(upper)));
+        }
+        if !elements.is_empty() {
+            builder.element_set(&spelled(upper), elements);
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Bricks with repeated nodes: wedges, pyramids and tetrahedra in the form of SOLID186 and SOLID185.
+//!
+//! | kind | corners I…P | mid-sides Q…T, U…X, Y…B |
+//! |---|---|---|
+//! | wedge | I J K K, M N O O | S = K, W = O, B = A |
+//! | pyramid | I J K L, M M M M | U = V = W = X = M |
+//! | tetrahedron | I J K K, M M M M | S = K, U = V = W = X = M, B = A |
+//!
+//! Source: ANSYS Mechanical APDL Element Reference, SOLID186 and SOLID185. A mid-side node of 0 is missing: where
+//! all are missing the element has straight sides and is of the linear kind. Abaqus folds its bricks in the same way.
+
+use trackbed_fem::ElementKind;
+
+/// Positions in a brick of the corners and mid-sides of each kind, in the node order of the kind, and the positions
+/// that repeat another one.
+struct Form {
+    kind: ElementKind,
+    linear: ElementKind,
+    /// Position in the brick of each node of the kind, corners first.
+    nodes: &'static [usize],
+    /// Pairs: position that repeats, and the one it repeats.
+    repeats: &'static [(usize, usize)],
+}
+
+const FORMS: [Form; 4] = [
+    Form {
+        kind: ElementKind::Hex20,
+        linear: ElementKind::Hex8,
+        nodes: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19],
+        repeats: &[],
+    },
+    Form {
+        kind: ElementKind::Wedge15,
+        linear: ElementKind::Wedge6,
+        nodes: &[0, 1, 2, 4, 5, 6, 8, 9, 11, 12, 13, 15, 16, 17, 18],
+        repeats: &[(3, 2), (7, 6), (10, 2), (14, 6), (19, 18)],
+    },
+    Form {
+        kind: ElementKind::Pyramid13,
+        linear: ElementKind::Pyramid5,
+        nodes: &[0, 1, 2, 3, 4, 8, 9, 10, 11, 16, 17, 18, 19],
+        repeats: &[(5, 4), (6, 4), (7, 4), (12, 4), (13, 4), (14, 4), (15, 4)],
+    },
+    Form {
+        kind: ElementKind::Tet10,
+        linear: ElementKind::Tet4,
+        nodes: &[0, 1, 2, 4, 8, 9, 11, 16, 17, 18],
+        repeats: &[(3, 2), (5, 4), (6, 4), (7, 4), (10, 2), (12, 4), (13, 4), (14, 4), (15, 4), (19, 18)],
+    },
+];
+
+/// Names of the nodes of SOLID186.
+const LETTERS: [&str; 20] =
+    ["I", "J", "K", "L", "M", "N", "O", "P", "Q", "R", "S", "T", "U", "V", "W", "X", "Y", "Z", "A", "B"];
+
+/// Why the nodes of a brick are none of the known forms.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What stands there.
+    pub found: String,
+    /// What belongs there.
+    pub expected: &'static str,
+}
+
+/// The kind of element that a brick of 8 or 20 node numbers is, and its nodes in the order of that kind.
+///
+/// # Errors
+/// Nodes that repeat in another way, missing corners, and some mid-side nodes missing but not all.
+pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
+    const FORMS_TOLD: &str = "different nodes, or those of a wedge (K = L, O = P), a pyramid (M = N = O = P) or a \
+                              tetrahedron (both)";
+    debug_assert!(ids.len() == 8 || ids.len() == 20);
+    if let Some(corner) = ids[..8].iter().position(|id| *id == 0) {
+        return Err(Fault { found: format!("no node {}", LETTERS[corner]), expected: "all corners" });
+    }
+    let holds = |form: &Form| form.repeats.iter().filter(|(p, _)| *p < 8).all(|(p, of)| ids[*p] == ids[*of]);
+    // From the most folded form to the plain brick, which holds for any nodes.
+    let order = [3, 2, 1, 0].map(|f| &FORMS[f]);
+    let form = order.into_iter().find(|form| holds(form)).unwrap_or(&FORMS[0]);
+    let corner_count = form.linear.node_count();
+    let mids = form.nodes[corner_count..].iter().filter(|p| **p < ids.len());
+    let missing = mids.clone().find(|p| ids[**p] == 0);
+    let linear = mids.clone().all(|p| ids[*p] == 0);
+    let (kind, count) = if linear { (form.linear, corner_count) } else { (form.kind, form.nodes.len()) };
+    if let (false, Some(p)) = (linear, missing) {
+        return Err(Fault {
+            found: format!("no node {}, and other mid-side nodes are there", LETTERS[*p]),
+            expected: "all mid-side nodes of an element, or none",
+        });
+    }
+    // A mid-side of an edge without length repeats its corner; where mid-sides are missing it may be missing too.
+    for &(p, of) in form.repeats.iter().filter(|(p, _)| (8..ids.len()).contains(p)) {
+        if ids[p] != ids[of] && ids[p] != 0 {
+            let found = format!("node {} = {} on an edge of a {}", LETTERS[p], ids[p], kind.name());
+            return Err(Fault { found, expected: "the node of the corner or edge that it is folded onto" });
+        }
+    }
+    let nodes: Vec<u32> = form.nodes[..count].iter().map(|p| ids[*p]).collect();
+    let mut sorted = nodes.clone();
+    sorted.sort_unstable();
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(Fault { found: format!("node {} more than once", pair[0]), expected: FORMS_TOLD });
+    }
+    Ok((kind, nodes))
+}
+
+/// The brick of 20 nodes (quadratic kinds) or 8 (linear ones) that stands for an element: what [`from_brick`] reads.
+pub fn to_brick(kind: ElementKind, nodes: &[u32]) -> Vec<u32> {
+    let form = FORMS.iter().find(|form| form.linear == kind.linear()).unwrap_or(&FORMS[0]);
+    let mut brick = vec![0; if kind.is_linear() { 8 } else { 20 }];
+    for (p, node) in form.nodes.iter().zip(nodes) {
+        brick[*p] = *node;
+    }
+    for &(p, of) in form.repeats {
+        if p < brick.len() {
+            brick[p] = brick[of];
+        }
+    }
+    brick
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The forms of the Element Reference, letter by letter.
+    #[test]
+    fn the_forms_of_the_element_reference() {
+        let letters = |text: &str| -> Vec<u32> {
+            text.split(' ').map(|l| LETTERS.iter().position(|x| *x == l).unwrap() as u32 + 1).collect()
+        };
+        for (kind, brick, nodes) in [
+            (
+                ElementKind::Tet10,
+                "I J K K M M M M Q R K T M M M M Y Z A A",
+                // Corners, then the middles of 01 12 20 03 13 23.
+                "I J K M Q R T Y Z A",
+            ),
+            (ElementKind::Pyramid13, "I J K L M M M M Q R S T M M M M Y Z A B", "I J K L M Q R S T Y Z A B"),
+            (
+                ElementKind::Wedge15,
+                "I J K K M N O O Q R K T U V O X Y Z A A",
+                "I J K M N O Q R T U V X Y Z A",
+            ),
+        ] {
+            let (brick, nodes) = (letters(brick), letters(nodes));
+            assert_eq!(from_brick(&brick), Ok((kind, nodes.clone())), "{}", kind.name());
+            assert_eq!(to_brick(kind, &nodes), brick);
+            let (eight, corners) = (&brick[..8], &nodes[..kind.corner_count()]);
+            assert_eq!(from_brick(eight), Ok((kind.linear(), corners.to_vec())));
+            assert_eq!(to_brick(kind.linear(), corners), eight);
+            // All mid-sides missing: the linear kind, written either way.
+            for mut dropped in [brick.clone(), eight.to_vec()] {
+                dropped.resize(20, 0);
+                dropped[8..].fill(0);
+                assert_eq!(from_brick(&dropped), Ok((kind.linear(), corners.to_vec())));
+            }
+        }
+    }
+
+    #[test]
+    fn other_foldings_and_holes_are_refused() {
+        let plain: Vec<u32> = (1..=20).collect();
+        let with = |changes: &[(usize, u32)]| {
+            let mut ids = plain.clone();
+            changes.iter().for_each(|(p, id)| ids[*p] = *id);
+            from_brick(&ids).unwrap_err().found
+        };
+        assert_eq!(with(&[(1, 1)]), "node 1 more than once");
+        assert_eq!(with(&[(3, 3)]), "node 3 more than once");
+        assert_eq!(with(&[(19, 12)]), "node 12 more than once");
+        assert_eq!(with(&[(9, 0)]), "no node R, and other mid-side nodes are there");
+        assert_eq!(with(&[(2, 0)]), "no node K");
+        // A wedge whose mid-side S is not K, and one whose upright B is not A.
+        assert_eq!(with(&[(3, 3), (7, 7)]), "node S = 11 on an edge of a wedge15");
+        assert_eq!(with(&[(3, 3), (7, 7), (10, 3), (14, 7)]), "node B = 20 on an edge of a wedge15");
+    }
+}

@@ -1,0 +1,376 @@
+//! Gmsh meshes (`.msh`), formats 2.2 and 4.1, text and binary.
+//!
+//! | in Gmsh | here |
+//! |---|---|
+//! | physical volume | material number; a set of elements when it has a name |
+//! | physical surface, curve, point | set of the nodes of its elements, by name or as `physical_surface_7` |
+//! | no physical volume at all | the number of the geometric volume is the material number |
+//!
+//! A volume in several physical groups takes the material of the first, and belongs to the set of each. Elements of
+//! fewer dimensions only make sets.
+//!
+//! Source: Gmsh Reference Manual, "MSH file format" and "Node ordering". Gmsh numbers mid-side nodes by edges in
+//! another order than ANSYS, Abaqus and VTK for all kinds of elements.
+//!
+//! Limits: no nodes in the middle of faces or volumes (hex27 and its like).
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use trackbed_fem::ElementKind;
+
+use super::error::ReadError;
+use super::gmsh4;
+use super::mesh_file::{Builder, MeshFile, order_from_edges, read_bytes};
+use super::tokens::{Encoding, Tokens};
+
+/// Edges of each quadratic kind in the order of Gmsh's mid-side nodes (figures of "Node ordering").
+const HEX: [[usize; 2]; 12] =
+    [[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]];
+const WEDGE: [[usize; 2]; 9] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]];
+const PYRAMID: [[usize; 2]; 8] = [[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3], [2, 4], [3, 4]];
+const TET: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [2, 3], [1, 3]];
+
+/// Gmsh's number of each kind.
+pub(crate) const TYPES: [(i32, ElementKind); 8] = [
+    (17, ElementKind::Hex20),
+    (18, ElementKind::Wedge15),
+    (19, ElementKind::Pyramid13),
+    (11, ElementKind::Tet10),
+    (5, ElementKind::Hex8),
+    (6, ElementKind::Wedge6),
+    (7, ElementKind::Pyramid5),
+    (4, ElementKind::Tet4),
+];
+
+/// For each node of a kind its position in Gmsh's element.
+pub(crate) fn order(kind: ElementKind) -> Vec<usize> {
+    match kind.linear() {
+        ElementKind::Hex8 => order_from_edges(kind, &HEX),
+        ElementKind::Wedge6 => order_from_edges(kind, &WEDGE),
+        ElementKind::Pyramid5 => order_from_edges(kind, &PYRAMID),
+        _ => order_from_edges(kind, &TET),
+    }
+}
+
+/// Types that are not volumes here: dimension and number of nodes.
+const LOWER: [(i32, usize, usize); 14] = [
+    (15, 0, 1),
+    (1, 1, 2),
+    (8, 1, 3),
+    (26, 1, 4),
+    (27, 1, 5),
+    (2, 2, 3),
+    (3, 2, 4),
+    (9, 2, 6),
+    (10, 2, 9),
+    (16, 2, 8),
+    (20, 2, 9),
+    (21, 2, 10),
+    (22, 2, 12),
+    (23, 2, 15),
+];
+
+/// Dimension and number of nodes of a type.
+pub(super) enum Shape {
+    Volume(ElementKind),
+    Lower { dimension: usize, nodes: usize },
+}
+
+pub(super) fn shape(tokens: &mut Tokens, kind: i32) -> Result<Shape, ReadError> {
+    if let Some((_, kind)) = TYPES.iter().find(|(number, _)| *number == kind) {
+        return Ok(Shape::Volume(*kind));
+    }
+    if let Some(&(_, dimension, nodes)) = LOWER.iter().find(|(number, ..)| *number == kind) {
+        return Ok(Shape::Lower { dimension, nodes });
+    }
+    let name = match kind {
+        12 => "27-node hexahedra (type 12)".to_string(),
+        13 => "18-node prisms (type 13)".to_string(),
+        14 => "14-node pyramids (type 14)".to_string(),
+        _ => format!("elements of type {kind}"),
+    };
+    let expected = "first-order elements, or second-order ones with nodes on edges only (Mesh.ElementOrder = 2, \
+                    Mesh.SecondOrderIncomplete = 1)";
+    Err(tokens.fault("element type", name, expected))
+}
+
+/// An element as it stands in the file.
+pub(super) struct RawElement {
+    pub line: usize,
+    pub id: u32,
+    pub kind: ElementKind,
+    /// Physical volumes, then the geometric volume.
+    pub groups: Vec<u32>,
+    pub entity: u32,
+    /// Nodes in Gmsh's order.
+    pub nodes: Vec<u32>,
+}
+
+/// What the sections tell, before it is put together.
+#[derive(Default)]
+pub(super) struct Sections {
+    /// Names of physical groups by dimension and number.
+    pub names: BTreeMap<(usize, u32), String>,
+    pub elements: Vec<RawElement>,
+    /// Node numbers of physical groups of dimension 0 to 2.
+    pub node_groups: BTreeMap<(usize, u32), Vec<u32>>,
+    /// Physical groups of the entities, by dimension and number (4.1).
+    pub entities: BTreeMap<(usize, i32), Vec<u32>>,
+}
+
+/// Reads a Gmsh mesh.
+///
+/// # Errors
+/// A version other than 2.2 and 4.1, a truncated or damaged section, an element type with nodes beside its edges, a
+/// number given twice, an absent node.
+pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
+    let bytes = read_bytes(file, "Gmsh mesh")?;
+    let mut builder = Builder::new(file);
+    let mut sections = Sections::default();
+    let mut tokens = Tokens::new(file, &bytes);
+    let mut version = None;
+    let mut encoding = Encoding::Text;
+    while let Some(name) = tokens.next_line() {
+        if !name.starts_with('$') {
+            let shown: String = name.chars().take(40).collect();
+            return Err(tokens.fault("section", format!("\"{shown}\""), "a section such as $Nodes"));
+        }
+        if name == "$MeshFormat" {
+            let (told, how) = mesh_format(&mut tokens)?;
+            (version, encoding) = (Some(told), how);
+        }
+        let old = match (version, name) {
+            (_, "$MeshFormat") => true,
+            (None, _) => return Err(tokens.fault("section", name, "$MeshFormat first")),
+            (Some(old), _) => old,
+        };
+        tokens.encoding = encoding;
+        match name {
+            "$MeshFormat" => {}
+            "$PhysicalNames" => physical_names(&mut tokens, &mut sections)?,
+            "$Entities" => gmsh4::entities(&mut tokens, &mut sections)?,
+            "$Nodes" if old => nodes2(&mut tokens, &mut builder)?,
+            "$Nodes" => gmsh4::nodes(&mut tokens, &mut builder)?,
+            "$Elements" if old => elements2(&mut tokens, &mut sections)?,
+            "$Elements" => gmsh4::elements(&mut tokens, &mut sections)?,
+            "$PartitionedEntities" => {
+                let expected = "a mesh in one part (Mesh.PartitionSplitMeshFiles)";
+                return Err(tokens.fault("section", name, expected));
+            }
+            _ => {}
+        }
+        tokens.encoding = Encoding::Text;
+        let end = name.replacen('$', "$End", 1);
+        let known = ["$MeshFormat", "$PhysicalNames", "$Entities", "$Nodes", "$Elements"].contains(&name);
+        loop {
+            match tokens.next_line() {
+                Some(line) if line == end => break,
+                Some(line) if known => {
+                    let shown: String = line.chars().take(40).collect();
+                    return Err(tokens.fault(name, format!("\"{shown}\""), end));
+                }
+                Some(_) => {}
+                None => return Err(tokens.fault(name, "the end of the file", end)),
+            }
+        }
+    }
+    if version.is_none() {
+        return Err(tokens.fault("Gmsh mesh", "no section", "$MeshFormat"));
+    }
+    put_together(builder, sections)
+}
+
+/// Whether the format is 2.2 (otherwise 4.1), and how numbers are written.
+fn mesh_format(tokens: &mut Tokens) -> Result<(bool, Encoding), ReadError> {
+    let version = tokens.word("version")?;
+    let old = match version {
+        "2" | "2.0" | "2.1" | "2.2" => true,
+        "4.1" => false,
+        _ => {
+            let shown: String = version.chars().take(40).collect();
+            return Err(tokens.fault("version of the Gmsh format", shown, "2.2 or 4.1"));
+        }
+    };
+    let (binary, size) = (tokens.int("file type")?, tokens.int("size of a number")?);
+    if size != 8 {
+        return Err(tokens.fault("size of a number", size.to_string(), "8"));
+    }
+    if binary == 0 {
+        return Ok((old, Encoding::Text));
+    }
+    tokens.rest_of_line();
+    match tokens.take(4, "byte order")? {
+        [1, 0, 0, 0] => Ok((old, Encoding::LittleEndian)),
+        [0, 0, 0, 1] => Ok((old, Encoding::BigEndian)),
+        other => {
+            let found = format!("{other:?}");
+            Err(tokens.fault("byte order", found, "the number 1"))
+        }
+    }
+}
+
+fn physical_names(tokens: &mut Tokens, sections: &mut Sections) -> Result<(), ReadError> {
+    // Text in binary files too.
+    tokens.encoding = Encoding::Text;
+    let count = tokens.count("number of physical names")?;
+    for _ in 0..count {
+        let dimension = tokens.count("dimension of a physical name")?;
+        let number = tokens.id("number of a physical name")?;
+        let rest = tokens.rest_of_line().unwrap_or_default();
+        let name = rest.strip_prefix('"').and_then(|r| r.strip_suffix('"'));
+        let Some(name) = name.filter(|_| dimension <= 3) else {
+            let found = format!("{dimension} {number} {rest}");
+            return Err(tokens.fault("physical name", found, "dimension, number and a name in quotes"));
+        };
+        sections.names.insert((dimension, number), name.to_string());
+    }
+    Ok(())
+}
+
+fn nodes2(tokens: &mut Tokens, builder: &mut Builder) -> Result<(), ReadError> {
+    let encoding = std::mem::replace(&mut tokens.encoding, Encoding::Text);
+    let count = tokens.count("number of nodes")?;
+    skip_line_end(tokens, encoding);
+    for _ in 0..count {
+        let line = tokens.line();
+        let id = tokens.int_id("node number")?;
+        let mut point = [0.0; 3];
+        for x in &mut point {
+            *x = tokens.real("coordinate of a node")?;
+        }
+        builder.node(line, id, point)?;
+    }
+    Ok(())
+}
+
+/// In a binary file counts of 2.2 are text, and the numbers begin behind the line end.
+fn skip_line_end(tokens: &mut Tokens, encoding: Encoding) {
+    if encoding != Encoding::Text {
+        tokens.rest_of_line();
+        tokens.encoding = encoding;
+    }
+}
+
+fn elements2(tokens: &mut Tokens, sections: &mut Sections) -> Result<(), ReadError> {
+    let encoding = std::mem::replace(&mut tokens.encoding, Encoding::Text);
+    let count = tokens.count("number of elements")?;
+    skip_line_end(tokens, encoding);
+    let mut read = 0;
+    while read < count {
+        let (kind, in_block, tag_count, id_first) = if encoding == Encoding::Text {
+            let id = tokens.int_id("element number")?;
+            (tokens.int("element type")?, 1, tokens.int_count("number of tags")?, Some(id))
+        } else {
+            let kind = tokens.int("element type")?;
+            (kind, tokens.int_count("number of elements")?, tokens.int_count("number of tags")?, None)
+        };
+        let shape = shape(tokens, kind)?;
+        for _ in 0..in_block {
+            let line = tokens.line();
+            let id = match id_first {
+                Some(id) => id,
+                None => tokens.int_id("element number")?,
+            };
+            let tags: Vec<i32> = (0..tag_count).map(|_| tokens.int("tag")).collect::<Result<_, _>>()?;
+            // Numbers of groups are negative where the element is seen from its other side.
+            let physical = tags.first().map_or(0, |t| t.unsigned_abs());
+            let entity = tags.get(1).map_or(0, |t| t.unsigned_abs());
+            let groups: Vec<u32> = if physical == 0 { vec![] } else { vec![physical] };
+            one_element(tokens, sections, (line, id, entity), &shape, groups, Tokens::int_id)?;
+        }
+        read += in_block.max(1);
+    }
+    Ok(())
+}
+
+/// Reads the nodes of an element and keeps them.
+pub(super) fn one_element<'a>(
+    tokens: &mut Tokens<'a>,
+    sections: &mut Sections,
+    (line, id, entity): (usize, u32, u32),
+    shape: &Shape,
+    groups: Vec<u32>,
+    node: fn(&mut Tokens<'a>, &str) -> Result<u32, ReadError>,
+) -> Result<(), ReadError> {
+    let count = match shape {
+        Shape::Volume(kind) => kind.node_count(),
+        Shape::Lower { nodes, .. } => *nodes,
+    };
+    let nodes: Vec<u32> = (0..count).map(|_| node(tokens, "node of an element")).collect::<Result<_, _>>()?;
+    match shape {
+        Shape::Volume(kind) => {
+            sections.elements.push(RawElement { line, id, kind: *kind, groups, entity, nodes });
+        }
+        Shape::Lower { dimension, .. } => {
+            for group in groups {
+                sections.node_groups.entry((*dimension, group)).or_default().extend(&nodes);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile, ReadError> {
+    merge_repeated(&mut sections.elements);
+    let grouped = sections.elements.iter().filter(|e| !e.groups.is_empty()).count();
+    let total = sections.elements.len();
+    if grouped == 0 && total > 0 {
+        builder.warn("no physical volumes: material numbers are those of the geometric volumes");
+    } else if grouped < total {
+        builder.warn(format!(
+            "{} elements are in no physical volume and get material number 0",
+            total - grouped
+        ));
+    }
+    for raw in &sections.elements {
+        let own = if grouped == 0 { raw.entity } else { 0 };
+        let material = raw.groups.first().copied().unwrap_or(own);
+        let nodes: Vec<u32> = order(raw.kind).iter().map(|p| raw.nodes[*p]).collect();
+        let number = TYPES.iter().find(|(_, kind)| *kind == raw.kind).map_or(0, |t| t.0);
+        let name = format!("type {number} {}", raw.kind.name());
+        builder.element(raw.line, raw.id, material, (raw.kind, &name), &nodes)?;
+        let index = builder.made.mesh.element_count() as u32 - 1;
+        for group in &raw.groups {
+            if let Some(name) = sections.names.get(&(3, *group)) {
+                builder.element_set(name, [index]);
+            }
+        }
+    }
+    for ((dimension, number), ids) in &sections.node_groups {
+        let what = ["point", "curve", "surface"][*dimension];
+        let name = sections.names.get(&(*dimension, *number)).cloned();
+        let name = name.unwrap_or_else(|| format!("physical_{what}_{number}"));
+        let mut nodes = Vec::with_capacity(ids.len());
+        for id in ids {
+            let Some(index) = builder.node_index(*id) else {
+                return Err(builder.fault(0, name, format!("node {id}"), "a node of the file"));
+            };
+            nodes.push(index);
+        }
+        builder.node_set(&name, nodes);
+    }
+    builder.finish()
+}
+
+/// Format 2.2 holds an element once for each of its physical groups, with the same nodes.
+fn merge_repeated(elements: &mut Vec<RawElement>) {
+    let mut first: std::collections::HashMap<Vec<u32>, usize> = std::collections::HashMap::new();
+    let mut kept: Vec<RawElement> = Vec::with_capacity(elements.len());
+    for element in elements.drain(..) {
+        match first.get(&element.nodes) {
+            Some(&at) if kept[at].kind == element.kind && kept[at].groups != element.groups => {
+                for group in element.groups {
+                    if !kept[at].groups.contains(&group) {
+                        kept[at].groups.push(group);
+                    }
+                }
+            }
+            _ => {
+                first.insert(element.nodes.clone(), kept.len());
+                kept.push(element);
+            }
+        }
+    }
+    *elements = kept;
+}

@@ -1,0 +1,296 @@
+//! What every mesh file comes down to, and what the readers share to build it.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+use trackbed_fem::ElementKind;
+use trackbed_fem::mesh::{Constraint, Mesh};
+
+use super::error::ReadError;
+
+/// What a mesh file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshFile {
+    /// Nodes and volume elements in file order, without nodes that belong to no element.
+    pub mesh: Mesh,
+    /// Constraints in file order, one per node and direction.
+    pub constraints: Vec<Constraint>,
+    /// Named sets of nodes: indices of nodes, ascending.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Named sets of elements: indices of elements, ascending.
+    pub element_sets: BTreeMap<String, Vec<u32>>,
+    /// Elastic constants by material number, where the file tells them.
+    pub materials: BTreeMap<u32, FileMaterial>,
+    /// Types of volume elements as the file names them, with their counts, in the order of their first elements.
+    pub element_types: Vec<(String, usize)>,
+    /// What was guessed, left out, or looks like a mistake, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Linear elastic constants of a mesh file, in the units of the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FileMaterial {
+    /// Young's modulus [Pa].
+    pub young: f64,
+    /// Poisson's ratio [1].
+    pub poisson: f64,
+    /// Density [kg/m³].
+    pub density: Option<f64>,
+}
+
+/// A mesh file while it is read.
+pub(super) struct Builder {
+    /// The file, for messages.
+    pub file: PathBuf,
+    /// What was read so far.
+    pub made: MeshFile,
+    /// Index of each node number.
+    nodes: HashMap<u32, u32>,
+    /// Index of each element number.
+    elements: HashMap<u32, u32>,
+    /// Value and line of each constraint by node index and direction.
+    given: HashMap<(u32, u8), (f64, usize)>,
+    /// Elements left out, by type.
+    left_out: BTreeMap<String, usize>,
+}
+
+impl Builder {
+    pub fn new(file: &Path) -> Builder {
+        Builder {
+            file: file.to_path_buf(),
+            made: MeshFile::default(),
+            nodes: HashMap::new(),
+            elements: HashMap::new(),
+            given: HashMap::new(),
+            left_out: BTreeMap::new(),
+        }
+    }
+
+    /// A fault of this file.
+    pub fn fault(
+        &self,
+        line: usize,
+        key: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> ReadError {
+        if line == 0 {
+            return ReadError::whole(&self.file, key, found, expected);
+        }
+        ReadError::at(&self.file, line, key, found, expected)
+    }
+
+    /// Adds a warning, with the file's name in front.
+    pub fn warn(&mut self, sentence: impl AsRef<str>) {
+        self.made.warnings.push(format!("{}: {}", self.file.display(), sentence.as_ref()));
+    }
+
+    /// Adds a node; `line` 0 where the file has none.
+    pub fn node(&mut self, line: usize, id: u32, point: [f64; 3]) -> Result<(), ReadError> {
+        if let Some(x) = point.iter().find(|x| !x.is_finite()) {
+            return Err(self.fault(
+                line,
+                format!("coordinates of node {id}"),
+                x.to_string(),
+                "finite numbers",
+            ));
+        }
+        if self.nodes.insert(id, self.made.mesh.node_ids.len() as u32).is_some() {
+            return Err(self.fault(line, format!("node {id}"), "it again", "each number once"));
+        }
+        self.made.mesh.node_ids.push(id);
+        self.made.mesh.coordinates.push(point);
+        Ok(())
+    }
+
+    /// Index of a node number.
+    pub fn node_index(&self, id: u32) -> Option<u32> {
+        self.nodes.get(&id).copied()
+    }
+
+    /// Index of an element number.
+    pub fn element_index(&self, id: u32) -> Option<u32> {
+        self.elements.get(&id).copied()
+    }
+
+    /// Adds an element by node numbers in the order of its kind, named `type_name` by the file.
+    pub fn element(
+        &mut self,
+        line: usize,
+        id: u32,
+        material: u32,
+        (kind, type_name): (ElementKind, &str),
+        ids: &[u32],
+    ) -> Result<(), ReadError> {
+        if ids.len() != kind.node_count() {
+            let key = format!("nodes of element {id}");
+            return Err(self.fault(line, key, ids.len().to_string(), kind.node_count().to_string()));
+        }
+        let mut nodes = Vec::with_capacity(ids.len());
+        for node in ids {
+            let Some(index) = self.node_index(*node) else {
+                let key = format!("element {id}");
+                return Err(self.fault(line, key, format!("node {node}"), "a node of the file"));
+            };
+            nodes.push(index);
+        }
+        let mut sorted = nodes.clone();
+        sorted.sort_unstable();
+        if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            let node = self.made.mesh.node_ids[pair[0] as usize];
+            let expected = format!("{} different nodes", kind.node_count());
+            return Err(self.fault(
+                line,
+                format!("element {id}"),
+                format!("node {node} more than once"),
+                expected,
+            ));
+        }
+        if self.elements.insert(id, self.made.mesh.element_ids.len() as u32).is_some() {
+            return Err(self.fault(line, format!("element {id}"), "it again", "each number once"));
+        }
+        self.made.mesh.push_element(id, material, kind, &nodes);
+        let types = &mut self.made.element_types;
+        match types.iter_mut().find(|(name, _)| name == type_name) {
+            Some((_, count)) => *count += 1,
+            None => types.push((type_name.to_string(), 1)),
+        }
+        Ok(())
+    }
+
+    /// Counts an element that is left out.
+    pub fn leave_out(&mut self, type_name: &str) {
+        *self.left_out.entry(type_name.to_string()).or_insert(0) += 1;
+    }
+
+    /// Adds a constraint; one that is there already must have the same value.
+    pub fn constrain(&mut self, line: usize, node: u32, direction: u8, value: f64) -> Result<(), ReadError> {
+        let id = self.made.mesh.node_ids[node as usize];
+        let key = || format!("constraint of node {id} in {}", ["x", "y", "z"][direction as usize]);
+        if !value.is_finite() {
+            return Err(self.fault(line, key(), value.to_string(), "a finite number"));
+        }
+        match self.given.insert((node, direction), (value, line)) {
+            None => self.made.constraints.push(Constraint { node, direction, value }),
+            Some((first, _)) if first == value => {}
+            Some((first, before)) => {
+                let found = format!("{value} after {first} on line {before}");
+                return Err(self.fault(line, key(), found, "one value"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds nodes to a set, which is made when it is new.
+    pub fn node_set(&mut self, name: &str, nodes: impl IntoIterator<Item = u32>) {
+        self.made.node_sets.entry(name.to_string()).or_default().extend(nodes);
+    }
+
+    /// Adds elements to a set, which is made when it is new.
+    pub fn element_set(&mut self, name: &str, elements: impl IntoIterator<Item = u32>) {
+        self.made.element_sets.entry(name.to_string()).or_default().extend(elements);
+    }
+
+    /// The file read: without unused nodes, with sets in order. A file without volume elements is refused.
+    pub fn finish(mut self) -> Result<MeshFile, ReadError> {
+        for (name, count) in std::mem::take(&mut self.left_out) {
+            self.warn(format!("{count} elements of type {name} are left out"));
+        }
+        if self.made.mesh.element_count() == 0 {
+            let nodes = self.made.mesh.node_count();
+            let told = self.made.warnings.iter().filter(|w| w.contains("left out")).cloned();
+            let told: Vec<String> = told.collect();
+            let found = match told.is_empty() {
+                true => format!("{nodes} nodes and no volume element"),
+                false => format!("{nodes} nodes and no volume element ({})", told.join("; ")),
+            };
+            return Err(self.fault(0, "elements", found, "at least one volume element"));
+        }
+        let MeshFile { mesh, constraints, node_sets, element_sets, warnings, .. } = &mut self.made;
+        for set in node_sets.values_mut().chain(element_sets.values_mut()) {
+            set.sort_unstable();
+            set.dedup();
+        }
+        drop_unused_nodes(&self.file, mesh, constraints, node_sets, warnings);
+        Ok(self.made)
+    }
+}
+
+/// Leaves out nodes that belong to no element, with their constraints: they have no stiffness, and meshing often
+/// leaves some behind.
+pub(super) fn drop_unused_nodes(
+    file: &Path,
+    mesh: &mut Mesh,
+    constraints: &mut Vec<Constraint>,
+    node_sets: &mut BTreeMap<String, Vec<u32>>,
+    warnings: &mut Vec<String>,
+) {
+    let mut used = vec![false; mesh.node_count()];
+    for node in mesh.connectivity.nodes() {
+        used[*node as usize] = true;
+    }
+    let unused: Vec<u32> =
+        used.iter().zip(&mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect();
+    if unused.is_empty() {
+        return;
+    }
+    let mut next = 0;
+    let renumbered: Vec<u32> = used
+        .iter()
+        .map(|used| {
+            next += u32::from(*used);
+            next.wrapping_sub(1)
+        })
+        .collect();
+    let mut keep = used.iter();
+    mesh.node_ids.retain(|_| keep.next().copied().unwrap_or(false));
+    let mut keep = used.iter();
+    mesh.coordinates.retain(|_| keep.next().copied().unwrap_or(false));
+    for node in mesh.connectivity.nodes_mut() {
+        *node = renumbered[*node as usize];
+    }
+    constraints.retain(|c| used[c.node as usize]);
+    for constraint in constraints {
+        constraint.node = renumbered[constraint.node as usize];
+    }
+    for set in node_sets.values_mut() {
+        set.retain(|node| used[*node as usize]);
+        set.iter_mut().for_each(|node| *node = renumbered[*node as usize]);
+    }
+    let shown = unused.iter().take(5).map(u32::to_string).collect::<Vec<_>>().join(", ");
+    let sentence = match unused.len() {
+        1 => format!("node {shown} belongs to no element and is left out"),
+        count if count <= 5 => format!("{count} nodes belong to no element and are left out: {shown}"),
+        count => format!("{count} nodes belong to no element and are left out: {shown}, …"),
+    };
+    warnings.push(format!("{}: {sentence}", file.display()));
+}
+
+/// The bytes of a file; `what` names its content in messages.
+pub(super) fn read_bytes(file: &Path, what: &str) -> Result<Vec<u8>, ReadError> {
+    std::fs::read(file).map_err(|error| {
+        let found = match error.kind() {
+            std::io::ErrorKind::NotFound => "no such file".to_string(),
+            _ => format!("that it cannot be read ({error})"),
+        };
+        ReadError::whole(file, what, found, "a readable file")
+    })
+}
+
+/// The text of a file. Titles may hold any 8-bit code page; the data are ASCII.
+pub(super) fn read_text(file: &Path, what: &str) -> Result<String, ReadError> {
+    let text = String::from_utf8_lossy(&read_bytes(file, what)?).into_owned();
+    Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
+}
+
+/// Reorders from a format's list of edges (pairs of corners, in the order of its mid-side nodes) to ours: for each
+/// node of the kind, its position in the format. Corners keep their places.
+pub(crate) fn order_from_edges(kind: ElementKind, edges: &[[usize; 2]]) -> Vec<usize> {
+    let corners = kind.corner_count();
+    let mid = |edge: &[usize; 2]| {
+        let same = |other: &[usize; 2]| other == edge || *other == [edge[1], edge[0]];
+        corners + edges.iter().position(same).expect("a format lists every edge of a kind once")
+    };
+    let mids = if kind.is_linear() { &[][..] } else { kind.edges() };
+    (0..corners).chain(mids.iter().map(mid)).collect()
+}

@@ -1,0 +1,207 @@
+//! An unstructured grid of VTK as a mesh: what `.vtu` and `.vtk` have in common.
+//!
+//! | array | meaning |
+//! |---|---|
+//! | points: `node_id` | numbers of the nodes; else 1, 2, … |
+//! | points: `constraint`, `constraint_value` | 1 for x, plus 2 for y, plus 4 for z; three values, else 0 |
+//! | points: `node_set:NAME`, cells: `element_set:NAME` | members where not 0 |
+//! | cells: `element_id` | numbers of the elements; else 1, 2, … |
+//! | cells: `material` (or MaterialIds, MaterialID, gmsh:physical, CellEntityIds) | material numbers; else 1 |
+//!
+//! Node order: that of VTK is ours for all eight kinds. VTK up to 9.0 documented wedges with the first triangle seen
+//! from outside; a wedge that is inside out in the present order is turned, with a remark.
+//!
+//! Source: VTK's classes vtkQuadraticHexahedron and so on; checked with VTK 9.7 (`tests/vtk_check.py`).
+
+use trackbed_fem::ElementKind;
+
+use super::error::ReadError;
+use super::mesh_file::{Builder, MeshFile};
+
+/// Numbers of one array.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Array {
+    pub name: String,
+    pub components: usize,
+    pub values: Vec<f64>,
+}
+
+/// A grid as the file holds it.
+#[derive(Default)]
+pub(super) struct Grid {
+    pub points: Vec<f64>,
+    pub connectivity: Vec<f64>,
+    /// End of each cell in `connectivity`.
+    pub ends: Vec<f64>,
+    pub types: Vec<f64>,
+    pub point_data: Vec<Array>,
+    pub cell_data: Vec<Array>,
+}
+
+/// VTK's number of each kind.
+pub(crate) const TYPES: [(u8, ElementKind, &str); 8] = [
+    (25, ElementKind::Hex20, "VTK_QUADRATIC_HEXAHEDRON"),
+    (26, ElementKind::Wedge15, "VTK_QUADRATIC_WEDGE"),
+    (27, ElementKind::Pyramid13, "VTK_QUADRATIC_PYRAMID"),
+    (24, ElementKind::Tet10, "VTK_QUADRATIC_TETRA"),
+    (12, ElementKind::Hex8, "VTK_HEXAHEDRON"),
+    (13, ElementKind::Wedge6, "VTK_WEDGE"),
+    (14, ElementKind::Pyramid5, "VTK_PYRAMID"),
+    (10, ElementKind::Tet4, "VTK_TETRA"),
+];
+
+/// Types of fewer than three dimensions.
+const LOWER: [u8; 18] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35, 36];
+/// A brick with its corners in rows.
+const VOXEL: u8 = 11;
+
+const MATERIALS: [&str; 5] = ["material", "MaterialIds", "MaterialID", "gmsh:physical", "CellEntityIds"];
+
+/// The mesh of a grid.
+pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadError> {
+    let (nodes, cells) = (grid.points.len() / 3, grid.types.len());
+    if grid.points.len() % 3 != 0 {
+        let found = format!("{} numbers", grid.points.len());
+        return Err(builder.fault(0, "points", found, "three numbers per point"));
+    }
+    if grid.ends.len() != cells {
+        return Err(builder.fault(0, "cells", format!("{} ends", grid.ends.len()), format!("{cells}")));
+    }
+    for (what, data, count) in [("point", &grid.point_data, nodes), ("cell", &grid.cell_data, cells)] {
+        let wrong = data.iter().find(|a| a.values.len() != count.saturating_mul(a.components));
+        if let Some(array) = wrong {
+            let found = format!("{} numbers", array.values.len());
+            let expected = format!("{count} x {}", array.components);
+            return Err(builder.fault(0, format!("{what} array {}", array.name), found, expected));
+        }
+    }
+    let node_ids = ids(&builder, &grid.point_data, &["node_id"], nodes, 1)?;
+    for (id, x) in node_ids.iter().zip(grid.points.chunks_exact(3)) {
+        builder.node(0, *id, [x[0], x[1], x[2]])?;
+    }
+    let kept = elements(&mut builder, &grid, &node_ids)?;
+    constraints(&mut builder, &grid)?;
+    for array in grid.point_data.iter().filter(|a| a.components == 1) {
+        if let Some(name) = array.name.strip_prefix("node_set:") {
+            let set = array.values.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(i, _)| i as u32);
+            builder.node_set(name, set);
+        }
+    }
+    for array in grid.cell_data.iter().filter(|a| a.components == 1) {
+        if let Some(name) = array.name.strip_prefix("element_set:") {
+            let set = kept.iter().enumerate().filter(|(_, cell)| array.values[**cell] != 0.0);
+            builder.element_set(name, set.map(|(index, _)| index as u32));
+        }
+    }
+    builder.finish()
+}
+
+/// The first of the named arrays as identifiers; else `first`, `first + step`…
+fn ids(
+    builder: &Builder,
+    data: &[Array],
+    names: &[&str],
+    count: usize,
+    step: u32,
+) -> Result<Vec<u32>, ReadError> {
+    let found = names.iter().find_map(|name| data.iter().find(|a| a.name == *name && a.components == 1));
+    let Some(array) = found else { return Ok((0..count as u32).map(|i| 1 + i * step).collect()) };
+    let whole = |v: &f64| {
+        let fits = v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v);
+        fits.then_some(*v as u32).ok_or_else(|| {
+            builder.fault(0, format!("array {}", array.name), v.to_string(), "whole numbers of 0 or more")
+        })
+    };
+    array.values.iter().map(whole).collect()
+}
+
+/// Adds the cells of three dimensions; returns which they are.
+fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<usize>, ReadError> {
+    let cells = grid.types.len();
+    let element_ids = ids(builder, &grid.cell_data, &["element_id"], cells, 1)?;
+    let materials = ids(builder, &grid.cell_data, &MATERIALS, cells, 0)?;
+    let (mut start, mut turned, mut kept) = (0, 0, Vec::with_capacity(cells));
+    for cell in 0..cells {
+        let (type_number, end, id) = (grid.types[cell], grid.ends[cell], element_ids[cell]);
+        let in_order = end >= start as f64 && end <= grid.connectivity.len() as f64;
+        let key = || format!("cell {cell}");
+        if !in_order {
+            let expected = format!("an end from {start} to {}", grid.connectivity.len());
+            return Err(builder.fault(0, key(), format!("end {end}"), expected));
+        }
+        let places = &grid.connectivity[start..end as usize];
+        start = end as usize;
+        let number = if (0.0..=255.0).contains(&type_number) { type_number as u8 } else { u8::MAX };
+        if LOWER.contains(&number) {
+            builder.leave_out(&format!("VTK {number}"));
+            continue;
+        }
+        let mut of_cell = Vec::with_capacity(places.len());
+        for place in places {
+            match node_ids.get(*place as usize).filter(|_| *place >= 0.0) {
+                Some(id) => of_cell.push(*id),
+                None => {
+                    let expected = format!("a point from 0 to {}", node_ids.len().saturating_sub(1));
+                    return Err(builder.fault(0, key(), format!("point {place}"), expected));
+                }
+            }
+        }
+        let (kind, name) = match TYPES.iter().find(|(n, ..)| *n == number) {
+            Some((_, kind, name)) => (*kind, *name),
+            None if number == VOXEL && of_cell.len() == 8 => {
+                of_cell.swap(2, 3);
+                of_cell.swap(6, 7);
+                (ElementKind::Hex8, "VTK_VOXEL")
+            }
+            None => {
+                let expected =
+                    "VTK types 10 to 14 and 24 to 27: linear cells, or quadratic ones with nodes on edges";
+                return Err(builder.fault(0, key(), format!("VTK type {type_number}"), expected));
+            }
+        };
+        builder.element(0, id, materials[cell], (kind, &format!("{name} {}", kind.name())), &of_cell)?;
+        let index = builder.made.mesh.element_count() - 1;
+        if kind.linear() == ElementKind::Wedge6 && builder.made.mesh.element_volume(index) < 0.0 {
+            turn(&mut builder.made.mesh.connectivity[index]);
+            turned += 1;
+        }
+        kept.push(cell);
+    }
+    if turned > 0 {
+        builder.warn(format!("{turned} wedges whose first triangle is seen from outside were turned"));
+    }
+    Ok(kept)
+}
+
+/// A wedge numbered the other way round.
+fn turn(nodes: &mut [u32]) {
+    nodes.swap(1, 2);
+    nodes.swap(4, 5);
+    if nodes.len() == 15 {
+        // Middles of 01 12 20, 34 45 53, 03 14 25.
+        nodes.swap(6, 8);
+        nodes.swap(9, 11);
+        nodes.swap(13, 14);
+    }
+}
+
+fn constraints(builder: &mut Builder, grid: &Grid) -> Result<(), ReadError> {
+    let array = |name: &str, components| {
+        grid.point_data.iter().find(|a| a.name == name && a.components == components)
+    };
+    let Some(mask) = array("constraint", 1) else { return Ok(()) };
+    let values = array("constraint_value", 3);
+    for (node, bits) in mask.values.iter().enumerate() {
+        if bits.fract() != 0.0 || !(0.0..=7.0).contains(bits) {
+            let key = format!("constraint of point {node}");
+            return Err(builder.fault(0, key, bits.to_string(), "0 to 7"));
+        }
+        for direction in 0..3_u8 {
+            if *bits as u8 & (1 << direction) != 0 {
+                let value = values.map_or(0.0, |v| v.values[3 * node + direction as usize]);
+                builder.constrain(0, node as u32, direction, value)?;
+            }
+        }
+    }
+    Ok(())
+}

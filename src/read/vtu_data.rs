@@ -1,0 +1,168 @@
+//! The binary arrays of VTK XML files: lengths in front, base64 or raw, plain or compressed in blocks.
+
+use std::io::Read;
+
+/// How a file writes its binary arrays.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Coding {
+    /// Blocks compressed by zlib.
+    pub zlib: bool,
+    /// Lengths of 8 bytes instead of 4.
+    pub wide: bool,
+    pub big_endian: bool,
+}
+
+/// zlib makes data at most 1032 times shorter (Deflate's longest match); a damaged length says more.
+const MOST_COMPRESSION: u64 = 1032;
+
+/// Bytes of an array, taken piece by piece.
+struct Stream<'a> {
+    bytes: &'a [u8],
+    base64: bool,
+    /// Bytes of the last group of base64 that were not taken yet.
+    pending: Vec<u8>,
+}
+
+impl Stream<'_> {
+    fn take(&mut self, count: usize) -> Result<Vec<u8>, String> {
+        let ends = || "the end of the data".to_string();
+        if count > self.bytes.len() + self.pending.len() {
+            return Err(ends());
+        }
+        if !self.base64 {
+            let (taken, rest) = self.bytes.split_at(count);
+            self.bytes = rest;
+            return Ok(taken.to_vec());
+        }
+        let mut out = std::mem::take(&mut self.pending);
+        while out.len() < count {
+            // Groups of four letters; a length may be padded on its own, so that padding stands within the data.
+            let mut group = [0; 4];
+            let mut filled = 0;
+            while filled < 4 {
+                let (letter, rest) = self.bytes.split_first().ok_or_else(ends)?;
+                self.bytes = rest;
+                if !letter.is_ascii_whitespace() {
+                    group[filled] = *letter;
+                    filled += 1;
+                }
+            }
+            let padding = group.iter().rev().take_while(|l| **l == b'=').count();
+            let mut bits = 0_u32;
+            for letter in group {
+                bits = bits << 6 | letter_value(letter).ok_or("a letter that is not base64")?;
+            }
+            if padding > 2 {
+                return Err("padding that is not base64".into());
+            }
+            out.extend(&bits.to_be_bytes()[1..4 - padding]);
+        }
+        self.pending = out.split_off(count);
+        Ok(out)
+    }
+}
+
+fn letter_value(letter: u8) -> Option<u32> {
+    Some(u32::from(match letter {
+        b'A'..=b'Z' => letter - b'A',
+        b'a'..=b'z' => letter - b'a' + 26,
+        b'0'..=b'9' => letter - b'0' + 52,
+        b'+' => 62,
+        b'/' => 63,
+        b'=' => 0,
+        _ => return None,
+    }))
+}
+
+/// The numbers of an array of type `kind` from the start of `bytes`; the error tells what was found.
+pub(super) fn decode(bytes: &[u8], base64: bool, kind: &str, coding: Coding) -> Result<Vec<f64>, String> {
+    let mut stream = Stream { bytes, base64, pending: Vec::new() };
+    let data = if coding.zlib { inflate(&mut stream, coding)? } else { plain(&mut stream, coding)? };
+    numbers(&data, kind, coding.big_endian)
+}
+
+fn length(stream: &mut Stream, coding: Coding) -> Result<u64, String> {
+    let bytes = stream.take(if coding.wide { 8 } else { 4 })?;
+    Ok(unsigned(&bytes, coding.big_endian))
+}
+
+fn unsigned(bytes: &[u8], big_endian: bool) -> u64 {
+    let add = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
+    if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
+}
+
+fn plain(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
+    let count = length(stream, coding)?;
+    stream.take(usize::try_from(count).map_err(|_| format!("a length of {count}"))?)
+}
+
+/// Number of blocks, length of a block, length of the last one if shorter, compressed lengths, and the blocks.
+fn inflate(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
+    let blocks = length(stream, coding)?;
+    let (size, last) = (length(stream, coding)?, length(stream, coding)?);
+    let most = (stream.bytes.len() + stream.pending.len()) as u64;
+    if blocks > most {
+        return Err(format!("{blocks} blocks"));
+    }
+    let lengths: Vec<u64> = (0..blocks).map(|_| length(stream, coding)).collect::<Result<_, _>>()?;
+    // The lengths are base64 of their own: what is left of their last group is padding.
+    stream.pending.clear();
+    let mut out = Vec::new();
+    for (block, packed) in lengths.iter().enumerate() {
+        let is_last = block as u64 + 1 == blocks;
+        let expected = if is_last && last > 0 { last } else { size };
+        if *packed > most || expected > packed.saturating_mul(MOST_COMPRESSION) {
+            return Err(format!("a block of {packed} bytes for {expected}"));
+        }
+        let packed = stream.take(*packed as usize)?;
+        let before = out.len();
+        flate2::read::ZlibDecoder::new(&packed[..])
+            .take(expected)
+            .read_to_end(&mut out)
+            .map_err(|_| "damaged compressed data".to_string())?;
+        if (out.len() - before) as u64 != expected {
+            return Err(format!("{} bytes in a block of {expected}", out.len() - before));
+        }
+    }
+    Ok(out)
+}
+
+fn numbers(data: &[u8], kind: &str, big_endian: bool) -> Result<Vec<f64>, String> {
+    let width = match kind {
+        "Int8" | "UInt8" => 1,
+        "Int16" | "UInt16" => 2,
+        "Int32" | "UInt32" | "Float32" => 4,
+        "Int64" | "UInt64" | "Float64" => 8,
+        _ => return Err(format!("type \"{kind}\"")),
+    };
+    if data.len() % width != 0 {
+        return Err(format!("{} bytes of {kind}", data.len()));
+    }
+    let shift = 64 - 8 * width;
+    let number = |bytes: &[u8]| -> f64 {
+        let bits = unsigned(bytes, big_endian);
+        match kind {
+            "Float32" => f64::from(f32::from_bits(bits as u32)),
+            "Float64" => f64::from_bits(bits),
+            _ if kind.starts_with('U') => bits as f64,
+            _ => (((bits << shift) as i64) >> shift) as f64,
+        }
+    };
+    Ok(data.chunks_exact(width).map(number).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_with_padding_in_the_middle() {
+        // 4 bytes of length, then "abc": together, and each padded on its own.
+        for text in ["AwAAAGFiYw==", "AwAAAA==YWJj", "  AwAA\nAGFiYw=="] {
+            let mut stream = Stream { bytes: text.as_bytes(), base64: true, pending: Vec::new() };
+            assert_eq!(plain(&mut stream, Coding::default()).unwrap(), b"abc", "{text}");
+        }
+        let mut stream = Stream { bytes: b"AwAAAGFi", base64: true, pending: Vec::new() };
+        assert!(plain(&mut stream, Coding::default()).is_err());
+    }
+}

@@ -1,0 +1,122 @@
+//! Abaqus input files (`.inp`), which CalculiX reads too.
+//!
+//! Types: C3D20R, C3D15, C3D10, C3D8, C3D6, C3D5, C3D4. Abaqus has no 13-node pyramid: it goes out as a C3D20R with
+//! repeated nodes (see `read::degenerate`). Reals are written without exponents where that is short, since CalculiX
+//! reads 20 columns of a number only.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::path::Path;
+
+use trackbed_fem::ElementKind;
+
+use crate::read::MeshFile;
+use crate::read::degenerate::to_brick;
+
+use super::atomic;
+use super::error::WriteError;
+use super::mesh_file::plain_names;
+
+/// Longest name.
+const NAME: usize = 80;
+/// Fields in a data line.
+const ROW: usize = 16;
+
+/// Writes an input file; returns what was changed.
+pub(super) fn write_inp(path: &Path, file: &MeshFile) -> Result<Vec<String>, WriteError> {
+    let mut lost = Vec::new();
+    let pyramids = file.mesh.connectivity.kinds().iter().filter(|k| **k == ElementKind::Pyramid13).count();
+    if pyramids > 0 {
+        lost.push(format!("{pyramids} pyramids of 13 nodes are C3D20R with repeated nodes in the file"));
+    }
+    let text = text(file, &mut lost).map_err(|e| WriteError::format(path, e))?;
+    atomic::write(path, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(path)))?;
+    Ok(lost)
+}
+
+fn type_name(kind: ElementKind) -> &'static str {
+    match kind {
+        ElementKind::Hex20 | ElementKind::Pyramid13 => "C3D20R",
+        ElementKind::Wedge15 => "C3D15",
+        ElementKind::Tet10 => "C3D10",
+        ElementKind::Hex8 => "C3D8",
+        ElementKind::Wedge6 => "C3D6",
+        ElementKind::Pyramid5 => "C3D5",
+        ElementKind::Tet4 => "C3D4",
+    }
+}
+
+/// A real in 20 columns that keeps its bits; cut after 20 columns it is still the same number to many digits.
+fn real(value: f64) -> String {
+    let plain = format!("{value:?}");
+    if !plain.contains('e') {
+        return plain;
+    }
+    let long = format!("{value}");
+    // Numbers below 1e-5: a few zeros more do no harm. Above 1e16 an exponent is needed, and there are few digits.
+    if value.abs() < 1.0 && plain.len() > 20 { long } else { plain }
+}
+
+fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Error> {
+    let mesh = &file.mesh;
+    let mut out = String::from("*HEADING\nmesh in SI units\n*NODE\n");
+    for (id, x) in mesh.node_ids.iter().zip(&mesh.coordinates) {
+        let [x, y, z] = x.map(real);
+        writeln!(out, "{id}, {x}, {y}, {z}")?;
+    }
+    // Neighbours of one type stand under one keyword, so that the order of elements stays.
+    let elements: Vec<usize> = (0..mesh.element_count()).collect();
+    let name = |e: usize| type_name(mesh.connectivity.kind(e));
+    for block in elements.chunk_by(|a, b| name(*a) == name(*b)) {
+        writeln!(out, "*ELEMENT, TYPE={}", name(block[0]))?;
+        for &e in block {
+            let kind = mesh.connectivity.kind(e);
+            let ids: Vec<u32> = mesh.connectivity[e].iter().map(|n| mesh.node_ids[*n as usize]).collect();
+            let ids = if kind == ElementKind::Pyramid13 { to_brick(kind, &ids) } else { ids };
+            let fields: Vec<String> = [mesh.element_ids[e]].iter().chain(&ids).map(u32::to_string).collect();
+            let rows: Vec<String> = fields.chunks(ROW).map(|row| row.join(", ")).collect();
+            writeln!(out, "{}", rows.join(",\n"))?;
+        }
+    }
+    for (what, sets, ids) in [
+        ("*NSET, NSET", plain_names(&file.node_sets, NAME, lost), &mesh.node_ids),
+        ("*ELSET, ELSET", plain_names(&file.element_sets, NAME, lost), &mesh.element_ids),
+    ] {
+        for (name, members) in sets {
+            writeln!(out, "{what}={name}")?;
+            numbers(&mut out, members.iter().map(|m| ids[*m as usize]))?;
+        }
+    }
+    let used: BTreeSet<u32> = mesh.materials.iter().chain(file.materials.keys()).copied().collect();
+    let mut members: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (material, id) in mesh.materials.iter().zip(&mesh.element_ids) {
+        members.entry(*material).or_default().push(*id);
+    }
+    for number in &used {
+        writeln!(out, "*MATERIAL, NAME=MATERIAL_{number}")?;
+        if let Some(m) = file.materials.get(number) {
+            writeln!(out, "*ELASTIC\n{}, {}", real(m.young), real(m.poisson))?;
+            if let Some(density) = m.density {
+                writeln!(out, "*DENSITY\n{}", real(density))?;
+            }
+        }
+    }
+    for (number, ids) in &members {
+        writeln!(out, "*ELSET, ELSET=MATERIAL_{number}")?;
+        numbers(&mut out, ids.iter().copied())?;
+        writeln!(out, "*SOLID SECTION, ELSET=MATERIAL_{number}, MATERIAL=MATERIAL_{number}")?;
+    }
+    if !file.constraints.is_empty() {
+        writeln!(out, "*BOUNDARY")?;
+        for c in &file.constraints {
+            let (id, direction) = (mesh.node_ids[c.node as usize], c.direction + 1);
+            writeln!(out, "{id}, {direction}, {direction}, {}", real(c.value))?;
+        }
+    }
+    Ok(out)
+}
+
+fn numbers(out: &mut String, ids: impl Iterator<Item = u32>) -> std::fmt::Result {
+    let all: Vec<String> = ids.map(|id| id.to_string()).collect();
+    all.chunks(ROW).try_for_each(|row| writeln!(out, "{}", row.join(", ")))
+}
