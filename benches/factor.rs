@@ -134,12 +134,20 @@ impl Case {
                 let mut solver = DirectSolver::new(analysis.clone());
                 let name = format!("L L^T, {threads} thread(s)");
                 line(&format!("{name}, first"), median(1, || self.symmetric(&mut solver)), analysis.flops());
-                line(&format!("{name}, again"), median(times, || self.symmetric(&mut solver)), analysis.flops());
+                line(
+                    &format!("{name}, again"),
+                    median(times, || self.symmetric(&mut solver)),
+                    analysis.flops(),
+                );
                 peak = memory("VmHWM:") - before;
                 self.solves(&mut solver);
             });
         }
-        println!("  memory, L L^T: foretold {:.1} MB, taken {:.1} MB", analysis.memory(true) as f64 / 1e6, peak / 1e6);
+        println!(
+            "  memory, L L^T: foretold {:.1} MB, taken {:.1} MB",
+            analysis.memory(true) as f64 / 1e6,
+            peak / 1e6
+        );
         for threads in [1, 2] {
             watch::pool(threads).install(|| {
                 let before = memory("VmRSS:");
@@ -155,7 +163,11 @@ impl Case {
                 self.solves(&mut solver);
             });
         }
-        println!("  memory, L U: foretold {:.1} MB, taken {:.1} MB", analysis.memory(false) as f64 / 1e6, peak / 1e6);
+        println!(
+            "  memory, L U: foretold {:.1} MB, taken {:.1} MB",
+            analysis.memory(false) as f64 / 1e6,
+            peak / 1e6
+        );
         self.faer();
     }
 
@@ -218,7 +230,8 @@ impl Case {
         )
         .expect("there is enough memory");
         let mut values = vec![0.0; symbolic.len_val()];
-        let mut work = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
+        let mut work =
+            MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
         let time = median(self.times(), || {
             let matrix = SparseColMatRef::new(pattern, &self.values[..]);
             let stack = MemStack::new(&mut work);
@@ -233,7 +246,8 @@ impl Case {
         let mut work = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let (wall, cpu) = median(15, || {
             x.copy_from_slice(&load);
-            let (factor, x) = (LltRef::new(&symbolic, &values), MatMut::from_column_major_slice_mut(&mut x, n, 1));
+            let (factor, x) =
+                (LltRef::new(&symbolic, &values), MatMut::from_column_major_slice_mut(&mut x, n, 1));
             factor.solve_in_place_with_conj(Conj::No, x, Par::Seq, MemStack::new(&mut work));
         });
         println!("    faer solve: {:.1} ms wall, {:.1} ms cpu", wall * 1e3, cpu * 1e3);

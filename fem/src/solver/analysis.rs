@@ -94,13 +94,6 @@ impl Analysis {
         }
         drop(symbolic);
         let structure = Structure::new(begin, rows_start, rows, &upper);
-        if std::env::var_os("DBG").is_some() {
-            eprintln!("supernodes {} rows {} tasks {} crown {} work {} branches {} handed {} panel {} second {} entries {} runs {} maxw {} brw {}", structure.count(), structure.rows.len(), structure.tasks.len(), structure.crown.len(), structure.work_len, structure.tasks.last().map_or(0,|t|t.work.1), structure.handed_len, structure.panel[structure.count()], structure.second[structure.count()], structure.entry_row.len(), structure.runs.len(), structure.max_width, structure.branch_width);
-            for lim in [1e4,1e5,1e6,1e7,1e8,1e9,1e10,1e12] {
-                let v: Vec<f64> = (0..structure.count()).map(|s| structure.front_flops(s)).filter(|&f| f<lim && f>=lim/10.0).collect();
-                eprintln!("  fronts with flops < {lim:e}: {} sum {:.3e}", v.len(), v.iter().sum::<f64>());
-            }
-        }
         Ok(Analysis { column_start, row, order, structure })
     }
 

@@ -120,7 +120,13 @@ fn random_system(seed: u64, nodes: usize, dofs: usize, links: usize, symmetric: 
                 // A cyclic shift, the best pivot of the first column in its second row.
                 let heavy = 30.0 + 10.0 * a;
                 let shift = |from: usize, to: usize| (from % dofs + 1) % dofs == to % dofs;
-                a = if r == c && dofs > 1 { 0.0 } else if shift(c, r) || dofs == 1 { heavy } else { a };
+                a = if r == c && dofs > 1 {
+                    0.0
+                } else if shift(c, r) || dofs == 1 {
+                    heavy
+                } else {
+                    a
+                };
                 b = if shift(r, c) { heavy } else { b };
             }
             lower.push(a);
@@ -231,9 +237,11 @@ fn the_residuals_of_a_brick_are_rounding_and_the_solution_is_that_of_faer() {
 
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, &system.start, None, &system.row);
     let symbolic =
-        factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, Default::default()).unwrap();
+        factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, Default::default())
+            .unwrap();
     let mut values = vec![0.0; symbolic.len_val()];
-    let mut work = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
+    let mut work =
+        MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
     let matrix = SparseColMatRef::new(pattern, &system.lower[..]);
     let stack = MemStack::new(&mut work);
     symbolic
