@@ -94,31 +94,6 @@ impl Analysis {
         }
         drop(symbolic);
         let structure = Structure::new(begin, rows_start, rows, &upper);
-        if std::env::var_os("DBG").is_some() {
-            eprintln!(
-                "supernodes {} rows {} tasks {} crown {} work {} branches {} handed {} panel {} second {} entries {} runs {} maxw {} brw {}",
-                structure.count(),
-                structure.rows.len(),
-                structure.tasks.len(),
-                structure.crown.len(),
-                structure.work_len,
-                structure.tasks.last().map_or(0, |t| t.work.1),
-                structure.handed_len,
-                structure.panel[structure.count()],
-                structure.second[structure.count()],
-                structure.entry_row.len(),
-                structure.runs.len(),
-                structure.max_width,
-                structure.branch_width
-            );
-            for lim in [1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e12] {
-                let v: Vec<f64> = (0..structure.count())
-                    .map(|s| structure.front_flops(s))
-                    .filter(|&f| f < lim && f >= lim / 10.0)
-                    .collect();
-                eprintln!("  fronts with flops < {lim:e}: {} sum {:.3e}", v.len(), v.iter().sum::<f64>());
-            }
-        }
         Ok(Analysis { column_start, row, order, structure })
     }
 
@@ -159,17 +134,20 @@ impl Analysis {
         values
     }
 
-    /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and solved for one
-    /// right-hand side at a time. All of it is taken before the first front, so this is the peak, too.
+    /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and
+    /// solved for one right-hand side at a time, with the threads of the present pool (each adds a few per cent). All of
+    /// it is taken before the first front, so this is the peak, too.
     pub fn memory(&self, symmetric: bool) -> usize {
         let structure = &self.structure;
         let triangles = if symmetric { 1 } else { 2 };
-        let fronts = triangles * (structure.work_len + structure.handed_len);
+        let threads = structure.most_tasks().min(rayon::current_num_threads());
+        let places = structure.work_len + structure.handed_len + threads * structure.branch_len;
         let second = if symmetric { 0 } else { structure.second[structure.count()] };
         let rows = if symmetric { 0 } else { 4 * self.size() };
         // Scratch of the kernels: at most 8 bytes for faer and 20 for exchanges of rows, by pivot column.
-        let scratch = 28 * (structure.tasks.len() * structure.branch_width + structure.max_width);
-        8 * (self.factor_len() + second + fronts + self.size() + structure.rows.len()) + rows + scratch
+        let scratch = 28 * (threads * structure.branch_width + structure.max_width);
+        let vectors = self.size() + structure.rows.len();
+        8 * (self.factor_len() + second + triangles * places + vectors) + rows + scratch
     }
 
     pub(super) fn structure(&self) -> &Structure {

@@ -13,7 +13,7 @@ use super::front::{self, Panels, Scratch, Updates};
 use super::solution::{Solution, Vectors};
 use super::structure::{Structure, Task};
 use super::{LinearSolver, PivotError};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 
 /// A numeric factor with its buffers; factored anew in place.
 pub struct DirectSolver {
@@ -25,9 +25,16 @@ pub struct DirectSolver {
     rows: Vec<u32>,
     work: Buffer,
     handed: Buffer,
-    scratch: Vec<Scratch>,
+    scratch: Option<Scratch>,
+    slots: Vec<Mutex<Slot>>,
     solution: Solution,
     weakest: (f64, usize),
+}
+
+/// What a thread needs for branches.
+struct Slot {
+    work: Buffer,
+    scratch: Scratch,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +56,8 @@ impl DirectSolver {
             rows: Vec::new(),
             work: Buffer::default(),
             handed: Buffer::default(),
-            scratch: Vec::new(),
+            scratch: None,
+            slots: Vec::new(),
             solution: Solution::default(),
             weakest: (1.0, last),
         }
@@ -64,8 +72,8 @@ impl DirectSolver {
     /// [`Analysis::pattern`].
     ///
     /// # Errors
-    /// [`PivotError`] names the first equation (in the order of elimination) whose pivot is not positive; there is no
-    /// factor then.
+    /// [`PivotError`] names the equation whose pivot is not positive, the earliest of those that branches of the tree
+    /// meet at the same time; there is no factor then.
     ///
     /// # Panics
     /// When `lower` has another length than the pattern.
@@ -91,8 +99,8 @@ impl DirectSolver {
     /// values of (r, c) and (c, r). On the diagonal `lower` counts. Rows are exchanged within pivot blocks.
     ///
     /// # Errors
-    /// [`PivotError`] names the first equation (in the order of elimination) whose pivot is zero or not finite; there is
-    /// no factor then.
+    /// [`PivotError`] names the equation whose pivot is zero or not finite, the earliest of those that branches of the tree
+    /// meet at the same time; there is no factor then.
     ///
     /// # Panics
     /// When `lower` or `upper` have another length than the pattern.
@@ -130,8 +138,14 @@ impl DirectSolver {
     pub fn allocated(&self) -> usize {
         let buffers = [&self.first, &self.second, &self.work, &self.handed];
         let values: usize = buffers.iter().map(|buffer| buffer.capacity()).sum();
-        let scratch: usize = self.scratch.iter().map(Scratch::bytes).sum();
-        8 * (values + self.solution.capacity()) + 4 * self.rows.capacity() + scratch
+        let slots: usize = self
+            .slots
+            .iter()
+            .map(|slot| slot.lock().unwrap_or_else(PoisonError::into_inner))
+            .map(|slot| 8 * slot.work.capacity() + slot.scratch.bytes())
+            .sum();
+        let scratch = self.scratch.as_ref().map_or(0, Scratch::bytes);
+        8 * (values + self.solution.capacity()) + 4 * self.rows.capacity() + slots + scratch
     }
 
     /// Solves for `count` right-hand sides, column-major `[equations x count]`, in place. Eight at a time share the
@@ -175,10 +189,17 @@ impl DirectSolver {
             self.rows.resize(self.analysis.size(), 0);
         }
         self.solution.reserve(structure, 1);
-        if self.scratch.is_empty() {
-            let width = structure.branch_width;
-            self.scratch.extend(structure.tasks.iter().map(|_| Scratch::new(width)));
-            self.scratch.push(Scratch::new(structure.max_width));
+        self.scratch.get_or_insert_with(|| Scratch::new(structure.max_width));
+        let threads = structure.most_tasks().min(rayon::current_num_threads());
+        while self.slots.len() < threads {
+            let scratch = Scratch::new(structure.branch_width);
+            self.slots.push(Mutex::new(Slot { work: Buffer::default(), scratch }));
+        }
+        for slot in &mut self.slots {
+            slot.get_mut()
+                .unwrap_or_else(PoisonError::into_inner)
+                .work
+                .reserve(triangles * structure.branch_len);
         }
     }
 
@@ -188,23 +209,24 @@ impl DirectSolver {
         F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
     {
         let drive = Drive { structure, triangles, front };
-        let tasks = &structure.tasks;
-        let (crown_scratch, scratch) = self.scratch.split_last_mut().expect("one for the crown");
-        let branches = Space {
-            first: &mut self.first[..],
-            second: &mut self.second[..],
-            rows: &mut self.rows[..],
-            handed: &mut self.handed[..],
-            work: &mut self.work[..],
-            start: Start::default(),
-        };
-        drive.branches(tasks, branches, scratch).map_or(Ok(()), Err)?;
-        let (first, second) = (&mut self.first[..], &mut self.second[..]);
-        for &s in &structure.crown {
-            let s = s as usize;
-            let store = (&mut *first, &mut *second, &mut self.rows[..]);
-            let (update, children) = drive.cut(s, &mut self.work, 0, &self.handed);
-            drive.one(s, store, Start::default(), update, children, true, crown_scratch)?;
+        let scratch = self.scratch.as_mut().expect("made with the buffers");
+        for round in &structure.rounds {
+            let branches = Space {
+                first: &mut self.first[..],
+                second: &mut self.second[..],
+                rows: &mut self.rows[..],
+                handed: &mut self.handed[..],
+                start: Start::default(),
+            };
+            let tasks = &structure.tasks[round.tasks.clone()];
+            drive.branches(tasks, branches, &self.slots).map_or(Ok(()), Err)?;
+            let (first, second) = (&mut self.first[..], &mut self.second[..]);
+            for &s in &structure.crown[round.crown.clone()] {
+                let s = s as usize;
+                let store = (&mut *first, &mut *second, &mut self.rows[..]);
+                let (update, children) = drive.cut(s, &mut self.work, &self.handed);
+                drive.one(s, store, Start::default(), update, children, true, scratch)?;
+            }
         }
         Ok(())
     }
@@ -251,7 +273,6 @@ struct Start {
     second: usize,
     rows: usize,
     handed: usize,
-    work: usize,
 }
 
 /// The part of the buffers that a range of tasks owns.
@@ -260,7 +281,6 @@ struct Space<'a> {
     second: &'a mut [f64],
     rows: &'a mut [u32],
     handed: &'a mut [f64],
-    work: &'a mut [f64],
     start: Start,
 }
 
@@ -275,18 +295,28 @@ where
     F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
 {
     /// Runs the tasks, halving their range; the least position that failed, if any.
-    fn branches(&self, tasks: &[Task], space: Space<'_>, scratch: &mut [Scratch]) -> Option<usize> {
+    fn branches(&self, tasks: &[Task], space: Space<'_>, slots: &[Mutex<Slot>]) -> Option<usize> {
         match tasks {
             [] => None,
-            [task] => self.branch(task, space, &mut scratch[0]),
+            [task] => {
+                // A thread does one branch at a time, and there is a slot for each, so one is always free.
+                let mut at = rayon::current_thread_index().unwrap_or(0);
+                loop {
+                    let slot = &slots[at % slots.len()];
+                    match slot.try_lock() {
+                        Ok(mut slot) => return self.branch(task, space, &mut slot),
+                        Err(TryLockError::Poisoned(slot)) => {
+                            return self.branch(task, space, &mut slot.into_inner());
+                        }
+                        Err(TryLockError::WouldBlock) => at += 1,
+                    }
+                }
+            }
             _ => {
                 let (low, high) = tasks.split_at(tasks.len() / 2);
-                let (low_scratch, high_scratch) = scratch.split_at_mut(low.len());
                 let (left, right) = self.halve(space, &high[0]);
-                let (a, b) = rayon::join(
-                    || self.branches(low, left, low_scratch),
-                    || self.branches(high, right, high_scratch),
-                );
+                let (a, b) =
+                    rayon::join(|| self.branches(low, left, slots), || self.branches(high, right, slots));
                 // Positions ascend with the tasks.
                 a.or(b)
             }
@@ -302,37 +332,28 @@ where
             second: if triangles == 2 { structure.second[s] } else { 0 },
             rows: if triangles == 2 { structure.begin[s] as usize } else { 0 },
             handed: triangles * structure.update[first_handed],
-            work: triangles * next.work.0,
         };
         let first = space.first.split_at_mut(middle.first - start.first);
         let second = space.second.split_at_mut(middle.second - start.second);
         let rows = space.rows.split_at_mut(middle.rows - start.rows);
         let handed = space.handed.split_at_mut(middle.handed - start.handed);
-        let work = space.work.split_at_mut(middle.work - start.work);
         (
-            Space { first: first.0, second: second.0, rows: rows.0, handed: handed.0, work: work.0, start },
-            Space {
-                first: first.1,
-                second: second.1,
-                rows: rows.1,
-                handed: handed.1,
-                work: work.1,
-                start: middle,
-            },
+            Space { first: first.0, second: second.0, rows: rows.0, handed: handed.0, start },
+            Space { first: first.1, second: second.1, rows: rows.1, handed: handed.1, start: middle },
         )
     }
 
-    fn branch(&self, task: &Task, space: Space<'_>, scratch: &mut Scratch) -> Option<usize> {
-        let Space { first, second, rows, handed, work, start } = space;
+    fn branch(&self, task: &Task, space: Space<'_>, slot: &mut Slot) -> Option<usize> {
+        let Space { first, second, rows, handed, start } = space;
+        let (work, scratch) = (&mut slot.work[..], &mut slot.scratch);
         for s in task.first..task.end {
             let store = (&mut *first, &mut *second, &mut *rows);
             let result = if self.structure.handed[s] {
                 let update = self.range(s, start.handed);
-                let children =
-                    Updates { work, work_start: start.work, handed: &[], triangles: self.triangles };
+                let children = Updates { work, work_start: 0, handed: &[], triangles: self.triangles };
                 self.one(s, store, start, &mut handed[update], children, false, scratch)
             } else {
-                let (update, children) = self.cut(s, work, start.work, &[]);
+                let (update, children) = self.cut(s, work, &[]);
                 self.one(s, store, start, update, children, false, scratch)
             };
             if let Err(position) = result {
@@ -350,22 +371,16 @@ where
     }
 
     /// The front's own update, and the stack with those of its children.
-    fn cut<'a>(
-        &self,
-        s: usize,
-        work: &'a mut [f64],
-        start: usize,
-        handed: &'a [f64],
-    ) -> (&'a mut [f64], Updates<'a>) {
+    fn cut<'a>(&self, s: usize, work: &'a mut [f64], handed: &'a [f64]) -> (&'a mut [f64], Updates<'a>) {
         let triangles = self.triangles;
-        let split = triangles * self.structure.split[s] - start;
-        let own = self.range(s, start);
+        let split = triangles * self.structure.split[s];
+        let own = self.range(s, 0);
         let (left, right) = work.split_at_mut(split);
         if self.structure.left[s] {
-            let children = Updates { work: right, work_start: start + split, handed, triangles };
+            let children = Updates { work: right, work_start: split, handed, triangles };
             (&mut left[own], children)
         } else {
-            let children = Updates { work: left, work_start: start, handed, triangles };
+            let children = Updates { work: left, work_start: 0, handed, triangles };
             (&mut right[own.start - split..own.end - split], children)
         }
     }

@@ -4,21 +4,24 @@
 //! factor; the rest is its *update*, added into the front of the parent. Whole subtrees that cost little are *branches*:
 //! they are independent tasks. The fronts above them, the *crown*, are taken one after another, each cut into tiles.
 //!
-//! Every place is fixed here, from the pattern alone: the updates of a branch lie on two stacks that grow towards each
-//! other from the ends of its region (depth even: left, odd: right, so that a front reads its children from one stack
-//! and writes to the other), the crown uses the whole work space in the same way once the branches are done, and the
-//! updates that branches hand to the crown have places of their own. So the peak is known beforehand and does not
-//! depend on the number of threads.
+//! Every place is fixed here, from the pattern alone. The updates of a branch lie on two stacks that grow towards each other
+//! from the ends of a work space (depth even: left, odd: right, so that a front reads its children from one stack and
+//! writes to the other); every thread has one such space. The crown has another. The updates that branches hand to the
+//! crown have places of their own, and to keep these few, large subtrees are done in *rounds*: the branches of one, then
+//! its fronts of the crown, then the next. So the peak is known beforehand.
 //!
 //! Source: Duff and Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans. Math.
 //! Software 9 (1983) 302-325; Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992) 82-109.
 
 use super::dense::update_len;
 use super::pattern::{NONE, Upper};
+use std::ops::Range;
 
 /// A branch costs at most this share of all flops; at least [`BRANCH_FLOPS`].
-const BRANCHES: f64 = 64.0;
+const BRANCHES: f64 = 256.0;
 const BRANCH_FLOPS: f64 = 4e6;
+/// A round costs about this share of all flops at most.
+const ROUNDS: f64 = 4.0;
 
 /// Consecutive rows of an update that are consecutive in the parent's front, too.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +38,13 @@ pub(super) struct Run {
 pub(super) struct Task {
     pub first: usize,
     pub end: usize,
-    /// Region of the work space, in values of one triangle.
-    pub work: (usize, usize),
+}
+
+/// Tasks, and the fronts of the crown that can be done after them.
+#[derive(Clone, Debug)]
+pub(super) struct Round {
+    pub tasks: Range<usize>,
+    pub crown: Range<usize>,
 }
 
 #[derive(Debug, Default)]
@@ -71,7 +79,10 @@ pub(super) struct Structure {
     /// Whether the update is handed from a branch to the crown.
     pub handed: Vec<bool>,
     pub handed_len: usize,
+    /// Work space of the crown, and of a thread that does branches; in values of one triangle, like all places.
     pub work_len: usize,
+    pub branch_len: usize,
+    pub rounds: Vec<Round>,
     pub tasks: Vec<Task>,
     pub crown: Vec<u32>,
     /// Columns of the widest front, and of the widest one in a branch.
@@ -93,7 +104,7 @@ impl Structure {
         self.rows_start[s + 1] - self.rows_start[s]
     }
 
-    pub fn columns(&self, s: usize) -> std::ops::Range<usize> {
+    pub fn columns(&self, s: usize) -> Range<usize> {
         self.begin[s] as usize..self.begin[s + 1] as usize
     }
 
@@ -282,34 +293,70 @@ impl Structure {
                 continue;
             }
             self.handed[s] = true;
-            self.update[s] = self.handed_len;
-            self.handed_len += update_len(self.below(s));
             match self.tasks.last_mut() {
                 Some(task) if task.end == first[s] && load + below_flops[s] <= limit => {
                     task.end = s + 1;
                     load += below_flops[s];
                 }
                 _ => {
-                    self.tasks.push(Task { first: first[s], end: s + 1, work: (0, 0) });
+                    self.tasks.push(Task { first: first[s], end: s + 1 });
                     load = below_flops[s];
                 }
             }
         }
-        let mut base = 0;
-        for t in 0..self.tasks.len() {
-            let fronts: Vec<u32> = (self.tasks[t].first as u32..self.tasks[t].end as u32).collect();
-            let end = self.stack(&fronts, base);
-            self.tasks[t].work = (base, end);
-            base = end;
+        self.make_rounds(&below_flops);
+        for task in self.tasks.clone() {
+            let fronts: Vec<u32> = (task.first as u32..task.end as u32).collect();
+            self.branch_len = self.branch_len.max(self.stack(&fronts));
         }
         let crown = std::mem::take(&mut self.crown);
-        self.work_len = base.max(self.stack(&crown, 0));
+        self.work_len = self.stack(&crown);
         self.crown = crown;
     }
 
-    /// Places the updates of `fronts` (in their order) on two stacks from `base` on; returns the end of the region.
-    fn stack(&mut self, fronts: &[u32], base: usize) -> usize {
-        let mut end = base;
+    /// Ends a round after every subtree of the crown that is as large as a round may be, and places what is handed over.
+    fn make_rounds(&mut self, below_flops: &[f64]) {
+        let limit = self.flops / ROUNDS;
+        let large = |s: usize| self.parent[s] == NONE || below_flops[self.parent[s] as usize] > limit;
+        let ends: Vec<usize> = self
+            .crown
+            .iter()
+            .map(|&s| s as usize)
+            .filter(|&s| below_flops[s] <= limit && large(s))
+            .map(|s| s + 1)
+            .chain([self.count()])
+            .collect();
+        let (mut task, mut front, mut base) = (0, 0, 0);
+        for end in ends {
+            let tasks = task..task + self.tasks[task..].partition_point(|t| t.end <= end);
+            let crown = front..front + self.crown[front..].partition_point(|&s| (s as usize) < end);
+            (task, front) = (tasks.end, crown.end);
+            let mut place = base;
+            for t in tasks.clone() {
+                for s in self.tasks[t].first..self.tasks[t].end {
+                    if self.handed[s] {
+                        self.update[s] = place;
+                        place += update_len(self.below(s));
+                        // What a later round reads must stay.
+                        if self.parent[s] != NONE && self.parent[s] as usize >= end {
+                            base = place;
+                        }
+                    }
+                }
+            }
+            self.handed_len = self.handed_len.max(place);
+            self.rounds.push(Round { tasks, crown });
+        }
+    }
+
+    /// Number of tasks of the longest round: more threads than that have nothing to do.
+    pub fn most_tasks(&self) -> usize {
+        self.rounds.iter().map(|round| round.tasks.len()).max().unwrap_or(0)
+    }
+
+    /// Places the updates of `fronts` (in their order) on two stacks; returns the length of the work space.
+    fn stack(&mut self, fronts: &[u32]) -> usize {
+        let mut end = 0_usize;
         // The right stack needs the size of the region, which the first pass finds.
         for _ in 0..2 {
             let (mut height, mut peak) = ([0_usize; 2], 0);
@@ -326,16 +373,16 @@ impl Structure {
                 if !self.handed[s] {
                     height[own] += update_len(self.below(s));
                     self.update[s] = if own == 0 {
-                        base + height[0] - update_len(self.below(s))
+                        height[0] - update_len(self.below(s))
                     } else {
                         end.saturating_sub(height[1])
                     };
                 }
                 peak = peak.max(height[0] + height[1]);
-                self.split[s] = if own == 0 { end.saturating_sub(theirs) } else { base + theirs };
+                self.split[s] = if own == 0 { end.saturating_sub(theirs) } else { theirs };
                 height[1 - own] -= children;
             }
-            end = base + peak;
+            end = peak;
         }
         end
     }
