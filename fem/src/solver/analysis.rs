@@ -118,6 +118,19 @@ impl Analysis {
         (&self.column_start, &self.row)
     }
 
+    /// Equations in the order of elimination.
+    pub fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// The values of `stiffness K + mass M` on the free dofs, in the order of [`Analysis::pattern`], for the model that
+    /// was analysed.
+    pub fn values(&self, matrices: &Matrices, supports: &Supports, stiffness: f64, mass: f64) -> Vec<f64> {
+        let mut values = Vec::with_capacity(self.entries());
+        matrices.visit_free(supports, |_, _, k, m| values.push(stiffness * k + mass * m));
+        values
+    }
+
     /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and solved for one
     /// right-hand side at a time. All of it is taken before the first front, so this is the peak, too.
     pub fn memory(&self, symmetric: bool) -> usize {
@@ -126,7 +139,9 @@ impl Analysis {
         let fronts = triangles * (structure.work_len + structure.handed_len);
         let second = if symmetric { 0 } else { structure.second[structure.count()] };
         let rows = if symmetric { 0 } else { 4 * self.size() };
-        8 * (self.factor_len() + second + fronts + self.size() + structure.rows.len()) + rows
+        // Scratch of the kernels: at most 8 bytes for faer and 20 for exchanges of rows, by pivot column.
+        let scratch = 28 * (structure.tasks.len() * structure.branch_width + structure.max_width);
+        8 * (self.factor_len() + second + fronts + self.size() + structure.rows.len()) + rows + scratch
     }
 
     pub(super) fn structure(&self) -> &Structure {

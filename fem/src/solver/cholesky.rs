@@ -44,8 +44,7 @@ impl Cholesky {
         stiffness: f64,
         mass: f64,
     ) -> Result<Cholesky, SolveError> {
-        let mut a = Vec::with_capacity(analysis.entries());
-        matrices.visit_free(supports, |_, _, k, m| a.push(stiffness * k + mass * m));
+        let a = analysis.values(matrices, supports, stiffness, mass);
         let free = supports.free();
         let mut solver = DirectSolver::new(analysis);
         solver.factor_symmetric(&a).map_err(|pivot| {
