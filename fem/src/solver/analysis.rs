@@ -7,7 +7,7 @@ use super::SolveError;
 use super::ordering::nested_dissection;
 use super::pattern::{MIRRORED, Upper, postorder};
 use super::structure::Structure;
-use crate::assembly::Matrices;
+use crate::assembly::{Combination, Matrices};
 use crate::mesh::Mesh;
 use crate::supports::{CONSTRAINED, Supports};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
@@ -42,7 +42,7 @@ impl Analysis {
     pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
         let equations = supports.free().len();
         let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
-        matrices.visit_free(supports, |c, r, _, _| {
+        matrices.visit_free(supports, |c, r, _, _, _| {
             row.push(r);
             column_start[c + 1] = row.len();
         });
@@ -123,11 +123,12 @@ impl Analysis {
         &self.order
     }
 
-    /// The values of `stiffness K + mass M` on the free dofs, in the order of [`Analysis::pattern`], for the model that
+    /// The values of `stiffness K + mass M + dashpots D` on the free dofs, in the order of [`Analysis::pattern`], for the model that
     /// was analysed.
-    pub fn values(&self, matrices: &Matrices, supports: &Supports, stiffness: f64, mass: f64) -> Vec<f64> {
+    pub fn values(&self, matrices: &Matrices, supports: &Supports, combination: Combination) -> Vec<f64> {
+        let Combination { stiffness, mass, dashpots } = combination;
         let mut values = Vec::with_capacity(self.entries());
-        matrices.visit_free(supports, |_, _, k, m| values.push(stiffness * k + mass * m));
+        matrices.visit_free(supports, |_, _, k, m, d| values.push(stiffness * k + mass * m + dashpots * d));
         values
     }
 

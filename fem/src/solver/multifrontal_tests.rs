@@ -1,7 +1,7 @@
 //! Tests of the analysis, the factorizations and the solves.
 
 use super::*;
-use crate::assembly::Matrices;
+use crate::assembly::{Combination, Matrices};
 use crate::element::quadrature::Quadrature;
 use crate::material::elastic::Elastic;
 use crate::mesh::{Constraint, Mesh};
@@ -153,7 +153,7 @@ fn brick(side: usize, skew: f64) -> System {
         .collect();
     let supports = Supports::new(&mesh, &base).unwrap();
     let analysis = Analysis::new(&mesh, &matrices, &supports).unwrap();
-    let lower = analysis.values(&matrices, &supports, 2.5e-7, 1.0);
+    let lower = analysis.values(&matrices, &supports, Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 });
     let mut random = Random(7);
     let upper = lower.iter().map(|a| a * (1.0 + skew * random.next())).collect();
     let (start, row) = analysis.pattern();
