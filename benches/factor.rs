@@ -26,9 +26,10 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
+use trackbed_fem::assembly::Combination;
 use trackbed_fem::solver::analysis::Analysis;
 use trackbed_fem::solver::multifrontal::DirectSolver;
-use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh};
+use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature};
 use watch::Watch;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -100,7 +101,8 @@ impl Case {
         let analysis = watch.time(|| {
             Analysis::new(model.mesh(), model.matrices(), model.supports()).expect("there is enough memory")
         });
-        let values = analysis.values(model.matrices(), model.supports(), 2.5e-7, 1.0);
+        let newmark = Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 };
+        let values = analysis.values(model.matrices(), model.supports(), newmark);
         Case { model, analysis: Arc::new(analysis), values, watch }
     }
 

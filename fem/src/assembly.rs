@@ -192,6 +192,11 @@ impl Matrices {
         &self.stiffness
     }
 
+    /// Slots and blocks of the boundary dashpots [N s/m].
+    pub(crate) fn dashpot_blocks(&self) -> impl Iterator<Item = (usize, &[f64; 9])> {
+        self.dashpot_slots.iter().copied().zip(self.dashpots.entries().map(|(_, block)| block))
+    }
+
     /// Mass entries by slots [kg].
     pub(crate) fn mass_entries(&self) -> &[f64] {
         &self.mass

@@ -170,7 +170,7 @@ impl NewmarkSolver {
     /// made by [`NewmarkSolver::advance`], with the load at both ends.
     ///
     /// # Errors
-    /// A parameter out of range, a step that is not above 0, a material without density.
+    /// A parameter out of range, a step that is not above 0, a material without density or with plasticity.
     pub fn hht(model: &Model, alpha: f64, dt: f64) -> Result<NewmarkSolver, SolveError> {
         if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
             return Err(NewmarkError::Hht { alpha }.into());
@@ -417,6 +417,7 @@ pub fn initial_acceleration_prescribed(
     check_load(model, load, state.time)?;
     check_linear(model)?;
     check_prescribed(model, accelerations, state.time)?;
+    check_linear(model)?;
     check_density(model)?;
     let n = model.dof_count();
     state.a.fill(0.0);
