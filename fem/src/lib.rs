@@ -42,6 +42,7 @@ pub mod loads;
 pub mod mass;
 pub mod material;
 pub mod mesh;
+pub mod modal;
 
 pub mod model;
 pub mod newmark;
