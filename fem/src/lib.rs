@@ -43,6 +43,7 @@ pub mod mass;
 pub mod material;
 pub mod mesh;
 pub mod mesh_order;
+pub mod modal;
 pub mod model;
 pub mod newmark;
 pub mod nonlinear;

@@ -5,7 +5,8 @@
 //! elements a negative mass; this diagonal is positive for every element.
 //!
 //! Source: Hinton, Rock and Zienkiewicz, Earthq. Eng. Struct. Dyn. 4 (1976) 245-249. Limits: lumping keeps the mass of
-//! each element exactly, its moments of inertia only for shapes with three planes of symmetry. The load of gravity stays
+//! each element exactly, its moments of inertia not; frequencies of quadratic elements become of second order in
+//! the element's size, in every direction, where the consistent mass has fourth. The load of gravity stays
 //! consistent, `∫ rho N_a g dV`, so that a lumped body carries the same static load.
 
 use serde::{Deserialize, Serialize};

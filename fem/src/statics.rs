@@ -17,7 +17,7 @@ use crate::supports::name;
 ///
 /// Rounding leaves 1e-16 to 1e-13 on a mechanism, growing with the mesh; a column a thousand times as high as its elements
 /// has 4e-9.
-const NO_STIFFNESS: f64 = 1e-11;
+pub(crate) const NO_STIFFNESS: f64 = 1e-11;
 /// Residual over the largest force above which the solution is corrected by one more solve.
 const IMPROVE: f64 = 1e-13;
 /// Solves at most.

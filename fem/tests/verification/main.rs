@@ -2,6 +2,7 @@
 //!
 //! The tables are in `tests/data/fem` of the workspace; each folder's `case.json` tells how they were made.
 
+mod absorbing;
 mod common;
 mod companion_cases;
 mod companion_orders;
@@ -10,13 +11,16 @@ mod convergence;
 mod determinism;
 mod dynamics;
 mod element;
+mod hht;
 mod mixed;
+mod modal;
 mod patch;
 mod plastic_common;
 mod plastic_cylinder;
 mod plastic_element;
 mod plastic_footing;
 mod plasticity_point;
+mod prescribed;
 mod static_cases;
 mod support;
 mod window;

@@ -1,0 +1,216 @@
+//! The largest eigenvalues of `A^-1 M` by a block Krylov space with thick restarts.
+//!
+//! The basis V is orthonormal in the product of M, and each new block is orthogonalized against all of it, twice or more;
+//! the projected matrix `T = V·M A^-1 M V` is kept whole. When the basis is full, the best Ritz vectors and the last block
+//! stay, the rest is dropped (thick restart). A block finds an eigenvalue of as many copies as it has vectors at once;
+//! further copies come up through rounding, or in the caller's check. All sums are sequential and start vectors come from
+//! a fixed generator, so the bits never change.
+//!
+//! Limits: the basis is full in memory: about `2 modes + 8 blocks` nodal vectors.
+
+use super::ModalError;
+use crate::model::Model;
+use crate::solver::LinearSolver;
+use crate::solver::cholesky::Cholesky;
+use nalgebra::{DMatrix, DVector};
+
+/// Residual over the eigenvalue at which a Ritz pair counts as converged. The error of the eigenvalue is its square.
+const TOLERANCE: f64 = 1e-9;
+/// What orthogonalization may leave of a vector, below which there is nothing new in it.
+const NOTHING: f64 = 1e-13;
+const RESTARTS: usize = 200;
+
+/// An eigenvalue of `A^-1 M` and its vector, normalized with M, 0 at constrained dofs.
+pub struct Ritz {
+    /// The eigenvalue `1/(w² + s)` [s²].
+    pub value: f64,
+    /// Shape `[3 * nodes]`.
+    pub vector: Vec<f64>,
+}
+
+/// `A^-1 M` and scratch.
+pub struct Operator<'m> {
+    model: &'m Model,
+    factor: Cholesky,
+    product: Vec<f64>,
+    equations: Vec<f64>,
+    seed: u64,
+}
+
+/// Basis and projected matrix.
+struct Space {
+    basis: Vec<Vec<f64>>,
+    /// Vectors whose columns of `projected` are known; those after them are the last block.
+    done: usize,
+    projected: DMatrix<f64>,
+}
+
+impl<'m> Operator<'m> {
+    /// The operator of a model with the factor of A.
+    pub fn new(model: &'m Model, factor: Cholesky) -> Operator<'m> {
+        let product = vec![0.0; model.dof_count()];
+        let equations = vec![0.0; model.free_dof_count()];
+        Operator { model, factor, product, equations, seed: 0x9e37_79b9_7f4a_7c15 }
+    }
+
+    /// The `wanted` largest eigenvalues in the space orthogonal to `locked`, descending; fewer when there are no more.
+    ///
+    /// # Errors
+    /// [`ModalError::NotConverged`].
+    pub fn largest(
+        &mut self,
+        locked: &[&[f64]],
+        wanted: usize,
+        block: usize,
+    ) -> Result<Vec<Ritz>, ModalError> {
+        let room = self.model.free_dof_count() - locked.len().min(self.model.free_dof_count());
+        let (wanted, block) = (wanted.min(room), block.min(room));
+        if wanted == 0 {
+            return Ok(Vec::new());
+        }
+        let limit = room.min((2 * wanted).max(wanted + 8 * block));
+        // The block that takes the basis past the limit, and the one that follows it.
+        let size = limit + 2 * block;
+        let mut space = Space { basis: Vec::new(), done: 0, projected: DMatrix::zeros(size, size) };
+        self.add_random(locked, &mut space, block);
+        let mut found = 0;
+        for _ in 0..RESTARTS {
+            while space.done < limit && space.done < space.basis.len() {
+                self.expand(locked, &mut space, room, size);
+            }
+            let eigen =
+                space.projected.view((0, 0), (space.done, space.done)).clone_owned().symmetric_eigen();
+            let mut order: Vec<usize> = (0..space.done).collect();
+            order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+            // What the last block still takes up of each Ritz vector.
+            let tail = space.basis.len() - space.done;
+            let coupling = space.projected.view((space.done, 0), (tail, space.done)) * &eigen.eigenvectors;
+            let converged = |k: &&usize| coupling.column(**k).norm() <= TOLERANCE * eigen.eigenvalues[**k];
+            found = order[..wanted.min(order.len())].iter().take_while(converged).count();
+            if found == wanted {
+                let chosen: Vec<usize> = order[..wanted].to_vec();
+                let vectors = combine(&space.basis[..space.done], &eigen.eigenvectors, &chosen);
+                let ritz = |(&k, vector)| Ritz { value: eigen.eigenvalues[k], vector };
+                return Ok(chosen.iter().zip(vectors).map(ritz).collect());
+            }
+            // Keep more than is wanted: what is near the wanted ones would come back slowly.
+            let keep = (wanted + (limit - wanted) / 2).min(space.done - 1);
+            let kept: Vec<usize> = order[..keep].to_vec();
+            let mut basis = combine(&space.basis[..space.done], &eigen.eigenvectors, &kept);
+            basis.extend(space.basis.drain(space.done..));
+            let mut projected = DMatrix::zeros(size, size);
+            for (i, &k) in kept.iter().enumerate() {
+                projected[(i, i)] = eigen.eigenvalues[k];
+                for j in 0..tail {
+                    projected[(keep + j, i)] = coupling[(j, k)];
+                    projected[(i, keep + j)] = coupling[(j, k)];
+                }
+            }
+            space = Space { basis, done: keep, projected };
+        }
+        Err(ModalError::NotConverged { found, wanted, restarts: RESTARTS })
+    }
+
+    /// Applies the operator to the last block, and adds what is new as the next one.
+    fn expand(&mut self, locked: &[&[f64]], space: &mut Space, room: usize, size: usize) {
+        let end = space.basis.len();
+        for column in space.done..end {
+            let mut z = self.apply(&space.basis[column]);
+            let before = self.norm(&z);
+            let (coefficients, left) = self.orthogonalize(&mut z, locked, &space.basis);
+            for (row, c) in coefficients.iter().enumerate() {
+                space.projected[(row, column)] = *c;
+                space.projected[(column, row)] = *c;
+            }
+            if left > NOTHING * before && space.basis.len() < room.min(size) {
+                let row = space.basis.len();
+                space.projected[(row, column)] = left;
+                space.projected[(column, row)] = left;
+                z.iter_mut().for_each(|v| *v /= left);
+                space.basis.push(z);
+            }
+        }
+        space.done = end;
+        if space.basis.len() == end && end < room.min(size) {
+            // The space is closed under the operator: go on in a new direction.
+            self.add_random(locked, space, 1);
+        }
+    }
+
+    /// Adds vectors of random entries, orthonormal to all others.
+    fn add_random(&mut self, locked: &[&[f64]], space: &mut Space, count: usize) {
+        for _ in 0..count {
+            let mut z = vec![0.0; self.model.dof_count()];
+            for &d in self.model.supports().free() {
+                self.seed = self.seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                z[d as usize] = (self.seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+            }
+            let (_, left) = self.orthogonalize(&mut z, locked, &space.basis);
+            z.iter_mut().for_each(|v| *v /= left);
+            space.basis.push(z);
+        }
+    }
+
+    /// `A^-1 M x`.
+    fn apply(&mut self, x: &[f64]) -> Vec<f64> {
+        let supports = self.model.supports();
+        self.model.mass_times(x, &mut self.product);
+        supports.gather(&self.product, &mut self.equations);
+        self.factor.solve_in_place(&mut self.equations);
+        let mut y = vec![0.0; x.len()];
+        supports.scatter(&self.equations, &mut y);
+        y
+    }
+
+    fn norm(&mut self, x: &[f64]) -> f64 {
+        self.model.matrices().mass_form(x).sqrt()
+    }
+
+    /// Takes out of z its parts along the locked vectors and the basis; returns the coefficients of the basis and the
+    /// norm of what is left. Repeated while much is lost, so that rounding leaves nothing (Daniel and others 1976).
+    fn orthogonalize(&mut self, z: &mut [f64], locked: &[&[f64]], basis: &[Vec<f64>]) -> (DVector<f64>, f64) {
+        let mut coefficients = DVector::zeros(basis.len());
+        let mut norm = self.norm(z);
+        for _ in 0..5 {
+            self.model.mass_times(z, &mut self.product);
+            for v in locked {
+                let c = dot(v, &self.product);
+                subtract(z, c, v);
+            }
+            for (v, sum) in basis.iter().zip(coefficients.iter_mut()) {
+                let c = dot(v, &self.product);
+                subtract(z, c, v);
+                *sum += c;
+            }
+            let left = self.norm(z);
+            let settled = left > 0.7 * norm;
+            norm = left;
+            if settled || norm == 0.0 {
+                break;
+            }
+        }
+        (coefficients, norm)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn subtract(z: &mut [f64], factor: f64, v: &[f64]) {
+    z.iter_mut().zip(v).for_each(|(z, v)| *z -= factor * v);
+}
+
+/// The vectors of a basis combined with the chosen columns of a matrix.
+fn combine(basis: &[Vec<f64>], matrix: &DMatrix<f64>, columns: &[usize]) -> Vec<Vec<f64>> {
+    columns
+        .iter()
+        .map(|&k| {
+            let mut sum = vec![0.0; basis[0].len()];
+            for (i, v) in basis.iter().enumerate() {
+                subtract(&mut sum, -matrix[(i, k)], v);
+            }
+            sum
+        })
+        .collect()
+}
