@@ -2,6 +2,7 @@
 
 mod check;
 mod mesh;
+mod modal;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
@@ -16,7 +17,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
         Command::Check(args) => print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?),
-        Command::Modal(_) => todo!(),
+        Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),
         Command::Mesh { command: MeshCommand::Convert { mesh, output, format } } => {

@@ -79,7 +79,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             (Analysis::Dynamic(_), Some(step)) => format!("dynamics: {}", steps(step)),
             (Analysis::QuasiStatic(_), Some(step)) => format!("quasi-static: {}", steps(step)),
             (Analysis::StrengthReduction(plan), _) => {
-                format!("strength reduction: factor between {} and {}", plan.from, plan.to)
+                format!("strength reduction: from the factor {} on, to within {}", plan.start, plan.tolerance)
             }
             _ => "statics: one solve".into(),
         });

@@ -12,7 +12,7 @@ use crate::write::pvd;
 use std::fmt::Write;
 use std::path::Path;
 use trackbed_fem as fem;
-use trackbed_fem::modal::Modes;
+use trackbed_fem::modal::{ModalError, Modes};
 
 /// Finds the lowest modes and writes `modes.csv`, `results.pvd` and a `.vtu` for each mode.
 ///
@@ -34,7 +34,10 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
             let expected = format!("1 to {unknowns}, the number of unknowns");
             return Err(Failure::Input(format!("-n: found {}, expected {expected}", args.count)));
         }
-        let modes = fem::modal::solve(&part.model, args.count).map_err(|e| part.failure(&e))?;
+        let modes = fem::modal::solve(&part.model, args.count).map_err(|e| match e {
+            ModalError::Solve(e) => part.failure(&e),
+            other => Failure::Numerical(format!("modes: {other}")),
+        })?;
         let dir = args.out.clone().unwrap_or_else(|| {
             let mut folder = run::default_folder(&args.scene).into_os_string();
             folder.push("_modes");
@@ -43,7 +46,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         write_modes(&part.model, &modes, &dir)?;
         let mut text = format!("{}\n  mode  frequency [Hz]  effective mass x, y, z [kg]\n", scene.title);
         for (i, f) in modes.frequencies.iter().enumerate() {
-            let [x, y, z] = modes.effective_masses[i];
+            let [x, y, z] = modes.effective_mass[i];
             writeln!(text, "  {:4}  {f:14.6}  {x:.4e} {y:.4e} {z:.4e}", i + 1)
                 .expect("writing to a string does not fail");
         }
@@ -69,7 +72,7 @@ fn write_modes(model: &fem::Model, modes: &Modes, dir: &Path) -> Result<(), Fail
     let mut table = History::create(&dir.join("modes.csv"), columns)?;
     let mut series = pvd::Series::new(&dir.join("results.pvd"));
     for (i, shape) in modes.shapes.iter().enumerate() {
-        let [x, y, z] = modes.effective_masses[i];
+        let [x, y, z] = modes.effective_mass[i];
         table.row(&[(i + 1) as f64, modes.frequencies[i], modes.residuals[i], x, y, z])?;
         let largest = shape.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let unit: Vec<f64> = shape.iter().map(|u| u / largest).collect();

@@ -1,13 +1,43 @@
 //! The state that a plastic solid starts from.
 
 use crate::failure::Failure;
-use crate::model::solid::SolidPart;
+use crate::model::solid::{InitialStress, InitialStressKind, SolidPart};
 use trackbed_fem::State;
+use trackbed_fem::nonlinear::{Overburden, initial_stress};
 
 /// The state with its initial stress, and the share of the weight that this stress carries already.
 ///
 /// # Errors
 /// The stress finds no equilibrium.
-pub fn state(part: &SolidPart, _gravity: &[f64]) -> Result<(State, f64), Failure> {
-    Ok((State::new(&part.model), 0.0))
+pub fn state(part: &SolidPart, gravity: &[f64]) -> Result<(State, f64), Failure> {
+    let model = &part.model;
+    let mut state = undeformed(part);
+    let Some(InitialStress { kind, steps }) = &part.initial_stress else { return Ok((state, 0.0)) };
+    match kind {
+        InitialStressKind::Gravity => Ok(0),
+        InitialStressKind::Uniform(stress) => initial_stress::set_uniform(model, &mut state, *stress),
+        InitialStressKind::K0 { k0, overburden } => {
+            let top = Overburden::Level(top(part));
+            initial_stress::set_k0(model, &mut state, overburden.as_ref().unwrap_or(&top), k0)
+        }
+    }
+    .and_then(|_| initial_stress::equilibrate(model, &mut state, gravity, part.newton, *steps))
+    .map_err(|e| part.failure(&e).in_stage("initial stress"))?;
+    let points = std::mem::take(&mut state.points);
+    Ok((State { points, ..undeformed(part) }, 1.0))
+}
+
+/// No displacement anywhere, not even at supports that will be moved: they move while the stress follows.
+fn undeformed(part: &SolidPart) -> State {
+    let mut state = State::new(&part.model);
+    state.u.fill(0.0);
+    state
+}
+
+/// Height of the highest node against gravity [m].
+fn top(part: &SolidPart) -> f64 {
+    let g = part.model.gravity();
+    let size = g.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let height = |x: &[f64; 3]| -> f64 { (0..3).map(|k| -g[k] / size * x[k]).sum() };
+    part.model.mesh().coordinates.iter().map(height).fold(f64::NEG_INFINITY, f64::max)
 }

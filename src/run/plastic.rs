@@ -80,7 +80,7 @@ impl<'a> QuasiStaticSystem<'a> {
         state.time = 0.0;
         let control = StepControl { initial: step, min: step * plan.smallest_step, max: step, ..control };
         let solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
-        let reactions = begin.reactions(model);
+        let reactions = begin.reactions().to_vec();
         let mut load = vec![0.0; model.dof_count()];
         course.load(0.0, &mut load);
         Ok(QuasiStaticSystem {
@@ -123,7 +123,7 @@ impl System for QuasiStaticSystem<'_> {
         self.steps += 1;
         let mut load = vec![0.0; self.load.len()];
         course.load(to, &mut load);
-        let reactions = self.solver.reactions(model);
+        let reactions = self.solver.reactions().to_vec();
         // The mean of the forces at both ends does exactly the work of the mean stresses (virtual work).
         let mut work = 0.0;
         for d in 0..load.len() {

@@ -288,13 +288,14 @@ fn cycle_columns() -> Vec<Column> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     "summary.json",
     "log.txt",
     "history.csv",
     "cycles.csv",
     "nodes.csv",
     "gauss.csv",
+    "safety.csv",
     "results.pvd",
     "settlement.svg",
     "sleeper.svg",

@@ -222,6 +222,8 @@ pub struct TrialRecord {
     pub factor: f64,
     /// Whether equilibrium was found.
     pub stands: bool,
+    /// Share of the load that was carried.
+    pub share_of_load: f64,
     /// Newton iterations.
     pub iterations: u64,
     /// Largest displacement reached [m].

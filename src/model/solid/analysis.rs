@@ -9,7 +9,7 @@ use crate::scene::solid::{
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
 use trackbed_fem::newmark::Newmark;
-use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Variant};
+use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Overburden, ReductionOptions, Variant};
 
 /// How a solid that runs alone is solved.
 #[derive(Clone, Copy, Debug)]
@@ -43,23 +43,15 @@ pub struct QuasiStaticPlan {
 }
 
 /// Search for the factor of safety.
-#[derive(Clone, Copy, Debug)]
-pub struct StrengthReductionPlan {
-    /// A factor at which the solid stands.
-    pub from: f64,
-    /// A factor at which it fails.
-    pub to: f64,
-    /// Width of the bracket that ends the search.
-    pub tolerance: f64,
-}
+pub type StrengthReductionPlan = ReductionOptions;
 
 /// Stress before the run.
 #[derive(Clone, Debug)]
 pub struct InitialStress {
     /// How it is found.
     pub kind: InitialStressKind,
-    /// Whether displacements start from zero after it.
-    pub reset: bool,
+    /// Steps in which equilibrium is sought.
+    pub steps: u32,
 }
 
 /// How the initial stress is found.
@@ -69,8 +61,8 @@ pub enum InitialStressKind {
     K0 {
         /// K₀ of each material.
         k0: BTreeMap<u32, f64>,
-        /// Height of the surface [m]; none: the top of the mesh above each point.
-        surface: Option<f64>,
+        /// What lies above a point; none: level ground up to the top of the mesh.
+        overburden: Option<Overburden>,
     },
     /// Gravity turned on in steps.
     Gravity,
@@ -121,7 +113,7 @@ pub fn plans(
                 let expected = "a material that yields";
                 return Err(document.error("solid.strength_reduction", "elastic materials only", expected));
             }
-            Analysis::StrengthReduction(strength_reduction(document, s)?)
+            Analysis::StrengthReduction(strength_reduction(document, s, newton(document, solid.newton.as_ref())?)?)
         }
         _ => Analysis::Static,
     };
@@ -148,7 +140,7 @@ pub fn plans(
         let expected = "no such key without `method = \"k0\"` in [solid.initial_stress]";
         return Err(document.error(&format!("solid.material.{position}.k0"), "a value", expected));
     }
-    let newton = newton(document, solid.newton.as_ref())?;
+    let newton = newton(document, solid.newton.as_ref())?.unwrap_or_default();
     Ok(Plans { analysis, initial_stress, newton })
 }
 
@@ -190,18 +182,22 @@ fn quasi_static(document: &Document, q: &QuasiStatic) -> Result<QuasiStaticPlan,
 fn strength_reduction(
     document: &Document,
     s: &StrengthReduction,
+    chosen: Option<NewtonOptions>,
 ) -> Result<StrengthReductionPlan, SceneError> {
-    let plan = StrengthReductionPlan {
-        from: s.from.unwrap_or(0.5),
-        to: s.to.unwrap_or(4.0),
-        tolerance: s.tolerance.unwrap_or(0.01),
+    let default = ReductionOptions::default();
+    let plan = ReductionOptions {
+        start: s.start.unwrap_or(default.start),
+        tolerance: s.tolerance.unwrap_or(default.tolerance),
+        largest: s.largest.unwrap_or(default.largest),
+        newton: chosen.unwrap_or(default.newton),
+        ..default
     };
     let key = |k: &str| format!("solid.strength_reduction.{k}");
-    check(document, &key("from"), plan.from, plan.from > 0.0 && plan.from.is_finite(), "a factor above 0")?;
-    let good = plan.to > plan.from && plan.to.is_finite();
-    check(document, &key("to"), plan.to, good, "a factor above `from`")?;
-    let good = plan.tolerance > 0.0 && plan.tolerance < plan.to - plan.from;
-    check(document, &key("tolerance"), plan.tolerance, good, "above 0, below the distance of `from` and `to`")?;
+    let positive = |x: f64| x > 0.0 && x.is_finite();
+    check(document, &key("start"), plan.start, positive(plan.start), "a factor above 0")?;
+    check(document, &key("tolerance"), plan.tolerance, positive(plan.tolerance), "a width above 0")?;
+    let good = positive(plan.largest) && plan.largest > plan.start.max(plan.start.recip());
+    check(document, &key("largest"), plan.largest, good, "above `start` and its reciprocal")?;
     Ok(plan)
 }
 
@@ -219,6 +215,7 @@ fn initial_stress(
     for (name, present, of) in [
         ("k0", i.k0.is_some(), "k0"),
         ("surface", i.surface.is_some(), "k0"),
+        ("layers", i.layers.is_some(), "k0"),
         ("stress", i.stress.is_some(), "uniform"),
     ] {
         if present && of != method {
@@ -244,14 +241,36 @@ fn initial_stress(
                 })?;
                 all.insert(id, k0);
             }
-            InitialStressKind::K0 { k0: all, surface: i.surface.map(|s| s.si) }
+            InitialStressKind::K0 { k0: all, overburden: overburden(document, i)? }
         }
     };
-    Ok(InitialStress { kind, reset: i.reset })
+    let steps = i.steps.unwrap_or(10);
+    check(document, &key("steps"), f64::from(steps), (1..=10_000).contains(&steps), "1 to 10000")?;
+    Ok(InitialStress { kind, steps })
 }
 
-fn newton(document: &Document, newton: Option<&Newton>) -> Result<NewtonPlan, SceneError> {
-    let Some(n) = newton else { return Ok(NewtonOptions::default()) };
+fn overburden(document: &Document, i: &SceneInitialStress) -> Result<Option<Overburden>, SceneError> {
+    match (&i.surface, &i.layers) {
+        (None, None) => Ok(None),
+        (Some(surface), None) => Ok(Some(Overburden::Level(surface.si))),
+        (None, Some(layers)) => {
+            let layers: Vec<(f64, f64)> = layers.iter().map(|(top, density)| (top.si, density.si)).collect();
+            let good = !layers.is_empty() && layers.windows(2).all(|w| w[1].0 < w[0].0);
+            if !good || layers.iter().any(|l| l.1 < 0.0) {
+                let expected = "[[height of the top, density], …] from the top down, densities of 0 or more";
+                return Err(document.error("solid.initial_stress.layers", format!("{layers:?}"), expected));
+            }
+            Ok(Some(Overburden::Layers(layers)))
+        }
+        _ => {
+            let expected = "either `surface` or `layers`";
+            Err(document.error("solid.initial_stress.layers", "a list beside `surface`", expected))
+        }
+    }
+}
+
+fn newton(document: &Document, newton: Option<&Newton>) -> Result<Option<NewtonPlan>, SceneError> {
+    let Some(n) = newton else { return Ok(None) };
     let mut plan = NewtonOptions::new(match n.variant.unwrap_or(NewtonVariant::Full) {
         NewtonVariant::Full => Variant::Full,
         NewtonVariant::Modified => Variant::Modified(0),
@@ -276,5 +295,5 @@ fn newton(document: &Document, newton: Option<&Newton>) -> Result<NewtonPlan, Sc
             LinearSolver::Krylov => LinearMethod::Krylov,
         };
     }
-    Ok(plan)
+    Ok(Some(plan))
 }

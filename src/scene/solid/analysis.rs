@@ -1,6 +1,6 @@
 //! How the solid is solved, as written in a scene.
 
-use crate::scene::units::{Frequency, Length, Quantity, Rate, Stress, Time};
+use crate::scene::units::{Density, Frequency, Length, Quantity, Rate, Stress, Time};
 use serde::Deserialize;
 
 /// `[solid.dynamics]`: Newmark's method, or that of Hilber, Hughes and Taylor, for a solid that runs alone.
@@ -50,13 +50,14 @@ pub struct InitialStress {
     pub method: InitialStressMethod,
     /// Horizontal over vertical stress, of `k0`; a material's own `k0` comes first.
     pub k0: Option<f64>,
-    /// Height of the ground's surface [m], of `k0`; default the top of the mesh above each point.
+    /// Height of level ground's surface [m], of `k0`; default the top of the mesh.
     pub surface: Option<Quantity<Length>>,
+    /// Layers of different density, of `k0`, in place of `surface`: [[height of the top, density], …] from the top down.
+    pub layers: Option<Vec<(Quantity<Length>, Quantity<Density>)>>,
     /// Stress xx, yy, zz, xy, yz, zx [Pa], of `uniform`.
     pub stress: Option<[Quantity<Stress>; 6]>,
-    /// Whether displacements start from zero after it; default true.
-    #[serde(default = "crate::scene::yes")]
-    pub reset: bool,
+    /// Steps in which equilibrium is sought; default 10.
+    pub steps: Option<u32>,
 }
 
 /// How the initial stress is found.
@@ -75,12 +76,12 @@ pub enum InitialStressMethod {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StrengthReduction {
-    /// A factor at which the solid stands; default 0.5.
-    pub from: Option<f64>,
-    /// A factor at which it fails; default 4.
-    pub to: Option<f64>,
-    /// Width of the bracket that ends the search; default 0.01.
+    /// First factor tried; default 1.
+    pub start: Option<f64>,
+    /// Width of the bracket that ends the search; default 0.02.
     pub tolerance: Option<f64>,
+    /// Factors beyond it, or below its reciprocal, are not tried; default 16.
+    pub largest: Option<f64>,
 }
 
 /// `[solid.newton]`: how equilibrium is found in a plastic solid.

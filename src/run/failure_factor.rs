@@ -1,0 +1,79 @@
+//! Factor of safety of a solid by strength reduction.
+
+use super::summary::{SafetyRecord, StageRecord, Summary, TrialRecord};
+use super::{Stage, frames, initial, system::SolidView};
+use crate::failure::Failure;
+use crate::model::solid::{SolidPart, StrengthReductionPlan};
+use crate::progress::Progress;
+use crate::write::csv::{Column, History};
+use crate::write::pvd;
+use std::time::Instant;
+use trackbed_fem::nonlinear::{QuasiStatic, strength_reduction};
+
+/// Brackets the factor of safety and writes `safety.csv` and the state at the largest factor that stands.
+///
+/// # Errors
+/// No factor stands, or none fails.
+pub fn run(
+    stage: &Stage<'_>,
+    part: &SolidPart,
+    plan: &StrengthReductionPlan,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let model = &part.model;
+    let weight = model.gravity_load();
+    let mut load = weight.clone();
+    part.add_loads(0.0, &mut load);
+    let (state, _) = initial::state(part, &weight)?;
+    let progress = Progress::start("strength reduction", 1.0, stage.quiet);
+    let found = strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
+    progress.finish(&format!("factor of safety between {:.4} and {:.4}", found.converged, found.failed));
+
+    // The state at the edge: the mechanism shows in its displacements.
+    let (weaker, standing) =
+        strength_reduction::at_factor(model, &state, &load, plan, found.converged).map_err(|e| part.failure(&e))?;
+    stage.prepare()?;
+    let columns = [("factor", ""), ("stands", ""), ("share_of_load", ""), ("iterations", ""), ("largest_displacement", "m")];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let mut table = History::create(&stage.dir.join("safety.csv"), columns)?;
+    for t in &found.trials {
+        table.row(&[t.factor, f64::from(u8::from(t.converged)), t.share, t.iterations as f64, t.largest_displacement])?;
+    }
+    let view = SolidView { model: &weaker, state: &standing };
+    let vtu = stage.dir.join("frames/solid_00000.vtu");
+    let dat = stage.dir.join("tecplot/solid_00000.dat");
+    let output = &stage.job.output;
+    frames::write_solid(
+        view,
+        output.vtk.then_some(vtu.as_path()),
+        output.tecplot.then_some((dat.as_path(), 0.0)),
+    )?;
+    if output.vtk {
+        let mut series = pvd::Series::new(&stage.dir.join("results.pvd"));
+        series.push(0.0, 0, "solid", "frames/solid_00000.vtu");
+        series.write()?;
+    }
+    summary.safety = Some(SafetyRecord {
+        stands_at: found.converged,
+        fails_at: found.failed,
+        trials: found
+            .trials
+            .iter()
+            .map(|t| TrialRecord {
+                factor: t.factor,
+                stands: t.converged,
+                share_of_load: t.share,
+                iterations: t.iterations,
+                largest_displacement: t.largest_displacement,
+            })
+            .collect(),
+    });
+    summary.stages.push(StageRecord {
+        name: "strength reduction".into(),
+        seconds: begun.elapsed().as_secs_f64(),
+        grain_steps: 0,
+        solid_steps: found.trials.len() as u64,
+    });
+    Ok(())
+}
