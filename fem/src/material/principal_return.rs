@@ -110,7 +110,8 @@ impl Choice {
 }
 
 /// Returned principal stress and region of a sorted trial stress outside the surface. Between two regions rounding may
-/// leave none admissible; then the one that fails by least is taken.
+/// leave none admissible; then the one that fails by least is taken, which is why a region also states the conditions that
+/// the regions tried before it already exclude.
 pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], Region) {
     let mut choice = Choice { stress: *trial, region: Region::Elastic, margin: f64::NEG_INFINITY };
     let _ = plane_and_edges(trial, strength, moduli, &mut choice)

@@ -142,6 +142,8 @@ pub fn laws() -> Vec<(&'static str, Material, Vec<Region>)> {
     let harder = MohrCoulomb { cohesion: line(c, 100.0 * c, None), ..mohr_coulomb(c, 30.0, 10.0, None) };
     mc("mc hardening c", harder.clone(), &open);
     mc("mc hardening c cut", MohrCoulomb { tension: Some(0.4 * c), ..harder.clone() }, &cut);
+    let associated = MohrCoulomb { dilation: rad(30.0), ..harder.clone() };
+    mc("mc 30/30 hardening c", associated, &open);
     let softer = MohrCoulomb { cohesion: line(c, -20.0 * c, Some(0.6 * c)), ..harder.clone() };
     mc("mc softening c", softer.clone(), &open);
     mc("mc softening c cut", MohrCoulomb { tension: Some(0.4 * c), ..softer }, &cut);
@@ -161,6 +163,9 @@ pub fn laws() -> Vec<(&'static str, Material, Vec<Region>)> {
     dp("dp 30/30 cap", drucker_prager(c, 30.0, 30.0, Match::Compression, Some(0.4 * c)), &cut);
     dp("dp 30/10 cap", drucker_prager(c, 30.0, 10.0, Match::Extension, Some(0.4 * c)), &cut);
     dp("von mises cap", DruckerPrager { tension: Some(0.6 * c), ..DruckerPrager::von_mises(2.0 * c) }, &cut);
+    let harder = |law| DruckerPrager { cohesion: line(c, 100.0 * c, None), ..law };
+    dp("dp 30/30 hardening c", harder(drucker_prager(c, 30.0, 30.0, Match::Compression, None)), &open);
+    dp("von mises hardening", harder(DruckerPrager::von_mises(2.0 * c)), &open[..1]);
     for cone in [Match::Compression, Match::Extension, Match::PlaneStrain] {
         let harder =
             DruckerPrager { cohesion: line(c, 100.0 * c, None), ..drucker_prager(c, 30.0, 10.0, cone, None) };

@@ -129,6 +129,39 @@ fn isotropic_extension_ends_at_the_apex() {
     }
 }
 
+/// Cohesion that softens to a tenth brings the apex, `0.1 c cot(phi)`, below the cut-off of `0.4 c`: extension first ends
+/// at the cut-off, later at the apex, and the stress passes from one to the other without a jump.
+#[test]
+fn the_apex_takes_over_from_the_cut_off() {
+    let c = COHESION;
+    let soft = Hardening::Linear { initial: c, modulus: -20.0 * c, limit: Some(0.1 * c) };
+    let mc = mohr_coulomb(c, 30.0, 10.0, Some(0.4 * c));
+    let dp = drucker_prager(c, 30.0, 10.0, Cone::Compression, Some(0.4 * c));
+    for (material, before, after) in [
+        (
+            Material::plastic(SOIL, MohrCoulomb { cohesion: soft.clone(), ..mc }),
+            Region::TensionCorner,
+            Region::Apex,
+        ),
+        (Material::plastic(SOIL, DruckerPrager { cohesion: soft, ..dp }), Region::Cap, Region::ConeApex),
+    ] {
+        assert_eq!(material.fault(), None);
+        let mut state = PointState::default();
+        let mut seen = Vec::new();
+        for _ in 0..200 {
+            let response = step(&material, &state, &[4e-4, 4e-4, 4e-4, 0.0, 0.0, 0.0]);
+            state = response.state;
+            if seen.last() != Some(&response.region) {
+                seen.push(response.region);
+            }
+            let apex = (c - 20.0 * c * state.kappa).max(0.1 * c) / rad(30.0).tan();
+            let want = apex.min(0.4 * c);
+            assert!((0..3).all(|k| (state.stress[k] - want).abs() <= 1e-9 * c), "{:?} {want}", state.stress);
+        }
+        assert_eq!(seen, [before, after]);
+    }
+}
+
 /// Reduced strength: the yield stress of the reduced soil is that of `c/F` and `atan(tan(phi)/F)`.
 #[test]
 fn strength_reduction() {

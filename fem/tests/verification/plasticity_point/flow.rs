@@ -120,8 +120,8 @@ fn associated_returns_are_closest_points() {
     let mut states = 0;
     let mut worst = f64::NEG_INFINITY;
     for (name, material, _) in laws() {
-        let associated = material.symmetric_tangent();
-        if !associated {
+        // With hardening the set moves with the step; the points below are those of one fixed set.
+        if !material.symmetric_tangent() || name.contains("hardening") {
             continue;
         }
         let mut random = Random(11);
