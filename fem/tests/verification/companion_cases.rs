@@ -177,7 +177,9 @@ fn thick_cylinders_of_all_kinds_widen_as_lame_says() {
         (ElementKind::Pyramid5, 0.04, 0.14),
         (ElementKind::Tet4, 0.12, 0.24),
     ] {
-        for rule in [Quadrature::Gauss2, Quadrature::Gauss3] {
+        // Linear kinds have one rule.
+        let rules = [Quadrature::Gauss2, Quadrature::Gauss3];
+        for rule in rules.into_iter().take(if kind.is_linear() { 1 } else { 2 }) {
             let (radial, hoop) = cylinder(kind, [4, 6], rule);
             let (fine_radial, fine_hoop) = cylinder(kind, [8, 12], rule);
             println!(
