@@ -132,7 +132,7 @@ impl Dissection<'_> {
     fn separator(&mut self, low: &[u32], high: &[u32]) -> Vec<u32> {
         self.stamp += 1;
         for &e in low {
-            for &n in &self.mesh.connectivity[e as usize] {
+            for &n in self.mesh.connectivity[e as usize].iter() {
                 self.mark[n as usize] = self.stamp;
             }
         }
@@ -140,7 +140,7 @@ impl Dissection<'_> {
         self.stamp += 1;
         let mut shared = Vec::new();
         for &e in high {
-            for &n in &self.mesh.connectivity[e as usize] {
+            for &n in self.mesh.connectivity[e as usize].iter() {
                 if self.mark[n as usize] == seen && !self.numbered[n as usize] {
                     self.mark[n as usize] = self.stamp;
                     shared.push(n);
@@ -155,7 +155,7 @@ impl Dissection<'_> {
     fn unnumbered(&mut self, elements: &[u32]) -> Vec<u32> {
         let mut nodes = Vec::new();
         for &e in elements {
-            for &n in &self.mesh.connectivity[e as usize] {
+            for &n in self.mesh.connectivity[e as usize].iter() {
                 if !self.numbered[n as usize] {
                     nodes.push((
                         elements.iter().filter(|&&o| self.mesh.connectivity[o as usize].contains(&n)).count(),
