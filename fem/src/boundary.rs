@@ -2,7 +2,7 @@
 //!
 //! On each face the boundary pushes back with the traction `t = -(k_n n n^T + k_t (1 - n n^T)) u - (c_n n n^T + c_t (1 -
 //! n n^T)) v`, n being the outward normal. The matrices are consistent, `∫ N_a N_b (…) dA`; the springs join the
-//! stiffness matrix, the dashpots the damping matrix.
+//! stiffness matrix (and with it take part in stiffness-proportional Rayleigh damping), the dashpots the damping matrix.
 //!
 //! With `c_n = rho c_p`, `c_t = rho c_s` a plane wave that meets the boundary at a right angle leaves without reflection.
 //! Source: Lysmer and Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859-877. A dashpot has no static stiffness, so a body on

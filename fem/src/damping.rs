@@ -1,4 +1,4 @@
-//! Rayleigh damping: `C = alpha_m M + beta_k K`.
+//! Rayleigh damping: `C = alpha_m M + beta_k K`; boundary dashpots ([`crate::boundary`]) come on top of it.
 //!
 //! The damping ratio at the circular frequency w is `zeta = alpha_m/(2 w) + beta_k w/2` (Clough and Penzien, Dynamics of
 //! Structures (1993), section 12-5). Two frequencies with their ratios fix the two constants. Limits: the part

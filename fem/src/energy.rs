@@ -48,10 +48,13 @@ pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     reactions
 }
 
-/// Forces of the boundary springs and dashpots on the body [N], `-(K_s u + D v)`. Shape `[3 * nodes]`.
+/// Forces of the boundary springs and dashpots on the body [N], `-(K_s (u + beta_k v) + D v)`: Rayleigh damping takes the
+/// springs for a part of the stiffness. Shape `[3 * nodes]`.
 pub fn boundary_forces(model: &Model, state: &State) -> Vec<f64> {
     let mut forces = vec![0.0; model.dof_count()];
-    model.boundary_spring_times(&state.u, &mut forces);
+    let beta = model.rayleigh().beta_k;
+    let strained: Vec<f64> = state.u.iter().zip(&state.v).map(|(u, v)| u + beta * v).collect();
+    model.boundary_spring_times(&strained, &mut forces);
     model.dashpot_times(&state.v, &mut forces);
     forces.iter_mut().for_each(|f| *f = -*f);
     forces

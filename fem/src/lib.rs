@@ -2,7 +2,8 @@
 //!
 //! A [`model::Model`] is built once from a mesh, materials and supports and never changes; a [`state::State`] is what a
 //! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`window::WindowSolver`]) hold a
-//! factor and scratch. Units are SI throughout. Nodal vectors are flat, index `3 * node + direction`.
+//! factor and scratch; [`modal::solve`] finds natural frequencies and mode shapes. Units are SI throughout. Nodal vectors
+//! are flat, index `3 * node + direction`.
 //!
 //! ```
 //! use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh, loads, statics};

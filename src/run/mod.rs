@@ -1,6 +1,7 @@
 //! The run: fill, settle, place the sleeper, load, write.
 
 mod cycles;
+mod failure_factor;
 mod frames;
 mod initial;
 mod main_stage;

@@ -4,7 +4,7 @@ use super::memory::Prediction;
 use super::plastic::QuasiStaticSystem;
 use super::summary::{NewtonRecord, Summary};
 use super::system::{SolidSystem, System};
-use super::{Stage, statics};
+use super::{Stage, failure_factor, statics};
 use crate::failure::Failure;
 use crate::model::solid::{Analysis, SolidPart};
 
@@ -28,7 +28,8 @@ impl Stage<'_> {
                 summary.newton = Some(NewtonRecord::of(&system.statistics()));
                 outcome
             }
-            _ => todo!(),
+            Analysis::StrengthReduction(plan) => failure_factor::run(self, solid, plan, summary),
+            Analysis::Dynamic(_) => todo!(),
         }
     }
 

@@ -33,6 +33,7 @@ pub struct Operator<'m> {
     model: &'m Model,
     factor: Cholesky,
     product: Vec<f64>,
+    /// Right-hand sides and solutions of a block, one after the other.
     equations: Vec<f64>,
     seed: u64,
 }
@@ -49,8 +50,7 @@ impl<'m> Operator<'m> {
     /// The operator of a model with the factor of A.
     pub fn new(model: &'m Model, factor: Cholesky) -> Operator<'m> {
         let product = vec![0.0; model.dof_count()];
-        let equations = vec![0.0; model.free_dof_count()];
-        Operator { model, factor, product, equations, seed: 0x9e37_79b9_7f4a_7c15 }
+        Operator { model, factor, product, equations: Vec::new(), seed: 0x9e37_79b9_7f4a_7c15 }
     }
 
     /// The `wanted` largest eigenvalues in the space orthogonal to `locked`, descending; fewer when there are no more.
@@ -113,9 +113,9 @@ impl<'m> Operator<'m> {
 
     /// Applies the operator to the last block, and adds what is new as the next one.
     fn expand(&mut self, locked: &[&[f64]], space: &mut Space, room: usize, size: usize) {
-        let end = space.basis.len();
-        for column in space.done..end {
-            let mut z = self.apply(&space.basis[column]);
+        let (start, end) = (space.done, space.basis.len());
+        let images = self.apply(&space.basis[start..]);
+        for (column, mut z) in (start..end).zip(images) {
             let before = self.norm(&z);
             let (coefficients, left) = self.orthogonalize(&mut z, locked, &space.basis);
             for (row, c) in coefficients.iter().enumerate() {
@@ -151,15 +151,21 @@ impl<'m> Operator<'m> {
         }
     }
 
-    /// `A^-1 M x`.
-    fn apply(&mut self, x: &[f64]) -> Vec<f64> {
-        let supports = self.model.supports();
-        self.model.mass_times(x, &mut self.product);
-        supports.gather(&self.product, &mut self.equations);
-        self.factor.solve_in_place(&mut self.equations);
-        let mut y = vec![0.0; x.len()];
-        supports.scatter(&self.equations, &mut y);
-        y
+    /// `A^-1 M x` of each vector of a block.
+    fn apply(&mut self, block: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let (supports, size) = (self.model.supports(), self.model.free_dof_count());
+        self.equations.resize(block.len() * size, 0.0);
+        for (x, equations) in block.iter().zip(self.equations.chunks_exact_mut(size)) {
+            self.model.mass_times(x, &mut self.product);
+            supports.gather(&self.product, equations);
+        }
+        self.equations.chunks_exact_mut(size).for_each(|x| self.factor.solve_in_place(x));
+        let image = |equations: &[f64]| {
+            let mut y = vec![0.0; self.product.len()];
+            supports.scatter(equations, &mut y);
+            y
+        };
+        self.equations.chunks_exact(size).map(image).collect()
     }
 
     fn norm(&mut self, x: &[f64]) -> f64 {

@@ -4,7 +4,7 @@
 //! takes s = 0; a body that can move freely a small s > 0, which keeps the matrix positive definite and lets its rigid
 //! motions through as modes of 0 Hz. The modes come from a block Krylov space with thick restarts ([`krylov`]); each
 //! is checked by its residual, and a further run in the space orthogonal to all of them, from a fresh start, looks for a
-//! mode that was missed, until there is none.
+//! mode that was missed, until there is none. The frequencies depend on no random choice: the start vectors are fixed.
 //!
 //! Source: Ericsson and Ruhe, Math. Comp. 35 (1980) 1251-1268 (shift and invert); Stewart, SIAM J. Matrix Anal. Appl. 23
 //! (2001) 601-614, and Wu and Simon, ibid. 22 (2000) 602-616 (restarts); Clough and Penzien, Dynamics of Structures

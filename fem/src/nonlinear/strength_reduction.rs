@@ -6,7 +6,7 @@
 //! Géotechnique 25(4) (1975) 671-689. Limits: failure is judged by the iteration, so the bracket depends on its limits to some
 //! per cent; the displacements of the trials, which rise steeply near failure, are recorded to judge it by.
 
-use super::newton::NewtonOptions;
+use super::newton::{NewtonOptions, Statistics};
 use super::quasi_static::QuasiStatic;
 use super::step_control::StepControl;
 use crate::model::Model;
@@ -136,6 +136,47 @@ pub fn factor_of_safety(
     Ok(FactorOfSafety { converged: low, failed: high, trials })
 }
 
+/// The body with its strength divided by `factor`, and its state under the whole load: what a trial of
+/// [`factor_of_safety`] found.
+///
+/// # Errors
+/// As [`QuasiStatic::advance`]; it carries the load at any factor that converged.
+pub fn at_factor(
+    model: &Model,
+    state: &State,
+    load: &[f64],
+    options: &ReductionOptions,
+    factor: f64,
+) -> Result<(Model, State), SolveError> {
+    let reduced = reduced(model, factor)?;
+    let (next, _, outcome) = carry(&reduced, state, load, options)?;
+    outcome.map(|()| (reduced, next))
+}
+
+fn reduced(model: &Model, factor: f64) -> Result<Model, SolveError> {
+    let materials = model.materials().iter().map(|(&number, m)| (number, m.reduced(factor))).collect();
+    model.with_plasticity(materials).map_err(|_| SolveError::Option {
+        what: "the factor of reduction",
+        value: factor,
+        expected: "one that leaves usable constants",
+    })
+}
+
+/// Applies the load from `state` on: the last state that carried its share, how that was found, and whether it is the whole.
+fn carry(
+    reduced: &Model,
+    state: &State,
+    load: &[f64],
+    options: &ReductionOptions,
+) -> Result<(State, Statistics, Result<(), SolveError>), SolveError> {
+    let mut trial = state.clone();
+    trial.time = 0.0;
+    let mut solver = QuasiStatic::new(reduced, options.newton, options.control)?;
+    let mut loading = |time: f64, f: &mut [f64]| f.iter_mut().zip(load).for_each(|(f, l)| *f = time * l);
+    let outcome = solver.advance(reduced, &mut trial, 1.0, &mut loading, |_, _| ());
+    Ok((trial, solver.statistics(), outcome))
+}
+
 fn attempt(
     model: &Model,
     state: &State,
@@ -143,23 +184,13 @@ fn attempt(
     options: &ReductionOptions,
     factor: f64,
 ) -> Result<Trial, SolveError> {
-    let materials = model.materials().iter().map(|(&number, m)| (number, m.reduced(factor))).collect();
-    let reduced = model.with_plasticity(materials).map_err(|_| SolveError::Option {
-        what: "the factor of reduction",
-        value: factor,
-        expected: "one that leaves usable constants",
-    })?;
-    let mut trial = state.clone();
-    trial.time = 0.0;
-    let mut solver = QuasiStatic::new(&reduced, options.newton, options.control)?;
-    let mut loading = |time: f64, f: &mut [f64]| f.iter_mut().zip(load).for_each(|(f, l)| *f = time * l);
-    let outcome = solver.advance(&reduced, &mut trial, 1.0, &mut loading, |_, _| ());
+    let (trial, statistics, outcome) = carry(&reduced(model, factor)?, state, load, options)?;
     match outcome {
         Ok(()) | Err(SolveError::Diverged { .. }) => Ok(Trial {
             factor,
             converged: outcome.is_ok(),
             share: trial.time,
-            iterations: solver.statistics().iterations,
+            iterations: statistics.iterations,
             largest_displacement: trial
                 .u
                 .iter()

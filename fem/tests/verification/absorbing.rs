@@ -74,7 +74,8 @@ fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
 }
 
 /// Lysmer and Kuhlemeyer (1969): no reflection at a right angle. Asked: below 1 % of the energy; found far below. A fixed
-/// base sends all of it back, which shows that the measure sees a reflection.
+/// base sends all of it back, which shows that the measure sees a reflection. What the lumped mass leaves behind is not
+/// reflected: its waves disperse more, and the pulse is not quite a wave of its mesh.
 #[test]
 fn plane_waves_leave_through_an_absorbing_base() {
     for (name, direction) in [("P", 2), ("S", 0)] {
@@ -85,7 +86,7 @@ fn plane_waves_leave_through_an_absorbing_base() {
                 100.0 * absorbing,
                 100.0 * fixed
             );
-            assert!(absorbing < if mass == Mass::Consistent { 1e-6 } else { 1e-3 }, "{name}: {absorbing:e}");
+            assert!(absorbing < if mass == Mass::Consistent { 1e-7 } else { 5e-3 }, "{name}: {absorbing:e}");
             assert!((fixed - 1.0).abs() < 1e-9, "{name}: {fixed}");
         }
     }

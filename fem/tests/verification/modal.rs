@@ -314,3 +314,25 @@ fn modes_have_the_same_bits_on_any_number_of_threads() {
     let one = bits(1);
     assert!(one == bits(2) && one == bits(3));
 }
+
+/// Ten modes of 54,000 dofs, held and free: residuals, and the time.
+#[test]
+#[ignore = "for measurement: about 20 s"]
+fn modes_of_a_large_block() {
+    for held in [true, false] {
+        let mesh = Mesh::block([16, 16, 16], [4.0, 3.0, 2.0]);
+        let constraints = fix(&mesh, &[0, 1, 2], |x| held && x[2] == 0.0);
+        let model = model(mesh, constraints, SOIL, Gauss3);
+        let start = std::time::Instant::now();
+        let modes = modal::solve(&model, 10).unwrap();
+        let residual = modes.residuals.iter().fold(0.0_f64, |m, r| m.max(*r));
+        println!(
+            "{} dofs, held {held}: {:.1} s, residual {residual:.1e}, zero modes {}, {:.4?} Hz",
+            model.free_dof_count(),
+            start.elapsed().as_secs_f64(),
+            modes.zero_modes,
+            modes.frequencies
+        );
+        assert!(residual < 1e-7 && modes.zero_modes == if held { 0 } else { 6 });
+    }
+}

@@ -21,99 +21,19 @@
 //! (1987), section 9.3. Limits: a prescribed displacement that jumps leaves an acceleration that swings from step to step
 //! when delta = 1/2; smooth histories are the remedy.
 
+mod method;
+mod start;
+
 use crate::assembly::Combination;
 use crate::energy::inner_force;
 use crate::model::Model;
 use crate::solver::cholesky::Cholesky;
-use crate::solver::conjugate_gradient::solve_mass;
 use crate::solver::{LinearSolver, SolveError};
 use crate::state::State;
 pub use crate::state::StepAudit;
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
-use thiserror::Error;
-
-/// The two parameters of Newmark's method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Newmark {
-    /// Weight of the new acceleration in the displacement (beta of Hughes) [-].
-    pub alpha: f64,
-    /// Weight of the new acceleration in the velocity (gamma of Hughes) [-].
-    pub delta: f64,
-}
-
-/// Parameters that are refused.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum NewmarkError {
-    /// Not unconditionally stable.
-    #[error(
-        "Newmark with alpha = {alpha}, delta = {delta} is not unconditionally stable: it needs delta >= 0.5 and \
-         alpha >= 0.25 (0.5 + delta)^2 = {least_alpha}"
-    )]
-    Unstable {
-        /// The alpha given.
-        alpha: f64,
-        /// The delta given.
-        delta: f64,
-        /// The least alpha for this delta.
-        least_alpha: f64,
-    },
-    /// Negative, or not a finite number.
-    #[error("Newmark's alpha = {alpha} and delta = {delta} must be finite numbers, 0 or above")]
-    Range {
-        /// The alpha given.
-        alpha: f64,
-        /// The delta given.
-        delta: f64,
-    },
-    /// HHT's α out of range.
-    #[error("HHT-alpha with alpha = {alpha} is not unconditionally stable: alpha must be between -1/3 and 0")]
-    Hht {
-        /// The α given.
-        alpha: f64,
-    },
-    /// HHT-α weighs the loads of both ends of a step.
-    #[error("HHT-alpha needs the load at the start of the step, too")]
-    LoadAtStart,
-    /// The displacement at the end does not depend on the acceleration there.
-    #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
-    Prescribed,
-}
-
-impl Newmark {
-    /// alpha = 1/4, delta = 1/2: second order, conserves energy.
-    pub const AVERAGE_ACCELERATION: Newmark = Newmark { alpha: 0.25, delta: 0.5 };
-
-    /// The pair that HHT-α goes with: `alpha = (1 - a)²/4`, `delta = 1/2 - a` for its parameter a in [-1/3, 0].
-    pub fn of_hht(a: f64) -> Newmark {
-        Newmark { alpha: 0.25 * (1.0 - a) * (1.0 - a), delta: 0.5 - a }
-    }
-
-    /// Checks that the method is stable for every step size.
-    ///
-    /// # Errors
-    /// [`NewmarkError`], with the alpha that would be enough.
-    pub fn check(self) -> Result<(), NewmarkError> {
-        let Newmark { alpha, delta } = self;
-        self.check_range()?;
-        let least_alpha = 0.25 * (0.5 + delta) * (0.5 + delta);
-        // A last digit lost in a scene file must not refuse 0.3025 for 0.6.
-        if delta >= 0.5 && alpha >= least_alpha * (1.0 - 1e-12) {
-            Ok(())
-        } else {
-            Err(NewmarkError::Unstable { alpha, delta, least_alpha })
-        }
-    }
-
-    /// Checks only that both parameters are finite and 0 or above; the method may be stable for small steps alone.
-    ///
-    /// # Errors
-    /// [`NewmarkError::Range`].
-    pub fn check_range(self) -> Result<(), NewmarkError> {
-        let Newmark { alpha, delta } = self;
-        let usable = |x: f64| x >= 0.0 && x.is_finite();
-        if usable(alpha) && usable(delta) { Ok(()) } else { Err(NewmarkError::Range { alpha, delta }) }
-    }
-}
+pub use method::{Newmark, NewmarkError};
+pub use start::{initial_acceleration, initial_acceleration_prescribed};
 
 /// What acts on the body during one step.
 #[derive(Clone, Copy, Debug)]
@@ -393,54 +313,6 @@ fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
     for (slot, &d) in equations.iter_mut().zip(free) {
         *slot -= nodal[d as usize];
     }
-}
-
-/// Sets `state.a` from the equations of motion at the start: `M a = F - C v - K u` on the free dofs, 0 on the others.
-///
-/// # Errors
-/// A load of the wrong length or not finite, a material without density, or a mass matrix that cannot be solved.
-pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> Result<(), SolveError> {
-    initial_acceleration_prescribed(model, state, load, None)
-}
-
-/// As [`initial_acceleration`], with accelerations [m/s²] of the constrained dofs, in the order of
-/// [`crate::supports::Supports::fixed`]; their displacements and velocities are those of the state.
-///
-/// # Errors
-/// As [`initial_acceleration`], for the accelerations too.
-pub fn initial_acceleration_prescribed(
-    model: &Model,
-    state: &mut State,
-    load: &[f64],
-    accelerations: Option<&[f64]>,
-) -> Result<(), SolveError> {
-    check_load(model, load, state.time)?;
-    check_linear(model)?;
-    check_prescribed(model, accelerations, state.time)?;
-    check_linear(model)?;
-    check_density(model)?;
-    let n = model.dof_count();
-    state.a.fill(0.0);
-    if let Some(values) = accelerations {
-        for (&(dof, _), &value) in model.supports().fixed().iter().zip(values) {
-            state.a[dof as usize] = value;
-        }
-    }
-    let (mut force, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
-    inner_force(model, [&state.u, &state.v, &state.a], &mut force, &mut scratch);
-    force.iter_mut().zip(load).for_each(|(f, l)| *f = l - *f);
-    let mut free = vec![0.0; n];
-    if let Some(masses) = model.matrices().lumped_mass() {
-        for &d in model.supports().free() {
-            free[d as usize] = force[d as usize] / masses[d as usize / 3];
-        }
-    } else {
-        solve_mass(model.matrices(), model.supports(), &force, &mut free)?;
-    }
-    for &d in model.supports().free() {
-        state.a[d as usize] = free[d as usize];
-    }
-    Ok(())
 }
 
 pub(crate) fn factor(model: &Model, combination: Combination) -> Result<Cholesky, SolveError> {
