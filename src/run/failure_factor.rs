@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::write::csv::{Column, History};
 use crate::write::pvd;
 use std::time::Instant;
-use trackbed_fem::nonlinear::{QuasiStatic, strength_reduction};
+use trackbed_fem::nonlinear::strength_reduction;
 
 /// Brackets the factor of safety and writes `safety.csv` and the state at the largest factor that stands.
 ///

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::solid::{InitialStress, InitialStressKind, SolidPart};
 use trackbed_fem::State;
-use trackbed_fem::nonlinear::{Overburden, initial_stress};
+use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 
 /// The state with its initial stress, and the share of the weight that this stress carries already.
 ///

@@ -9,7 +9,9 @@ use crate::scene::solid::{
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
 use trackbed_fem::newmark::Newmark;
-use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Overburden, ReductionOptions, Variant};
+use trackbed_fem::nonlinear::initial_stress::Overburden;
+use trackbed_fem::nonlinear::strength_reduction::ReductionOptions;
+use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Variant};
 
 /// How a solid that runs alone is solved.
 #[derive(Clone, Copy, Debug)]
