@@ -29,7 +29,7 @@ impl Stage<'_> {
                 outcome
             }
             Analysis::StrengthReduction(plan) => failure_factor::run(self, solid, plan, summary),
-            Analysis::Dynamic(_) => todo!(),
+            Analysis::Dynamic(_) => Err(Failure::Other("not yet".into())),
         }
     }
 

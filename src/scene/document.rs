@@ -132,10 +132,15 @@ impl Document {
 
     /// An error about the key at `path` (such as `solid.material.0.poisson`), with its line.
     pub fn error(&self, path: &str, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
-        let overridden = self.overrides.iter().any(|(key, _)| key == path);
+        // A table given on the command line answers for all its keys, and a key for the table that it makes.
+        let below = |long: &str, short: &str| {
+            long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let made = |key: &str| below(key, path) && self.locate(path).is_none();
+        let overridden = self.overrides.iter().any(|(key, _)| below(path, key) || made(key));
         SceneError {
             file: if overridden { PathBuf::from("--set") } else { self.file.clone() },
-            line: self.locate(path),
+            line: if overridden { None } else { self.locate(path) },
             key: path.to_string(),
             found: found.into(),
             expected: expected.into(),

@@ -2,7 +2,7 @@
 
 use super::check;
 use crate::failure::Failure;
-use crate::read;
+use crate::read::{self, MeshFile};
 use crate::scene::solid::{Axis, Block, Order, Solid};
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
@@ -18,6 +18,8 @@ pub struct Geometry {
     pub constraints: Vec<Constraint>,
     /// Node sets of the file: node indices, ascending.
     pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Types of elements as the file names them, with their counts.
+    pub element_types: Vec<(String, usize)>,
     /// File that the elements come from, for messages.
     pub element_file: PathBuf,
     /// File that the constraints come from, for messages.
@@ -37,14 +39,7 @@ pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure>
             refuse(document, "constraints", solid.constraints.is_some(), "with lists alone")?;
             let path = document.resolve(file);
             let read = read::read_mesh_file(&path)?;
-            Geometry {
-                mesh: read.mesh,
-                constraints: read.constraints,
-                node_sets: read.node_sets,
-                element_file: path.clone(),
-                constraint_file: path,
-                warnings: read.warnings,
-            }
+            from_file(read, path.clone(), path)
         }
         (None, Some(nodes), Some(elements), None) => {
             let constraints = solid.constraints.as_ref().map(|c| document.resolve(c));
@@ -52,14 +47,8 @@ pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure>
             let layout = solid.layout.clone().unwrap_or_default();
             let lists =
                 read::read_lists(&document.resolve(nodes), &element_file, constraints.as_deref(), &layout)?;
-            Geometry {
-                mesh: lists.mesh,
-                constraints: lists.constraints,
-                constraint_file: constraints.unwrap_or_else(|| element_file.clone()),
-                element_file,
-                warnings: lists.warnings,
-                ..Geometry::default()
-            }
+            let constraint_file = constraints.unwrap_or_else(|| element_file.clone());
+            from_file(MeshFile::from(lists), element_file, constraint_file)
         }
         (None, None, None, Some(b)) => {
             refuse(document, "layout", solid.layout.is_some(), "with lists alone")?;
@@ -88,10 +77,22 @@ pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure>
     }
     match solid.order {
         Some(Order::Linear) => reorder(&mut geometry, Mesh::to_linear),
-        Some(Order::Quadratic) => reorder(&mut geometry, Mesh::to_quadratic),
+        Some(Order::Quadratic) => {
+            reorder(&mut geometry, Mesh::to_quadratic);
+            if !geometry.constraints.is_empty() {
+                let note = "order = \"quadratic\": constraints of the file hold its own nodes only; hold the new mid-side \
+                            nodes with [[solid.support]]";
+                geometry.warnings.push(note.into());
+            }
+        }
         None => {}
     }
     Ok(geometry)
+}
+
+fn from_file(read: MeshFile, element_file: PathBuf, constraint_file: PathBuf) -> Geometry {
+    let MeshFile { mesh, constraints, node_sets, element_types, warnings, .. } = read;
+    Geometry { mesh, constraints, node_sets, element_types, element_file, constraint_file, warnings }
 }
 
 /// Changes the order of the elements; constraints and sets keep the nodes that are left.

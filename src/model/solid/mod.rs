@@ -169,8 +169,8 @@ pub fn build(
 pub fn mesh_file(document: &Document, solid: &Solid) -> Result<MeshFile, Failure> {
     let geometry = geometry(document, solid)?;
     let constraints = boundary::supports(document, solid, &geometry)?.constraints;
-    let Geometry { mesh, node_sets, warnings, .. } = geometry;
-    Ok(MeshFile { mesh, constraints, node_sets, warnings, ..MeshFile::default() })
+    let Geometry { mesh, node_sets, element_types, warnings, .. } = geometry;
+    Ok(MeshFile { mesh, constraints, node_sets, element_types, warnings, ..MeshFile::default() })
 }
 
 /// What is wrong with the mesh, which shows only when its model is made.

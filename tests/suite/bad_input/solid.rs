@@ -59,49 +59,49 @@ fn constraints_of_a_block() {
 #[test]
 fn friction_of_a_right_angle() {
     plastic().scene("\"25 deg\"", "\"90 deg\"").refused(
-        "scene.toml:25: solid.material.1.friction: found 90 deg, expected an angle below pi/2 (in radians)",
+        "scene.toml:27: solid.material.1.friction: found 90 deg, expected an angle below pi/2 (in radians)",
     );
 }
 
 #[test]
 fn dilation_above_friction() {
     plastic().scene("\"5 deg\"", "\"26 deg\"").refused(
-        "scene.toml:26: solid.material.1.dilation: found 26 deg, expected between 0 and the smallest friction angle",
+        "scene.toml:28: solid.material.1.dilation: found 26 deg, expected between 0 and the smallest friction angle",
     );
 }
 
 #[test]
 fn tension_beyond_the_apex() {
     plastic().scene("\"5 deg\"", "\"5 deg\"\ntension = \"50 kPa\"").refused(
-        "scene.toml:27: solid.material.1.tension: found 50000, expected at most c cot(phi), where the apex lies",
+        "scene.toml:29: solid.material.1.tension: found 50000, expected at most c cot(phi), where the apex lies",
     );
 }
 
 #[test]
 fn no_strength_at_all() {
     plastic().scene("\"20 kPa\"", "0").scene("\"25 deg\"", "0").scene("\"5 deg\"", "0").refused(
-        "scene.toml:24: solid.material.1.cohesion: found 0, expected a value above 0 where the friction angle is 0",
+        "scene.toml:26: solid.material.1.cohesion: found 0, expected a value above 0 where the friction angle is 0",
     );
 }
 
 #[test]
 fn missing_dilation() {
     plastic().scene("dilation = \"5 deg\"\n", "").refused(
-        "scene.toml:17: solid.material.1.dilation: found nothing, expected a value for the model `mohr_coulomb`",
+        "scene.toml:19: solid.material.1.dilation: found nothing, expected a value for the model `mohr_coulomb`",
     );
 }
 
 #[test]
 fn cone_of_mohr_coulomb() {
     plastic().scene("\"5 deg\"", "\"5 deg\"\ncone = \"compression\"").refused(
-        "scene.toml:27: solid.material.1.cone: found a value, expected no such key for the model `mohr_coulomb`",
+        "scene.toml:29: solid.material.1.cone: found a value, expected no such key for the model `mohr_coulomb`",
     );
 }
 
 #[test]
 fn drucker_prager_without_a_cone() {
     plastic().scene("\"mohr_coulomb\"", "\"drucker_prager\"").refused(
-        "scene.toml:17: solid.material.1.cone: found nothing, expected \"compression\", \"extension\" or \"plane_strain\"",
+        "scene.toml:19: solid.material.1.cone: found nothing, expected \"compression\", \"extension\" or \"plane_strain\"",
     );
 }
 
@@ -119,7 +119,7 @@ fn hardening_table_that_turns_back() {
     let outcome = run(&good.folder.join(SCENE), &good.folder.join("fresh"), &[]);
     assert!(
         outcome.code == 2
-            && outcome.stderr.contains("scene.toml:24: solid.material.1.hardening_table: found"),
+            && outcome.stderr.contains("scene.toml:26: solid.material.1.hardening_table: found"),
         "{}",
         outcome.stderr
     );
@@ -130,14 +130,14 @@ fn hardening_table_that_turns_back() {
 #[test]
 fn support_in_a_fourth_direction() {
     plastic().scene("[\"x\", \"y\", \"z\"]", "[\"x\", \"w\"]").refused(
-        "scene.toml:31: solid.support.0.directions: found \"w\", expected one or more of \"x\", \"y\", \"z\", each once",
+        "scene.toml:33: solid.support.0.directions: found \"w\", expected one or more of \"x\", \"y\", \"z\", each once",
     );
 }
 
 #[test]
 fn support_without_a_place() {
     plastic().scene("side = \"z-\"\n", "").refused(
-        "scene.toml:28: solid.support.0: found none or several of `side`, `nodes_in`, `set` and `node`, expected one of them",
+        "scene.toml:30: solid.support.0: found none or several of `side`, `nodes_in`, `set` and `node`, expected one of them",
     );
 }
 
@@ -145,20 +145,20 @@ fn support_without_a_place() {
 fn support_where_no_node_is() {
     plastic()
         .scene("side = \"z-\"", "nodes_in = [[0, 0, 2], [1, 1, 3]]")
-        .refused("scene.toml:30: solid.support.0.nodes_in: found no node in the box, expected at least one");
+        .refused("scene.toml:32: solid.support.0.nodes_in: found no node in the box, expected at least one");
 }
 
 #[test]
 fn a_set_that_the_mesh_has_not() {
     plastic().scene("side = \"z-\"", "set = \"bottom\"").refused(
-        "scene.toml:30: solid.support.0.set: found \"bottom\", expected a node set of the mesh file, which has none",
+        "scene.toml:32: solid.support.0.set: found \"bottom\", expected a node set of the mesh file, which has none",
     );
 }
 
 #[test]
 fn two_courses_for_one_node() {
     plastic().scene("side = \"z-\"", "nodes_in = [[0, 0, 0], [1, 1, 1]]").refused(
-        "scene.toml:33: solid.support.1: found node 56 in z, which solid.support.0 holds already, expected one course for \
+        "scene.toml:35: solid.support.1: found node 39 in z, which solid.support.0 holds already, expected one course for \
          each direction of a node",
     );
 }
@@ -176,7 +176,7 @@ fn absorbing_faces_inside() {
     let absorbing =
         "[[solid.absorbing]]\nfaces_in = [[0.2, 0.2, 0.2], [0.3, 0.3, 0.3]]\n\n[solid.quasi_static]";
     plastic().scene("[solid.quasi_static]", absorbing).refused(
-        "scene.toml:41: solid.absorbing.0.faces_in: found no boundary face in the box, expected at least one",
+        "scene.toml:43: solid.absorbing.0.faces_in: found no boundary face in the box, expected at least one",
     );
 }
 
@@ -196,7 +196,7 @@ fn a_plastic_solid_without_steps() {
 #[test]
 fn two_ways_to_solve() {
     plastic().set("solid.dynamics={}").refused(
-        "scene.toml:40: solid.quasi_static: found it beside `dynamics`, expected one way to solve the solid",
+        "scene.toml:42: solid.quasi_static: found it beside `dynamics`, expected one way to solve the solid",
     );
 }
 
@@ -254,7 +254,7 @@ fn history_table_that_turns_back() {
     plastic()
         .scene("{ kind = \"ramp\", duration = 1.0 }", "{ kind = \"table\", points = [[0, 0], [1, 1], [0.5, 2]] }")
         .refused(
-            "scene.toml:38: solid.support.1.history.points: found 3 points, expected points with ascending times",
+            "scene.toml:40: solid.support.1.history.points: found 3 points, expected points with ascending times",
         );
 }
 
