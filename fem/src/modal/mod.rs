@@ -67,7 +67,8 @@ pub struct Modes {
     pub circular: Vec<f64>,
     /// Shapes with `phi·M phi = 1` [kg^-1/2], largest entry positive. Shape `[modes][3 * nodes]`.
     pub shapes: Vec<Vec<f64>>,
-    /// `|K phi - w² M phi| / ((w² + s) |M phi|)` over the free dofs, s being the shift [-]. Shape `[modes]`.
+    /// `|K phi - w² M phi| / ((w² + w_s²) |M phi|)` over the free dofs [-], w_s being 0 for a held body, else the
+    /// frequency of the lowest smooth strain, so that rigid motions have a measure. Shape `[modes]`.
     pub residuals: Vec<f64>,
     /// `phi·M r` with the unit motion r along x, y, z [kg^1/2]. Shape `[modes][3]`.
     pub participation: Vec<[f64; 3]>,
@@ -101,7 +102,7 @@ pub fn solve(model: &Model, count: usize) -> Result<Modes, ModalError> {
         let (square, shape) = (square.max(0.0), with_positive_peak(shape));
         modes.circular.push(square.sqrt());
         modes.frequencies.push(square.sqrt() / std::f64::consts::TAU);
-        modes.residuals.push(residual(model, square, shift, &shape));
+        modes.residuals.push(residual(model, square + shift / SHIFT, square, &shape));
         modes.shapes.push(shape);
     }
     if shift > 0.0 {
@@ -204,7 +205,7 @@ fn with_positive_peak(mut shape: Vec<f64>) -> Vec<f64> {
     shape
 }
 
-fn residual(model: &Model, square: f64, shift: f64, shape: &[f64]) -> f64 {
+fn residual(model: &Model, measure: f64, square: f64, shape: &[f64]) -> f64 {
     let (mut k, mut m) = (vec![0.0; shape.len()], vec![0.0; shape.len()]);
     model.stiffness_times(shape, &mut k);
     model.mass_times(shape, &mut m);
@@ -213,7 +214,7 @@ fn residual(model: &Model, square: f64, shift: f64, shape: &[f64]) -> f64 {
         miss += (k[d] - square * m[d]).powi(2);
         size += m[d] * m[d];
     }
-    miss.sqrt() / ((square + shift) * size.sqrt())
+    miss.sqrt() / (measure * size.sqrt())
 }
 
 fn participation(model: &Model, modes: &mut Modes) {
