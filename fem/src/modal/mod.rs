@@ -230,3 +230,33 @@ fn participation(model: &Model, modes: &mut Modes) {
     }
     modes.effective_mass = modes.participation.iter().map(|p| p.map(|p| p * p)).collect();
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::quadrature::Quadrature;
+    use crate::material::elastic::Elastic;
+    use crate::mesh::Mesh;
+    use crate::model::ModelInput;
+
+    /// Two modes taken away from the result, one of them of a pair, are found again.
+    #[test]
+    fn a_missed_mode_is_found_by_the_check() {
+        let model = Model::new(ModelInput {
+            mesh: Mesh::block([2, 2, 3], [1.0, 1.0, 1.6]),
+            materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 })].into(),
+            quadrature: Quadrature::Gauss3,
+            ..Default::default()
+        })
+        .unwrap();
+        let (factor, _) = shifted_factor(&model, smooth_scale(&model)).unwrap();
+        let mut operator = Operator::new(&model, factor);
+        let mut ritz = operator.largest(&[], 16, 6).unwrap();
+        let values: Vec<f64> = ritz.iter().map(|r| r.value).collect();
+        ritz.remove(9);
+        ritz.remove(3);
+        check_for_missed(&mut operator, &mut ritz, 14, 6).unwrap();
+        assert_eq!(ritz.len(), 14);
+        assert!(ritz.iter().zip(&values).all(|(r, v)| (r.value / v - 1.0).abs() < 1e-9), "{values:?}");
+    }
+}
