@@ -15,7 +15,7 @@ use crate::solver::cholesky::Cholesky;
 use nalgebra::{DMatrix, DVector};
 
 /// Residual over the eigenvalue at which a Ritz pair counts as converged. The error of the eigenvalue is its square.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-10;
 /// What orthogonalization may leave of a vector, below which there is nothing new in it.
 const NOTHING: f64 = 1e-13;
 const RESTARTS: usize = 200;
@@ -100,11 +100,8 @@ impl<'m> Operator<'m> {
             basis.extend(space.basis.drain(space.done..));
             let mut projected = DMatrix::zeros(size, size);
             for (i, &k) in kept.iter().enumerate() {
+                // How they couple with the last block shows when that block is expanded.
                 projected[(i, i)] = eigen.eigenvalues[k];
-                for j in 0..tail {
-                    projected[(keep + j, i)] = coupling[(j, k)];
-                    projected[(i, keep + j)] = coupling[(j, k)];
-                }
             }
             space = Space { basis, done: keep, projected };
         }
