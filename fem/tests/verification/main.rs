@@ -10,6 +10,7 @@ mod element;
 mod patch;
 mod plastic_common;
 mod plastic_cylinder;
+mod plastic_dynamics;
 mod plastic_element;
 mod plastic_footing;
 mod plastic_ground;
