@@ -5,8 +5,12 @@
 //! taken with the undeformed positions: the linear theory conserves that one, because its stiffness resists no
 //! infinitesimal rotation of the undeformed body. Limits: small displacement, for moments too.
 
+use crate::element::stiffness_points;
+use crate::kinematics::{jacobian, mean_gradients, spatial_gradients};
+use crate::material::PointState;
 use crate::mesh::Mesh;
 use crate::model::Model;
+use crate::nonlinear::motion::elastic_energy_density;
 use crate::state::State;
 
 /// Kinetic energy [J].
@@ -14,9 +18,56 @@ pub fn kinetic(model: &Model, state: &State) -> f64 {
     0.5 * model.matrices().mass_form(&state.v)
 }
 
-/// Strain energy [J], that of the boundary springs included.
+/// Elastic strain energy [J], that of the boundary springs included: of the stresses where the state has them, else of
+/// the displacement.
 pub fn strain(model: &Model, state: &State) -> f64 {
-    0.5 * model.matrices().stiffness_form(&state.u)
+    if state.points.is_empty() {
+        0.5 * model.matrices().stiffness_form(&state.u)
+    } else {
+        of_points(model, &state.points) + boundary_springs(model, state)
+    }
+}
+
+/// Elastic energy of the stresses at the Gauss points, `∫ s : C^-1 s / 2 dV` [J].
+pub fn of_points(model: &Model, points: &[PointState]) -> f64 {
+    let mesh = model.mesh();
+    let mut total = 0.0;
+    for e in 0..mesh.element_count() {
+        let (x, constants) = (mesh.element_coordinates(e), model.elastic(e));
+        let rule = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
+        for (point, state) in rule.iter().zip(&points[model.point_start(e)..]) {
+            let volume = point.weight * jacobian(&x, &point.gradients).1;
+            total += volume * elastic_energy_density(constants.young, constants.poisson, &state.stress);
+        }
+    }
+    total
+}
+
+/// Forces of the stresses at the Gauss points, `∫ B^T s dV` [N]; in linear elements with the mean dilatation. Shape
+/// `[3 * nodes]`.
+pub fn force_of_points(model: &Model, points: &[PointState]) -> Vec<f64> {
+    let mesh = model.mesh();
+    let mut force = vec![0.0; model.dof_count()];
+    for e in 0..mesh.element_count() {
+        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
+        let rule = stiffness_points(kind, model.quadrature());
+        let mean = kind.is_linear().then(|| mean_gradients(&x, rule).0);
+        for (point, state) in rule.iter().zip(&points[model.point_start(e)..]) {
+            let (g, det) = spatial_gradients(&x, &point.gradients);
+            let s = state.stress.map(|s| point.weight * det * s);
+            let pressure = (s[0] + s[1] + s[2]) / 3.0;
+            for (a, &node) in mesh.connectivity[e].iter().enumerate() {
+                let f = &mut force[3 * node as usize..][..3];
+                f[0] += s[0] * g[a][0] + s[3] * g[a][1] + s[5] * g[a][2];
+                f[1] += s[3] * g[a][0] + s[1] * g[a][1] + s[4] * g[a][2];
+                f[2] += s[5] * g[a][0] + s[4] * g[a][1] + s[2] * g[a][2];
+                if let Some(mean) = &mean {
+                    (0..3).for_each(|k| f[k] += pressure * (mean[a][k] - g[a][k]));
+                }
+            }
+        }
+    }
+    force
 }
 
 /// Energy of the boundary springs alone [J]; a part of [`strain`].
@@ -32,8 +83,8 @@ pub fn momentum(model: &Model, state: &State) -> ([f64; 3], [f64; 3]) {
     (sum.force, sum.moment)
 }
 
-/// Forces of the supports on the moving body [N], `M a + C v + K u - F` at constrained dofs, 0 elsewhere. Shape
-/// `[3 * nodes]`.
+/// Forces of the supports on the moving body [N], `M a + C v + K u - F` at constrained dofs, 0 elsewhere; with the
+/// forces of the stresses in place of `K u` where the state has them. Shape `[3 * nodes]`.
 ///
 /// Exact for states that [`crate::newmark`] left with its own methods; a window step has
 /// [`crate::window::WindowSolver::mean_reactions`].
@@ -41,6 +92,13 @@ pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     let n = model.dof_count();
     let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
     inner_force(model, [&state.u, &state.v, &state.a], &mut inner, &mut scratch);
+    if !state.points.is_empty() {
+        // The stresses in place of what the elastic matrix makes of the displacement; springs are in both.
+        model.stiffness_times(&state.u, &mut scratch[..n]);
+        let mut stresses = force_of_points(model, &state.points);
+        model.boundary_spring_times(&state.u, &mut stresses);
+        (0..n).for_each(|d| inner[d] += stresses[d] - scratch[d]);
+    }
     let mut reactions = vec![0.0; n];
     for &(dof, _) in model.supports().fixed() {
         reactions[dof as usize] = inner[dof as usize] - load[dof as usize];

@@ -40,7 +40,7 @@ impl State {
 /// What entered and left the body in one step; for the ledger of energy.
 ///
 /// `external_work + support_work = change of (kinetic + strain) + damping_dissipation + boundary_dissipation +
-/// numerical_dissipation`, to rounding. The strain energy includes that of the boundary springs.
+/// plastic_dissipation + numerical_dissipation`, to rounding. The strain energy includes that of the boundary springs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepAudit {
     /// Work of the load on the displacement of the step [J].
@@ -51,6 +51,9 @@ pub struct StepAudit {
     pub damping_dissipation: f64,
     /// Energy taken by boundary dashpots [J].
     pub boundary_dissipation: f64,
+    /// Energy taken by plastic flow [J].
+    #[serde(default)]
+    pub plastic_dissipation: f64,
     /// Energy taken by the time integration itself [J]; negative when it feeds energy in.
     pub numerical_dissipation: f64,
 }

@@ -303,6 +303,7 @@ impl NewmarkSolver {
             support_work,
             damping_dissipation: damping,
             boundary_dissipation: boundary,
+            plastic_dissipation: 0.0,
             numerical_dissipation: external_work + support_work - damping - boundary - kinetic - strain,
         }
     }

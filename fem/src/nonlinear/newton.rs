@@ -217,6 +217,8 @@ pub(crate) struct Problem<'a> {
     pub fixed: &'a [f64],
     /// What is added to the internal force.
     pub linear: Combination,
+    /// Size of the forces [N] that the residual is measured by, where it is larger than the internal force; the size of `rhs` if none.
+    pub forces: Option<f64>,
 }
 
 /// Smallest length of a correction.
@@ -299,12 +301,12 @@ impl Newton {
             }
             self.system.solve(model, matrix, &self.tangent, &mut self.equations, &mut self.statistics);
             model.supports().scatter(&self.equations, &mut self.correction);
-            let work = self.work(model);
+            let (work, norm) = (self.work(model), self.size(model));
             self.base.copy_from_slice(&self.w);
             self.evaluate(model, problem, 1.0)?;
             // The prescribed increments of the first iteration are not to be scaled.
             if self.options.line_search && iteration > 1 {
-                self.search(model, problem, work, matrix)?;
+                self.search(model, problem, work, norm, matrix)?;
             }
             self.report.iterations = iteration;
             self.statistics.iterations += 1;
@@ -399,7 +401,8 @@ impl Newton {
     /// Residual on the free dofs over the forces; appends it to the report.
     fn measure(&mut self, model: &Model, problem: &Problem<'_>) -> f64 {
         let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-        let forces = square(problem.rhs).max(square(&self.force.force)).sqrt();
+        let given = problem.forces.unwrap_or_else(|| square(problem.rhs).sqrt());
+        let forces = given.max(square(&self.force.force).sqrt());
         let residual = self.size(model);
         let size = if residual == 0.0 { 0.0 } else { residual / forces };
         self.report.residuals.push(size);
@@ -417,16 +420,18 @@ impl Newton {
         free.iter().map(|&d| self.residual[d as usize] * self.correction[d as usize]).sum()
     }
 
-    /// Searches the length of the correction; stands at length 1 when called. `before` is the work at length 0.
+    /// Searches the length of the correction; stands at length 1 when called. `before` is the work at length 0,
+    /// `size` that of the residual there.
     fn search(
         &mut self,
         model: &Model,
         problem: &Problem<'_>,
         before: f64,
+        size: f64,
         matrix: Matrix,
     ) -> Result<(), Failure> {
         if before <= 0.0 {
-            return self.search_by_size(model, problem);
+            return self.search_by_size(model, problem, size);
         }
         let tangent = self.options.variant == Variant::Full && matrix == Matrix::Tangent;
         let longest = if tangent { 1.0 } else { LONGEST };
@@ -460,15 +465,9 @@ impl Newton {
     }
 
     /// Halves the correction while the residual is larger than without it.
-    fn search_by_size(&mut self, model: &Model, problem: &Problem<'_>) -> Result<(), Failure> {
-        let forces = self.report.residuals.last().copied().unwrap_or(0.0);
-        let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    fn search_by_size(&mut self, model: &Model, problem: &Problem<'_>, before: f64) -> Result<(), Failure> {
         let mut length = 1.0;
-        while length > 2.0 * SHORTEST {
-            let scale = square(problem.rhs).max(square(&self.force.force)).sqrt();
-            if self.size(model) <= forces * scale {
-                break;
-            }
+        while length > 2.0 * SHORTEST && self.size(model) > before {
             length *= 0.5;
             self.evaluate(model, problem, length)?;
         }

@@ -113,6 +113,7 @@ impl QuasiStatic {
                 rhs: &self.load,
                 fixed: &self.fixed,
                 linear: Combination::default(),
+                forces: None,
             };
             match self.newton.solve(model, &problem) {
                 Ok(()) => {

@@ -283,3 +283,7 @@ fn add_point(matrix: &mut [f64], g: &[[f64; 3]], means: &[[f64; 3]], d: &[[f64; 
         }
     }
 }
+
+#[cfg(test)]
+#[path = "tangent_tests.rs"]
+mod tests;

@@ -17,6 +17,7 @@ mod modal;
 mod patch;
 mod plastic_common;
 mod plastic_cylinder;
+mod plastic_dynamics;
 mod plastic_element;
 mod plastic_footing;
 mod plastic_ground;

@@ -1,0 +1,271 @@
+//! Dynamics of elastoplastic bodies: Newmark's method and HHT-α with Newton's iteration in residual form.
+//!
+//! ```text
+//! M a1 + (1 + h) (f(s1) + S u1 + C v1 - F1) - h (f(s0) + S u0 + C v0 - F0) = 0,   C = alpha_m M + beta_k K + D
+//! ```
+//!
+//! Unknown is the displacement increment; acceleration and velocity follow from it by Newmark's formulas. h is HHT's α in
+//! [-1/3, 0], 0 for Newmark. K in the damping is the elastic stiffness: damping does not fade where the soil yields.
+//!
+//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292;
+//! Simo and Hughes, Computational Inelasticity (1998), section 1.6 for the plastic case. Limits: those of Newmark's
+//! method; a step that is halved takes its loads at the time that it reaches.
+
+use super::internal_force::InternalForce;
+use super::motion::{close, inner_force};
+use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
+use super::quasi_static::{Loading, check_state, ensure_points, prescribe, subtract_springs};
+use super::step_control::{StepControl, StepLength};
+use crate::assembly::Combination;
+use crate::model::Model;
+use crate::newmark::{Newmark, NewmarkError, check_dynamics};
+use crate::solver::SolveError;
+use crate::solver::conjugate_gradient::solve_mass;
+use crate::state::{State, StepAudit};
+use crate::statics::check_load;
+
+/// Share of the inertia of the predicted motion that counts as a force in the criterion of convergence: rounding of the velocity
+/// in a step then stays below 1e-8 at a tolerance of 1e-6 where no other force is left.
+const INERTIA: f64 = 1e-3;
+
+/// Moves an elastoplastic body in time.
+pub struct Dynamics {
+    method: Newmark,
+    hht: f64,
+    newton: Newton,
+    length: StepLength,
+    next: State,
+    load: [Vec<f64>; 2],
+    rhs: Vec<f64>,
+    fixed: Vec<f64>,
+    inner: [Vec<f64>; 2],
+    scratch: Vec<f64>,
+}
+
+impl Dynamics {
+    /// Newmark's method, unconditionally stable parameters only.
+    ///
+    /// # Errors
+    /// Parameters, options or step lengths out of range; a material without density.
+    pub fn newmark(
+        model: &Model,
+        method: Newmark,
+        options: NewtonOptions,
+        control: StepControl,
+    ) -> Result<Dynamics, SolveError> {
+        method.check()?;
+        Dynamics::build(model, method, 0.0, options, control)
+    }
+
+    /// HHT-α with its parameter in [-1/3, 0].
+    ///
+    /// # Errors
+    /// As [`Dynamics::newmark`].
+    pub fn hht(
+        model: &Model,
+        alpha: f64,
+        options: NewtonOptions,
+        control: StepControl,
+    ) -> Result<Dynamics, SolveError> {
+        if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
+            return Err(NewmarkError::Hht { alpha }.into());
+        }
+        Dynamics::build(model, Newmark::of_hht(alpha), alpha, options, control)
+    }
+
+    fn build(
+        model: &Model,
+        method: Newmark,
+        hht: f64,
+        options: NewtonOptions,
+        control: StepControl,
+    ) -> Result<Dynamics, SolveError> {
+        control.check()?;
+        check_dynamics(model, control.initial)?;
+        let zeros = || vec![0.0; model.dof_count()];
+        Ok(Dynamics {
+            method,
+            hht,
+            newton: Newton::new(model, options)?,
+            length: StepLength::new(control),
+            next: State { points: vec![Default::default(); model.point_count()], ..State::new(model) },
+            load: [zeros(), zeros()],
+            rhs: zeros(),
+            fixed: vec![0.0; model.supports().fixed().len()],
+            inner: [zeros(), zeros()],
+            scratch: vec![0.0; 2 * model.dof_count()],
+        })
+    }
+
+    /// Counts and times since the solver was made.
+    pub fn statistics(&self) -> Statistics {
+        self.newton.statistics
+    }
+
+    /// Steps `state` to the time `to`. After every accepted step `on_step` sees the state, how the step converged, and its energies.
+    /// The work is that of the mean of the loads, and of the reactions, at both ends of a step.
+    ///
+    /// The acceleration of the state must be that of its equations of motion: [`initial_acceleration`].
+    ///
+    /// # Errors
+    /// [`SolveError::Diverged`] when a step of the smallest length fails; `state` is then that of the last accepted step, bit for
+    /// bit. A load or displacement that is not finite; a state of another model.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut impl Loading,
+        mut on_step: impl FnMut(&State, &StepReport, &StepAudit),
+    ) -> Result<(), SolveError> {
+        check_state(model, state)?;
+        if !to.is_finite() {
+            return Err(SolveError::Option { what: "the end time", value: to, expected: "a finite number" });
+        }
+        ensure_points(model, state);
+        while state.time < to {
+            let dt = self.length.next(state.time, to);
+            let time = if dt >= to - state.time { to } else { state.time + dt };
+            match self.step(model, state, time, dt, loading) {
+                Ok(audit) => {
+                    self.length.accept(dt, self.newton.report.iterations);
+                    on_step(state, &self.newton.report, &audit);
+                }
+                Err(Failure::Stuck(stuck)) => {
+                    if !self.length.halve(dt) {
+                        return Err(stuck.error(model, state.time));
+                    }
+                    self.newton.statistics.halvings += 1;
+                }
+                Err(Failure::Fatal(error)) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    fn step(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        time: f64,
+        dt: f64,
+        loading: &mut impl Loading,
+    ) -> Result<StepAudit, Failure> {
+        for (load, at) in self.load.iter_mut().zip([state.time, time]) {
+            load.fill(0.0);
+            loading.load(at, load);
+            check_load(model, load, at).map_err(Failure::Fatal)?;
+        }
+        prescribe(model, state, time, loading, &mut self.fixed).map_err(Failure::Fatal)?;
+        let (Newmark { alpha, delta }, c, new) = (self.method, model.rayleigh(), 1.0 + self.hht);
+        let (n, old) = (state.u.len(), -self.hht / new);
+        let [start, end] = &mut self.inner;
+        inner_force(model, &mut self.newton.force, state, start, &mut self.scratch);
+        // 1. The part of a1 and v1 that does not depend on the increment.
+        let by_square = 1.0 / (alpha * dt * dt);
+        for d in 0..n {
+            let a = -by_square * (dt * state.v[d] + dt * dt * (0.5 - alpha) * state.a[d]);
+            self.next.a[d] = a;
+            self.next.v[d] = state.v[d] + dt * ((1.0 - delta) * state.a[d] + delta * a);
+        }
+        // 2. F1 - S u0 - M a_p/(1 + h) - C v_p, and with HHT what is out of balance at the start but for the inertia.
+        let [load_start, load_end] = &self.load;
+        let (mixed, product) = self.scratch.split_at_mut(n);
+        self.rhs.copy_from_slice(load_end);
+        subtract_springs(model, &state.u, &mut self.rhs);
+        for d in 0..n {
+            mixed[d] = self.next.a[d] / new + c.alpha_m * self.next.v[d] + old * state.a[d] * -1.0;
+        }
+        model.mass_times(mixed, product);
+        self.rhs.iter_mut().zip(&*product).for_each(|(r, p)| *r -= p);
+        if c.beta_k > 0.0 {
+            for d in 0..n {
+                mixed[d] = c.beta_k * self.next.v[d];
+            }
+            model.stiffness_times(mixed, product);
+            self.rhs.iter_mut().zip(&*product).for_each(|(r, p)| *r -= p);
+        }
+        if !model.matrices().dashpots().is_empty() {
+            product.fill(0.0);
+            model.dashpot_times(&self.next.v, product);
+            self.rhs.iter_mut().zip(&*product).for_each(|(r, p)| *r -= p);
+        }
+        if old != 0.0 {
+            for d in 0..n {
+                self.rhs[d] += old * (load_start[d] - start[d]);
+            }
+        }
+        // 3. Iterate.
+        let velocity = delta / (alpha * dt);
+        let linear = Combination {
+            mass: by_square / new + c.alpha_m * velocity,
+            stiffness: c.beta_k * velocity,
+            dashpots: velocity,
+        };
+        model.mass_times(&state.a, product);
+        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let forces = norm(load_end).max(norm(product)).max(INERTIA * norm(&self.rhs));
+        let problem =
+            Problem { old: &state.points, rhs: &self.rhs, fixed: &self.fixed, linear, forces: Some(forces) };
+        self.newton.solve(model, &problem)?;
+        // 4. The motion at the end, and the ledger.
+        let next = &mut self.next;
+        for d in 0..n {
+            let w = self.newton.w[d];
+            next.u[d] = state.u[d] + w;
+            next.v[d] += velocity * w;
+            next.a[d] += by_square * w;
+        }
+        std::mem::swap(&mut next.points, &mut self.newton.force.points);
+        next.time = time;
+        let mut audit = StepAudit::default();
+        for d in 0..n {
+            audit.external_work += 0.5 * (load_start[d] + load_end[d]) * self.newton.w[d];
+        }
+        if self.fixed.iter().any(|f| *f != 0.0) {
+            inner_force(model, &mut self.newton.force, next, end, &mut self.scratch);
+            for d in model.supports().fixed().iter().map(|(dof, _)| *dof as usize) {
+                let reactions = start[d] + end[d] - load_start[d] - load_end[d];
+                audit.support_work += 0.5 * reactions * self.newton.w[d];
+            }
+        }
+        for d in 0..n {
+            self.rhs[d] = 0.5 * (state.v[d] + next.v[d]);
+        }
+        let table = &self.newton.force.table;
+        let audit = close(model, table, [state, next], audit, &self.rhs, &mut self.scratch);
+        std::mem::swap(state, next);
+        self.newton.statistics.steps += 1;
+        (self.newton.report.time, self.newton.report.dt) = (time, dt);
+        Ok(audit)
+    }
+}
+
+/// Sets `state.a` from the equations of motion of a state with stresses: `M a = F - C v - f - S u` on the free dofs, 0 on the
+/// others.
+///
+/// # Errors
+/// A load or a state that does not fit, a material without density, or a mass matrix that cannot be solved.
+pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> Result<(), SolveError> {
+    check_load(model, load, state.time)?;
+    check_state(model, state)?;
+    check_dynamics(model, 1.0)?;
+    ensure_points(model, state);
+    state.a.fill(0.0);
+    let n = model.dof_count();
+    let (mut force, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
+    inner_force(model, &mut InternalForce::new(model), state, &mut force, &mut scratch);
+    force.iter_mut().zip(load).for_each(|(f, l)| *f = l - *f);
+    if let Some(masses) = model.matrices().lumped_mass() {
+        for &d in model.supports().free() {
+            state.a[d as usize] = force[d as usize] / masses[d as usize / 3];
+        }
+        return Ok(());
+    }
+    let mut free = vec![0.0; n];
+    solve_mass(model.matrices(), model.supports(), &force, &mut free)?;
+    for &d in model.supports().free() {
+        state.a[d as usize] = free[d as usize];
+    }
+    Ok(())
+}
