@@ -2,6 +2,10 @@
 //!
 //! The tables are in `tests/data/fem` of the workspace; each folder's `case.json` tells how they were made.
 
+mod cavity;
+mod collapse_common;
+mod collapse_footing;
+mod collapse_slope;
 mod common;
 mod convergence;
 mod determinism;
