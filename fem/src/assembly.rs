@@ -2,15 +2,18 @@
 //!
 //! Both matrices are symmetric and share one pattern over node pairs (p, q), q >= p, stored by rows. A stiffness entry
 //! is a 3×3 block; a mass entry is one number, because inertia does not mix directions: the mass takes a ninth of the
-//! memory and of the time. They cover all dofs, so reactions and prescribed values need nothing more. Equation systems
-//! `k K + m M` on the free dofs are written from them straight into the slots of a lower CSC matrix.
+//! memory and of the time. They cover all dofs, so reactions and prescribed values need nothing more. Boundary springs are
+//! added to the stiffness; boundary dashpots D are kept as the few blocks they are. Equation systems `k K + m M + d D` on
+//! the free dofs are written from them straight into the slots of a lower CSC matrix.
 //!
 //! Determinism: element matrices of a chunk of fixed size are computed side by side, then added in element order by one
 //! thread, so the bits do not depend on the number of threads.
 
+use crate::boundary::{BoundaryLayer, FaceMatrix};
 use crate::element::quadrature::Quadrature;
 use crate::element::{ElementKind, mass_points, stiffness_points};
 use crate::kinematics::{gradient_products, mass_matrix, mean_gradients, stiffness_block};
+use crate::mass::{Mass, lump};
 use crate::material::elastic::Elastic;
 use crate::mesh::Mesh;
 use crate::supports::{CONSTRAINED, Supports};
@@ -26,27 +29,86 @@ pub struct Matrices {
     column: Vec<u32>,
     stiffness: Vec<[f64; 9]>,
     mass: Vec<f64>,
+    lumped: Option<Lumped>,
+    springs: FaceMatrix,
+    dashpots: FaceMatrix,
+    /// Slot of each block of the dashpots, ascending.
+    dashpot_slots: Vec<usize>,
 }
 
-/// What one element adds: 3×3 stiffness block and mass of each pair.
-type Contribution = Vec<([f64; 9], f64)>;
+/// What a diagonal mass matrix needs beside the slots.
+#[derive(Clone, Debug)]
+struct Lumped {
+    /// The diagonal [kg]. Shape `[nodes]`.
+    diagonal: Vec<f64>,
+    /// `∫ rho N_a dV` [kg]: the shares of a uniform acceleration. Shape `[nodes]`.
+    shares: Vec<f64>,
+}
+
+/// The factors of an equation matrix `stiffness K + mass M + dashpots D`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Combination {
+    /// Factor of the stiffness, springs included.
+    pub stiffness: f64,
+    /// Factor of the mass.
+    pub mass: f64,
+    /// Factor of the boundary dashpots.
+    pub dashpots: f64,
+}
+
+/// What one element adds.
+struct Contribution {
+    /// 3×3 stiffness block and mass of each pair.
+    pairs: Vec<([f64; 9], f64)>,
+    /// `∫ rho N_a dV` of each node, where the mass is lumped.
+    shares: Vec<f64>,
+}
 
 impl Matrices {
-    /// Assembles both matrices. `material_of` gives the material of an element (by index).
+    /// Assembles stiffness and consistent mass. `material_of` gives the material of an element (by index).
     pub fn assemble<'m>(
         mesh: &Mesh,
         rule: Quadrature,
         material_of: impl Fn(usize) -> &'m Elastic + Sync,
     ) -> Matrices {
+        Matrices::assemble_with(mesh, rule, Mass::Consistent, &[], material_of)
+    }
+
+    /// Assembles stiffness, mass, and the springs and dashpots of boundary layers, whose faces are faces of elements.
+    pub fn assemble_with<'m>(
+        mesh: &Mesh,
+        rule: Quadrature,
+        mass: Mass,
+        boundaries: &[BoundaryLayer],
+        material_of: impl Fn(usize) -> &'m Elastic + Sync,
+    ) -> Matrices {
         let mut matrices = Matrices::pattern(mesh);
+        let mut shares = vec![0.0; if mass == Mass::Lumped { mesh.node_count() } else { 0 }];
         let elements: Vec<usize> = (0..mesh.element_count()).collect();
         for chunk in elements.chunks(CHUNK) {
             let contributions: Vec<Contribution> =
-                chunk.par_iter().map(|&e| contribution(mesh, e, rule, material_of(e))).collect();
+                chunk.par_iter().map(|&e| contribution(mesh, e, rule, mass, material_of(e))).collect();
             for (&e, contribution) in chunk.iter().zip(&contributions) {
-                matrices.add(&mesh.connectivity[e], contribution);
+                matrices.add(&mesh.connectivity[e], &contribution.pairs);
+                for (&node, share) in mesh.connectivity[e].iter().zip(&contribution.shares) {
+                    shares[node as usize] += share;
+                }
             }
         }
+        if mass == Mass::Lumped {
+            matrices.lumped = Some(Lumped { diagonal: matrices.mass_diagonal(), shares });
+        }
+        matrices.springs = FaceMatrix::springs(mesh, boundaries);
+        for ([p, q], block) in matrices.springs.entries() {
+            let slot = slot(&matrices.row_start, &matrices.column, p, q);
+            matrices.stiffness[slot].iter_mut().zip(block).for_each(|(k, s)| *k += s);
+        }
+        matrices.dashpots = FaceMatrix::dashpots(mesh, boundaries);
+        matrices.dashpot_slots = matrices
+            .dashpots
+            .entries()
+            .map(|([p, q], _)| slot(&matrices.row_start, &matrices.column, p, q))
+            .collect();
         matrices
     }
 
@@ -73,18 +135,25 @@ impl Matrices {
             row_start.push(column.len());
         }
         let entries = column.len();
-        Matrices { row_start, column, stiffness: vec![[0.0; 9]; entries], mass: vec![0.0; entries] }
+        Matrices {
+            row_start,
+            column,
+            stiffness: vec![[0.0; 9]; entries],
+            mass: vec![0.0; entries],
+            lumped: None,
+            springs: FaceMatrix::default(),
+            dashpots: FaceMatrix::default(),
+            dashpot_slots: Vec::new(),
+        }
     }
 
-    fn add(&mut self, nodes: &[u32], contribution: &Contribution) {
-        let mut pair = contribution.iter();
+    fn add(&mut self, nodes: &[u32], pairs: &[([f64; 9], f64)]) {
+        let mut pair = pairs.iter();
         for a in 0..nodes.len() {
             for b in a..nodes.len() {
                 let Some((block, mass)) = pair.next() else { return };
                 let (p, q) = (nodes[a].min(nodes[b]), nodes[a].max(nodes[b]));
-                let row = self.row_start[p as usize]..self.row_start[p as usize + 1];
-                // The pattern holds every pair of an element, so the search always succeeds.
-                let slot = row.start + self.column[row].partition_point(|&c| c < q);
+                let slot = slot(&self.row_start, &self.column, p, q);
                 self.mass[slot] += mass;
                 let sum = &mut self.stiffness[slot];
                 for i in 0..3 {
@@ -123,6 +192,11 @@ impl Matrices {
         &self.stiffness
     }
 
+    /// Slots and blocks of the boundary dashpots [N s/m].
+    pub(crate) fn dashpot_blocks(&self) -> impl Iterator<Item = (usize, &[f64; 9])> {
+        self.dashpot_slots.iter().copied().zip(self.dashpots.entries().map(|(_, block)| block))
+    }
+
     /// Mass entries by slots [kg].
     pub(crate) fn mass_entries(&self) -> &[f64] {
         &self.mass
@@ -151,6 +225,12 @@ impl Matrices {
     /// `y = M x` over all dofs: force [N] of an acceleration [m/s²], momentum of a velocity. Shapes `[3 * nodes]`.
     pub fn mass_times(&self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
+        if let Some(lumped) = &self.lumped {
+            for ((y, x), m) in y.iter_mut().zip(x).zip(&lumped.diagonal) {
+                *y = x.map(|x| m * x);
+            }
+            return;
+        }
         y.fill([0.0; 3]);
         for (p, xp) in x.iter().enumerate() {
             let row = self.row_start[p]..self.row_start[p + 1];
@@ -176,6 +256,10 @@ impl Matrices {
 
     /// `x·M x`, twice the kinetic energy of a velocity [J]. Half the cost of a product. Shape `[3 * nodes]`.
     pub fn mass_form(&self, x: &[f64]) -> f64 {
+        if let Some(lumped) = &self.lumped {
+            let square = |x: &[f64; 3]| x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+            return x.as_chunks::<3>().0.iter().zip(&lumped.diagonal).map(|(x, m)| m * square(x)).sum();
+        }
         self.form(x, |row, columns, x, sum| {
             for (&m, &q) in self.mass[row].iter().zip(columns) {
                 add_scaled(sum, m, &x[q as usize]);
@@ -211,26 +295,59 @@ impl Matrices {
         self.row_start[..self.node_count()].iter().map(|&slot| self.mass[slot]).collect()
     }
 
+    /// The diagonal [kg], shape `[nodes]`, when the mass is lumped.
+    pub fn lumped_mass(&self) -> Option<&[f64]> {
+        self.lumped.as_ref().map(|l| l.diagonal.as_slice())
+    }
+
+    /// `∫ rho N_a dV` [kg], shape `[nodes]`, when the mass is lumped; otherwise the row sums of the mass say the same.
+    pub fn lumped_shares(&self) -> Option<&[f64]> {
+        self.lumped.as_ref().map(|l| l.shares.as_slice())
+    }
+
+    /// The boundary springs, which are part of the stiffness too.
+    pub fn springs(&self) -> &FaceMatrix {
+        &self.springs
+    }
+
+    /// The boundary dashpots.
+    pub fn dashpots(&self) -> &FaceMatrix {
+        &self.dashpots
+    }
+
     /// Visits the lower half of the equation matrix, column by column, rows ascending:
-    /// `visit(column, row, stiffness, mass)`, column and row being equation numbers. The diagonal entry comes first.
-    pub(crate) fn visit_free(&self, supports: &Supports, mut visit: impl FnMut(usize, usize, f64, f64)) {
+    /// `visit(column, row, stiffness, mass, dashpots)`, column and row being equation numbers. The diagonal entry comes
+    /// first.
+    pub(crate) fn visit_free(&self, supports: &Supports, mut visit: impl FnMut(usize, usize, f64, f64, f64)) {
         let index = supports.free_index();
         for (column, &dof) in supports.free().iter().enumerate() {
             let (p, i) = (dof as usize / 3, dof as usize % 3);
             let row = self.row_start[p]..self.row_start[p + 1];
+            // The dashpots of this row follow the slots in the same order.
+            let first_dashpot = self.dashpot_slots.partition_point(|&s| s < row.start);
+            let mut dashpots = self.dashpot_slots[first_dashpot..].iter().zip(first_dashpot..).peekable();
             for (slot, &q) in row.clone().zip(&self.column[row]) {
                 let q = q as usize;
                 let first = if q == p { i } else { 0 };
+                let dashpot = dashpots.next_if(|(s, _)| **s == slot).map(|(_, d)| self.dashpots.block(d));
                 for j in first..3 {
                     let equation = index[3 * q + j];
                     if equation != CONSTRAINED {
                         let mass = if i == j { self.mass[slot] } else { 0.0 };
-                        visit(column, equation as usize, self.stiffness[slot][3 * i + j], mass);
+                        let dashpot = dashpot.map_or(0.0, |d| d[3 * i + j]);
+                        visit(column, equation as usize, self.stiffness[slot][3 * i + j], mass, dashpot);
                     }
                 }
             }
         }
     }
+}
+
+/// The slot of the node pair p <= q of one element. The pattern holds every such pair, so the search succeeds.
+#[inline]
+fn slot(row_start: &[usize], column: &[u32], p: u32, q: u32) -> usize {
+    let row = row_start[p as usize]..row_start[p as usize + 1];
+    row.start + column[row].partition_point(|&c| c < q)
 }
 
 /// `sum += k v` for a row-major 3×3 block.
@@ -249,26 +366,45 @@ fn add_scaled(sum: &mut [f64; 3], factor: f64, v: &[f64; 3]) {
     }
 }
 
-fn contribution(mesh: &Mesh, element: usize, rule: Quadrature, material: &Elastic) -> Contribution {
+fn contribution(
+    mesh: &Mesh,
+    element: usize,
+    rule: Quadrature,
+    mass: Mass,
+    material: &Elastic,
+) -> Contribution {
     match mesh.connectivity.kind(element) {
-        ElementKind::Hex20 => pairs::<20>(mesh, element, rule, material),
-        ElementKind::Wedge15 => pairs::<15>(mesh, element, rule, material),
-        ElementKind::Pyramid13 => pairs::<13>(mesh, element, rule, material),
-        ElementKind::Tet10 => pairs::<10>(mesh, element, rule, material),
-        ElementKind::Hex8 => pairs::<8>(mesh, element, rule, material),
-        ElementKind::Wedge6 => pairs::<6>(mesh, element, rule, material),
-        ElementKind::Pyramid5 => pairs::<5>(mesh, element, rule, material),
-        ElementKind::Tet4 => pairs::<4>(mesh, element, rule, material),
+        ElementKind::Hex20 => contribution_of::<20>(mesh, element, rule, mass, material),
+        ElementKind::Wedge15 => contribution_of::<15>(mesh, element, rule, mass, material),
+        ElementKind::Pyramid13 => contribution_of::<13>(mesh, element, rule, mass, material),
+        ElementKind::Tet10 => contribution_of::<10>(mesh, element, rule, mass, material),
+        ElementKind::Hex8 => contribution_of::<8>(mesh, element, rule, mass, material),
+        ElementKind::Wedge6 => contribution_of::<6>(mesh, element, rule, mass, material),
+        ElementKind::Pyramid5 => contribution_of::<5>(mesh, element, rule, mass, material),
+        ElementKind::Tet4 => contribution_of::<4>(mesh, element, rule, mass, material),
     }
 }
 
-/// The pairs a <= b of an element of N nodes.
-fn pairs<const N: usize>(mesh: &Mesh, element: usize, rule: Quadrature, material: &Elastic) -> Contribution {
+/// What an element of N nodes adds.
+fn contribution_of<const N: usize>(
+    mesh: &Mesh,
+    element: usize,
+    rule: Quadrature,
+    mass: Mass,
+    material: &Elastic,
+) -> Contribution {
     let (coordinates, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
     let points = stiffness_points(kind, rule);
     let (lambda, mu) = material.lame();
     let products = gradient_products::<N>(&coordinates, points);
-    let mass = mass_matrix::<N>(&coordinates, mass_points(kind), material.density);
+    let mut masses = mass_matrix::<N>(&coordinates, mass_points(kind), material.density);
+    let mut shares = Vec::new();
+    if mass == Mass::Lumped {
+        shares = masses.iter().map(|row| row.iter().sum()).collect();
+        let diagonal = lump(&masses);
+        masses = [[0.0; N]; N];
+        (0..N).for_each(|a| masses[a][a] = diagonal[a]);
+    }
     let mut pairs = Vec::with_capacity(N * (N + 1) / 2);
     if kind.is_linear() {
         // B-bar: the deviatoric part at the points, the volume strain as its mean.
@@ -282,17 +418,17 @@ fn pairs<const N: usize>(mesh: &Mesh, element: usize, rule: Quadrature, material
                         block[3 * i + j] += bulk * mean[a][i] * mean[b][j];
                     }
                 }
-                pairs.push((block, mass[a][b]));
+                pairs.push((block, masses[a][b]));
             }
         }
     } else {
         for a in 0..N {
             for b in a..N {
-                pairs.push((stiffness_block(&products, lambda, mu, a, b), mass[a][b]));
+                pairs.push((stiffness_block(&products, lambda, mu, a, b), masses[a][b]));
             }
         }
     }
-    pairs
+    Contribution { pairs, shares }
 }
 
 #[cfg(test)]
@@ -351,7 +487,7 @@ mod tests {
         let dot = |a: &[f64]| a.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>();
         assert!((m.stiffness_form(&x) / dot(&kx) - 1.0).abs() < 1e-13);
         assert!((m.mass_form(&x) / dot(&mx) - 1.0).abs() < 1e-13);
-        m.visit_free(&supports, |column, row, k, mass| {
+        m.visit_free(&supports, |column, row, k, mass, _| {
             kx[row] -= k * x[column];
             mx[row] -= mass * x[column];
             if row != column {

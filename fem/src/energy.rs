@@ -1,48 +1,145 @@
-//! Energies, momenta and support reactions of a state.
+//! Energies, momenta, support reactions and their sums.
 //!
-//! Kinetic energy `v·M v/2`, strain energy `u·K u/2`. Linear momentum is the sum of `M v`; angular momentum is
-//! `sum x_a × (M v)_a`, exact for the isoparametric element. It is taken with the undeformed positions: the linear
-//! theory conserves that one, because its stiffness resists no infinitesimal rotation of the undeformed body.
+//! Kinetic energy `v·M v/2`, strain energy `u·K u/2` with that of the boundary springs in it. Linear momentum is the sum of
+//! `M v`; angular momentum is `sum x_a × (M v)_a`, exact for the isoparametric element with its consistent mass. It is
+//! taken with the undeformed positions: the linear theory conserves that one, because its stiffness resists no
+//! infinitesimal rotation of the undeformed body. Limits: small displacement, for moments too.
 
+use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::state::State;
-use crate::supports::CONSTRAINED;
 
 /// Kinetic energy [J].
 pub fn kinetic(model: &Model, state: &State) -> f64 {
     0.5 * model.matrices().mass_form(&state.v)
 }
 
-/// Strain energy [J].
+/// Strain energy [J], that of the boundary springs included.
 pub fn strain(model: &Model, state: &State) -> f64 {
     0.5 * model.matrices().stiffness_form(&state.u)
+}
+
+/// Energy of the boundary springs alone [J]; a part of [`strain`].
+pub fn boundary_springs(model: &Model, state: &State) -> f64 {
+    0.5 * model.matrices().springs().form(&state.u)
 }
 
 /// Linear momentum [N s] and angular momentum about the origin [N m s].
 pub fn momentum(model: &Model, state: &State) -> ([f64; 3], [f64; 3]) {
     let mut product = vec![0.0; state.v.len()];
     model.mass_times(&state.v, &mut product);
-    let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
-    for (x, p) in model.mesh().coordinates.iter().zip(product.chunks_exact(3)) {
-        for k in 0..3 {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            linear[k] += p[k];
-            angular[k] += x[i] * p[j] - x[j] * p[i];
-        }
-    }
-    (linear, angular)
+    let sum = resultant(model.mesh(), &product);
+    (sum.force, sum.moment)
 }
 
 /// Forces of the supports on the moving body [N], `M a + C v + K u - F` at constrained dofs, 0 elsewhere. Shape
 /// `[3 * nodes]`.
+///
+/// Exact for states that [`crate::newmark`] left with its own methods; a window step has
+/// [`crate::window::WindowSolver::mean_reactions`].
 pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
-    let c = model.rayleigh();
     let n = model.dof_count();
-    let (mut elastic, mut inertia) = (vec![0.0; n], vec![0.0; n]);
-    let strained: Vec<f64> = state.u.iter().zip(&state.v).map(|(u, v)| u + c.beta_k * v).collect();
-    let moved: Vec<f64> = state.a.iter().zip(&state.v).map(|(a, v)| a + c.alpha_m * v).collect();
-    model.stiffness_times(&strained, &mut elastic);
-    model.mass_times(&moved, &mut inertia);
-    let index = model.supports().free_index();
-    (0..n).map(|d| if index[d] == CONSTRAINED { elastic[d] + inertia[d] - load[d] } else { 0.0 }).collect()
+    let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
+    inner_force(model, [&state.u, &state.v, &state.a], &mut inner, &mut scratch);
+    let mut reactions = vec![0.0; n];
+    for &(dof, _) in model.supports().fixed() {
+        reactions[dof as usize] = inner[dof as usize] - load[dof as usize];
+    }
+    reactions
+}
+
+/// Forces of the boundary springs and dashpots on the body [N], `-(K_s u + D v)`. Shape `[3 * nodes]`.
+pub fn boundary_forces(model: &Model, state: &State) -> Vec<f64> {
+    let mut forces = vec![0.0; model.dof_count()];
+    model.boundary_spring_times(&state.u, &mut forces);
+    model.dashpot_times(&state.v, &mut forces);
+    forces.iter_mut().for_each(|f| *f = -*f);
+    forces
+}
+
+/// Force and moment of nodal forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resultant {
+    /// Sum of the forces [N].
+    pub force: [f64; 3],
+    /// Moment about the origin [N m], with the undeformed positions.
+    pub moment: [f64; 3],
+}
+
+/// Some dofs under a name, such as the supports of one side.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DofSet {
+    /// Name.
+    pub name: String,
+    /// Dofs, `3 * node + direction`.
+    pub dofs: Vec<u32>,
+}
+
+/// Force and moment of nodal forces [N], shape `[3 * nodes]`.
+pub fn resultant(mesh: &Mesh, forces: &[f64]) -> Resultant {
+    sum(mesh, (0..forces.len()).map(|d| (d, forces[d])))
+}
+
+/// Force and moment of those nodal forces [N], shape `[3 * nodes]`, that act at the dofs of a set.
+pub fn resultant_of(mesh: &Mesh, forces: &[f64], set: &DofSet) -> Resultant {
+    sum(mesh, set.dofs.iter().map(|&d| (d as usize, forces[d as usize])))
+}
+
+/// Sum of the reactions of all supports, as [`reactions`] gives them.
+pub fn reaction_sum(model: &Model, state: &State, load: &[f64]) -> Resultant {
+    resultant(model.mesh(), &reactions(model, state, load))
+}
+
+/// Sums of the reactions by set, in the order of the sets.
+pub fn reaction_sums(model: &Model, state: &State, load: &[f64], sets: &[DofSet]) -> Vec<Resultant> {
+    let reactions = reactions(model, state, load);
+    sets.iter().map(|set| resultant_of(model.mesh(), &reactions, set)).collect()
+}
+
+fn sum(mesh: &Mesh, forces: impl Iterator<Item = (usize, f64)>) -> Resultant {
+    let mut total = Resultant::default();
+    for (dof, force) in forces {
+        let (x, k) = (mesh.coordinates[dof / 3], dof % 3);
+        // e_k f at x has the moment x × e_k f: along i = k+1 the lever is x[j], along j = k+2 it is -x[i].
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        total.force[k] += force;
+        total.moment[i] += x[j] * force;
+        total.moment[j] -= x[i] * force;
+    }
+    total
+}
+
+/// `M a + C v + K u` of a motion `[u, v, a]`, with all the damping. Shapes `[3 * nodes]`; scratch is twice as long.
+pub(crate) fn inner_force(model: &Model, motion: [&[f64]; 3], force: &mut [f64], scratch: &mut [f64]) {
+    let (c, [u, v, a]) = (model.rayleigh(), motion);
+    let (mixed, inertia) = scratch.split_at_mut(u.len());
+    for d in 0..u.len() {
+        mixed[d] = u[d] + c.beta_k * v[d];
+    }
+    model.stiffness_times(mixed, force);
+    for d in 0..u.len() {
+        mixed[d] = a[d] + c.alpha_m * v[d];
+    }
+    model.mass_times(mixed, inertia);
+    force.iter_mut().zip(inertia).for_each(|(f, i)| *f += *i);
+    model.dashpot_times(v, force);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_are_cross_products() {
+        let mut mesh = Mesh::block([1, 1, 1], [1.0; 3]);
+        mesh.coordinates[3] = [0.3, -0.7, 1.9];
+        let mut forces = vec![0.0; 60];
+        forces[9..12].copy_from_slice(&[5.0, 7.0, -11.0]);
+        let all = resultant(&mesh, &forces);
+        let expected = [-0.7 * -11.0 - 1.9 * 7.0, 1.9 * 5.0 - 0.3 * -11.0, 0.3 * 7.0 + 0.7 * 5.0];
+        assert_eq!(all.force, [5.0, 7.0, -11.0]);
+        assert!((0..3).all(|k| (all.moment[k] - expected[k]).abs() < 1e-14), "{all:?} {expected:?}");
+        let part = resultant_of(&mesh, &forces, &DofSet { name: "y".into(), dofs: vec![10, 11] });
+        assert_eq!(part.force, [0.0, 7.0, -11.0]);
+    }
 }

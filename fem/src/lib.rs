@@ -20,6 +20,7 @@
 //!     constraints,
 //!     gravity: [0.0, 0.0, -9.81],
 //!     rayleigh: Rayleigh::default(),
+//!     ..Default::default()
 //! })?;
 //! let mut load = vec![0.0; model.dof_count()];
 //! loads::face_pressure(model.mesh(), &model.mesh().face(1, 5), 10e3, &mut load);
@@ -31,14 +32,17 @@
 
 pub mod assembly;
 pub mod block;
+pub mod boundary;
 pub mod connectivity;
 pub mod damping;
 pub mod element;
 pub mod energy;
 pub mod kinematics;
 pub mod loads;
+pub mod mass;
 pub mod material;
 pub mod mesh;
+
 pub mod model;
 pub mod newmark;
 pub mod nonlinear;
@@ -49,10 +53,12 @@ pub mod stress;
 pub mod supports;
 pub mod window;
 
+pub use boundary::BoundaryLayer;
 pub use connectivity::Connectivity;
 pub use damping::Rayleigh;
 pub use element::quadrature::Quadrature;
 pub use element::{ElementKind, FaceShape};
+pub use mass::Mass;
 pub use material::elastic::Elastic;
 pub use material::{
     Cone, DruckerPrager, Hardening, Material, MohrCoulomb, Plasticity, PointState, Region, Response,

@@ -1,10 +1,12 @@
 //! The model: mesh, materials and supports, checked, with the matrices assembled. It never changes during a run.
 
 use crate::assembly::Matrices;
+use crate::boundary::{self, BoundaryLayer};
 use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
 use crate::element::{mass_points, stiffness_points};
 use crate::kinematics::jacobian;
+use crate::mass::Mass;
 use crate::material::{Elastic, Material};
 use crate::mesh::{Constraint, Mesh};
 use crate::solver::SolveError;
@@ -29,6 +31,10 @@ pub struct ModelInput {
     pub gravity: [f64; 3],
     /// Damping of the whole body.
     pub rayleigh: Rayleigh,
+    /// Consistent or lumped mass.
+    pub mass: Mass,
+    /// Springs and dashpots on faces of the body.
+    pub boundaries: Vec<BoundaryLayer>,
 }
 
 /// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
@@ -66,6 +72,10 @@ pub enum ModelError {
     Gravity { gravity: [f64; 3] },
     #[error("{name} is {value}, expected a finite number, 0 or above")]
     Damping { name: &'static str, value: f64 },
+    #[error("boundary layer {index}: {name} is {value}, expected a finite number, 0 or above")]
+    BoundaryConstant { index: usize, name: &'static str, value: f64 },
+    #[error("boundary layer {index}: face {side} of element {element} {fault}")]
+    BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
 }
 
 /// A checked solid with its matrices.
@@ -77,6 +87,8 @@ pub struct Model {
     constraints: Vec<Constraint>,
     gravity: [f64; 3],
     rayleigh: Rayleigh,
+    mass: Mass,
+    boundaries: Vec<BoundaryLayer>,
     supports: Supports,
     matrices: Matrices,
     analysis: OnceLock<Arc<Analysis>>,
@@ -91,7 +103,8 @@ impl Model {
     /// See [`ModelError`]: everything that can be known before solving. Whether the body is held is checked by
     /// [`crate::statics`] alone, because dynamics does not ask for it.
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
-        let ModelInput { mesh, materials, quadrature, constraints, gravity, rayleigh } = input;
+        let ModelInput { mesh, materials, quadrature, constraints, gravity, rayleigh, mass, boundaries } =
+            input;
         check_mesh(&mesh)?;
         check_materials(&mesh, &materials)?;
         check_shape(&mesh, quadrature)?;
@@ -104,7 +117,9 @@ impl Model {
             }
         }
         let supports = Supports::new(&mesh, &constraints)?;
-        let matrices = Matrices::assemble(&mesh, quadrature, |e| &materials[&mesh.materials[e]].elastic);
+        boundary::check(&mesh, &boundaries)?;
+        let material = |e: usize| &materials[&mesh.materials[e]].elastic;
+        let matrices = Matrices::assemble_with(&mesh, quadrature, mass, &boundaries, material);
         let point_start = point_start(&mesh, quadrature);
         Ok(Model {
             mesh,
@@ -113,6 +128,8 @@ impl Model {
             constraints,
             gravity,
             rayleigh,
+            mass,
+            boundaries,
             supports,
             matrices,
             analysis: OnceLock::new(),
@@ -198,6 +215,16 @@ impl Model {
         self.rayleigh
     }
 
+    /// Consistent or lumped mass.
+    pub fn mass(&self) -> Mass {
+        self.mass
+    }
+
+    /// The springs and dashpots on faces, as given.
+    pub fn boundaries(&self) -> &[BoundaryLayer] {
+        &self.boundaries
+    }
+
     /// The acceleration of gravity [m/s²].
     pub fn gravity(&self) -> [f64; 3] {
         self.gravity
@@ -218,7 +245,7 @@ impl Model {
         &self.matrices
     }
 
-    /// `y = K x` over all dofs. Shapes `[3 * nodes]`.
+    /// `y = K x` over all dofs, boundary springs included. Shapes `[3 * nodes]`.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         self.matrices.stiffness_times(x, y);
     }
@@ -228,8 +255,21 @@ impl Model {
         self.matrices.mass_times(x, y);
     }
 
-    /// The nodal forces of gravity [N], `M (g, g, …)`: the consistent load `∫ rho N_a g dV`. Shape `[3 * nodes]`.
+    /// Adds the forces of the boundary springs, `y += K_s x` over all dofs; they are part of [`Model::stiffness_times`].
+    pub fn boundary_spring_times(&self, x: &[f64], y: &mut [f64]) {
+        self.matrices.springs().add_times(x, y);
+    }
+
+    /// Adds the forces of the boundary dashpots, `y += D v` over all dofs; Rayleigh damping is not among them.
+    pub fn dashpot_times(&self, v: &[f64], y: &mut [f64]) {
+        self.matrices.dashpots().add_times(v, y);
+    }
+
+    /// The nodal forces of gravity [N], the consistent load `∫ rho N_a g dV`. Shape `[3 * nodes]`.
     pub fn gravity_load(&self) -> Vec<f64> {
+        if let Some(shares) = self.matrices.lumped_shares() {
+            return shares.iter().flat_map(|m| self.gravity.map(|g| m * g)).collect();
+        }
         let uniform: Vec<f64> = self.gravity.iter().copied().cycle().take(self.dof_count()).collect();
         let mut load = vec![0.0; self.dof_count()];
         self.mass_times(&uniform, &mut load);

@@ -1,26 +1,35 @@
-//! Newmark's implicit time integration, acceleration form.
+//! Newmark's implicit time integration, acceleration form, and its extension HHT-α.
 //!
 //! ```text
 //! u1 = u0 + dt v0 + dt² ((1/2 - alpha) a0 + alpha a1)
 //! v1 = v0 + dt ((1 - delta) a0 + delta a1)
-//! M a1 + C v1 + K u1 = F1,  C = alpha_m M + beta_k K
+//! M a1 + C vw + K uw = Fw,  C = alpha_m M + beta_k K + D,  xw = (1 + a) x1 - a x0 for x = u, v, F
 //! ```
 //!
-//! One solve per step with `(1 + delta dt alpha_m) M + (alpha dt² + delta dt beta_k) K`, factored once per step size.
+//! a = 0 is Newmark's method; HHT-α takes a in [-1/3, 0] with alpha = (1 - a)²/4, delta = 1/2 - a: it damps what the step
+//! cannot follow and stays of second order. D are the boundary dashpots. One solve per step with
+//! `(1 + w delta dt alpha_m) M + w (alpha dt² + delta dt beta_k) K + w delta dt D`, w = 1 + a, factored once per step size.
+//!
+//! Prescribed motion: a constrained dof whose displacement at the end of the step is given has the acceleration
+//! that the first line asks for, and the velocity of the second.
 //!
 //! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hughes, The Finite Element Method (1987), section 9.1, whose
 //! beta is alpha here and whose gamma is delta. Unconditionally stable for delta >= 1/2 and
 //! alpha >= (delta + 1/2)²/4. The pair 1/4, 1/2 conserves the energy of a free linear body exactly and lengthens a period
-//! by the fraction (w dt)²/12; larger delta damps the modes that the step cannot follow, and loses one order. Limits:
-//! supports keep their prescribed values.
+//! by the fraction (w dt)²/12; larger delta damps the modes that the step cannot follow, and loses one order. HHT-α:
+//! Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292; the load at the weighted time as in Hughes
+//! (1987), section 9.3. Limits: a prescribed displacement that jumps leaves an acceleration that swings from step to step
+//! when delta = 1/2; smooth histories are the remedy.
 
+use crate::assembly::Combination;
+use crate::energy::inner_force;
 use crate::model::Model;
 use crate::solver::cholesky::Cholesky;
 use crate::solver::conjugate_gradient::solve_mass;
 use crate::solver::{LinearSolver, SolveError};
 use crate::state::State;
 pub use crate::state::StepAudit;
-use crate::statics::{check_finite, check_linear, check_load};
+use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 use thiserror::Error;
 
 /// The two parameters of Newmark's method.
@@ -56,11 +65,28 @@ pub enum NewmarkError {
         /// The delta given.
         delta: f64,
     },
+    /// HHT's α out of range.
+    #[error("HHT-alpha with alpha = {alpha} is not unconditionally stable: alpha must be between -1/3 and 0")]
+    Hht {
+        /// The α given.
+        alpha: f64,
+    },
+    /// HHT-α weighs the loads of both ends of a step.
+    #[error("HHT-alpha needs the load at the start of the step, too")]
+    LoadAtStart,
+    /// The displacement at the end does not depend on the acceleration there.
+    #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
+    Prescribed,
 }
 
 impl Newmark {
     /// alpha = 1/4, delta = 1/2: second order, conserves energy.
     pub const AVERAGE_ACCELERATION: Newmark = Newmark { alpha: 0.25, delta: 0.5 };
+
+    /// The pair that HHT-α goes with: `alpha = (1 - a)²/4`, `delta = 1/2 - a` for its parameter a in [-1/3, 0].
+    pub fn of_hht(a: f64) -> Newmark {
+        Newmark { alpha: 0.25 * (1.0 - a) * (1.0 - a), delta: 0.5 - a }
+    }
 
     /// Checks that the method is stable for every step size.
     ///
@@ -89,14 +115,31 @@ impl Newmark {
     }
 }
 
+/// What acts on the body during one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive<'a> {
+    /// Load [N] at the start, shape `[3 * nodes]`. HHT-α needs it. Newmark's method does without: the load there then
+    /// follows from the equations of motion, and at moved supports counts as that of the end, in the audit.
+    pub load_start: Option<&'a [f64]>,
+    /// Load [N] at the end, shape `[3 * nodes]`.
+    pub load_end: &'a [f64],
+    /// Displacement [m] of each constrained dof at the end, in the order of [`crate::supports::Supports::fixed`]; without
+    /// it they stay where they are.
+    pub prescribed: Option<&'a [f64]>,
+}
+
 /// Holds the factor for one step size, and scratch.
 pub struct NewmarkSolver {
     method: Newmark,
+    /// HHT's α; 0 for Newmark's method.
+    hht: f64,
     dt: f64,
     factor: Cholesky,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
+    /// Inner forces at both ends and their scratch; for moved supports only, so empty until then.
+    inner: Vec<f64>,
     equations: Vec<f64>,
 }
 
@@ -120,20 +163,40 @@ impl NewmarkSolver {
         dt: f64,
     ) -> Result<NewmarkSolver, SolveError> {
         method.check_range()?;
+        NewmarkSolver::build(model, method, 0.0, dt)
+    }
+
+    /// HHT-α with the parameter `alpha` in [-1/3, 0]: 0 is Newmark's average acceleration, -1/3 damps most. Steps are
+    /// made by [`NewmarkSolver::advance`], with the load at both ends.
+    ///
+    /// # Errors
+    /// A parameter out of range, a step that is not above 0, a material without density or with plasticity.
+    pub fn hht(model: &Model, alpha: f64, dt: f64) -> Result<NewmarkSolver, SolveError> {
+        if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
+            return Err(NewmarkError::Hht { alpha }.into());
+        }
+        NewmarkSolver::build(model, Newmark::of_hht(alpha), alpha, dt)
+    }
+
+    fn build(model: &Model, method: Newmark, hht: f64, dt: f64) -> Result<NewmarkSolver, SolveError> {
         check_linear(model)?;
         check_dynamics(model, dt)?;
-        let c = model.rayleigh();
-        let stiffness = method.alpha * dt * dt + method.delta * dt * c.beta_k;
-        let mass = 1.0 + method.delta * dt * c.alpha_m;
-        let factor = factor(model, stiffness, mass)?;
+        let (c, w) = (model.rayleigh(), 1.0 + hht);
+        let combination = Combination {
+            stiffness: w * (method.alpha * dt * dt + method.delta * dt * c.beta_k),
+            mass: 1.0 + w * method.delta * dt * c.alpha_m,
+            dashpots: w * method.delta * dt,
+        };
         let n = model.dof_count();
         Ok(NewmarkSolver {
             method,
+            hht,
             dt,
-            factor,
+            factor: factor(model, combination)?,
             next: State::new(model),
             work: vec![0.0; n],
             product: vec![0.0; n],
+            inner: Vec::new(),
             equations: vec![0.0; model.free_dof_count()],
         })
     }
@@ -143,117 +206,244 @@ impl NewmarkSolver {
         self.dt
     }
 
-    /// One step, from `state` to `state.time + dt`, under the load [N] at the *end* of the step, shape `[3 * nodes]`.
+    /// The pair of parameters; for HHT-α that of [`Newmark::of_hht`].
+    pub fn method(&self) -> Newmark {
+        self.method
+    }
+
+    /// HHT's α, 0 for Newmark's method.
+    pub fn hht_alpha(&self) -> f64 {
+        self.hht
+    }
+
+    /// One step of Newmark's method, from `state` to `state.time + dt`, under the load [N] at the *end* of the step, shape
+    /// `[3 * nodes]`, on supports that stay where they are.
     ///
     /// The audit's work is that of the mean of the loads at both ends (the load at the start follows from the equations
     /// of motion there); with 1/4, 1/2 the numerical dissipation is then zero to rounding.
     ///
     /// # Errors
-    /// A load or a result that is not finite; the state is untouched then.
+    /// A load or a result that is not finite; the state is untouched then. HHT-α needs [`NewmarkSolver::advance`].
     pub fn step(
         &mut self,
         model: &Model,
         state: &mut State,
         load_end: &[f64],
     ) -> Result<StepAudit, SolveError> {
-        check_load(model, load_end, state.time + self.dt)?;
+        self.advance(model, state, Drive { load_start: None, load_end, prescribed: None })
+    }
+
+    /// One step, from `state` to `state.time + dt`, under loads and prescribed motion.
+    ///
+    /// The audit's work is that of the mean of the loads and of the reactions at both ends.
+    ///
+    /// # Errors
+    /// A load, a displacement or a result that is not finite; no load at the start for HHT-α; prescribed motion for
+    /// alpha = 0. The state is untouched then.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        drive: Drive<'_>,
+    ) -> Result<StepAudit, SolveError> {
+        self.check(model, state, &drive)?;
         let (Newmark { alpha, delta }, dt, c) = (self.method, self.dt, model.rayleigh());
-        let free = model.supports().free();
+        let (new, old) = (1.0 + self.hht, -self.hht);
+        let (supports, free) = (model.supports(), model.supports().free());
         let next = &mut self.next;
         // 1. Predict: the part of u1 and v1 that does not depend on a1.
         for d in 0..state.u.len() {
             next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - alpha) * state.a[d];
             next.v[d] = state.v[d] + dt * (1.0 - delta) * state.a[d];
         }
-        // 2. Residual of the prediction, with C v = alpha_m M v + beta_k K v folded into one product each.
-        for d in 0..state.u.len() {
-            self.work[d] = next.u[d] + c.beta_k * next.v[d];
-        }
-        model.stiffness_times(&self.work, &mut self.product);
-        for (slot, &d) in self.equations.iter_mut().zip(free) {
-            *slot = load_end[d as usize] - self.product[d as usize];
-        }
-        if c.alpha_m > 0.0 {
-            model.mass_times(&next.v, &mut self.product);
-            for (slot, &d) in self.equations.iter_mut().zip(free) {
-                *slot -= c.alpha_m * self.product[d as usize];
+        // 2. Supports: their a1 follows from where they are at the end.
+        next.a.fill(0.0);
+        let mut accelerated = false;
+        for (i, &(dof, _)) in supports.fixed().iter().enumerate() {
+            let d = dof as usize;
+            let end = drive.prescribed.map_or(state.u[d], |p| p[i]);
+            let gap = end - next.u[d];
+            if gap != 0.0 && alpha > 0.0 {
+                next.a[d] = gap / (dt * dt * alpha);
+                next.u[d] = end;
+                next.v[d] += dt * delta * next.a[d];
+                accelerated = true;
             }
         }
-        // 3. Solve for a1 and correct.
-        self.factor.solve_in_place(&mut self.equations);
-        next.a.fill(0.0);
-        model.supports().scatter(&self.equations, &mut next.a);
+        // 3. Residual at the weighted time, with C v = alpha_m M v + beta_k K v folded into one product each.
         for d in 0..state.u.len() {
-            next.u[d] += dt * dt * alpha * next.a[d];
-            next.v[d] += dt * delta * next.a[d];
+            let (u, v) = (new * next.u[d] + old * state.u[d], new * next.v[d] + old * state.v[d]);
+            self.work[d] = u + c.beta_k * v;
+        }
+        model.stiffness_times(&self.work, &mut self.product);
+        let load_start = drive.load_start.unwrap_or(drive.load_end);
+        for (slot, &d) in self.equations.iter_mut().zip(free) {
+            let d = d as usize;
+            *slot = new * drive.load_end[d] + old * load_start[d] - self.product[d];
+        }
+        if c.alpha_m > 0.0 || accelerated {
+            for d in 0..state.u.len() {
+                self.work[d] = next.a[d] + c.alpha_m * (new * next.v[d] + old * state.v[d]);
+            }
+            model.mass_times(&self.work, &mut self.product);
+            subtract(&mut self.equations, &self.product, free);
+        }
+        if !model.matrices().dashpots().is_empty() {
+            for d in 0..state.u.len() {
+                self.work[d] = new * next.v[d] + old * state.v[d];
+            }
+            self.product.fill(0.0);
+            model.dashpot_times(&self.work, &mut self.product);
+            subtract(&mut self.equations, &self.product, free);
+        }
+        // 4. Solve for a1 and correct.
+        self.factor.solve_in_place(&mut self.equations);
+        for (&a, &d) in self.equations.iter().zip(free) {
+            let d = d as usize;
+            next.a[d] = a;
+            next.u[d] += dt * dt * alpha * a;
+            next.v[d] += dt * delta * a;
         }
         next.time = state.time + dt;
         check_finite(model, "the displacement", &next.u, next.time)?;
-        let audit = audit(model, state, next, load_end, &mut self.work, &mut self.product);
-        std::mem::swap(state, next);
+        let audit = self.audit(model, state, &drive);
+        std::mem::swap(state, &mut self.next);
         Ok(audit)
+    }
+
+    fn check(&self, model: &Model, state: &State, drive: &Drive<'_>) -> Result<(), SolveError> {
+        let end = state.time + self.dt;
+        check_load(model, drive.load_end, end)?;
+        if let Some(load) = drive.load_start {
+            check_load(model, load, state.time)?;
+        } else if self.hht != 0.0 {
+            return Err(NewmarkError::LoadAtStart.into());
+        }
+        check_prescribed(model, drive.prescribed, end)?;
+        if drive.prescribed.is_some() && self.method.alpha == 0.0 {
+            return Err(NewmarkError::Prescribed.into());
+        }
+        Ok(())
+    }
+
+    /// Energy that entered and left during the step, under the mean of the forces at both ends.
+    fn audit(&mut self, model: &Model, old: &State, drive: &Drive<'_>) -> StepAudit {
+        let (new, c, n) = (&self.next, model.rayleigh(), old.u.len());
+        let (work, product) = (&mut self.work, &mut self.product);
+        let dot = |a: &dyn Fn(usize) -> f64, p: &[f64]| (0..n).map(|d| a(d) * p[d]).sum::<f64>();
+        let mean_v = |d: usize| 0.5 * (old.v[d] + new.v[d]);
+        // K du and M du serve every term, because the matrices are symmetric.
+        for d in 0..n {
+            work[d] = new.u[d] - old.u[d];
+        }
+        let work_end = dot(&|d| drive.load_end[d], work);
+        model.stiffness_times(work, product);
+        let strain = dot(&|d| 0.5 * (old.u[d] + new.u[d]), product);
+        let mut damping = c.beta_k * dot(&mean_v, product);
+        let mut work_start = dot(&|d| old.u[d] + c.beta_k * old.v[d], product);
+        model.mass_times(work, product);
+        damping += c.alpha_m * dot(&mean_v, product);
+        work_start += dot(&|d| old.a[d] + c.alpha_m * old.v[d], product);
+        let mut boundary = 0.0;
+        if !model.matrices().dashpots().is_empty() {
+            product.fill(0.0);
+            model.dashpot_times(work, product);
+            work_start += dot(&|d| old.v[d], product);
+            (0..n).for_each(|d| product[d] = mean_v(d));
+            boundary = self.dt * model.matrices().dashpots().form(product);
+        }
+        for d in 0..n {
+            work[d] = new.v[d] - old.v[d];
+        }
+        model.mass_times(work, product);
+        let kinetic = dot(&mean_v, product);
+
+        let fixed = model.supports().fixed();
+        let moved = |&(dof, _): &(u32, f64)| new.u[dof as usize] != old.u[dof as usize];
+        let mut support_work = 0.0;
+        if fixed.iter().any(moved) {
+            self.inner.resize(4 * n, 0.0);
+            let (start, rest) = self.inner.split_at_mut(n);
+            let (end, scratch) = rest.split_at_mut(n);
+            inner_force(model, [&old.u, &old.v, &old.a], start, scratch);
+            inner_force(model, [&new.u, &new.v, &new.a], end, scratch);
+            for d in fixed.iter().map(|&(dof, _)| dof as usize) {
+                let (du, load_end) = (new.u[d] - old.u[d], drive.load_end[d]);
+                let load_start = drive.load_start.map_or(load_end, |f| f[d]);
+                support_work += 0.5 * du * (start[d] + end[d] - load_start - load_end);
+                work_start += du * (load_start - start[d]);
+            }
+        }
+        if let Some(load) = drive.load_start {
+            work_start = dot(&|d| new.u[d] - old.u[d], load);
+        }
+        let external_work = 0.5 * (work_start + work_end);
+        StepAudit {
+            external_work,
+            support_work,
+            damping_dissipation: damping,
+            boundary_dissipation: boundary,
+            numerical_dissipation: external_work + support_work - damping - boundary - kinetic - strain,
+        }
     }
 }
 
-/// Sets `state.a` from the equations of motion at the start: `M a = F - C v - K u` on the free dofs.
+/// Takes the entries of the free dofs of a nodal vector from the equations.
+fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
+    for (slot, &d) in equations.iter_mut().zip(free) {
+        *slot -= nodal[d as usize];
+    }
+}
+
+/// Sets `state.a` from the equations of motion at the start: `M a = F - C v - K u` on the free dofs, 0 on the others.
 ///
 /// # Errors
 /// A load of the wrong length or not finite, a material without density, or a mass matrix that cannot be solved.
 pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> Result<(), SolveError> {
+    initial_acceleration_prescribed(model, state, load, None)
+}
+
+/// As [`initial_acceleration`], with accelerations [m/s²] of the constrained dofs, in the order of
+/// [`crate::supports::Supports::fixed`]; their displacements and velocities are those of the state.
+///
+/// # Errors
+/// As [`initial_acceleration`], for the accelerations too.
+pub fn initial_acceleration_prescribed(
+    model: &Model,
+    state: &mut State,
+    load: &[f64],
+    accelerations: Option<&[f64]>,
+) -> Result<(), SolveError> {
     check_load(model, load, state.time)?;
+    check_prescribed(model, accelerations, state.time)?;
     check_linear(model)?;
     check_density(model)?;
-    let c = model.rayleigh();
     let n = model.dof_count();
-    let (mut force, mut product) = (load.to_vec(), vec![0.0; n]);
-    let strained: Vec<f64> = state.u.iter().zip(&state.v).map(|(u, v)| u + c.beta_k * v).collect();
-    model.stiffness_times(&strained, &mut product);
-    force.iter_mut().zip(&product).for_each(|(f, p)| *f -= p);
-    model.mass_times(&state.v, &mut product);
-    force.iter_mut().zip(&product).for_each(|(f, p)| *f -= c.alpha_m * p);
-    solve_mass(model.matrices(), model.supports(), &force, &mut state.a)
+    state.a.fill(0.0);
+    if let Some(values) = accelerations {
+        for (&(dof, _), &value) in model.supports().fixed().iter().zip(values) {
+            state.a[dof as usize] = value;
+        }
+    }
+    let (mut force, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
+    inner_force(model, [&state.u, &state.v, &state.a], &mut force, &mut scratch);
+    force.iter_mut().zip(load).for_each(|(f, l)| *f = l - *f);
+    let mut free = vec![0.0; n];
+    if let Some(masses) = model.matrices().lumped_mass() {
+        for &d in model.supports().free() {
+            free[d as usize] = force[d as usize] / masses[d as usize / 3];
+        }
+    } else {
+        solve_mass(model.matrices(), model.supports(), &force, &mut free)?;
+    }
+    for &d in model.supports().free() {
+        state.a[d as usize] = free[d as usize];
+    }
+    Ok(())
 }
 
-/// Energy that entered and left between two states under the mean of their loads.
-fn audit(
-    model: &Model,
-    old: &State,
-    new: &State,
-    load_end: &[f64],
-    work: &mut [f64],
-    product: &mut [f64],
-) -> StepAudit {
-    let c = model.rayleigh();
-    let n = old.u.len();
-    let dot = |a: &dyn Fn(usize) -> f64, p: &[f64]| (0..n).map(|d| a(d) * p[d]).sum::<f64>();
-    let mean_v = |d: usize| 0.5 * (old.v[d] + new.v[d]);
-    // K du and M du serve every term, because the matrices are symmetric.
-    for d in 0..n {
-        work[d] = new.u[d] - old.u[d];
-    }
-    let work_end = dot(&|d| load_end[d], work);
-    model.stiffness_times(work, product);
-    let strain = dot(&|d| 0.5 * (old.u[d] + new.u[d]), product);
-    let mut damping = c.beta_k * dot(&mean_v, product);
-    let mut work_start = dot(&|d| old.u[d] + c.beta_k * old.v[d], product);
-    model.mass_times(work, product);
-    damping += c.alpha_m * dot(&mean_v, product);
-    work_start += dot(&|d| old.a[d] + c.alpha_m * old.v[d], product);
-    for d in 0..n {
-        work[d] = new.v[d] - old.v[d];
-    }
-    model.mass_times(work, product);
-    let kinetic = dot(&mean_v, product);
-    let external_work = 0.5 * (work_start + work_end);
-    StepAudit {
-        external_work,
-        damping_dissipation: damping,
-        numerical_dissipation: external_work - damping - kinetic - strain,
-    }
-}
-
-pub(crate) fn factor(model: &Model, stiffness: f64, mass: f64) -> Result<Cholesky, SolveError> {
-    Cholesky::factor(model.analysis()?, model.mesh(), model.matrices(), model.supports(), stiffness, mass)
+pub(crate) fn factor(model: &Model, combination: Combination) -> Result<Cholesky, SolveError> {
+    Cholesky::factor(model.analysis()?, model.mesh(), model.matrices(), model.supports(), combination)
 }
 
 pub(crate) fn check_dynamics(model: &Model, dt: f64) -> Result<(), SolveError> {
@@ -263,7 +453,7 @@ pub(crate) fn check_dynamics(model: &Model, dt: f64) -> Result<(), SolveError> {
     check_density(model)
 }
 
-fn check_density(model: &Model) -> Result<(), SolveError> {
+pub(crate) fn check_density(model: &Model) -> Result<(), SolveError> {
     let used = |m: &u32| model.mesh().materials.contains(m);
     match model.materials().iter().find(|(m, constants)| constants.elastic.density <= 0.0 && used(m)) {
         Some((&material, _)) => Err(SolveError::NoMass { material }),

@@ -38,12 +38,19 @@ impl State {
 }
 
 /// What entered and left the body in one step; for the ledger of energy.
+///
+/// `external_work + support_work = change of (kinetic + strain) + damping_dissipation + boundary_dissipation +
+/// numerical_dissipation`, to rounding. The strain energy includes that of the boundary springs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepAudit {
     /// Work of the load on the displacement of the step [J].
     pub external_work: f64,
+    /// Work of the supports on the prescribed displacements of the step [J].
+    pub support_work: f64,
     /// Energy taken by Rayleigh damping [J].
     pub damping_dissipation: f64,
+    /// Energy taken by boundary dashpots [J].
+    pub boundary_dissipation: f64,
     /// Energy taken by the time integration itself [J]; negative when it feeds energy in.
     pub numerical_dissipation: f64,
 }

@@ -6,6 +6,8 @@
 //! when rounding shows. Limits: pivots below 1e-11 of the diagonal count as no stiffness, which also refuses bodies
 //! so slender (some thousand elements in a single row) or so unlike in stiffness that few digits would be left.
 
+use crate::assembly::Combination;
+use crate::boundary::spring_points;
 use crate::model::Model;
 use crate::solver::cholesky::Cholesky;
 use crate::solver::{LinearSolver, SolveError};
@@ -44,7 +46,8 @@ pub struct StaticSolver {
 /// # Errors
 /// [`SolveError::NotHeld`] names a node and direction that can move freely.
 pub fn check_held(model: &Model) -> Result<(), SolveError> {
-    match model.supports().free_motion(model.mesh()) {
+    let springs = spring_points(model.mesh(), model.boundaries());
+    match model.supports().free_motion_on_springs(model.mesh(), &springs) {
         None => Ok(()),
         Some((node, direction)) => {
             let (node, direction) = name(model.mesh(), 3 * node + direction);
@@ -63,7 +66,8 @@ impl StaticSolver {
         check_linear(model)?;
         check_held(model)?;
         let (mesh, supports) = (model.mesh(), model.supports());
-        let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, 1.0, 0.0)?;
+        let of_stiffness = Combination { stiffness: 1.0, ..Combination::default() };
+        let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, of_stiffness)?;
         let weakest = factor.weakest_pivot();
         if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {
             let (node, direction) = name(mesh, weakest.dof);
@@ -73,16 +77,31 @@ impl StaticSolver {
         Ok(StaticSolver { factor, nodal: vec![0.0; model.dof_count()], equations })
     }
 
-    /// Displacements and reactions under `load` [N], shape `[3 * nodes]`, and the prescribed displacements.
+    /// Displacements and reactions under `load` [N], shape `[3 * nodes]`, and the prescribed displacements of the model.
     ///
     /// # Errors
     /// A load of the wrong length or with values that are not finite, or a solution that misses equilibrium.
     pub fn solve(&mut self, model: &Model, load: &[f64]) -> Result<Static, SolveError> {
+        self.solve_prescribed(model, load, None)
+    }
+
+    /// As [`StaticSolver::solve`], with other displacements [m] of the constrained dofs, in the order of
+    /// [`crate::supports::Supports::fixed`].
+    ///
+    /// # Errors
+    /// As [`StaticSolver::solve`], for the displacements too.
+    pub fn solve_prescribed(
+        &mut self,
+        model: &Model,
+        load: &[f64],
+        prescribed: Option<&[f64]>,
+    ) -> Result<Static, SolveError> {
         check_load(model, load, 0.0)?;
+        check_prescribed(model, prescribed, 0.0)?;
         let supports = model.supports();
         let mut u = vec![0.0; model.dof_count()];
-        for &(dof, value) in supports.fixed() {
-            u[dof as usize] = value;
+        for (i, &(dof, value)) in supports.fixed().iter().enumerate() {
+            u[dof as usize] = prescribed.map_or(value, |p| p[i]);
         }
         let mut worst = (0, f64::INFINITY);
         for _ in 0..CORRECTIONS {
@@ -146,6 +165,26 @@ pub(crate) fn check_load(model: &Model, load: &[f64], time: f64) -> Result<(), S
         return Err(SolveError::Length { what: "load", found: load.len(), expected: model.dof_count() });
     }
     check_finite(model, "the load", load, time)
+}
+
+/// Prescribed displacements must have a finite value for every constrained dof.
+pub(crate) fn check_prescribed(
+    model: &Model,
+    prescribed: Option<&[f64]>,
+    time: f64,
+) -> Result<(), SolveError> {
+    let (Some(values), fixed) = (prescribed, model.supports().fixed()) else { return Ok(()) };
+    let what = "prescribed displacement";
+    if values.len() != fixed.len() {
+        return Err(SolveError::Length { what, found: values.len(), expected: fixed.len() });
+    }
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(i) => {
+            let (node, direction) = name(model.mesh(), fixed[i].0 as usize);
+            Err(SolveError::NotFinite { what, node, direction, time })
+        }
+        None => Ok(()),
+    }
 }
 
 /// Names the first value that is not finite.

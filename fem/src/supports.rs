@@ -9,6 +9,7 @@
 //! millionth of the body's size count as one point; bodies hinged at a shared node or edge are left to the pivots of the
 //! factorization.
 
+use crate::boundary::SpringPoint;
 use crate::mesh::{Constraint, Mesh};
 use crate::model::ModelError;
 use nalgebra::{Matrix6, Vector6};
@@ -106,27 +107,42 @@ impl Supports {
     /// A node (by index) and direction that the supports leave free to move with a body, if there is one: where the free
     /// rigid motion is largest.
     pub fn free_motion(&self, mesh: &Mesh) -> Option<(usize, usize)> {
+        self.free_motion_on_springs(mesh, &[])
+    }
+
+    /// As [`Supports::free_motion`], where springs hold the body too; how stiff they are does not matter.
+    pub fn free_motion_on_springs(&self, mesh: &Mesh, springs: &[SpringPoint]) -> Option<(usize, usize)> {
         let body = bodies(mesh);
         let count = body.iter().max().map_or(0, |b| b + 1);
         let mut members = vec![Vec::new(); count];
         for (node, &b) in body.iter().enumerate() {
             members[b].push(node);
         }
-        members.iter().find_map(|nodes| self.free_motion_of(mesh, nodes))
+        let mut springs_of = vec![Vec::new(); count];
+        for spring in springs {
+            springs_of[body[spring.node]].push(*spring);
+        }
+        members.iter().zip(&springs_of).find_map(|(nodes, springs)| self.free_motion_of(mesh, nodes, springs))
     }
 
-    fn free_motion_of(&self, mesh: &Mesh, nodes: &[usize]) -> Option<(usize, usize)> {
+    fn free_motion_of(
+        &self,
+        mesh: &Mesh,
+        nodes: &[usize],
+        springs: &[SpringPoint],
+    ) -> Option<(usize, usize)> {
         let mut centre = [0.0; 3];
         for &n in nodes {
             for k in 0..3 {
                 centre[k] += mesh.coordinates[n][k] / nodes.len() as f64;
             }
         }
-        let offset = |n: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.coordinates[n][k] - centre[k]) };
-        let size = nodes.iter().flat_map(|&n| offset(n)).fold(0.0, |m: f64, v| m.max(v.abs()));
+        let offset = |x: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| x[k] - centre[k]) };
+        let size =
+            nodes.iter().flat_map(|&n| offset(mesh.coordinates[n])).fold(0.0, |m: f64, v| m.max(v.abs()));
         // Displacement of a dof under the unit translations and the rotations that move the body's edge by one.
-        let row = |node: usize, direction: usize| -> Vector6<f64> {
-            let r = offset(node).map(|v| v / size);
+        let row_at = |point: [f64; 3], direction: usize| -> Vector6<f64> {
+            let r = offset(point).map(|v| v / size);
             let turn = match direction {
                 0 => [0.0, r[2], -r[1]],
                 1 => [-r[2], 0.0, r[0]],
@@ -136,6 +152,7 @@ impl Supports {
             v[direction] = 1.0;
             v
         };
+        let row = |node: usize, direction: usize| row_at(mesh.coordinates[node], direction);
         let mut gram = Matrix6::zeros();
         for &n in nodes {
             for k in 0..3 {
@@ -144,6 +161,10 @@ impl Supports {
                     gram += r * r.transpose();
                 }
             }
+        }
+        for spring in springs {
+            let r = (0..3).map(|k| spring.direction[k] * row_at(spring.point, k)).sum::<Vector6<f64>>();
+            gram += r * r.transpose();
         }
         let eigen = gram.symmetric_eigen();
         let softest = eigen.eigenvalues.imin();

@@ -9,20 +9,24 @@
 //! One solve with `M/(theta dt) + C + theta dt K` for `w = vt - v0`, so rounding stays relative to the change.
 //!
 //! Energy: multiplying by `du = dt vt` gives, without approximation,
-//! `work = change of (kinetic + strain) + dt vt·C vt + (theta - 1/2)(|dv|²_M + |du|²_K)`.
+//! `work = change of (kinetic + strain) + dt vt·C vt + (theta - 1/2)(|dv|²_M + |du|²_K)`, C = alpha_m M + beta_k K + D with
+//! the boundary dashpots D, the work being that of the load and of moved supports.
 //! theta = 1/2 is Newmark's 1/4, 1/2 for a load that is constant over the step, and conserves energy; larger theta
 //! damps what the step cannot follow, theta = 1 is backward Euler.
 //!
 //! Source: Simo and Tarnow, Z. angew. Math. Phys. 43 (1992) 757-792 (mid-point form and its energy); the terms in
 //! (theta - 1/2) follow from `(1 - theta) v0 + theta v1 = (v0 + v1)/2 + (theta - 1/2)(v1 - v0)` and the same for u.
-//! Limits: second order for theta = 1/2 only; supports keep their prescribed values.
+//! Limits: second order for theta = 1/2 only; a moved support has the velocity `vt = du/dt` inside the window and
+//! `v1 = v0 + (vt - v0)/theta` at its end.
 
+use crate::assembly::Combination;
+use crate::energy::inner_force;
 use crate::model::Model;
 use crate::newmark::{check_dynamics, factor};
 use crate::solver::cholesky::Cholesky;
 use crate::solver::{LinearSolver, SolveError};
 use crate::state::{State, StepAudit};
-use crate::statics::{check_finite, check_linear, check_load};
+use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 
 /// Holds the factor for one window length, and scratch.
 pub struct WindowSolver {
@@ -32,6 +36,8 @@ pub struct WindowSolver {
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
+    /// Scratch for moved supports, empty until then.
+    inner: Vec<f64>,
     equations: Vec<f64>,
 }
 
@@ -48,8 +54,12 @@ impl WindowSolver {
         check_dynamics(model, dt)?;
         let c = model.rayleigh();
         // The equation is multiplied by theta dt, so that the mass has the factor 1 as in Newmark's method.
-        let stiffness = theta * dt * (theta * dt + c.beta_k);
-        let factor = factor(model, stiffness, 1.0 + theta * dt * c.alpha_m)?;
+        let combination = Combination {
+            stiffness: theta * dt * (theta * dt + c.beta_k),
+            mass: 1.0 + theta * dt * c.alpha_m,
+            dashpots: theta * dt,
+        };
+        let factor = factor(model, combination)?;
         let n = model.dof_count();
         Ok(WindowSolver {
             theta,
@@ -58,6 +68,7 @@ impl WindowSolver {
             next: State::new(model),
             work: vec![0.0; n],
             product: vec![0.0; n],
+            inner: Vec::new(),
             equations: vec![0.0; model.free_dof_count()],
         })
     }
@@ -72,7 +83,8 @@ impl WindowSolver {
         self.theta
     }
 
-    /// One step under the mean load [N] of the window, shape `[3 * nodes]`. `state.a` becomes the mean acceleration.
+    /// One step under the mean load [N] of the window, shape `[3 * nodes]`, on supports that stay where they are.
+    /// `state.a` becomes the mean acceleration.
     ///
     /// # Errors
     /// A load or a result that is not finite; the state is untouched then.
@@ -82,34 +94,76 @@ impl WindowSolver {
         state: &mut State,
         mean_load: &[f64],
     ) -> Result<StepAudit, SolveError> {
+        self.step_prescribed(model, state, mean_load, None)
+    }
+
+    /// As [`WindowSolver::step`], with the displacement [m] of each constrained dof at the end of the window, in the order
+    /// of [`crate::supports::Supports::fixed`].
+    ///
+    /// # Errors
+    /// A load, a displacement or a result that is not finite; the state is untouched then.
+    pub fn step_prescribed(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        mean_load: &[f64],
+        prescribed: Option<&[f64]>,
+    ) -> Result<StepAudit, SolveError> {
         check_load(model, mean_load, state.time + self.dt)?;
+        check_prescribed(model, prescribed, state.time + self.dt)?;
         let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
-        let n = state.u.len();
-        // 1. Residual with vt = v0.
+        let (n, supports) = (state.u.len(), model.supports());
+        let next = &mut self.next;
+        // 1. Residual with vt = v0 on free dofs; `a` holds w = vt - v0, known at the supports.
+        next.a.fill(0.0);
+        let mut accelerated = false;
+        for (i, &(dof, _)) in supports.fixed().iter().enumerate() {
+            let d = dof as usize;
+            let end = prescribed.map_or(state.u[d], |p| p[i]);
+            next.a[d] = (end - state.u[d]) / dt - state.v[d];
+            accelerated |= next.a[d] != 0.0;
+        }
         for d in 0..n {
-            self.work[d] = state.u[d] + (theta * dt + c.beta_k) * state.v[d];
+            self.work[d] = state.u[d] + (theta * dt + c.beta_k) * (state.v[d] + next.a[d]);
         }
         model.stiffness_times(&self.work, &mut self.product);
-        for (slot, &d) in self.equations.iter_mut().zip(model.supports().free()) {
+        for (slot, &d) in self.equations.iter_mut().zip(supports.free()) {
             *slot = theta * dt * (mean_load[d as usize] - self.product[d as usize]);
         }
-        if c.alpha_m > 0.0 {
-            model.mass_times(&state.v, &mut self.product);
-            for (slot, &d) in self.equations.iter_mut().zip(model.supports().free()) {
-                *slot -= theta * dt * c.alpha_m * self.product[d as usize];
+        if c.alpha_m > 0.0 || accelerated {
+            for d in 0..n {
+                self.work[d] = next.a[d] + theta * dt * c.alpha_m * (state.v[d] + next.a[d]);
+            }
+            model.mass_times(&self.work, &mut self.product);
+            for (slot, &d) in self.equations.iter_mut().zip(supports.free()) {
+                *slot -= self.product[d as usize];
+            }
+        }
+        if !model.matrices().dashpots().is_empty() {
+            for d in 0..n {
+                self.work[d] = state.v[d] + next.a[d];
+            }
+            self.product.fill(0.0);
+            model.dashpot_times(&self.work, &mut self.product);
+            for (slot, &d) in self.equations.iter_mut().zip(supports.free()) {
+                *slot -= theta * dt * self.product[d as usize];
             }
         }
         // 2. Solve for w = vt - v0 = theta (v1 - v0), and advance.
         self.factor.solve_in_place(&mut self.equations);
-        let next = &mut self.next;
-        next.a.fill(0.0);
-        model.supports().scatter(&self.equations, &mut next.a);
+        supports.scatter(&self.equations, &mut next.a);
         for d in 0..n {
             let change = next.a[d] / theta;
             self.work[d] = dt * (state.v[d] + next.a[d]);
             next.u[d] = state.u[d] + self.work[d];
             next.v[d] = state.v[d] + change;
             next.a[d] = change / dt;
+        }
+        // The end itself, where the sum above would miss it by rounding.
+        if let Some(values) = prescribed {
+            for (&(dof, _), &value) in supports.fixed().iter().zip(values) {
+                next.u[dof as usize] = value;
+            }
         }
         next.time = state.time + dt;
         check_finite(model, "the displacement", &next.u, next.time)?;
@@ -118,12 +172,65 @@ impl WindowSolver {
         Ok(audit)
     }
 
+    /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` under the mean load,
+    /// 0 at free dofs. Shape `[3 * nodes]`. With the mean load they are the change of momentum exactly.
+    pub fn mean_reactions(
+        &self,
+        model: &Model,
+        before: &State,
+        after: &State,
+        mean_load: &[f64],
+    ) -> Vec<f64> {
+        let n = model.dof_count();
+        let du: Vec<f64> = after.u.iter().zip(&before.u).map(|(a, b)| a - b).collect();
+        let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 5 * n]);
+        self.mean_inner_force(model, before, after, &du, &mut inner, &mut scratch);
+        let mut reactions = vec![0.0; n];
+        for &(dof, _) in model.supports().fixed() {
+            reactions[dof as usize] = inner[dof as usize] - mean_load[dof as usize];
+        }
+        reactions
+    }
+
+    /// `M dv/dt + C vt + K ut` of a window. Scratch has the length of five nodal vectors.
+    fn mean_inner_force(
+        &self,
+        model: &Model,
+        old: &State,
+        new: &State,
+        du: &[f64],
+        force: &mut [f64],
+        scratch: &mut [f64],
+    ) {
+        let n = du.len();
+        let (u, rest) = scratch.split_at_mut(n);
+        let (v, rest) = rest.split_at_mut(n);
+        let (a, rest) = rest.split_at_mut(n);
+        for d in 0..n {
+            u[d] = old.u[d] + self.theta * du[d];
+            v[d] = du[d] / self.dt;
+            a[d] = (new.v[d] - old.v[d]) / self.dt;
+        }
+        inner_force(model, [u, v, a], force, rest);
+    }
+
     /// Work, damping and numerical dissipation; expects du in `work`. Forms that a term does not need are left out.
     fn audit(&mut self, model: &Model, old: &State, mean_load: &[f64]) -> StepAudit {
         let (dt, c, matrices) = (self.dt, model.rayleigh(), model.matrices());
         let excess = self.theta - 0.5;
         let external_work = mean_load.iter().zip(&self.work).map(|(f, du)| f * du).sum();
         let mut audit = StepAudit { external_work, ..StepAudit::default() };
+        let fixed = model.supports().fixed();
+        if fixed.iter().any(|&(dof, _)| self.work[dof as usize] != 0.0) {
+            let mut inner = std::mem::take(&mut self.inner);
+            inner.resize(5 * old.u.len(), 0.0);
+            let mut force = std::mem::take(&mut self.product);
+            self.mean_inner_force(model, old, &self.next, &self.work, &mut force, &mut inner);
+            for d in fixed.iter().map(|&(dof, _)| dof as usize) {
+                audit.support_work += (force[d] - mean_load[d]) * self.work[d];
+            }
+            (self.inner, self.product) = (inner, force);
+        }
         if c.beta_k > 0.0 || excess > 0.0 {
             let strain = matrices.stiffness_form(&self.work);
             audit.damping_dissipation += c.beta_k * strain / dt;
@@ -131,6 +238,9 @@ impl WindowSolver {
         }
         if c.alpha_m > 0.0 {
             audit.damping_dissipation += c.alpha_m * matrices.mass_form(&self.work) / dt;
+        }
+        if !matrices.dashpots().is_empty() {
+            audit.boundary_dissipation = matrices.dashpots().form(&self.work) / dt;
         }
         if excess > 0.0 {
             for d in 0..old.v.len() {

@@ -1,12 +1,15 @@
 //! The equation systems of an iteration: a kept factor of the elastic matrix, and the factor of the tangent.
 //!
 //! A symmetric tangent takes L L^T; if a pivot is not positive (softening), that is counted and L U takes over. An
-//! unsymmetric one takes L U. Should that fail too, the iteration falls back on the elastic matrix, which is counted as well.
+//! unsymmetric one takes L U, or, for large systems, GMRES with the elastic factor as preconditioner, as far as an inexact
+//! Newton iteration needs (Dembo, Eisenstat and Steihaug, SIAM J. Numer. Anal. 19 (1982) 400-408). Should that fail too, the iteration falls back on the elastic matrix, which is counted as well.
 
 use super::newton::{LinearMethod, Statistics};
-use super::tangent::{LinearPart, Tangent};
+use super::tangent::Tangent;
+use crate::assembly::Combination;
 use crate::model::Model;
 use crate::solver::analysis::Analysis;
+use crate::solver::gmres::Gmres;
 use crate::solver::multifrontal::DirectSolver;
 use crate::solver::{LinearSolver, SolveError};
 use crate::supports::name;
@@ -15,6 +18,14 @@ use std::time::Instant;
 
 /// Free dofs above which `Auto` solves unsymmetric systems by iteration.
 const DIRECT_LIMIT: usize = 30_000;
+/// Iterations of GMRES before it restarts.
+const RESTART: usize = 60;
+/// Iterations of GMRES at most.
+const LIMIT: usize = 180;
+/// Residual that GMRES aims at, over the right-hand side.
+const TOLERANCE: f64 = 1e-4;
+/// Residual that a Newton iteration can still use.
+const ACCEPTED: f64 = 1e-2;
 /// Pivot over diagonal below which a dof counts as having no stiffness, as in statics.
 const NO_STIFFNESS: f64 = 1e-11;
 
@@ -23,17 +34,27 @@ const NO_STIFFNESS: f64 = 1e-11;
 pub(crate) enum Matrix {
     Elastic,
     Tangent,
+    /// The tangent as it was assembled, without a factor.
+    Iterated,
 }
 
 /// Factors of one model and their buffers.
 pub(crate) struct LinearSystem {
     analysis: Arc<Analysis>,
     elastic: DirectSolver,
-    elastic_of: Option<LinearPart>,
+    elastic_of: Option<Combination>,
     tangent: Option<DirectSolver>,
     tangent_ready: bool,
     lower: Vec<f64>,
     upper: Vec<f64>,
+    krylov: Option<Krylov>,
+}
+
+/// Buffers of GMRES.
+struct Krylov {
+    gmres: Gmres,
+    solution: Vec<f64>,
+    nodal: [Vec<f64>; 2],
 }
 
 impl LinearSystem {
@@ -48,6 +69,7 @@ impl LinearSystem {
             tangent_ready: false,
             lower: vec![0.0; entries],
             upper: vec![0.0; unsymmetric],
+            krylov: None,
             analysis,
         })
     }
@@ -60,7 +82,7 @@ impl LinearSystem {
         &mut self,
         model: &Model,
         tangent: &mut Tangent,
-        linear: LinearPart,
+        linear: Combination,
         statistics: &mut Statistics,
     ) -> Result<(), SolveError> {
         if self.elastic_of == Some(linear) {
@@ -87,8 +109,26 @@ impl LinearSystem {
         Ok(())
     }
 
-    /// Factors the assembled tangent; the matrix that may be solved with.
-    pub fn factor_tangent(
+    /// Makes the assembled tangent ready: factors it, or leaves it to GMRES. The matrix that may be solved with.
+    pub fn take_tangent(
+        &mut self,
+        model: &Model,
+        tangent: &Tangent,
+        method: LinearMethod,
+        statistics: &mut Statistics,
+    ) -> Matrix {
+        let iterate = match method {
+            LinearMethod::Auto => self.analysis.size() > DIRECT_LIMIT,
+            LinearMethod::Direct => false,
+            LinearMethod::Krylov => true,
+        };
+        if iterate && !tangent.symmetric() {
+            return Matrix::Iterated;
+        }
+        self.factor_tangent(model, tangent, statistics)
+    }
+
+    fn factor_tangent(
         &mut self,
         model: &Model,
         tangent: &Tangent,
@@ -116,23 +156,68 @@ impl LinearSystem {
         if done { Matrix::Tangent } else { Matrix::Elastic }
     }
 
-    /// Whether an unsymmetric tangent is to be solved with by iteration.
-    pub fn iterates(&self, method: LinearMethod) -> bool {
-        match method {
-            LinearMethod::Auto => self.analysis.size() > DIRECT_LIMIT,
-            LinearMethod::Direct => false,
-            LinearMethod::Krylov => true,
+    /// Solves in place with a matrix that is ready.
+    pub fn solve(
+        &mut self,
+        model: &Model,
+        matrix: Matrix,
+        tangent: &Tangent,
+        x: &mut [f64],
+        statistics: &mut Statistics,
+    ) {
+        if matrix == Matrix::Iterated {
+            let start = Instant::now();
+            let solved = self.iterate(model, tangent, x, statistics);
+            statistics.solve_seconds += start.elapsed().as_secs_f64();
+            if solved {
+                return;
+            }
+            statistics.krylov_failures += 1;
+            self.factor_tangent(model, tangent, statistics);
         }
-    }
-
-    /// Solves in place with a factor at hand.
-    pub fn solve(&mut self, matrix: Matrix, x: &mut [f64], statistics: &mut Statistics) {
         let start = Instant::now();
         match &mut self.tangent {
-            Some(tangent) if matrix == Matrix::Tangent && self.tangent_ready => tangent.solve_in_place(x),
+            Some(factor) if matrix != Matrix::Elastic && self.tangent_ready => factor.solve_in_place(x),
             _ => self.elastic.solve_in_place(x),
         }
         statistics.solves += 1;
         statistics.solve_seconds += start.elapsed().as_secs_f64();
+    }
+
+    /// Solves with the tangent by GMRES; false, with `x` as it was, when too much is left.
+    fn iterate(
+        &mut self,
+        model: &Model,
+        tangent: &Tangent,
+        x: &mut [f64],
+        statistics: &mut Statistics,
+    ) -> bool {
+        let (size, dofs) = (x.len(), model.dof_count());
+        let krylov = self.krylov.get_or_insert_with(|| Krylov {
+            gmres: Gmres::new(size, RESTART),
+            solution: vec![0.0; size],
+            nodal: [vec![0.0; dofs], vec![0.0; dofs]],
+        });
+        let (supports, [from, to]) = (model.supports(), &mut krylov.nodal);
+        krylov.solution.fill(0.0);
+        let outcome = krylov.gmres.solve(
+            |v, y| {
+                // The constrained dofs stay 0.
+                supports.scatter(v, from);
+                tangent.times(model, from, to);
+                supports.gather(to, y);
+            },
+            &mut self.elastic,
+            x,
+            &mut krylov.solution,
+            TOLERANCE,
+            LIMIT,
+        );
+        statistics.krylov_iterations += outcome.iterations as u64;
+        let good = outcome.residual <= ACCEPTED;
+        if good {
+            x.copy_from_slice(&krylov.solution);
+        }
+        good
     }
 }

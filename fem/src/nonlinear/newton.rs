@@ -4,11 +4,11 @@
 //! Unknown is the displacement increment `w` of the step; its part at the constrained dofs is prescribed:
 //!
 //! ```text
-//! r(w) = rhs - f(w) - (stiffness K + mass M) w = 0 on the free dofs
+//! r(w) = rhs - f(w) - S w - (stiffness K + mass M + dashpots D) w = 0 on the free dofs
 //! ```
 //!
-//! f is the internal force of the stresses after w, K the elastic stiffness. The linear part is empty in a
-//! quasi-static step. The first iteration of a step goes out from the committed stresses with the elastic matrix (whether a
+//! f is the internal force of the stresses after w, S the boundary springs, K the elastic stiffness with the springs. The last
+//! part is empty in a quasi-static step. The first iteration of a step goes out from the committed stresses with the elastic matrix (whether a
 //! point that lies exactly on the yield surface counts as yielding would be left to rounding), so the prescribed increments
 //! spread over the body before any stress is returned. A step without a yielding point needs no other.
 //!
@@ -23,7 +23,9 @@
 
 use super::internal_force::{InternalForce, PointFailure};
 use super::linear_system::{LinearSystem, Matrix};
-use super::tangent::{LinearPart, Tangent};
+use super::quasi_static::subtract_springs;
+use super::tangent::Tangent;
+use crate::assembly::Combination;
 use crate::element::stiffness_points;
 use crate::material::{PointState, Region};
 use crate::model::Model;
@@ -140,8 +142,12 @@ pub struct Statistics {
     pub not_positive: u64,
     /// Tangents that L U failed on, and the elastic matrix replaced.
     pub singular: u64,
-    /// Solves with a factor.
+    /// Solves with a factor, those within GMRES not counted.
     pub solves: u64,
+    /// Iterations of GMRES.
+    pub krylov_iterations: u64,
+    /// Systems that GMRES did not solve well enough, and L U took over.
+    pub krylov_failures: u64,
     /// Seconds of stresses, internal forces and tangents.
     pub assembly_seconds: f64,
     /// Seconds of factorizations.
@@ -210,7 +216,7 @@ pub(crate) struct Problem<'a> {
     /// Prescribed increments [m] in the order of the constrained dofs.
     pub fixed: &'a [f64],
     /// What is added to the internal force.
-    pub linear: LinearPart,
+    pub linear: Combination,
 }
 
 /// Smallest length of a correction.
@@ -291,7 +297,7 @@ impl Newton {
                 matrix = self.choose(model, problem, iteration, matrix);
                 model.supports().gather(&self.residual, &mut self.equations);
             }
-            self.system.solve(matrix, &mut self.equations, &mut self.statistics);
+            self.system.solve(model, matrix, &self.tangent, &mut self.equations, &mut self.statistics);
             model.supports().scatter(&self.equations, &mut self.correction);
             let work = self.work(model);
             self.base.copy_from_slice(&self.w);
@@ -322,13 +328,20 @@ impl Newton {
             for (&(dof, _), value) in model.supports().fixed().iter().zip(problem.fixed) {
                 self.w[dof as usize] = *value;
             }
-            self.add_linear(model, 1.0 + problem.linear.stiffness, problem.linear.mass);
+            let stiffness = 1.0 + problem.linear.stiffness;
+            self.add_linear(model, Combination { stiffness, ..problem.linear });
         }
         model.supports().gather(&self.residual, &mut self.equations);
     }
 
-    /// `residual -= (stiffness K + mass M) w`.
-    fn add_linear(&mut self, model: &Model, stiffness: f64, mass: f64) {
+    /// `residual -= (stiffness K + mass M + dashpots D) w`.
+    fn add_linear(&mut self, model: &Model, linear: Combination) {
+        let Combination { stiffness, mass, dashpots } = linear;
+        if dashpots != 0.0 && !model.matrices().dashpots().is_empty() {
+            self.product.fill(0.0);
+            model.dashpot_times(&self.w, &mut self.product);
+            self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= dashpots * p);
+        }
         if stiffness != 0.0 {
             model.stiffness_times(&self.w, &mut self.product);
             self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= stiffness * p);
@@ -356,7 +369,7 @@ impl Newton {
         let start = Instant::now();
         self.tangent.assemble(model, &self.force, problem.old, &self.w, problem.linear);
         self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
-        self.system.factor_tangent(model, &self.tangent, &mut self.statistics)
+        self.system.take_tangent(model, &self.tangent, self.options.linear, &mut self.statistics)
     }
 
     /// Stresses, forces and residual at `base + length * correction`; at `w` as it is for length 0.
@@ -378,7 +391,8 @@ impl Newton {
         for d in 0..self.w.len() {
             self.residual[d] = problem.rhs[d] - self.force.force[d];
         }
-        self.add_linear(model, problem.linear.stiffness, problem.linear.mass);
+        subtract_springs(model, &self.w, &mut self.residual);
+        self.add_linear(model, problem.linear);
         Ok(())
     }
 

@@ -6,7 +6,7 @@
 
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::step_control::{StepControl, StepLength};
-use super::tangent::LinearPart;
+use crate::assembly::Combination;
 use crate::material::PointState;
 use crate::model::Model;
 use crate::solver::SolveError;
@@ -56,6 +56,7 @@ pub struct QuasiStatic {
     length: StepLength,
     load: Vec<f64>,
     fixed: Vec<f64>,
+    reactions: Vec<f64>,
 }
 
 impl QuasiStatic {
@@ -75,6 +76,7 @@ impl QuasiStatic {
             length: StepLength::new(control),
             load: vec![0.0; model.dof_count()],
             fixed: vec![0.0; model.supports().fixed().len()],
+            reactions: vec![0.0; model.dof_count()],
         })
     }
 
@@ -110,11 +112,14 @@ impl QuasiStatic {
                 old: &state.points,
                 rhs: &self.load,
                 fixed: &self.fixed,
-                linear: LinearPart::default(),
+                linear: Combination::default(),
             };
             match self.newton.solve(model, &problem) {
                 Ok(()) => {
                     self.length.accept(dt, self.newton.report.iterations);
+                    for &(dof, _) in model.supports().fixed() {
+                        self.reactions[dof as usize] = -self.newton.residual[dof as usize];
+                    }
                     self.newton.commit(state, time, dt);
                     on_step(state, &self.newton.report);
                 }
@@ -131,12 +136,8 @@ impl QuasiStatic {
     }
 
     /// Forces of the supports on the body [N] after the last accepted step; 0 at free dofs. Shape `[3 * nodes]`.
-    pub fn reactions(&self, model: &Model) -> Vec<f64> {
-        let mut reactions = vec![0.0; model.dof_count()];
-        for &(dof, _) in model.supports().fixed() {
-            reactions[dof as usize] = -self.newton.residual[dof as usize];
-        }
-        reactions
+    pub fn reactions(&self) -> &[f64] {
+        &self.reactions
     }
 
     /// Loads and prescribed increments of the step from `state` to `time`.
@@ -150,6 +151,7 @@ impl QuasiStatic {
         self.load.fill(0.0);
         loading.load(time, &mut self.load);
         check_load(model, &self.load, time)?;
+        subtract_springs(model, &state.u, &mut self.load);
         prescribe(model, state, time, loading, &mut self.fixed)
     }
 }
@@ -163,6 +165,15 @@ impl Newton {
         self.statistics.steps += 1;
         self.report.time = time;
         self.report.dt = dt;
+    }
+}
+
+/// Takes the forces of the boundary springs at the displacement `u` from the right-hand side.
+pub(super) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
+    if !model.matrices().springs().is_empty() {
+        rhs.iter_mut().for_each(|r| *r = -*r);
+        model.boundary_spring_times(u, rhs);
+        rhs.iter_mut().for_each(|r| *r = -*r);
     }
 }
 

@@ -11,6 +11,7 @@
 //! slows the last digits of the iteration and does not move its solution.
 
 use super::internal_force::{InternalForce, element_increment};
+use crate::assembly::Combination;
 use crate::element::MAX_NODES;
 use crate::material::{PointState, REGULARISATION, Region, update};
 use crate::model::Model;
@@ -25,13 +26,6 @@ const CHUNK: usize = 64;
 const TASK: usize = 8;
 /// No slots: an element without plasticity.
 const NONE: u32 = u32::MAX;
-
-/// Factors of the elastic stiffness and of the mass that are added to the tangent of the internal force.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct LinearPart {
-    pub stiffness: f64,
-    pub mass: f64,
-}
 
 /// The tangent of a model, with its buffers.
 pub(crate) struct Tangent {
@@ -76,8 +70,8 @@ impl Tangent {
         self.symmetric
     }
 
-    /// Sets the elastic matrix `(1 + stiffness) K + mass M`.
-    pub fn set_elastic(&mut self, model: &Model, linear: LinearPart) {
+    /// Sets the elastic matrix `(1 + stiffness) K + mass M + dashpots D`, boundary springs within K.
+    pub fn set_elastic(&mut self, model: &Model, linear: Combination) {
         let (matrices, factor) = (model.matrices(), 1.0 + linear.stiffness);
         for ((block, k), m) in
             self.upper.iter_mut().zip(matrices.stiffness_blocks()).zip(matrices.mass_entries())
@@ -85,6 +79,11 @@ impl Tangent {
             *block = k.map(|k| factor * k);
             for i in 0..3 {
                 block[4 * i] += linear.mass * m;
+            }
+        }
+        if linear.dashpots != 0.0 {
+            for (slot, dashpot) in matrices.dashpot_blocks() {
+                self.upper[slot].iter_mut().zip(dashpot).for_each(|(b, d)| *b += linear.dashpots * d);
             }
         }
         self.mirrored.copy_from_slice(if self.symmetric { &[] } else { &self.upper });
@@ -97,7 +96,7 @@ impl Tangent {
         force: &InternalForce,
         old: &[PointState],
         increment: &[f64],
-        linear: LinearPart,
+        linear: Combination,
     ) {
         self.set_elastic(model, linear);
         let mut yielding = std::mem::take(&mut self.yielding);

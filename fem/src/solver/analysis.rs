@@ -7,7 +7,7 @@ use super::SolveError;
 use super::ordering::nested_dissection;
 use super::pattern::{MIRRORED, Upper, postorder};
 use super::structure::Structure;
-use crate::assembly::Matrices;
+use crate::assembly::{Combination, Matrices};
 use crate::mesh::Mesh;
 use crate::supports::{CONSTRAINED, Supports};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
@@ -42,7 +42,7 @@ impl Analysis {
     pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
         let equations = supports.free().len();
         let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
-        matrices.visit_free(supports, |c, r, _, _| {
+        matrices.visit_free(supports, |c, r, _, _, _| {
             row.push(r);
             column_start[c + 1] = row.len();
         });
@@ -118,6 +118,20 @@ impl Analysis {
         (&self.column_start, &self.row)
     }
 
+    /// Equations in the order of elimination.
+    pub fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// The values of `stiffness K + mass M + dashpots D` on the free dofs, in the order of [`Analysis::pattern`], for the model that
+    /// was analysed.
+    pub fn values(&self, matrices: &Matrices, supports: &Supports, combination: Combination) -> Vec<f64> {
+        let Combination { stiffness, mass, dashpots } = combination;
+        let mut values = Vec::with_capacity(self.entries());
+        matrices.visit_free(supports, |_, _, k, m, d| values.push(stiffness * k + mass * m + dashpots * d));
+        values
+    }
+
     /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and solved for one
     /// right-hand side at a time. All of it is taken before the first front, so this is the peak, too.
     pub fn memory(&self, symmetric: bool) -> usize {
@@ -126,7 +140,9 @@ impl Analysis {
         let fronts = triangles * (structure.work_len + structure.handed_len);
         let second = if symmetric { 0 } else { structure.second[structure.count()] };
         let rows = if symmetric { 0 } else { 4 * self.size() };
-        8 * (self.factor_len() + second + fronts + self.size() + structure.rows.len()) + rows
+        // Scratch of the kernels: at most 8 bytes for faer and 20 for exchanges of rows, by pivot column.
+        let scratch = 28 * (structure.tasks.len() * structure.branch_width + structure.max_width);
+        8 * (self.factor_len() + second + fronts + self.size() + structure.rows.len()) + rows + scratch
     }
 
     pub(super) fn structure(&self) -> &Structure {

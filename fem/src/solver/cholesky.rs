@@ -1,14 +1,14 @@
-//! Cholesky factorization `P A P^T = L L^T` of `A = k K + m M` on the free dofs.
+//! Cholesky factorization `P A P^T = L L^T` of `A = k K + m M + d D` on the free dofs.
 //!
 //! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Analysis`], made once per model); numbers are
-//! factored when k, m change ([`Cholesky::factor`]); solves allocate nothing. The bits are the same on any number of
+//! factored when k, m, d change ([`Cholesky::factor`]); solves allocate nothing. The bits are the same on any number of
 //! threads. See [`super::multifrontal`] for the method.
 //!
 //! Limits: A must be positive definite. A pivot of zero or below is reported with its node and direction. A pivot that
 //! is only *tiny* does not stop a factorization; its size against the diagonal is kept in [`Cholesky::weakest_pivot`]
 //! for the caller to judge.
 
-use crate::assembly::Matrices;
+use crate::assembly::{Combination, Matrices};
 use crate::mesh::Mesh;
 pub use crate::solver::analysis::Analysis;
 use crate::solver::multifrontal::DirectSolver;
@@ -32,7 +32,7 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factors `A = stiffness K + mass M` on the free dofs.
+    /// Factors `A = stiffness K + mass M + dashpots D` on the free dofs.
     ///
     /// # Errors
     /// [`SolveError::NoStiffness`] names the node and direction of a pivot that is not positive.
@@ -41,11 +41,9 @@ impl Cholesky {
         mesh: &Mesh,
         matrices: &Matrices,
         supports: &Supports,
-        stiffness: f64,
-        mass: f64,
+        combination: Combination,
     ) -> Result<Cholesky, SolveError> {
-        let mut a = Vec::with_capacity(analysis.entries());
-        matrices.visit_free(supports, |_, _, k, m| a.push(stiffness * k + mass * m));
+        let a = analysis.values(matrices, supports, combination);
         let free = supports.free();
         let mut solver = DirectSolver::new(analysis);
         solver.factor_symmetric(&a).map_err(|pivot| {
@@ -80,6 +78,10 @@ mod tests {
     use crate::material::elastic::Elastic;
     use crate::mesh::Constraint;
 
+    fn of(stiffness: f64, mass: f64) -> Combination {
+        Combination { stiffness, mass, dashpots: 0.0 }
+    }
+
     fn block() -> (Mesh, Matrices) {
         let mesh = Mesh::block([4, 3, 3], [4.0, 3.0, 3.0]);
         let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
@@ -93,7 +95,7 @@ mod tests {
         let constraint = |node| Constraint { node, direction: 1, value: 0.0 };
         let supports = Supports::new(&mesh, &[constraint(7), constraint(50)]).unwrap();
         let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
-        let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, 1e-4, 1.0).unwrap();
+        let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(1e-4, 1.0)).unwrap();
         let n = 3 * mesh.node_count();
         let exact: Vec<f64> =
             (0..n).map(|i| if i == 22 || i == 151 { 0.0 } else { (i as f64).cos() }).collect();
@@ -116,7 +118,7 @@ mod tests {
         let supports = Supports::new(&mesh, &[]).unwrap();
         let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
         let first = supports.free()[analysis.order[0]] as usize;
-        let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, -1.0, 0.0).err().unwrap();
+        let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(-1.0, 0.0)).err().unwrap();
         let (node, direction) = name(&mesh, first);
         assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
     }
@@ -134,7 +136,7 @@ mod tests {
         let mut position = vec![0; n];
         analysis.order.iter().enumerate().for_each(|(i, &e)| position[e] = i);
         let mut a = vec![vec![0.0; n]; n];
-        matrices.visit_free(&supports, |c, r, k, m| {
+        matrices.visit_free(&supports, |c, r, k, m, _| {
             let (c, r) = (position[c], position[r]);
             a[c][r] = k + 1e3 * m;
             a[r][c] = a[c][r];
@@ -152,7 +154,7 @@ mod tests {
                 }
             }
         }
-        let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, 1.0, 1e3).unwrap();
+        let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, of(1.0, 1e3)).unwrap();
         let found = solver.weakest_pivot();
         assert!((found.ratio / least.0 - 1.0).abs() < 1e-9, "{found:?} {least:?}");
         assert_eq!(found.dof, supports.free()[analysis.order[least.1]] as usize);

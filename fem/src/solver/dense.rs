@@ -174,6 +174,10 @@ impl Exchange {
         let zeros = || vec![0; width];
         Exchange { found: zeros(), inverse: zeros(), rows: zeros(), column: vec![0.0; width] }
     }
+
+    pub fn bytes(&self) -> usize {
+        20 * self.column.len()
+    }
 }
 
 /// Factors the pivot block of an unsymmetric front in place, `P A = L U`, with the rows exchanged inside the block:

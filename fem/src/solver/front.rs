@@ -51,6 +51,10 @@ impl Scratch {
         let lu = lu_in_place_scratch::<u32, f64>(width, width, Par::Seq, Default::default());
         Scratch { memory: MemBuffer::new(StackReq::or(llt, lu)), exchange: Exchange::new(width) }
     }
+
+    pub fn bytes(&self) -> usize {
+        self.memory.len() + self.exchange.bytes()
+    }
 }
 
 /// Factors a symmetric front.

@@ -1,12 +1,14 @@
 //! Solvers of the equation system on the free dofs.
 //!
-//! [`ordering`] numbers the nodes so that the factor stays small, [`cholesky`] factors and solves, and
-//! [`conjugate_gradient`] solves with the mass matrix alone, which needs no factor.
+//! [`ordering`] numbers the nodes so that the factor stays small, [`analysis`] finds its structure, [`multifrontal`] factors and
+//! solves, symmetric or not, and [`cholesky`] does so for K and M of a model. [`gmres`] solves with a matrix near a
+//! factored one, and [`conjugate_gradient`] with the mass matrix alone, which needs no factor.
 pub mod analysis;
 pub mod cholesky;
 pub mod conjugate_gradient;
 mod dense;
 mod front;
+pub mod gmres;
 mod kernels;
 pub mod multifrontal;
 pub mod ordering;

@@ -128,11 +128,10 @@ impl DirectSolver {
 
     /// Bytes that the buffers of this solver hold.
     pub fn allocated(&self) -> usize {
-        let values = self.first.values.capacity()
-            + self.second.values.capacity()
-            + self.work.values.capacity()
-            + self.handed.values.capacity();
-        8 * (values + self.solution.capacity()) + 4 * self.rows.capacity()
+        let buffers = [&self.first, &self.second, &self.work, &self.handed];
+        let values: usize = buffers.iter().map(|buffer| buffer.capacity()).sum();
+        let scratch: usize = self.scratch.iter().map(Scratch::bytes).sum();
+        8 * (values + self.solution.capacity()) + 4 * self.rows.capacity() + scratch
     }
 
     /// Solves for `count` right-hand sides, column-major `[equations x count]`, in place. Eight at a time share the
@@ -438,3 +437,7 @@ impl std::ops::DerefMut for Buffer {
         &mut self.values[self.skip..self.skip + self.len]
     }
 }
+
+#[cfg(test)]
+#[path = "multifrontal_tests.rs"]
+mod tests;

@@ -15,6 +15,7 @@ mod patch;
 mod plastic_common;
 mod plastic_cylinder;
 mod plastic_element;
+mod plastic_footing;
 mod static_cases;
 mod support;
 mod window;

@@ -1,0 +1,276 @@
+//! Springs and dashpots per area on faces of the body: absorbing boundaries and elastic supports.
+//!
+//! On each face the boundary pushes back with the traction `t = -(k_n n n^T + k_t (1 - n n^T)) u - (c_n n n^T + c_t (1 -
+//! n n^T)) v`, n being the outward normal. The matrices are consistent, `∫ N_a N_b (…) dA`; the springs join the
+//! stiffness matrix, the dashpots the damping matrix.
+//!
+//! With `c_n = rho c_p`, `c_t = rho c_s` a plane wave that meets the boundary at a right angle leaves without reflection.
+//! Source: Lysmer and Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859-877. A dashpot has no static stiffness, so a body on
+//! dashpots alone drifts; springs of the order G/R restore it: for a wave from a source at the distance R the outer medium
+//! acts like dashpots with springs beside them. Source: Deeks and Randolph, J. Eng. Mech. 120 (1994) 25-42
+//! (axisymmetric); Liu, Du, Du, Wang and Wu, Earthq. Eng. Eng. Vib. 5 (2006) 93-102 (three dimensions). Limits:
+//! oblique waves and surface waves are absorbed in part only; the normals are those of the undeformed body.
+
+use crate::material::elastic::Elastic;
+use crate::mesh::{Face, Mesh};
+use crate::model::ModelError;
+use std::collections::BTreeMap;
+
+/// Springs and dashpots on some faces of the body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BoundaryLayer {
+    /// The faces; each must lie on the boundary of the mesh, and once.
+    pub faces: Vec<Face>,
+    /// Dashpot along the normal [Pa s/m], 0 or above.
+    pub dashpot_normal: f64,
+    /// Dashpot in the plane of the face [Pa s/m], 0 or above.
+    pub dashpot_tangential: f64,
+    /// Spring along the normal [Pa/m], 0 or above.
+    pub spring_normal: f64,
+    /// Spring in the plane of the face [Pa/m], 0 or above.
+    pub spring_tangential: f64,
+}
+
+/// Factors of `G/R` for the normal and the tangential spring of [`BoundaryLayer::viscous_spring`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringFactors {
+    /// Factor of the normal spring [-].
+    pub normal: f64,
+    /// Factor of the tangential spring [-].
+    pub tangential: f64,
+}
+
+impl SpringFactors {
+    /// For bodies of three dimensions with loads on the surface: 4/3 and 2/3 (Liu and others 2006).
+    pub const SPATIAL: SpringFactors = SpringFactors { normal: 4.0 / 3.0, tangential: 2.0 / 3.0 };
+    /// Exact for the static field around an expanding (u ~ 1/r², `t = 4 G u/R`) or twisted sphere (`t = 3 G u/R`).
+    pub const SPHERE: SpringFactors = SpringFactors { normal: 4.0, tangential: 3.0 };
+    /// Exact for the static field around an expanding or twisted cylinder in plane strain (u ~ 1/r, `t = 2 G u/R`).
+    pub const CYLINDER: SpringFactors = SpringFactors { normal: 2.0, tangential: 2.0 };
+}
+
+impl BoundaryLayer {
+    /// Dashpots that let plane waves of a medium out: `rho c_p` and `rho c_s` (Lysmer and Kuhlemeyer 1969).
+    pub fn absorbing(faces: Vec<Face>, medium: &Elastic) -> BoundaryLayer {
+        let (lambda, mu) = medium.lame();
+        BoundaryLayer {
+            faces,
+            dashpot_normal: (medium.density * (lambda + 2.0 * mu)).sqrt(),
+            dashpot_tangential: (medium.density * mu).sqrt(),
+            ..Default::default()
+        }
+    }
+
+    /// Absorbing dashpots with the springs `factor G/R` of a medium that goes on outside, `distance` R [m] being that
+    /// from the source of the waves to the boundary.
+    pub fn viscous_spring(
+        faces: Vec<Face>,
+        medium: &Elastic,
+        distance: f64,
+        factors: SpringFactors,
+    ) -> BoundaryLayer {
+        let shear = medium.lame().1;
+        BoundaryLayer {
+            spring_normal: factors.normal * shear / distance,
+            spring_tangential: factors.tangential * shear / distance,
+            ..BoundaryLayer::absorbing(faces, medium)
+        }
+    }
+
+    /// Springs alone, per area [Pa/m].
+    pub fn springs(faces: Vec<Face>, normal: f64, tangential: f64) -> BoundaryLayer {
+        BoundaryLayer { faces, spring_normal: normal, spring_tangential: tangential, ..Default::default() }
+    }
+}
+
+/// Checks the constants and that the faces are on the boundary of the mesh, each at most once in a layer.
+///
+/// # Errors
+/// [`ModelError::BoundaryConstant`] or [`ModelError::BoundaryFace`].
+pub(crate) fn check(mesh: &Mesh, layers: &[BoundaryLayer]) -> Result<(), ModelError> {
+    if layers.is_empty() {
+        return Ok(());
+    }
+    let surface = mesh.boundary_faces();
+    for (index, layer) in layers.iter().enumerate() {
+        for (name, value) in [
+            ("dashpot_normal", layer.dashpot_normal),
+            ("dashpot_tangential", layer.dashpot_tangential),
+            ("spring_normal", layer.spring_normal),
+            ("spring_tangential", layer.spring_tangential),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(ModelError::BoundaryConstant { index, name, value });
+            }
+        }
+        let mut seen = std::collections::BTreeSet::new();
+        for face in &layer.faces {
+            let key = (face.element, face.side);
+            let there = surface.binary_search_by_key(&key, |f| (f.element, f.side));
+            let fault = match there.map(|i| surface[i] == *face) {
+                Ok(true) if seen.insert(key) => continue,
+                Ok(true) => "is named twice",
+                _ => "is not on the boundary of the mesh",
+            };
+            let element = mesh.element_ids.get(face.element as usize).copied().unwrap_or(face.element);
+            return Err(ModelError::BoundaryFace { index, element, side: face.side + 1, fault });
+        }
+    }
+    Ok(())
+}
+
+/// A symmetric matrix of 3×3 blocks over the node pairs of some faces; upper half, pairs ascending.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FaceMatrix {
+    pairs: Vec<[u32; 2]>,
+    blocks: Vec<[f64; 9]>,
+}
+
+impl FaceMatrix {
+    /// The consistent matrix of the springs [N/m].
+    pub fn springs(mesh: &Mesh, layers: &[BoundaryLayer]) -> FaceMatrix {
+        FaceMatrix::assemble(mesh, layers, |l| [l.spring_normal, l.spring_tangential])
+    }
+
+    /// The consistent matrix of the dashpots [N s/m].
+    pub fn dashpots(mesh: &Mesh, layers: &[BoundaryLayer]) -> FaceMatrix {
+        FaceMatrix::assemble(mesh, layers, |l| [l.dashpot_normal, l.dashpot_tangential])
+    }
+
+    /// `constants` gives the normal and the tangential constant of a layer.
+    fn assemble(
+        mesh: &Mesh,
+        layers: &[BoundaryLayer],
+        constants: impl Fn(&BoundaryLayer) -> [f64; 2],
+    ) -> FaceMatrix {
+        let mut sums: BTreeMap<[u32; 2], [f64; 9]> = BTreeMap::new();
+        for layer in layers {
+            let [normal, tangential] = constants(layer);
+            if normal == 0.0 && tangential == 0.0 {
+                continue;
+            }
+            for face in &layer.faces {
+                for &(xi, weight) in face.shape.points() {
+                    let (n, size) = unit_normal(mesh, face, xi);
+                    let shape = face.shape.shape_functions(xi);
+                    let mut tensor = [0.0; 9];
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let same = if i == j { tangential } else { 0.0 };
+                            tensor[3 * i + j] = weight * size * (same + (normal - tangential) * n[i] * n[j]);
+                        }
+                    }
+                    for (a, &p) in face.nodes().iter().enumerate() {
+                        for (b, &q) in face.nodes().iter().enumerate().filter(|(_, q)| **q >= p) {
+                            let sum = sums.entry([p, q]).or_insert([0.0; 9]);
+                            for (s, t) in sum.iter_mut().zip(&tensor) {
+                                *s += shape[a] * shape[b] * t;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        FaceMatrix { pairs: sums.keys().copied().collect(), blocks: sums.into_values().collect() }
+    }
+
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Node pairs p <= q, ascending, with their 3×3 blocks (row-major; rows of p, columns of q).
+    pub fn entries(&self) -> impl Iterator<Item = ([u32; 2], &[f64; 9])> {
+        self.pairs.iter().copied().zip(&self.blocks)
+    }
+
+    /// The block of entry `index` in the order of [`FaceMatrix::entries`].
+    #[inline]
+    pub(crate) fn block(&self, index: usize) -> &[f64; 9] {
+        &self.blocks[index]
+    }
+
+    /// `y += A x`. Shapes `[3 * nodes]`.
+    pub fn add_times(&self, x: &[f64], y: &mut [f64]) {
+        for ([p, q], block) in self.entries() {
+            let (p, q) = (3 * p as usize, 3 * q as usize);
+            for i in 0..3 {
+                for j in 0..3 {
+                    y[p + i] += block[3 * i + j] * x[q + j];
+                    if p != q {
+                        y[q + j] += block[3 * i + j] * x[p + i];
+                    }
+                }
+            }
+        }
+    }
+
+    /// `x·A x`. Shape `[3 * nodes]`.
+    pub fn form(&self, x: &[f64]) -> f64 {
+        let mut total = 0.0;
+        for ([p, q], block) in self.entries() {
+            let factor = if p == q { 1.0 } else { 2.0 };
+            let (p, q) = (3 * p as usize, 3 * q as usize);
+            for i in 0..3 {
+                for j in 0..3 {
+                    total += factor * x[p + i] * block[3 * i + j] * x[q + j];
+                }
+            }
+        }
+        total
+    }
+}
+
+/// A direction in which springs hold a point of the body; for the check that a body is held.
+#[derive(Clone, Copy, Debug)]
+pub struct SpringPoint {
+    /// A node (index) of the same body.
+    pub node: usize,
+    /// The point [m].
+    pub point: [f64; 3],
+    /// The direction, a unit vector.
+    pub direction: [f64; 3],
+}
+
+/// The directions in which the springs of the layers hold the body, at the integration points of their faces.
+pub fn spring_points(mesh: &Mesh, layers: &[BoundaryLayer]) -> Vec<SpringPoint> {
+    let mut points = Vec::new();
+    for layer in layers {
+        for face in &layer.faces {
+            for &(xi, _) in face.shape.points() {
+                let (n, _) = unit_normal(mesh, face, xi);
+                let (point, node) = (face.point_and_area(mesh, xi).0, face.nodes[0] as usize);
+                if layer.spring_normal > 0.0 {
+                    points.push(SpringPoint { node, point, direction: n });
+                }
+                if layer.spring_tangential > 0.0 {
+                    // Any two directions across the normal do; the axis farthest from the normal gives them.
+                    let axis = (0..3).fold(0, |k, i| if n[i].abs() < n[k].abs() { i } else { k });
+                    let mut e = [0.0; 3];
+                    e[axis] = 1.0;
+                    let first = cross(n, e);
+                    let length = first.iter().map(|v| v * v).sum::<f64>().sqrt();
+                    let first = first.map(|v| v / length);
+                    points.push(SpringPoint { node, point, direction: first });
+                    points.push(SpringPoint { node, point, direction: cross(n, first) });
+                }
+            }
+        }
+    }
+    points
+}
+
+/// The outward unit normal and the area per natural area [m²] at a point of a face.
+fn unit_normal(mesh: &Mesh, face: &Face, xi: [f64; 2]) -> ([f64; 3], f64) {
+    let (_, area) = face.point_and_area(mesh, xi);
+    let size = area.iter().map(|a| a * a).sum::<f64>().sqrt();
+    (area.map(|a| a / size), size)
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+#[path = "boundary_tests.rs"]
+mod tests;

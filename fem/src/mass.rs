@@ -1,0 +1,83 @@
+//! The choice of the mass matrix: consistent, or lumped on the diagonal.
+//!
+//! Consistent: `M_ab = ∫ rho N_a N_b dV`. Lumped (HRZ): the diagonal of the consistent matrix of each element, scaled so
+//! that it adds up to the element's mass, `m_a = M_aa m / sum_b M_bb`. Row sums would give the corners of quadratic
+//! elements a negative mass; this diagonal is positive for every element.
+//!
+//! Source: Hinton, Rock and Zienkiewicz, Earthq. Eng. Struct. Dyn. 4 (1976) 245-249. Limits: lumping keeps the mass of
+//! each element exactly, its moments of inertia only for shapes with three planes of symmetry. The load of gravity stays
+//! consistent, `∫ rho N_a g dV`, so that a lumped body carries the same static load.
+
+use serde::{Deserialize, Serialize};
+
+/// How the mass is spread over the nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mass {
+    /// The consistent mass matrix.
+    #[default]
+    Consistent,
+    /// A diagonal mass matrix, scaled from the diagonal of the consistent one element by element.
+    Lumped,
+}
+
+/// The lumped masses [kg] of one element from its consistent matrix.
+pub fn lump<const N: usize>(consistent: &[[f64; N]; N]) -> [f64; N] {
+    let total: f64 = consistent.iter().flatten().sum();
+    let diagonal: f64 = (0..N).map(|a| consistent[a][a]).sum();
+    // A body without density has no mass to spread.
+    let scale = if diagonal > 0.0 { total / diagonal } else { 0.0 };
+    std::array::from_fn(|a| scale * consistent[a][a])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{ElementKind, MAX_NODES, mass_points};
+    use crate::kinematics::mass_matrix;
+
+    fn of_natural_shape<const N: usize>(kind: ElementKind) -> [f64; N] {
+        let mut x = [[0.0; 3]; MAX_NODES];
+        x[..N].copy_from_slice(kind.natural());
+        let masses = lump(&mass_matrix::<N>(&x, mass_points(kind), 3.0));
+        let total: f64 = masses.iter().sum();
+        assert!((total / (3.0 * kind.natural_volume()) - 1.0).abs() < 1e-13, "{}: {total}", kind.name());
+        assert!(masses.iter().all(|m| *m > 0.0), "{}: {masses:?}", kind.name());
+        masses
+    }
+
+    #[test]
+    fn every_kind_keeps_its_mass_and_has_no_negative_share() {
+        of_natural_shape::<20>(ElementKind::Hex20);
+        of_natural_shape::<15>(ElementKind::Wedge15);
+        of_natural_shape::<13>(ElementKind::Pyramid13);
+        of_natural_shape::<10>(ElementKind::Tet10);
+        of_natural_shape::<8>(ElementKind::Hex8);
+        of_natural_shape::<6>(ElementKind::Wedge6);
+        of_natural_shape::<5>(ElementKind::Pyramid5);
+        of_natural_shape::<4>(ElementKind::Tet4);
+    }
+
+    /// Against the integrals of the squared shape functions over the cube, worked out by hand.
+    #[test]
+    fn shares_of_the_brick_are_those_of_the_exact_integrals() {
+        let masses = of_natural_shape::<20>(ElementKind::Hex20);
+        let (corner, side) = (exact_corner(), exact_side());
+        let sum = 8.0 * corner + 12.0 * side;
+        assert!((masses[0] / 24.0 - corner / sum).abs() < 1e-14, "{}", masses[0] / 24.0);
+        assert!((masses[8] / 24.0 - side / sum).abs() < 1e-14, "{}", masses[8] / 24.0);
+    }
+
+    /// `∫ ((1+x)(1+y)(1+z)(x+y+z-2)/8)²`: moments of (1+x)² x^k over [-1, 1] are 8/3, 4/3, 16/15 for k = 0, 1, 2.
+    fn exact_corner() -> f64 {
+        let (m0, m1, m2) = (8.0 / 3.0, 4.0 / 3.0, 16.0 / 15.0);
+        // (s - 2)² with s = x + y + z: s² - 4 s + 4.
+        let square = 3.0 * m2 * m0 * m0 + 6.0 * m1 * m1 * m0;
+        (square - 4.0 * 3.0 * m1 * m0 * m0 + 4.0 * m0 * m0 * m0) / 64.0
+    }
+
+    /// `∫ ((1-x²)(1+y)(1+z)/4)²`: `∫(1-x²)² = 16/15`.
+    fn exact_side() -> f64 {
+        16.0 / 15.0 * (8.0 / 3.0) * (8.0 / 3.0) / 16.0
+    }
+}

@@ -1,0 +1,317 @@
+//! Restarted GMRES with a right preconditioner: solves with a matrix near one whose factor is kept.
+//!
+//! The method minimises the norm of the true residual `b - A x` over `x0 + M^-1 K`, K the Krylov space of `A M^-1`; with a right
+//! preconditioner M the recurrence knows that norm, so that the tolerance means what it says. Arnoldi vectors are
+//! made orthogonal by modified Gram-Schmidt, a second time where much is cancelled, and the least-squares problem is
+//! solved by Givens rotations.
+//!
+//! Source: Saad and Schultz, GMRES, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869; Saad, Iterative Methods for Sparse
+//! Linear Systems, 2nd ed. (2003), algorithm 9.5; second orthogonalization: Daniel, Gragg, Kaufman and Stewart, Math.
+//! Comp. 30 (1976) 772-795. Limits: a restart may stagnate for matrices far from the factored one; this is reported.
+
+use super::LinearSolver;
+
+/// Work space for systems of one size; solves allocate nothing.
+pub struct Gmres {
+    size: usize,
+    restart: usize,
+    /// Arnoldi vectors `[(restart + 1) x size]`.
+    basis: Vec<f64>,
+    /// Triangular factor of the Hessenberg matrix, by columns `[restart x (restart + 1)]`.
+    hessenberg: Vec<f64>,
+    cosine: Vec<f64>,
+    sine: Vec<f64>,
+    /// Right-hand side of the least-squares problem.
+    rotated: Vec<f64>,
+    direction: Vec<f64>,
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Products with the matrix in Arnoldi steps; the preconditioner is applied once in each, and once a cycle.
+    pub iterations: usize,
+    /// |b - A x| / |b|, formed from `x`; 0 for b = 0.
+    pub residual: f64,
+    /// Whether the residual is at or below the tolerance.
+    pub converged: bool,
+}
+
+impl Gmres {
+    /// Work space for `size` equations and a restart after `restart` iterations (at least 1): `restart + 2` vectors.
+    pub fn new(size: usize, restart: usize) -> Gmres {
+        let restart = restart.max(1);
+        Gmres {
+            size,
+            restart,
+            basis: vec![0.0; (restart + 1) * size],
+            hessenberg: vec![0.0; restart * (restart + 1)],
+            cosine: vec![0.0; restart],
+            sine: vec![0.0; restart],
+            rotated: vec![0.0; restart + 1],
+            direction: vec![0.0; size],
+        }
+    }
+
+    /// Solves `A x = b` from the initial guess in `x`, until `|b - A x| <= tolerance |b|` or after `limit` iterations, or when a
+    /// whole cycle brings no progress.
+    ///
+    /// `times(v, y)` sets `y = A v`. All vectors have shape `[size]`.
+    ///
+    /// # Panics
+    /// When the sizes differ.
+    pub fn solve(
+        &mut self,
+        mut times: impl FnMut(&[f64], &mut [f64]),
+        preconditioner: &mut impl LinearSolver,
+        b: &[f64],
+        x: &mut [f64],
+        tolerance: f64,
+        limit: usize,
+    ) -> Outcome {
+        let n = self.size;
+        assert!(b.len() == n && x.len() == n && preconditioner.size() == n, "all sizes are alike");
+        let scale = norm(b);
+        if scale == 0.0 {
+            x.fill(0.0);
+            return Outcome { iterations: 0, residual: 0.0, converged: true };
+        }
+        let (mut iterations, mut former) = (0, f64::INFINITY);
+        loop {
+            times(x, &mut self.direction);
+            let first = &mut self.basis[..n];
+            for i in 0..n {
+                first[i] = b[i] - self.direction[i];
+            }
+            let length = norm(first);
+            let residual = length / scale;
+            let converged = residual <= tolerance;
+            // A cycle that gains nothing would be followed by one just like it.
+            if converged || iterations >= limit || !residual.is_finite() || residual > 0.999 * former {
+                return Outcome { iterations, residual, converged };
+            }
+            former = residual;
+            first.iter_mut().for_each(|v| *v /= length);
+            self.rotated.fill(0.0);
+            self.rotated[0] = length;
+            let mut steps = 0;
+            while steps < self.restart && iterations < limit {
+                let more = self.step(steps, &mut times, preconditioner);
+                steps += 1;
+                iterations += 1;
+                if !more || self.rotated[steps].abs() <= tolerance * scale {
+                    break;
+                }
+            }
+            self.correct(steps, preconditioner, x);
+        }
+    }
+
+    /// One Arnoldi step; false when the space cannot grow any more.
+    fn step(
+        &mut self,
+        j: usize,
+        times: &mut impl FnMut(&[f64], &mut [f64]),
+        preconditioner: &mut impl LinearSolver,
+    ) -> bool {
+        let (n, rows) = (self.size, self.restart + 1);
+        let (known, new) = self.basis.split_at_mut((j + 1) * n);
+        let new = &mut new[..n];
+        self.direction.copy_from_slice(&known[j * n..]);
+        preconditioner.solve_in_place(&mut self.direction);
+        times(&self.direction, new);
+        let column = &mut self.hessenberg[j * rows..(j + 1) * rows];
+        column.fill(0.0);
+        let before = norm(new);
+        for pass in 0..2 {
+            for (i, v) in known.chunks_exact(n).enumerate() {
+                let h = dot(v, new);
+                column[i] += h;
+                new.iter_mut().zip(v).for_each(|(w, v)| *w -= h * v);
+            }
+            if pass == 0 && norm(new) > 0.7 * before {
+                break;
+            }
+        }
+        let length = norm(new);
+        let grows = length > f64::EPSILON * before && length.is_finite();
+        if grows {
+            new.iter_mut().for_each(|w| *w /= length);
+        }
+        for i in 0..j {
+            let (a, b) = (column[i], column[i + 1]);
+            column[i] = self.cosine[i] * a + self.sine[i] * b;
+            column[i + 1] = self.cosine[i] * b - self.sine[i] * a;
+        }
+        let (a, b) = (column[j], if grows { length } else { 0.0 });
+        let r = a.hypot(b);
+        // A column of zeros happens for singular matrices only; it is left out of the correction.
+        (self.cosine[j], self.sine[j]) = if r > 0.0 { (a / r, b / r) } else { (1.0, 0.0) };
+        column[j] = r;
+        self.rotated[j + 1] = -self.sine[j] * self.rotated[j];
+        self.rotated[j] *= self.cosine[j];
+        grows
+    }
+
+    /// `x += M^-1 V y` with the minimising y.
+    fn correct(&mut self, steps: usize, preconditioner: &mut impl LinearSolver, x: &mut [f64]) {
+        let (n, rows) = (self.size, self.restart + 1);
+        for i in (0..steps).rev() {
+            let known: f64 = (i + 1..steps).map(|k| self.hessenberg[k * rows + i] * self.rotated[k]).sum();
+            let pivot = self.hessenberg[i * rows + i];
+            self.rotated[i] = if pivot == 0.0 { 0.0 } else { (self.rotated[i] - known) / pivot };
+        }
+        self.direction.fill(0.0);
+        for (v, &y) in self.basis.chunks_exact(n.max(1)).zip(&self.rotated[..steps]) {
+            self.direction.iter_mut().zip(v).for_each(|(d, v)| *d += y * v);
+        }
+        preconditioner.solve_in_place(&mut self.direction);
+        x.iter_mut().zip(&self.direction).for_each(|(x, d)| *x += d);
+    }
+}
+
+/// Lanes of a dot product: its order of sums is fixed by this.
+const LANES: usize = 8;
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sum = [0.0; LANES];
+    let (a, a_rest) = a.as_chunks::<LANES>();
+    let (b, b_rest) = b.as_chunks::<LANES>();
+    for (a, b) in a.iter().zip(b) {
+        for l in 0..LANES {
+            sum[l] += a[l] * b[l];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sum.iter().sum::<f64>() + rest
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::analysis::Analysis;
+    use crate::solver::multifrontal::DirectSolver;
+    use std::sync::Arc;
+
+    /// Convection and diffusion on a line, eliminated from end to end: -1 - c below, 2.1 on, -1 + c above the diagonal.
+    struct Line {
+        n: usize,
+        convection: f64,
+    }
+
+    impl Line {
+        fn times(&self, x: &[f64], y: &mut [f64]) {
+            for i in 0..self.n {
+                let left = if i > 0 { x[i - 1] } else { 0.0 };
+                let right = if i + 1 < self.n { x[i + 1] } else { 0.0 };
+                y[i] = 2.1 * x[i] - (1.0 + self.convection) * left - (1.0 - self.convection) * right;
+            }
+        }
+
+        /// Factor of the matrix without convection.
+        fn diffusion(&self) -> DirectSolver {
+            let n = self.n;
+            let (mut start, mut row, mut values) = (vec![0], Vec::new(), Vec::new());
+            for c in 0..n {
+                row.extend(c..n.min(c + 2));
+                values.extend([2.1, -1.0].iter().take(n.min(c + 2) - c));
+                start.push(row.len());
+            }
+            let mut solver =
+                DirectSolver::new(Arc::new(Analysis::from_pattern(start, row, (0..n).collect()).unwrap()));
+            solver.factor_symmetric(&values).unwrap();
+            solver
+        }
+
+        fn solve(&self, restart: usize, tolerance: f64, limit: usize) -> (Outcome, f64) {
+            let n = self.n;
+            let exact: Vec<f64> = (0..n).map(|i| (0.7 * i as f64).sin()).collect();
+            let (mut b, mut x) = (vec![0.0; n], vec![0.0; n]);
+            self.times(&exact, &mut b);
+            let mut gmres = Gmres::new(n, restart);
+            let times = |v: &[f64], y: &mut [f64]| self.times(v, y);
+            let outcome = gmres.solve(times, &mut self.diffusion(), &b, &mut x, tolerance, limit);
+            let error = x.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            (outcome, error)
+        }
+    }
+
+    /// The preconditioner that does nothing.
+    struct Identity(usize);
+
+    impl LinearSolver for Identity {
+        fn size(&self) -> usize {
+            self.0
+        }
+
+        fn solve_in_place(&mut self, _: &mut [f64]) {}
+    }
+
+    #[test]
+    fn an_unsymmetric_system_is_solved_with_the_factor_of_its_symmetric_part() {
+        let (outcome, error) = Line { n: 500, convection: 0.2 }.solve(40, 1e-12, 200);
+        assert!(outcome.converged && outcome.residual <= 1e-12, "{outcome:?}");
+        assert!(error < 1e-10, "{error:.1e}");
+        assert!(outcome.iterations < 60, "{outcome:?}");
+        // Restarts cost iterations, but it still converges.
+        let (short, error) = Line { n: 500, convection: 0.2 }.solve(6, 1e-12, 400);
+        assert!(short.converged && error < 1e-10 && short.iterations > outcome.iterations, "{short:?}");
+    }
+
+    #[test]
+    fn the_exact_factor_needs_one_iteration() {
+        let (outcome, error) = Line { n: 300, convection: 0.0 }.solve(10, 1e-13, 10);
+        assert_eq!((outcome.iterations, outcome.converged), (1, true));
+        assert!(error < 1e-12);
+    }
+
+    /// Without restart and preconditioner GMRES ends after as many iterations as there are distinct eigenvalues
+    /// (Saad and Schultz 1986, proposition 2 and corollary 3).
+    #[test]
+    fn it_ends_with_the_degree_of_the_minimal_polynomial() {
+        let n = 60;
+        let b = vec![1.0; n];
+        let mut x = vec![0.0; n];
+        let times = |v: &[f64], y: &mut [f64]| (0..n).for_each(|i| y[i] = (1 + i % 3) as f64 * v[i]);
+        let outcome = Gmres::new(n, 20).solve(times, &mut Identity(n), &b, &mut x, 1e-13, 20);
+        assert_eq!((outcome.iterations, outcome.converged), (3, true));
+        assert!(x.iter().enumerate().all(|(i, x)| (x - 1.0 / (1 + i % 3) as f64).abs() < 1e-14));
+    }
+
+    /// A cyclic shift: no iterate gets nearer before the n-th iteration (Saad 2003, section 6.5.9), so that restarts earlier stagnate.
+    #[test]
+    fn stagnation_and_the_limit_are_reported() {
+        let n = 12;
+        let times = |v: &[f64], y: &mut [f64]| (0..n).for_each(|i| y[i] = v[(i + 1) % n]);
+        let mut b = vec![0.0; n];
+        b[0] = 1.0;
+        let mut x = vec![0.0; n];
+        let outcome = Gmres::new(n, 5).solve(times, &mut Identity(n), &b, &mut x, 1e-10, 1000);
+        assert_eq!(outcome, Outcome { iterations: 5, residual: 1.0, converged: false });
+        let outcome = Gmres::new(n, n).solve(times, &mut Identity(n), &b, &mut x, 1e-10, 1000);
+        assert_eq!((outcome.iterations, outcome.converged), (n, true));
+        x.fill(0.0);
+        let outcome = Gmres::new(n, n).solve(times, &mut Identity(n), &b, &mut x, 1e-10, 3);
+        assert_eq!((outcome.iterations, outcome.converged), (3, false));
+    }
+
+    #[test]
+    fn a_load_of_zero_and_a_good_guess_need_no_iteration() {
+        let line = Line { n: 50, convection: 0.3 };
+        let (mut solver, mut gmres) = (line.diffusion(), Gmres::new(50, 10));
+        let mut x = vec![1.0; 50];
+        let times = |v: &[f64], y: &mut [f64]| line.times(v, y);
+        let outcome = gmres.solve(times, &mut solver, &[0.0; 50], &mut x, 1e-8, 10);
+        assert_eq!(outcome, Outcome { iterations: 0, residual: 0.0, converged: true });
+        assert!(x.iter().all(|&x| x == 0.0));
+        x.fill(1.0);
+        let mut b = vec![0.0; 50];
+        line.times(&x, &mut b);
+        let outcome = gmres.solve(times, &mut solver, &b, &mut x, 1e-8, 10);
+        assert_eq!((outcome.iterations, outcome.converged), (0, true));
+    }
+}

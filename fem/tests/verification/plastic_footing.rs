@@ -1,0 +1,70 @@
+//! P2: strip footing on weightless soil, against Prandtl: mean pressure over cohesion
+//! `Nc = (tan²(45° + phi/2) exp(pi tan phi) - 1) cot phi`, `2 + pi` for phi = 0 (Prandtl 1920; rough and smooth alike).
+//! And what the variants of the iteration cost on it.
+
+use crate::common::difference;
+use crate::plastic_common::{cpu_seconds, footing, mohr_coulomb};
+use trackbed_fem::nonlinear::{NewtonOptions, QuasiStatic, StepControl, Variant};
+use trackbed_fem::{Elastic, State};
+
+const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
+const COHESION: f64 = 10e3;
+
+fn variants() -> Vec<(&'static str, NewtonOptions)> {
+    let with = |variant, line_search| NewtonOptions { line_search, ..NewtonOptions::new(variant) };
+    vec![
+        ("full", with(Variant::Full, false)),
+        ("full, line search", with(Variant::Full, true)),
+        ("modified 0, line search", with(Variant::Modified(0), true)),
+        ("modified 3, line search", with(Variant::Modified(3), true)),
+        ("elastic, line search", with(Variant::InitialStiffness, true)),
+    ]
+}
+
+#[test]
+#[ignore = "prints the cost of the variants, a minute"]
+fn cost_of_the_variants() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| table_of_costs());
+}
+
+fn table_of_costs() {
+    for (phi, psi, end) in [(0.0, 0.0, 0.04), (20.0, 20.0, 0.25), (20.0, 0.0, 0.25)] {
+        let mut reference = None;
+        for (name, options) in variants() {
+            let footing = footing(mohr_coulomb(SOIL, COHESION, phi, psi), [4, 7, 9]);
+            let mut state = State::new(&footing.model);
+            let control = StepControl {
+                initial: end / 20.0,
+                min: end / 1000.0,
+                max: end / 20.0,
+                target_iterations: 12,
+            };
+            let control = if options.variant == Variant::InitialStiffness {
+                StepControl { target_iterations: 200, ..control }
+            } else {
+                control
+            };
+            let mut solver = QuasiStatic::new(&footing.model, options, control).unwrap();
+            let start = cpu_seconds();
+            let outcome = solver.advance(&footing.model, &mut state, end, &mut footing.loading(), |_, _| ());
+            let cpu = cpu_seconds() - start;
+            let s = solver.statistics();
+            let factor = footing.pressure(&solver.reactions()) / COHESION;
+            let miss = difference(&state.u, reference.get_or_insert_with(|| state.u.clone()));
+            println!(
+                "phi {phi} psi {psi} {name}: q/c {factor:.4} at {:.4} m{}, u {miss:.1e}; {} steps {} halvings {} iterations {} evaluations {} L L^T {} L U, {} not positive, {} singular; CPU {cpu:.2} s",
+                state.time,
+                if outcome.is_ok() { "" } else { " STOPPED" },
+                s.steps,
+                s.halvings,
+                s.iterations,
+                s.evaluations,
+                s.factorizations_symmetric,
+                s.factorizations_unsymmetric,
+                s.not_positive,
+                s.singular
+            );
+        }
+    }
+}
