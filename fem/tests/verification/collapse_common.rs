@@ -215,7 +215,7 @@ pub fn push(footing: &Footing, options: NewtonOptions, settlement: f64, stations
             stopped = Some(error.to_string());
             break;
         }
-        curve.push([to, footing.pressure(&solver.reactions(&footing.model))]);
+        curve.push([to, footing.pressure(&solver.reactions())]);
     }
     Course { curve, statistics: solver.statistics(), stopped, settlement: state.time, state }
 }
