@@ -128,12 +128,7 @@ impl LinearSystem {
         self.factor_tangent(model, tangent, statistics)
     }
 
-    fn factor_tangent(
-        &mut self,
-        model: &Model,
-        tangent: &Tangent,
-        statistics: &mut Statistics,
-    ) -> Matrix {
+    fn factor_tangent(&mut self, model: &Model, tangent: &Tangent, statistics: &mut Statistics) -> Matrix {
         let start = Instant::now();
         tangent.write(model, &mut self.lower, &mut self.upper);
         statistics.assembly_seconds += start.elapsed().as_secs_f64();

@@ -4,12 +4,14 @@
 //! ones, so that a step given up leaves no trace. Source of the structure: Simo and Hughes, Computational Inelasticity (1998),
 //! chapters 1 and 4; de Souza Neto, Peric and Owen, Computational Methods for Plasticity (2008), chapter 4. Limits: small strain
 //! and rotation.
+pub mod initial_stress;
 mod internal_force;
 mod linear_system;
 mod newton;
 mod points;
 mod quasi_static;
 mod step_control;
+pub mod strength_reduction;
 mod tangent;
 
 pub use newton::{LinearMethod, NewtonOptions, Statistics, StepReport, Variant};

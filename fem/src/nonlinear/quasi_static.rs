@@ -140,6 +140,14 @@ impl QuasiStatic {
         &self.reactions
     }
 
+    /// Forces [N] that the stresses of a state and the boundary springs carry. Shape `[3 * nodes]`.
+    pub(super) fn carried(&mut self, model: &Model, state: &State) -> Vec<f64> {
+        self.newton.force.of_states(model, &state.points);
+        let mut carried = self.newton.force.force.clone();
+        model.boundary_spring_times(&state.u, &mut carried);
+        carried
+    }
+
     /// Loads and prescribed increments of the step from `state` to `time`.
     fn conditions(
         &mut self,

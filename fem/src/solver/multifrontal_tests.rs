@@ -153,7 +153,8 @@ fn brick(side: usize, skew: f64) -> System {
         .collect();
     let supports = Supports::new(&mesh, &base).unwrap();
     let analysis = Analysis::new(&mesh, &matrices, &supports).unwrap();
-    let lower = analysis.values(&matrices, &supports, Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 });
+    let lower =
+        analysis.values(&matrices, &supports, Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 });
     let mut random = Random(7);
     let upper = lower.iter().map(|a| a * (1.0 + skew * random.next())).collect();
     let (start, row) = analysis.pattern();

@@ -68,3 +68,21 @@ fn table_of_costs() {
         }
     }
 }
+
+/// Plateau of the pressure on a coarse mesh: some per cent above the limit load, as the mesh is stiff at the edge.
+#[test]
+fn footing_on_clay_reaches_its_plateau() {
+    let footing = footing(mohr_coulomb(SOIL, COHESION, 0.0, 0.0), [5, 8, 9]);
+    let mut state = State::new(&footing.model);
+    let control = StepControl { initial: 0.004, min: 1e-5, max: 0.01, target_iterations: 10 };
+    let mut solver = QuasiStatic::new(&footing.model, NewtonOptions::default(), control).unwrap();
+    let mut factors = Vec::new();
+    for depth in [0.05, 0.1, 0.15] {
+        solver.advance(&footing.model, &mut state, depth, &mut footing.loading(), |_, _| ()).unwrap();
+        factors.push(footing.pressure(solver.reactions()) / COHESION);
+    }
+    let exact = 2.0 + std::f64::consts::PI;
+    println!("footing: q/c {factors:.4?}, Prandtl {exact:.4}; {:?}", solver.statistics());
+    assert!(factors[2] > exact && factors[2] < 1.10 * exact, "{factors:?}");
+    assert!((factors[2] / factors[1] - 1.0).abs() < 3e-3, "not a plateau: {factors:?}");
+}

@@ -1,0 +1,171 @@
+//! Factor of safety by reduction of strength: the largest factor F by which cohesion and tan(phi) can be divided with the body still in
+//! equilibrium.
+//!
+//! Each trial starts from the same state and takes the whole load; a trial without convergence is a failure of the body. F is
+//! bracketed by doubling, then halved. Source: Griffiths and Lane, Géotechnique 49(3) (1999) 387-403; Zienkiewicz, Humpheson and Lewis,
+//! Géotechnique 25(4) (1975) 671-689. Limits: failure is judged by the iteration, so the bracket depends on its limits to some
+//! per cent; the displacements of the trials, which rise steeply near failure, are recorded to judge it by.
+
+use super::newton::NewtonOptions;
+use super::quasi_static::QuasiStatic;
+use super::step_control::StepControl;
+use crate::model::Model;
+use crate::solver::SolveError;
+use crate::state::State;
+use serde::{Deserialize, Serialize};
+
+/// Choices of a strength reduction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReductionOptions {
+    /// First factor tried.
+    pub start: f64,
+    /// Width of the bracket at the end.
+    pub tolerance: f64,
+    /// Factors beyond this and below its reciprocal are not tried.
+    pub largest: f64,
+    /// The iteration; more iterations than usual are worth their while near failure.
+    pub newton: NewtonOptions,
+    /// Steps of the load, from 0 to 1.
+    pub control: StepControl,
+}
+
+impl Default for ReductionOptions {
+    fn default() -> Self {
+        ReductionOptions {
+            start: 1.0,
+            tolerance: 0.02,
+            largest: 16.0,
+            newton: NewtonOptions { max_iterations: 60, ..NewtonOptions::default() },
+            control: StepControl { initial: 1.0, min: 1.0 / 32.0, max: 1.0, target_iterations: 60 },
+        }
+    }
+}
+
+/// One trial.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Factor.
+    pub factor: f64,
+    /// Whether the whole load was carried.
+    pub converged: bool,
+    /// Share of the load that was carried.
+    pub share: f64,
+    /// Iterations, those of steps given up included.
+    pub iterations: u64,
+    /// Largest displacement [m] since the state at the start, at the last share that was carried.
+    pub largest_displacement: f64,
+}
+
+/// The bracket of the factor of safety and how it was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FactorOfSafety {
+    /// Largest factor with equilibrium.
+    pub converged: f64,
+    /// Smallest factor without.
+    pub failed: f64,
+    /// All trials, in the order of their factors.
+    pub trials: Vec<Trial>,
+}
+
+/// Brackets the factor of safety of `model` under `load` [N] (shape `[3 * nodes]`; gravity goes in here), each trial from `state`.
+///
+/// # Errors
+/// Options out of range; a model without plasticity; no failure up to the largest factor, or no equilibrium down to the smallest.
+pub fn factor_of_safety(
+    model: &Model,
+    state: &State,
+    load: &[f64],
+    options: &ReductionOptions,
+) -> Result<FactorOfSafety, SolveError> {
+    let ReductionOptions { start, tolerance, largest, .. } = *options;
+    for (what, value, fine) in [
+        ("the first factor", start, start > 0.0 && start.is_finite()),
+        ("the width of the bracket", tolerance, tolerance > 0.0 && tolerance.is_finite()),
+        ("the largest factor", largest, largest > start && largest.recip() < start && largest.is_finite()),
+    ] {
+        if !fine {
+            return Err(SolveError::Option {
+                what,
+                value,
+                expected: "above 0, the first within the largest",
+            });
+        }
+    }
+    if model.is_linear() {
+        let what = "the number of plastic materials";
+        return Err(SolveError::Option {
+            what,
+            value: 0.0,
+            expected: "1 or more: an elastic body does not fail",
+        });
+    }
+    let mut trials = Vec::new();
+    let mut attempt = |factor: f64| -> Result<bool, SolveError> {
+        let trial = attempt(model, state, load, options, factor)?;
+        trials.push(trial);
+        Ok(trial.converged)
+    };
+    let (mut converged, mut failed) = (None, None);
+    let mut factor = start;
+    let (converged, failed) = loop {
+        if attempt(factor)? {
+            converged = Some(factor);
+            factor *= 1.5;
+        } else {
+            failed = Some(factor);
+            factor /= 1.5;
+        }
+        if let (Some(converged), Some(failed)) = (converged, failed) {
+            break (converged, failed);
+        }
+        if !(largest.recip()..=largest).contains(&factor) {
+            let what = "the factor of safety";
+            return Err(SolveError::Option { what, value: factor, expected: "within the largest factor" });
+        }
+    };
+    let (mut low, mut high) = (converged, failed);
+    while high - low > tolerance {
+        let middle = 0.5 * (low + high);
+        if attempt(middle)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    Ok(FactorOfSafety { converged: low, failed: high, trials })
+}
+
+fn attempt(
+    model: &Model,
+    state: &State,
+    load: &[f64],
+    options: &ReductionOptions,
+    factor: f64,
+) -> Result<Trial, SolveError> {
+    let materials = model.materials().iter().map(|(&number, m)| (number, m.reduced(factor))).collect();
+    let reduced = model.with_plasticity(materials).map_err(|_| SolveError::Option {
+        what: "the factor of reduction",
+        value: factor,
+        expected: "one that leaves usable constants",
+    })?;
+    let mut trial = state.clone();
+    trial.time = 0.0;
+    let mut solver = QuasiStatic::new(&reduced, options.newton, options.control)?;
+    let mut loading = |time: f64, f: &mut [f64]| f.iter_mut().zip(load).for_each(|(f, l)| *f = time * l);
+    let outcome = solver.advance(&reduced, &mut trial, 1.0, &mut loading, |_, _| ());
+    match outcome {
+        Ok(()) | Err(SolveError::Diverged { .. }) => Ok(Trial {
+            factor,
+            converged: outcome.is_ok(),
+            share: trial.time,
+            iterations: solver.statistics().iterations,
+            largest_displacement: trial
+                .u
+                .iter()
+                .zip(&state.u)
+                .fold(0.0, |m: f64, (u, s)| m.max((u - s).abs())),
+        }),
+        Err(error) => Err(error),
+    }
+}
