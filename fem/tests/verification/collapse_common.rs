@@ -1,7 +1,7 @@
 //! Meshes of the collapse cases and the footing that is pushed into the ground.
 
 use std::collections::{BTreeMap, HashMap};
-use trackbed_fem::nonlinear::{Loading, NewtonOptions, QuasiStatic, Statistics, StepControl};
+use trackbed_fem::nonlinear::{Loading, NewtonOptions, QuasiStatic, Statistics, StepControl, Variant};
 use trackbed_fem::{
     Cone, Constraint, DruckerPrager, Elastic, ElementKind, Material, Mesh, Model, ModelInput, MohrCoulomb,
     Quadrature, State,
@@ -172,6 +172,17 @@ impl Loading for &Footing {
 
     fn prescribed(&mut self, time: f64, values: &mut [f64]) {
         values.iter_mut().zip(&self.moved).filter(|(_, moved)| **moved).for_each(|(v, _)| *v = -time);
+    }
+}
+
+/// Full Newton with line search to 1e-4 of the forces, up to 40 iterations. Without dilation a tighter tolerance costs many
+/// iterations, or is not met at all, and does not change the load: 15.604 c at 1e-4 and at 1e-6 (phi = 20°, psi = 0, coarse mesh).
+pub fn loose() -> NewtonOptions {
+    NewtonOptions {
+        force_tolerance: 1e-4,
+        energy_tolerance: 1e-4,
+        max_iterations: 40,
+        ..NewtonOptions::new(Variant::Full)
     }
 }
 
