@@ -3,6 +3,10 @@
 //! The tables are in `tests/data/fem` of the workspace; each folder's `case.json` tells how they were made.
 
 mod absorbing;
+mod cavity;
+mod collapse_common;
+mod collapse_footing;
+mod collapse_slope;
 mod common;
 mod companion_cases;
 mod companion_orders;

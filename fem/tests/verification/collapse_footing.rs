@@ -1,0 +1,142 @@
+//! P2: rough rigid strip footing on weightless ground, against Prandtl's bearing capacity factor.
+//!
+//! Source: Prandtl (1920), Reissner (1924): `Nc = (Nq - 1) cot(phi)`, `Nq = tan²(45° + phi/2) exp(pi tan(phi))`, 2 + pi for phi = 0; the
+//! same for smooth and rough footings. It is exact for associated flow. Convention: the load is the sum of the reactions of the nodes
+//! at 0 <= x <= half width, the one at the edge included, over the half width itself. The elements beside the edge carry
+//! part of that, as if the footing were wider by a fraction of an element, so Nc falls to the exact value from above as they shrink.
+//! Tolerances: 3 % (phi = 0) and 5 % (phi = 20°) on the finest mesh.
+
+use crate::collapse_common::{Course, Footing, Ground, drucker_prager, loose, mohr_coulomb, push};
+use trackbed_fem::{Elastic, ElementKind, Material};
+
+const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
+const COHESION: f64 = 10e3;
+
+/// Size of the elements at the edge over the half width, and their growth: coarse, middle, fine.
+const MESHES: [(f64, f64); 3] = [(0.25, 1.4), (0.125, 1.3), (0.04, 1.2)];
+
+fn prandtl(phi: f64) -> f64 {
+    if phi == 0.0 {
+        return 2.0 + std::f64::consts::PI;
+    }
+    let (tan, half) = (phi.to_radians().tan(), (45.0 + phi / 2.0).to_radians().tan());
+    (half * half * (std::f64::consts::PI * tan).exp() - 1.0) / tan
+}
+
+/// The slip lines of Prandtl's mechanism reach 3 half widths to the side for phi = 0, 6.1 for 20° and 7.6 for 25°.
+fn ground(kind: ElementKind, mesh: usize, phi: f64) -> Ground {
+    let extent = if phi == 0.0 { [5.0, 3.0] } else if phi < 21.0 { [8.0, 4.0] } else { [10.0, 5.0] };
+    let (first, ratio) = MESHES[mesh];
+    Ground { kind, first, ratio, extent, square: false }
+}
+
+fn run(name: &str, ground: &Ground, material: Material, phi: f64, settlement: f64, stations: u32) -> Course {
+    let footing = Footing::new(ground, material);
+    let course = push(&footing, loose(), settlement, stations);
+    let (s, exact) = (course.statistics, prandtl(phi));
+    println!(
+        "{name} {} {} elements, {} dofs: Nc {:.3}, {:+.2} % of {exact:.3}, last tenth {:+.1e}; {} steps {} halvings {} iterations{}",
+        ground.kind.name(),
+        footing.model.mesh().element_count(),
+        footing.model.free_dof_count(),
+        course.factor(COHESION),
+        100.0 * (course.factor(COHESION) / exact - 1.0),
+        course.growth(),
+        s.steps,
+        s.halvings,
+        s.iterations,
+        course.stopped.as_ref().map_or(String::new(), |why| format!("; STOPPED at {:.4} m: {why}", course.settlement))
+    );
+    course
+}
+
+/// The error of the factor on each of the meshes, for a plateau that has been reached.
+fn errors(name: &str, meshes: &[usize], phi: f64, psi: f64, settlement: f64, law: Law) -> Vec<f64> {
+    let course = |&mesh: &usize| {
+        let material = law(SOIL, COHESION, phi, psi);
+        let course =
+            run(name, &ground(ElementKind::Hex20, mesh, phi), material, phi, settlement, 20);
+        assert!(course.stopped.is_none() && course.growth().abs() < 5e-3, "{name}: no plateau");
+        course.factor(COHESION) / prandtl(phi) - 1.0
+    };
+    meshes.iter().map(course).collect()
+}
+
+type Law = fn(Elastic, f64, f64, f64) -> Material;
+
+#[test]
+fn exact_factors() {
+    for (phi, expected) in [(0.0, 5.1416), (20.0, 14.835), (25.0, 20.721), (30.0, 30.140)] {
+        assert!((prandtl(phi) / expected - 1.0_f64).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn tresca() {
+    let e = errors("Tresca", &[0, 1], 0.0, 0.0, 0.04, mohr_coulomb);
+    assert!(0.0 < e[1] && e[1] < 0.7 * e[0] && e[0] < 0.15, "{e:?}");
+}
+
+#[test]
+fn von_mises_in_plane_strain() {
+    let e = errors("von Mises", &[0, 1], 0.0, 0.0, 0.04, drucker_prager);
+    assert!(0.0 < e[1] && e[1] < 0.7 * e[0] && e[0] < 0.15, "{e:?}");
+}
+
+#[test]
+fn friction_associated() {
+    let e = errors("phi 20 psi 20", &[0], 20.0, 20.0, 0.25, mohr_coulomb);
+    assert!(0.0 < e[0] && e[0] < 0.2, "{e:?}");
+}
+
+#[test]
+#[ignore = "three meshes, minutes"]
+fn tresca_and_von_mises_converge() {
+    for (name, law) in [("Tresca", mohr_coulomb as Law), ("von Mises", drucker_prager)] {
+        let e = errors(name, &[0, 1, 2], 0.0, 0.0, 0.04, law);
+        assert!(e[0] > e[1] && e[1] > e[2] && e[2] > 0.0 && e[2] < 0.03, "{name}: {e:?}");
+    }
+}
+
+#[test]
+#[ignore = "three meshes, minutes"]
+fn friction_associated_converges() {
+    let e = errors("phi 20 psi 20", &[0, 1, 2], 20.0, 20.0, 0.25, mohr_coulomb);
+    assert!(e[0] > e[1] && e[1] > e[2] && e[2].abs() < 0.05, "{e:?}");
+}
+
+/// Flow without dilation: no theorem gives the limit load; it lies somewhat below Prandtl's and scatters as shear bands form.
+#[test]
+#[ignore = "three meshes, minutes"]
+fn friction_without_dilation() {
+    for mesh in 0..3 {
+        let material = mohr_coulomb(SOIL, COHESION, 20.0, 0.0);
+        let course = run("phi 20 psi 0", &ground(ElementKind::Hex20, mesh, 20.0), material, 20.0, 0.12, 40);
+        let error = course.factor(COHESION) / prandtl(20.0) - 1.0;
+        assert!(course.stopped.is_none() && error.abs() < 0.15, "{error}");
+    }
+}
+
+/// phi = 25°, psi = 0: a plain full Newton iteration is known to stall at 43 % of the load.
+#[test]
+#[ignore = "minutes"]
+fn strong_friction_without_dilation() {
+    for mesh in 0..2 {
+        let material = mohr_coulomb(SOIL, COHESION, 25.0, 0.0);
+        let course = run("phi 25 psi 0", &ground(ElementKind::Hex20, mesh, 25.0), material, 25.0, 0.2, 60);
+        let share = course.curve.iter().fold(0.0_f64, |m, p| m.max(p[1])) / COHESION / prandtl(25.0);
+        println!("largest load {share:.3} of Prandtl's");
+        assert!(share > 0.85, "{share}");
+    }
+}
+
+/// The kinds of elements on the two coarser meshes: mean dilatation keeps hex8 from locking, wedge15 and tet10 are stiffer than hex20.
+#[test]
+#[ignore = "prints, minutes"]
+fn kinds_of_elements() {
+    for kind in [ElementKind::Hex20, ElementKind::Hex8, ElementKind::Wedge15, ElementKind::Tet10] {
+        for mesh in 0..2 {
+            run("Tresca", &ground(kind, mesh, 0.0), mohr_coulomb(SOIL, COHESION, 0.0, 0.0), 0.0, 0.04, 20);
+        }
+    }
+}

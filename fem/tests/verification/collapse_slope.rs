@@ -1,0 +1,106 @@
+//! P4: homogeneous slope without foundation layer, strength reduction.
+//!
+//! Source: Griffiths and Lane, Géotechnique 49 (1999), 387–403, example 1: slope 2:1 (26.57°), phi = 20°, c/(gamma H) = 0.05, psi = 0, E = 1e5 kPa,
+//! nu = 0.3, base fixed, left side on rollers, crest 1.2 H wide, gravity in one go; factor of safety 1.4 (Bishop and Morgenstern
+//! 1960: 1.380). The dimensionless displacement E umax/(gamma H²) of an independent program on a mesh of 160 hex20 (2×2×2): 0.379, 0.381, 0.429,
+//! 0.474, 0.618 at factors of 0.8, 1.0, 1.2, 1.3, 1.35, no equilibrium at 1.40. Tolerance: 3 % of the factor.
+
+use crate::collapse_common::{Builder, loose, mohr_coulomb};
+use std::collections::BTreeMap;
+use trackbed_fem::nonlinear::strength_reduction::{ReductionOptions, factor_of_safety};
+use trackbed_fem::nonlinear::{NewtonOptions, QuasiStatic, StepControl};
+use trackbed_fem::{Constraint, Elastic, ElementKind, Model, ModelInput, Quadrature, State};
+
+/// Height [m] and weight per volume [N/m³].
+const HEIGHT: f64 = 10.0;
+const WEIGHT: f64 = 20e3;
+const SOIL: Elastic = Elastic { young: 1e8, poisson: 0.3, density: 2000.0 };
+
+/// Columns follow the slope: the breadth grows from 1.2 H at the crest to 3.2 H at the base.
+fn slope(counts: [usize; 2], factor: f64) -> Model {
+    let mut builder = Builder::default();
+    builder.block([counts[0], 1, counts[1]], ElementKind::Hex20, |[i, j, k]| {
+        let z = HEIGHT * k as f64 / (2 * counts[1]) as f64;
+        let breadth = 1.2 * HEIGHT + 2.0 * (HEIGHT - z);
+        [breadth * i as f64 / (2 * counts[0]) as f64, 0.5 * j as f64, z]
+    });
+    let mesh = builder.mesh;
+    let mut constraints = Vec::new();
+    for (node, x) in mesh.coordinates.iter().enumerate() {
+        let held = [x[0] < 1e-9 || x[2] < 1e-9, true, x[2] < 1e-9];
+        for direction in (0..3).filter(|d| held[*d as usize]) {
+            constraints.push(Constraint { node: node as u32, direction, value: 0.0 });
+        }
+    }
+    let soil = mohr_coulomb(SOIL, 0.05 * WEIGHT * HEIGHT, 20.0, 0.0).reduced(factor);
+    let materials: BTreeMap<u32, _> = [(1, soil)].into();
+    let gravity = [0.0, 0.0, -WEIGHT / SOIL.density];
+    let input =
+        ModelInput { mesh, materials, quadrature: Quadrature::Gauss2, constraints, gravity, ..Default::default() };
+    Model::new(input).unwrap()
+}
+
+/// Gravity on a slope of reduced strength: the dimensionless displacement, or the share of gravity at which it slid.
+fn stands(counts: [usize; 2], factor: f64) -> Result<f64, f64> {
+    let model = slope(counts, factor);
+    let weight = model.gravity_load();
+    let mut loading = |time: f64, load: &mut [f64]| {
+        load.iter_mut().zip(&weight).for_each(|(l, w)| *l = time * w);
+    };
+    let mut state = State::new(&model);
+    let control = StepControl { initial: 1.0, min: 1.0 / 32.0, max: 1.0, target_iterations: 60 };
+    let options = NewtonOptions { max_iterations: 60, ..loose() };
+    let mut solver = QuasiStatic::new(&model, options, control).unwrap();
+    let outcome = solver.advance(&model, &mut state, 1.0, &mut loading, |_, _| ());
+    let u = state.u.chunks_exact(3).map(|u| (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()).fold(0.0, f64::max);
+    let number = SOIL.young * u / (WEIGHT * HEIGHT * HEIGHT);
+    let s = solver.statistics();
+    println!(
+        "slope {counts:?} factor {factor:.3}: E umax/(gamma H²) {number:.4} at {:.3} of gravity; {} steps {} halvings {} iterations {} LU{}",
+        state.time,
+        s.steps,
+        s.halvings,
+        s.iterations,
+        s.factorizations_unsymmetric,
+        outcome.as_ref().err().map_or(String::new(), |e| format!("; {e}"))
+    );
+    if outcome.is_ok() { Ok(number) } else { Err(state.time) }
+}
+
+#[test]
+fn displacements_and_bracket() {
+    let counts = [16, 10];
+    for (factor, reference) in [(0.8, 0.379), (1.0, 0.381), (1.2, 0.429), (1.3, 0.474)] {
+        let number = stands(counts, factor).expect("equilibrium");
+        assert!((number / reference - 1.0).abs() < 0.05, "{factor}: {number}");
+    }
+    assert!(stands(counts, 1.36).is_ok() && stands(counts, 1.44).is_err());
+}
+
+#[test]
+#[ignore = "table and bisection on two meshes, minutes"]
+fn factor_of_safety_of_griffiths_and_lane() {
+    for counts in [[16, 10], [32, 20]] {
+        let model = slope(counts, 1.0);
+        let options = ReductionOptions {
+            tolerance: 0.01,
+            newton: NewtonOptions { max_iterations: 60, ..loose() },
+            ..Default::default()
+        };
+        let load = model.gravity_load();
+        let found = factor_of_safety(&model, &State::new(&model), &load, &options).unwrap();
+        for t in &found.trials {
+            println!(
+                "slope {counts:?} factor {:.4}: {} at {:.3} of gravity, {} iterations, E max|u_i|/(gamma H²) {:.4}",
+                t.factor,
+                if t.converged { "stands" } else { "slides" },
+                t.share,
+                t.iterations,
+                SOIL.young * t.largest_displacement / (WEIGHT * HEIGHT * HEIGHT)
+            );
+        }
+        let (low, high) = (found.converged, found.failed);
+        println!("slope {counts:?}: factor of safety {low:.3} to {high:.3}");
+        assert!((0.5 * (low + high) / 1.4 - 1.0).abs() < 0.03, "{low} {high}");
+    }
+}
