@@ -107,6 +107,7 @@ fn run(
         grains: trackbed_dem::Model::new(input).expect("the grains are a model"),
         substeps: SUBSTEPS,
         theta: 0.5,
+        newton: Default::default(),
         dead_load: zero.clone(),
         reference: zero,
     };

@@ -16,7 +16,9 @@ use std::io::Write;
 pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
-        Command::Check(args) => print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?),
+        Command::Check(args) => {
+            print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
+        }
         Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),

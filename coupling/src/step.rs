@@ -20,7 +20,10 @@ use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
+use trackbed_fem::nonlinear::{NewtonOptions, PlasticWindowSolver, Statistics};
 use trackbed_fem::solver::SolveError;
+use trackbed_fem::state::StepAudit;
+use trackbed_fem::window::WindowSolver;
 
 /// The two models and how they are joined.
 pub struct Model<'a> {
@@ -32,6 +35,8 @@ pub struct Model<'a> {
     pub substeps: u32,
     /// Implicitness of the solid's step, ½–1.
     pub theta: f64,
+    /// How a plastic solid finds the end of its step; not used for an elastic one.
+    pub newton: NewtonOptions,
     /// Constant load on the solid (gravity) [N]. Shape `[3·nodes]`.
     pub dead_load: Vec<f64>,
     /// Displacement of the solid in the shape that the mesh file describes [m]. Shape `[3·nodes]`.
@@ -65,12 +70,42 @@ pub struct Work {
     /// The surface that grains touch.
     pub surface: SolidSurface,
     transfer: Transfer,
-    solver: fem::window::WindowSolver,
+    solver: SolidSolver,
     load: Vec<f64>,
     contact_load: Vec<f64>,
     other_load: Vec<f64>,
     before: Vec<f64>,
     applied: Vec<dem::AppliedForce>,
+}
+
+/// The solid's step over a window.
+enum SolidSolver {
+    /// One solve with a factor that is kept.
+    Elastic(Box<WindowSolver>),
+    /// Newton's iteration on the stresses of the Gauss points.
+    Plastic(Box<PlasticWindowSolver>),
+}
+
+impl SolidSolver {
+    fn new(model: &Model<'_>, without_stresses: bool) -> Result<SolidSolver, SolveError> {
+        let (solid, theta, window) = (model.solid, model.theta, model.window());
+        if solid.is_linear() && without_stresses {
+            return Ok(SolidSolver::Elastic(Box::new(WindowSolver::new(solid, theta, window)?)));
+        }
+        Ok(SolidSolver::Plastic(Box::new(PlasticWindowSolver::new(solid, theta, window, model.newton)?)))
+    }
+
+    fn step(
+        &mut self,
+        solid: &fem::model::Model,
+        state: &mut fem::state::State,
+        mean_load: &[f64],
+    ) -> Result<StepAudit, SolveError> {
+        match self {
+            SolidSolver::Elastic(solver) => solver.step(solid, state, mean_load),
+            SolidSolver::Plastic(solver) => solver.step(solid, state, mean_load),
+        }
+    }
 }
 
 /// Why a coupled step failed.
@@ -107,13 +142,21 @@ impl Work {
             grains: dem::Work::new(&model.grains, &state.grains),
             transfer: Transfer::new(&surface),
             surface,
-            solver: fem::window::WindowSolver::new(model.solid, model.theta, model.window())?,
+            solver: SolidSolver::new(model, state.solid.points.is_empty())?,
             load: vec![0.0; n],
             contact_load: vec![0.0; n],
             other_load: vec![0.0; n],
             before: vec![0.0; n],
             applied: Vec::new(),
         })
+    }
+
+    /// Counts of the iteration of a plastic solid.
+    pub fn newton(&self) -> Option<Statistics> {
+        match &self.solver {
+            SolidSolver::Elastic(_) => None,
+            SolidSolver::Plastic(solver) => Some(solver.statistics()),
+        }
     }
 
     /// Largest pressure on one face in the last window: normal force over area, mean over the window [Pa].
@@ -180,6 +223,8 @@ pub fn step(
         state.spent.solid_load_work += other[i] * du;
     }
     state.spent.rayleigh += step.damping_dissipation;
+    state.spent.absorbed += step.boundary_dissipation;
+    state.spent.plastic += step.plastic_dissipation;
     state.spent.numerical += step.numerical_dissipation;
     Ok(())
 }
@@ -203,6 +248,8 @@ pub fn spent(state: &State) -> Spent {
     Spent {
         solid_load_work: solid.solid_load_work,
         rayleigh: solid.rayleigh,
+        absorbed: solid.absorbed,
+        plastic: solid.plastic,
         numerical: solid.numerical,
         contacts_on_solid: solid.contacts_on_solid,
         ..spent_by_grains(&state.grains)

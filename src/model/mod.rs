@@ -148,6 +148,11 @@ fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError
                 return Err(document.error(key, "a value", expected));
             }
         }
+        if let Some(i) = solid.support.iter().position(|s| s.history.is_some()) {
+            let key = format!("solid.support.{i}.history");
+            let expected = "no such key beside [[grains]]: supports of a coupled solid stand still";
+            return Err(document.error(&key, "a value", expected));
+        }
     }
     Ok(())
 }
@@ -239,9 +244,11 @@ fn end_time(
             format!("{} s", end.si),
             format!("at least {counted} s, when the last load cycle ends"),
         )),
-        (Some(_), None, false) => {
-            Err(document.error("time.end", "a time", "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]"))
-        }
+        (Some(_), None, false) => Err(document.error(
+            "time.end",
+            "a time",
+            "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]",
+        )),
         (Some(end), _, true) => Ok(end.si),
         (None, Some(counted), _) => Ok(counted),
         (None, None, true) => Err(document.error("time.end", "nothing", "the time to simulate")),

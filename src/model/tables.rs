@@ -92,7 +92,13 @@ pub fn history(file: &Path) -> Result<Vec<(f64, f64)>, ReadError> {
         if let Some(&(before, _)) = points.last()
             && time <= before
         {
-            return Err(fault(file, Some(line), "time", time.to_string(), format!("a time after {before} s")));
+            return Err(fault(
+                file,
+                Some(line),
+                "time",
+                time.to_string(),
+                format!("a time after {before} s"),
+            ));
         }
         points.push((time, factor));
     }

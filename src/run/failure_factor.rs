@@ -27,18 +27,31 @@ pub fn run(
     part.add_loads(0.0, &mut load);
     let (state, _) = initial::state(part, &weight)?;
     let progress = Progress::start("strength reduction", 1.0, stage.quiet);
-    let found = strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
+    let found =
+        strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
     progress.finish(&format!("factor of safety between {:.4} and {:.4}", found.converged, found.failed));
 
     // The state at the edge: the mechanism shows in its displacements.
-    let (weaker, standing) =
-        strength_reduction::at_factor(model, &state, &load, plan, found.converged).map_err(|e| part.failure(&e))?;
+    let (weaker, standing) = strength_reduction::at_factor(model, &state, &load, plan, found.converged)
+        .map_err(|e| part.failure(&e))?;
     stage.prepare()?;
-    let columns = [("factor", ""), ("stands", ""), ("share_of_load", ""), ("iterations", ""), ("largest_displacement", "m")];
+    let columns = [
+        ("factor", ""),
+        ("stands", ""),
+        ("share_of_load", ""),
+        ("iterations", ""),
+        ("largest_displacement", "m"),
+    ];
     let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
     let mut table = History::create(&stage.dir.join("safety.csv"), columns)?;
     for t in &found.trials {
-        table.row(&[t.factor, f64::from(u8::from(t.converged)), t.share, t.iterations as f64, t.largest_displacement])?;
+        table.row(&[
+            t.factor,
+            f64::from(u8::from(t.converged)),
+            t.share,
+            t.iterations as f64,
+            t.largest_displacement,
+        ])?;
     }
     let view = SolidView { model: &weaker, state: &standing };
     let vtu = stage.dir.join("frames/solid_00000.vtu");

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::model::solid::{InitialStress, InitialStressKind, SolidPart};
 use trackbed_fem::State;
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
+use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 
 /// The state with its initial stress, and the share of the weight that this stress carries already.
 ///
@@ -25,6 +26,28 @@ pub fn state(part: &SolidPart, gravity: &[f64]) -> Result<(State, f64), Failure>
     .map_err(|e| part.failure(&e).in_stage("initial stress"))?;
     let points = std::mem::take(&mut state.points);
     Ok((State { points, ..undeformed(part) }, 1.0))
+}
+
+/// The state with its initial stress, then in equilibrium with `load` [N] (weight included, shape `[3·nodes]`), which is
+/// brought on in steps.
+///
+/// # Errors
+/// There is no equilibrium.
+pub fn under_load(part: &SolidPart, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
+    let model = &part.model;
+    let (mut state, carried) = state(part, gravity)?;
+    let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 12 };
+    let mut solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
+    let mut loading = |time: f64, f: &mut [f64]| {
+        for d in 0..f.len() {
+            f[d] = time * load[d] + (1.0 - time) * carried * gravity[d];
+        }
+    };
+    solver
+        .advance(model, &mut state, 1.0, &mut loading, |_, _| {})
+        .map_err(|e| part.failure(&e).in_stage("before time 0, while weight and loads are brought on"))?;
+    state.time = 0.0;
+    Ok(state)
 }
 
 /// No displacement anywhere, not even at supports that will be moved: they move while the stress follows.

@@ -25,7 +25,7 @@ use crate::progress::Progress;
 use crate::scene::{Document, Scene};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
-use summary::{CouplingRecord, Hash};
+use summary::{CouplingRecord, Hash, NewtonRecord};
 use system::{CoupledSystem, GrainsSystem, System};
 use trackbed_coupling as coupling;
 use trackbed_coupling::surface::SolidSurface;
@@ -130,7 +130,9 @@ fn hash(document: &Document, scene: &Scene) -> String {
     }
     let mut files: Vec<&Path> = Vec::new();
     if let Some(s) = &scene.solid {
-        files.extend([&s.mesh, &s.nodes, &s.elements, &s.constraints].into_iter().flatten().map(PathBuf::as_path));
+        files.extend(
+            [&s.mesh, &s.nodes, &s.elements, &s.constraints].into_iter().flatten().map(PathBuf::as_path),
+        );
         let histories = s.load.iter().map(|l| &l.history).chain(s.support.iter().map(|l| &l.history));
         files.extend(histories.flatten().filter_map(|h| h.file.as_deref()));
     }
@@ -206,6 +208,7 @@ impl Stage<'_> {
                     let reactions = fem::energy::reactions(&solid.model, moved, system.work.load());
                     statics::write_tables(&solid.model, moved, &reactions, self.dir)?;
                 }
+                summary.newton = system.work.newton().map(|s| NewtonRecord::of(&s));
                 summary.coupling = Some(CouplingRecord {
                     transfer: system.state.audit,
                     substeps: plan.substeps,
@@ -254,15 +257,21 @@ impl Stage<'_> {
         for (l, c) in load.iter_mut().zip(&contacts) {
             *l += c;
         }
-        let rest = fem::statics::solve(&solid.model, &load).map_err(|e| solid.failure(&e))?;
-        let mut state = fem::state::State::new(&solid.model);
-        state.u.copy_from_slice(&rest.u);
+        let state = if solid.is_linear() {
+            let rest = fem::statics::solve(&solid.model, &load).map_err(|e| solid.failure(&e))?;
+            let mut state = fem::state::State::new(&solid.model);
+            state.u.copy_from_slice(&rest.u);
+            state
+        } else {
+            initial::under_load(solid, &dead_load, &load)?
+        };
         let model = coupling::step::Model {
             solid: &solid.model,
             dead_load,
-            reference: rest.u,
+            reference: state.u.clone(),
             substeps: plan.substeps,
             theta: plan.theta,
+            newton: solid.newton,
             grains,
         };
         let state = coupling::step::State::new(state, resting);

@@ -1,10 +1,12 @@
-//! A plastic solid that runs alone, in quasi-static steps.
+//! A plastic solid that runs alone: in quasi-static steps, or through time.
 
 use super::system::{Applied, SolidView, System};
 use crate::failure::Failure;
-use crate::model::solid::{QuasiStaticPlan, SolidPart};
+use crate::model::solid::{QuasiStaticPlan, SolidPart, TimeMethod};
 use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_fem as fem;
 use trackbed_fem::State;
+use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
 use trackbed_fem::nonlinear::{Loading, QuasiStatic, Statistics, StepControl, energy};
 
 /// Loads and supports of a solid in time; before time 0 they are brought on from nothing.
@@ -138,7 +140,7 @@ impl System for QuasiStaticSystem<'_> {
 
     fn stored(&self) -> Stored {
         Stored {
-            solid_strain: energy::elastic(&self.part.model, &self.state.points),
+            solid_strain: fem::energy::strain(&self.part.model, &self.state),
             solid_gravity: -self.gravity.iter().zip(&self.state.u).map(|(f, u)| f * u).sum::<f64>(),
             ..Stored::default()
         }
@@ -154,6 +156,107 @@ impl System for QuasiStaticSystem<'_> {
 
     fn reactions(&self) -> Option<Vec<f64>> {
         Some(self.reactions.clone())
+    }
+
+    fn keeps_its_state(&self) -> bool {
+        true
+    }
+}
+
+/// Parts of a time step that are tried before a dynamic run gives up.
+const SMALLEST_PART: f64 = 1.0 / 256.0;
+
+/// A plastic solid through time.
+pub struct PlasticDynamics<'a> {
+    part: &'a SolidPart,
+    state: State,
+    solver: Dynamics,
+    gravity: Vec<f64>,
+    load: Vec<f64>,
+    step: f64,
+    steps: u64,
+    spent: Spent,
+}
+
+impl<'a> PlasticDynamics<'a> {
+    /// The solid at rest with its initial stress at time 0, and the acceleration that its loads give it.
+    ///
+    /// # Errors
+    /// The initial stress finds no equilibrium, or a matrix cannot be factored.
+    pub fn new(part: &'a SolidPart, method: TimeMethod, step: f64) -> Result<Self, Failure> {
+        let model = &part.model;
+        let gravity = model.gravity_load();
+        let (mut state, _) = super::initial::state(part, &gravity)?;
+        let control =
+            StepControl { initial: step, min: step * SMALLEST_PART, max: step, target_iterations: 12 };
+        let solver = match method {
+            TimeMethod::Newmark(m) => Dynamics::newmark(model, m, part.newton, control),
+            TimeMethod::Hht(alpha) => Dynamics::hht(model, alpha, part.newton, control),
+        }
+        .map_err(|e| part.failure(&e))?;
+        let mut load = vec![0.0; model.dof_count()];
+        let mut course = Course { part, gravity: &gravity, carried: 1.0 };
+        course.load(0.0, &mut load);
+        dynamics::initial_acceleration(model, &mut state, &load).map_err(|e| part.failure(&e))?;
+        Ok(PlasticDynamics { part, state, solver, load, step, steps: 0, spent: Spent::default(), gravity })
+    }
+
+    /// Counts of the iteration.
+    pub fn statistics(&self) -> Statistics {
+        self.solver.statistics()
+    }
+}
+
+impl System for PlasticDynamics<'_> {
+    fn window(&self) -> f64 {
+        self.step
+    }
+
+    fn steps_per_window(&self) -> (u64, u64) {
+        (0, 1)
+    }
+
+    fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
+        let (part, before) = (self.part, self.state.u.clone());
+        let to = (self.steps + 1) as f64 * self.step;
+        let mut course = Course { part, gravity: &self.gravity, carried: 1.0 };
+        let spent = &mut self.spent;
+        self.solver
+            .advance(&part.model, &mut self.state, to, &mut course, |_, _, audit| {
+                spent.solid_load_work += audit.external_work + audit.support_work;
+                spent.rayleigh += audit.damping_dissipation;
+                spent.absorbed += audit.boundary_dissipation;
+                spent.plastic += audit.plastic_dissipation;
+                spent.numerical += audit.numerical_dissipation;
+            })
+            .map_err(|e| part.failure(&e))?;
+        self.steps += 1;
+        let moved = self.state.u.iter().zip(&before).map(|(u, b)| u - b);
+        self.spent.solid_load_work -= self.gravity.iter().zip(moved).map(|(f, du)| f * du).sum::<f64>();
+        self.load.fill(0.0);
+        course.load(to, &mut self.load);
+        Ok(())
+    }
+
+    fn stored(&self) -> Stored {
+        Stored {
+            solid_kinetic: fem::energy::kinetic(&self.part.model, &self.state),
+            solid_strain: fem::energy::strain(&self.part.model, &self.state),
+            solid_gravity: -self.gravity.iter().zip(&self.state.u).map(|(f, u)| f * u).sum::<f64>(),
+            ..Stored::default()
+        }
+    }
+
+    fn spent(&self) -> Spent {
+        self.spent
+    }
+
+    fn solid(&self) -> Option<SolidView<'_>> {
+        Some(SolidView { model: &self.part.model, state: &self.state })
+    }
+
+    fn reactions(&self) -> Option<Vec<f64>> {
+        Some(fem::energy::reactions(&self.part.model, &self.state, &self.load))
     }
 
     fn keeps_its_state(&self) -> bool {

@@ -1,7 +1,7 @@
 //! A solid that runs alone: static, quasi-static, dynamic, or brought to failure.
 
 use super::memory::Prediction;
-use super::plastic::QuasiStaticSystem;
+use super::plastic::{PlasticDynamics, QuasiStaticSystem};
 use super::summary::{NewtonRecord, Summary};
 use super::system::{SolidSystem, System};
 use super::{Stage, failure_factor, statics};
@@ -29,7 +29,13 @@ impl Stage<'_> {
                 outcome
             }
             Analysis::StrengthReduction(plan) => failure_factor::run(self, solid, plan, summary),
-            Analysis::Dynamic(_) => Err(Failure::Other("not yet".into())),
+            Analysis::Dynamic(method) => {
+                let dt = self.job.solid_step.expect("a dynamic solid has a step");
+                let mut system = PlasticDynamics::new(solid, *method, dt)?;
+                let outcome = self.march(solid, &mut system, summary);
+                summary.newton = Some(NewtonRecord::of(&system.statistics()));
+                outcome
+            }
         }
     }
 

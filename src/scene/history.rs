@@ -2,8 +2,8 @@
 
 use super::units::{Frequency, Quantity, Time};
 use serde::Deserialize;
-use std::path::PathBuf;
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 
 /// Shape of a load in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -181,7 +181,9 @@ mod tests {
             points: vec![(0.0, 2.0), (1.0, 4.0), (3.0, -2.0)],
             ..TimeFunction::CONSTANT
         };
-        for (t, expected) in [(0.5, 0.0), (1.0, 2.0), (1.5, 3.0), (2.0, 4.0), (3.0, 1.0), (4.0, -2.0), (9.0, -2.0)] {
+        for (t, expected) in
+            [(0.5, 0.0), (1.0, 2.0), (1.5, 3.0), (2.0, 4.0), (3.0, 1.0), (4.0, -2.0), (9.0, -2.0)]
+        {
             assert_eq!(f.factor(t), expected, "{t}");
         }
     }

@@ -166,6 +166,7 @@ impl<'a> Coupled<'a> {
             grains: dem::Model::new(grains).expect("valid grains"),
             substeps,
             theta: 0.5,
+            newton: Default::default(),
             dead_load: vec![0.0; n],
             reference: vec![0.0; n],
         };

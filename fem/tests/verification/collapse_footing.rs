@@ -25,7 +25,13 @@ fn prandtl(phi: f64) -> f64 {
 
 /// The slip lines of Prandtl's mechanism reach 3 half widths to the side for phi = 0, 6.1 for 20° and 7.6 for 25°.
 fn ground(kind: ElementKind, mesh: usize, phi: f64) -> Ground {
-    let extent = if phi == 0.0 { [5.0, 3.0] } else if phi < 21.0 { [8.0, 4.0] } else { [10.0, 5.0] };
+    let extent = if phi == 0.0 {
+        [5.0, 3.0]
+    } else if phi < 21.0 {
+        [8.0, 4.0]
+    } else {
+        [10.0, 5.0]
+    };
     let (first, ratio) = MESHES[mesh];
     Ground { kind, first, ratio, extent, square: false }
 }
@@ -45,7 +51,10 @@ fn run(name: &str, ground: &Ground, material: Material, phi: f64, settlement: f6
         s.steps,
         s.halvings,
         s.iterations,
-        course.stopped.as_ref().map_or(String::new(), |why| format!("; STOPPED at {:.4} m: {why}", course.settlement))
+        course
+            .stopped
+            .as_ref()
+            .map_or(String::new(), |why| format!("; STOPPED at {:.4} m: {why}", course.settlement))
     );
     course
 }
@@ -54,8 +63,7 @@ fn run(name: &str, ground: &Ground, material: Material, phi: f64, settlement: f6
 fn errors(name: &str, meshes: &[usize], phi: f64, psi: f64, settlement: f64, law: Law) -> Vec<f64> {
     let course = |&mesh: &usize| {
         let material = law(SOIL, COHESION, phi, psi);
-        let course =
-            run(name, &ground(ElementKind::Hex20, mesh, phi), material, phi, settlement, 20);
+        let course = run(name, &ground(ElementKind::Hex20, mesh, phi), material, phi, settlement, 20);
         assert!(course.stopped.is_none() && course.growth().abs() < 5e-3, "{name}: no plateau");
         course.factor(COHESION) / prandtl(phi) - 1.0
     };

@@ -35,8 +35,14 @@ fn slope(counts: [usize; 2], factor: f64) -> Model {
     let soil = mohr_coulomb(SOIL, 0.05 * WEIGHT * HEIGHT, 20.0, 0.0).reduced(factor);
     let materials: BTreeMap<u32, _> = [(1, soil)].into();
     let gravity = [0.0, 0.0, -WEIGHT / SOIL.density];
-    let input =
-        ModelInput { mesh, materials, quadrature: Quadrature::Gauss2, constraints, gravity, ..Default::default() };
+    let input = ModelInput {
+        mesh,
+        materials,
+        quadrature: Quadrature::Gauss2,
+        constraints,
+        gravity,
+        ..Default::default()
+    };
     Model::new(input).unwrap()
 }
 
@@ -52,7 +58,8 @@ fn stands(counts: [usize; 2], factor: f64) -> Result<f64, f64> {
     let options = NewtonOptions { max_iterations: 60, ..loose() };
     let mut solver = QuasiStatic::new(&model, options, control).unwrap();
     let outcome = solver.advance(&model, &mut state, 1.0, &mut loading, |_, _| ());
-    let u = state.u.chunks_exact(3).map(|u| (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()).fold(0.0, f64::max);
+    let u =
+        state.u.chunks_exact(3).map(|u| (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()).fold(0.0, f64::max);
     let number = SOIL.young * u / (WEIGHT * HEIGHT * HEIGHT);
     let s = solver.statistics();
     println!(

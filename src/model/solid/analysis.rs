@@ -115,7 +115,11 @@ pub fn plans(
                 let expected = "a material that yields";
                 return Err(document.error("solid.strength_reduction", "elastic materials only", expected));
             }
-            Analysis::StrengthReduction(strength_reduction(document, s, newton(document, solid.newton.as_ref())?)?)
+            Analysis::StrengthReduction(strength_reduction(
+                document,
+                s,
+                newton(document, solid.newton.as_ref())?,
+            )?)
         }
         _ => Analysis::Static,
     };

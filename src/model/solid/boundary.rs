@@ -25,11 +25,8 @@ pub struct Supports {
 /// # Errors
 /// A key is missing or contradictory, or two supports give one dof different displacements.
 pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Result<Supports, SceneError> {
-    let mut all = Supports {
-        constraints: geometry.constraints.clone(),
-        moving: BTreeMap::new(),
-        named: Vec::new(),
-    };
+    let mut all =
+        Supports { constraints: geometry.constraints.clone(), moving: BTreeMap::new(), named: Vec::new() };
     // What each dof is given, by which support of the scene; none for the mesh file's.
     let mut given: BTreeMap<u32, (f64, Option<usize>)> =
         all.constraints.iter().map(|c| (3 * c.node + u32::from(c.direction), (c.value, None))).collect();
@@ -114,8 +111,7 @@ pub fn absorbing(
     let mut layers = Vec::new();
     for (i, a) in solid.absorbing.iter().enumerate() {
         let path = format!("solid.absorbing.{i}");
-        let faces =
-            selection::faces(document, geometry, &path, None, a.faces_in, a.side, a.set.as_deref())?;
+        let faces = selection::faces(document, geometry, &path, None, a.faces_in, a.side, a.set.as_deref())?;
         for (key, factor) in [("normal", a.normal), ("tangential", a.tangential)] {
             let good = factor >= 0.0 && factor.is_finite();
             check(document, &format!("{path}.{key}"), factor, good, "0 or more")?;

@@ -62,7 +62,9 @@ pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure>
             }
         }
         (None, Some(_), None, None) => {
-            return Err(document.error("solid.elements", "nothing", "the element list beside `nodes`").into());
+            return Err(document
+                .error("solid.elements", "nothing", "the element list beside `nodes`")
+                .into());
         }
         (None, None, Some(_), None) => {
             return Err(document.error("solid.nodes", "nothing", "the node list beside `elements`").into());
@@ -148,7 +150,11 @@ fn block(document: &Document, block: &Block) -> Result<Mesh, SceneError> {
             return Err(document.error(&key, format!("{to} m"), expected));
         }
         if last && to < top {
-            return Err(document.error(&key, format!("{to} m"), format!("{top} m: the last layer ends at the top")));
+            return Err(document.error(
+                &key,
+                format!("{to} m"),
+                format!("{top} m: the last layer ends at the top"),
+            ));
         }
         for e in 0..mesh.element_count() {
             let height = mesh.element_centre(e)[2];

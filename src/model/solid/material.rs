@@ -20,8 +20,7 @@ pub struct Materials {
 /// # Errors
 /// A constant is missing, out of range, or not one of the model.
 pub fn materials(document: &Document, solid: &Solid) -> Result<Materials, SceneError> {
-    let mut materials =
-        Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
+    let mut materials = Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
     for (i, m) in solid.material.iter().enumerate() {
         let key = |k: &str| format!("solid.material.{i}.{k}");
         let constants = material(document, i, m)?;
@@ -52,7 +51,9 @@ fn material(document: &Document, index: usize, m: &SolidMaterial) -> Result<Mate
     };
     let strength = |k: &str, value: Option<f64>| -> Result<Hardening, SceneError> {
         match (value, m.hardening, &m.hardening_table) {
-            (None, None, Some(table)) => Ok(Hardening::Table(table.iter().map(|(x, y)| (*x, y.si)).collect())),
+            (None, None, Some(table)) => {
+                Ok(Hardening::Table(table.iter().map(|(x, y)| (*x, y.si)).collect()))
+            }
             (Some(_), _, Some(_)) => {
                 let expected = format!("either `{k}` (and `hardening`) or `hardening_table`");
                 Err(document.error(&key("hardening_table"), "a table", expected))

@@ -7,7 +7,10 @@ mod load;
 mod material;
 mod selection;
 
-pub use analysis::{Analysis, InitialStress, InitialStressKind, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan, TimeMethod};
+pub use analysis::{
+    Analysis, InitialStress, InitialStressKind, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan,
+    TimeMethod,
+};
 pub use geometry::{Geometry, geometry};
 pub use load::NodalLoad;
 pub use selection::find_node;
@@ -144,7 +147,8 @@ pub fn build(
         let fixed = model.supports().fixed();
         fixed.binary_search_by_key(&dof, |(d, _)| *d).expect("a support of the model")
     };
-    let moving = supports.moving.iter().map(|(dof, (value, f))| (position(*dof), *value, f.clone())).collect();
+    let moving =
+        supports.moving.iter().map(|(dof, (value, f))| (position(*dof), *value, f.clone())).collect();
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(model.mesh(), model.constraints());
     let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
@@ -254,4 +258,3 @@ fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::dam
     check(document, "solid.rayleigh.beta_k", result.beta_k, result.beta_k >= 0.0, "0 or more")?;
     Ok(result)
 }
-

@@ -49,7 +49,11 @@ pub fn nodes(
             let inside = in_box(mesh, within);
             let chosen: Vec<u32> = all.filter(|n| inside(x(n))).collect();
             if chosen.is_empty() {
-                return Err(document.error(&format!("{path}.nodes_in"), "no node in the box", "at least one"));
+                return Err(document.error(
+                    &format!("{path}.nodes_in"),
+                    "no node in the box",
+                    "at least one",
+                ));
             }
             Ok(chosen)
         }
