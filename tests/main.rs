@@ -6,6 +6,9 @@ mod suite {
     mod cli;
     mod determinism;
     mod fem_cases;
+    mod mesh_forms;
+    mod mesh_forms_files;
+    mod mesh_orders;
     mod scenes;
     mod summary;
     pub mod support;

@@ -2,9 +2,9 @@
 
     python3 tests/vtk_check.py [--volume V] FILE...
 
-FILE is a .pvd, .vtu or .vtp; of a .pvd every file that it lists is checked. Each file must be read without an
+FILE is a .pvd, .vtu, .vtk or .vtp; of a .pvd every file that it lists is checked. Each file must be read without an
 error, hold the arrays of its kind with the right number of components, and hold no number that is not finite.
-Hexahedra must be right side out, by VTK's own shape functions and node order; with --volume, their summed
+Cells must be right side out, by VTK's own shape functions and node order; with --volume, their summed
 volume in every .vtu must be V [m^3] to 1e-9. One line per file; the exit code is 0 only when all pass.
 
 Needs the Python package `vtk`; of it only modules that draw nothing, so that no graphics library is loaded.
@@ -17,11 +17,17 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkQuadraticHexahedron
+from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 import numpy
 
-QUADRATIC_HEXAHEDRON = 25
+QUADRATIC_PYRAMID = 27
+
+# Parametric shapes of VTK's cell types.
+CELLS = {
+    25: "hexahedron", 26: "wedge", 27: "pyramid", 24: "tetrahedron",
+    12: "hexahedron", 13: "wedge", 14: "pyramid", 10: "tetrahedron",
+}
 
 # Arrays of each kind of file: where, name, number of components.
 KINDS = {
@@ -52,7 +58,11 @@ def expect(condition, message):
 
 def read(path):
     """The data set of a file; VTK's own complaints are failures."""
-    reader = vtkXMLUnstructuredGridReader() if path.endswith(".vtu") else vtkXMLPolyDataReader()
+    if path.endswith(".vtk"):
+        reader = vtkUnstructuredGridReader()
+        reader.ReadAllFieldsOn()
+    else:
+        reader = vtkXMLUnstructuredGridReader() if path.endswith(".vtu") else vtkXMLPolyDataReader()
     complaints = []
     for event in ("ErrorEvent", "WarningEvent"):
         # VTK hands over the text of the complaint when the observer asks for it so.
@@ -61,7 +71,7 @@ def read(path):
 
         observer.CallDataType = "string0"
         reader.AddObserver(event, observer)
-    expect(reader.CanReadFile(path), "VTK does not take it for a file of this kind")
+    expect(path.endswith(".vtk") or reader.CanReadFile(path), "VTK does not take it for a file of this kind")
     reader.SetFileName(path)
     reader.Update()
     expect(not complaints and reader.GetErrorCode() == 0, "; ".join(map(str, complaints)) or "VTK error")
@@ -71,7 +81,7 @@ def read(path):
 def kind_of(data, path):
     names = {data.GetPointData().GetArrayName(i) for i in range(data.GetPointData().GetNumberOfArrays())}
     cells = {data.GetCellData().GetArrayName(i) for i in range(data.GetCellData().GetNumberOfArrays())}
-    if path.endswith(".vtu"):
+    if path.endswith((".vtu", ".vtk")):
         return "solid" if "displacement" in names else "mesh"
     if "normal_force" in cells:
         return "chains"
@@ -91,29 +101,70 @@ def check_arrays(attributes, expected, count, where):
         expect(numpy.isfinite(values).all(), f"{where} array {attributes.GetArrayName(index)} is not finite")
 
 
-def hexahedron_volume(cell):
-    """Volume by VTK's derivatives at 3 x 3 x 3 Gauss points, which is exact; and the least determinant."""
+def gauss(count):
+    """Points and weights on the unit interval."""
+    points, weights = numpy.polynomial.legendre.leggauss(count)
+    return list(zip(0.5 * (points + 1.0), 0.5 * weights))
+
+
+def rule(shape):
+    """Points and weights on VTK's parametric shape; triangles and tetrahedra as collapsed squares and cubes."""
+    for u, weight_u in gauss(6):
+        for v, weight_v in gauss(6):
+            for w, weight_w in gauss(6):
+                weight = weight_u * weight_v * weight_w
+                if shape == "wedge":
+                    yield (u, v * (1 - u), w), weight * (1 - u)
+                elif shape == "tetrahedron":
+                    yield (u, v * (1 - u), w * (1 - u) * (1 - v)), weight * (1 - u) ** 2 * (1 - v)
+                else:
+                    yield (u, v, w), weight
+
+
+def enclosed_volume(cell):
+    """Volume inside VTK's own faces of a cell, by the divergence theorem; negative when they point inwards."""
+    volume = 0.0
+    for index in range(cell.GetNumberOfFaces()):
+        face = cell.GetFace(index)
+        points = vtk_to_numpy(face.GetPoints().GetData())
+        weights, derivatives = [0.0] * len(points), [0.0] * (2 * len(points))
+        for u, weight_u in gauss(6):
+            for v, weight_v in gauss(6):
+                triangle = len(points) in (3, 6)
+                place = (u, v * (1 - u), 0.0) if triangle else (u, v, 0.0)
+                weight = weight_u * weight_v * ((1 - u) if triangle else 1.0)
+                face.InterpolateFunctions(place, weights)
+                face.InterpolateDerivs(place, derivatives)
+                tangents = numpy.array(derivatives).reshape(2, len(points)) @ points
+                volume += weight * numpy.dot(numpy.array(weights) @ points, numpy.cross(*tangents)) / 3.0
+    return volume
+
+
+def cell_volume(cell):
+    """Volume by VTK's own derivatives at Gauss points, and the least determinant.
+
+    VTK's quadratic pyramid is a collapsed hexahedron inside, whose volume is not that of its own faces: there, the
+    volume within the faces, for both.
+    """
+    if cell.GetCellType() == QUADRATIC_PYRAMID:
+        volume = enclosed_volume(cell)
+        return volume, volume
     points = vtk_to_numpy(cell.GetPoints().GetData())
-    side = math.sqrt(0.6)
-    rule = [(0.5 * (1 - side), 5 / 18), (0.5, 8 / 18), (0.5 * (1 + side), 5 / 18)]
     volume, least = 0.0, math.inf
-    derivatives = [0.0] * 60
-    for r, weight_r in rule:
-        for s, weight_s in rule:
-            for t, weight_t in rule:
-                vtkQuadraticHexahedron.InterpolationDerivs([r, s, t], derivatives)
-                jacobian = numpy.array(derivatives).reshape(3, 20) @ points
-                determinant = numpy.linalg.det(jacobian)
-                volume += weight_r * weight_s * weight_t * determinant
-                least = min(least, determinant)
+    derivatives = [0.0] * (3 * len(points))
+    for place, weight in rule(CELLS[cell.GetCellType()]):
+        cell.InterpolateDerivs(place, derivatives)
+        determinant = numpy.linalg.det(numpy.array(derivatives).reshape(3, len(points)) @ points)
+        volume += weight * determinant
+        least = min(least, determinant)
     return volume, least
 
 
 def check_solid(data, volume):
     total = 0.0
     for index in range(data.GetNumberOfCells()):
-        expect(data.GetCellType(index) == QUADRATIC_HEXAHEDRON, f"cell {index} is no quadratic hexahedron")
-        part, least = hexahedron_volume(data.GetCell(index))
+        expect(data.GetCellType(index) in CELLS, f"cell {index} is no volume of a known kind")
+        part, least = cell_volume(data.GetCell(index))
         expect(least > 0.0, f"cell {index} is turned inside out: determinant {least}")
         total += part
     if volume is not None:
@@ -140,7 +191,7 @@ def check_file(path, volume):
         parts = [vtk_to_numpy(data.GetCellData().GetArray(name)) for name, _ in cell_arrays[:3]]
         expect(numpy.allclose(numpy.hypot(parts[0], parts[1]), parts[2]), "magnitude is not that of its parts")
     told = f"{kind}: {points} points, {cells} cells"
-    if path.endswith(".vtu"):
+    if path.endswith((".vtu", ".vtk")):
         told += f", volume {check_solid(data, volume):.12g}"
     return told
 
@@ -164,7 +215,7 @@ def frames(path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+")
-    parser.add_argument("--volume", type=float, help="summed volume of the hexahedra of every .vtu [m^3]")
+    parser.add_argument("--volume", type=float, help="summed volume of every .vtu [m^3]")
     arguments = parser.parse_args()
     failed = 0
     queue = list(arguments.files)
@@ -181,7 +232,7 @@ def main():
                 queue[:0] = listed
                 told = f"series: {len(listed)} files"
             else:
-                expect(path.endswith((".vtu", ".vtp")), "neither .pvd nor .vtu nor .vtp")
+                expect(path.endswith((".vtu", ".vtk", ".vtp")), "neither .pvd nor .vtu, .vtk, .vtp")
                 told = check_file(path, arguments.volume)
             print(f"ok   {path}: {told}")
         except (Failure, ElementTree.ParseError, ValueError) as error:

@@ -200,7 +200,7 @@ fn faults_of_the_node_list() {
         bad("rotated", "14.5 196 -14", "14.5 196 -14 0 30 0"),
         "NODECOORD.DAT:19: nodal rotation: found 30, expected 0 (global directions)"
     );
-    let none = "expected at least 20 rows of id x y z";
+    let none = "expected at least 4 rows of id x y z";
     assert_eq!(refused("empty", "", &elements(), None), format!("NODECOORD.DAT: nodes: found none, {none}"));
     assert_eq!(
         refused("header", "! only this\nID X Y Z\n", &elements(), None),
@@ -219,7 +219,8 @@ fn faults_of_the_element_list() {
     );
     assert_eq!(
         bad("dropped", "8 9 10", "8 0 10"),
-        "ELEMENTNUM.DAT:1: element 7, node n9: found 0, a dropped mid-side node, expected a node of the node list"
+        "ELEMENTNUM.DAT:1: element 7: found no node Q, and other mid-side nodes are there, expected all mid-side nodes \
+         of an element, or none"
     );
     assert_eq!(
         bad("not_whole", "8 9 10", "8 9x 10"),
@@ -253,23 +254,28 @@ fn faults_of_the_element_list() {
 }
 
 #[test]
-fn degenerate_elements_are_refused_by_name() {
+fn bricks_with_repeated_or_missing_nodes() {
     // The forms that SOLID186 takes with repeated nodes, in its own order I…B.
     let forms = [
-        ("wedge", [1, 2, 3, 3, 5, 6, 7, 7, 9, 10, 3, 12, 13, 14, 7, 16, 17, 18, 19, 19], 15, 3),
-        ("pyramid", [1, 2, 3, 4, 5, 5, 5, 5, 9, 10, 11, 12, 5, 5, 5, 5, 17, 18, 19, 20], 13, 5),
-        ("tetrahedron", [1, 2, 3, 3, 5, 5, 5, 5, 9, 10, 3, 12, 5, 5, 5, 5, 17, 18, 19, 19], 10, 3),
+        (ElementKind::Wedge15, [1, 2, 3, 3, 5, 6, 7, 7, 9, 10, 3, 12, 13, 14, 7, 16, 17, 18, 19, 19]),
+        (ElementKind::Pyramid13, [1, 2, 3, 4, 5, 5, 5, 5, 9, 10, 11, 12, 5, 5, 5, 5, 17, 18, 19, 20]),
+        (ElementKind::Tet10, [1, 2, 3, 3, 5, 5, 5, 5, 9, 10, 3, 12, 5, 5, 5, 5, 17, 18, 19, 19]),
     ];
-    for (name, nodes, distinct, repeated) in forms {
-        let row = nodes.map(|n: u32| n.to_string()).join(" ");
-        let message = refused(name, &brick_nodes(), &format!("4 1 {row}\n"), None);
-        let expected = format!(
-            "ELEMENTNUM.DAT:1: element 4: found node {repeated} more than once ({distinct} different nodes: \
-             a {name}), expected 20 different nodes (wedges, pyramids and tetrahedra are not supported in \
-             this version)"
-        );
-        assert_eq!(message, expected);
+    for (kind, nodes) in forms {
+        let text = |nodes: &[u32]| nodes.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
+        let lists = read(kind.name(), &brick_nodes(), &format!("4 1 {}\n", text(&nodes)), None).unwrap();
+        assert_eq!((lists.mesh.connectivity.kind(0), lists.mesh.node_count()), (kind, kind.node_count()));
+        // Without mid-side nodes, as 0 and as lines of 8 nodes.
+        let corners = text(&nodes[..8]);
+        for row in [format!("4 1 {corners}{}\n", " 0".repeat(12)), format!("4 1 {corners}\n")] {
+            let lists = read(kind.name(), &brick_nodes(), &row, None).unwrap();
+            assert_eq!(lists.mesh.connectivity.kind(0), kind.linear());
+        }
     }
+    let message = refused("folded", &brick_nodes(), &elements().replacen("3 4 5", "3 3 5", 1), None);
+    let expected = "ELEMENTNUM.DAT:1: element 7: found node 3 more than once, expected different nodes, or those of a \
+                    wedge (K = L, O = P), a pyramid (M = N = O = P) or a tetrahedron (both)";
+    assert_eq!(message, expected);
 }
 
 #[test]

@@ -68,7 +68,3 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, ReadError> {
         }
     }
 }
-
-#[cfg(test)]
-#[path = "forms_tests.rs"]
-mod forms_tests;

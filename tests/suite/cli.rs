@@ -242,7 +242,7 @@ fn mesh_convert_writes_vtk_and_refuses_other_endings() {
 
     let outcome = convert(&folder.join("mesh.stl"));
     assert_eq!(outcome.code, 2, "{outcome:?}");
-    assert!(outcome.stderr.contains("expected a file ending in .vtu") && !folder.join("mesh.stl").exists());
+    assert!(outcome.stderr.contains("expected a file ending in .cdb") && !folder.join("mesh.stl").exists());
 }
 
 /// The exchange of the main scene is stable as shipped; both numbers grow with the window. The sleeper, which never
