@@ -30,8 +30,13 @@ fn model(kind: ElementKind, material: Material) -> Model {
         mesh.push_element(number, number, kind, &nodes);
     }
     let constraints = vec![Constraint { node: 1, direction: 2, value: 0.0 }];
-    Model::new(ModelInput { mesh, materials: [(1, material), (2, SOIL.into())].into(), constraints, ..Default::default() })
-        .unwrap_or_else(|e| panic!("{}: {e}", kind.name()))
+    Model::new(ModelInput {
+        mesh,
+        materials: [(1, material), (2, SOIL.into())].into(),
+        constraints,
+        ..Default::default()
+    })
+    .unwrap_or_else(|e| panic!("{}: {e}", kind.name()))
 }
 
 fn materials() -> [Material; 4] {
@@ -41,7 +46,8 @@ fn materials() -> [Material; 4] {
     };
     let cone = |psi: f64| {
         let cone = Cone::Compression;
-        let law = DruckerPrager { cohesion: 5e3.into(), friction: 0.5.into(), dilation: psi, cone, tension: None };
+        let law =
+            DruckerPrager { cohesion: 5e3.into(), friction: 0.5.into(), dilation: psi, cone, tension: None };
         Material::plastic(SOIL, law)
     };
     [mohr_coulomb(0.5), mohr_coulomb(0.1), cone(0.5), cone(0.0)]
@@ -131,6 +137,10 @@ fn force_is_the_transposed_of_the_strain() {
             assert!((other[d] - elastic[d]).abs() < 1e-11 * size, "{}", kind.name());
         }
         let work: f64 = 0.5 * w.iter().zip(&elastic).map(|(w, f)| w * f).sum::<f64>();
-        assert!((crate::energy::of_points(&model, &force.points) / work - 1.0).abs() < 1e-11, "{}", kind.name());
+        assert!(
+            (crate::energy::of_points(&model, &force.points) / work - 1.0).abs() < 1e-11,
+            "{}",
+            kind.name()
+        );
     }
 }
