@@ -25,7 +25,7 @@ fn variants() -> Vec<(&'static str, NewtonOptions)> {
 #[ignore = "prints the cost of the variants, a minute"]
 fn cost_of_the_variants() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    pool.install(|| table_of_costs());
+    pool.install(table_of_costs);
 }
 
 fn table_of_costs() {
@@ -50,7 +50,7 @@ fn table_of_costs() {
             let outcome = solver.advance(&footing.model, &mut state, end, &mut footing.loading(), |_, _| ());
             let cpu = cpu_seconds() - start;
             let s = solver.statistics();
-            let factor = footing.pressure(&solver.reactions()) / COHESION;
+            let factor = footing.pressure(solver.reactions()) / COHESION;
             let miss = difference(&state.u, reference.get_or_insert_with(|| state.u.clone()));
             println!(
                 "phi {phi} psi {psi} {name}: q/c {factor:.4} at {:.4} m{}, u {miss:.1e}; {} steps {} halvings {} iterations {} evaluations {} L L^T {} L U, {} not positive, {} singular; CPU {cpu:.2} s",
