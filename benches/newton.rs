@@ -40,7 +40,19 @@ fn variants(first: f64, ratio: f64) {
     let ground = Ground { kind: ElementKind::Hex20, first, ratio, extent: [8.0, 4.0], square: false };
     println!(
         "{:>4} {:<12} {:<6} {:<6} {:>8} {:>8} {:>6} {:>6} {:>7} {:>7} {:>6} {:>6} {:>8}",
-        "psi", "matrix", "search", "solver", "q/c", "at [m]", "steps", "halved", "iterat.", "evals", "LL^T", "LU", "CPU [s]"
+        "psi",
+        "matrix",
+        "search",
+        "solver",
+        "q/c",
+        "at [m]",
+        "steps",
+        "halved",
+        "iterat.",
+        "evals",
+        "LL^T",
+        "LU",
+        "CPU [s]"
     );
     for (psi, settlement, stations) in [(PHI, 0.25, 20), (0.0, 0.12, 40)] {
         for (name, variant) in [
@@ -73,7 +85,11 @@ fn variants(first: f64, ratio: f64) {
                         if line_search { "yes" } else { "no" },
                         format!("{linear:?}").to_lowercase(),
                         course.factor(COHESION),
-                        if course.stopped.is_some() { format!("{:.4}", course.settlement) } else { "end".into() },
+                        if course.stopped.is_some() {
+                            format!("{:.4}", course.settlement)
+                        } else {
+                            "end".into()
+                        },
                         s.steps,
                         s.halvings,
                         s.iterations,

@@ -44,10 +44,7 @@ impl Exact {
     /// Radial and tangential stress [Pa].
     fn stress(&self, r: f64) -> [f64; 2] {
         if r >= self.radius {
-            return [
-                self.s * (OUTER.powi(-3) - r.powi(-3)),
-                self.s * (OUTER.powi(-3) + 0.5 * r.powi(-3)),
-            ];
+            return [self.s * (OUTER.powi(-3) - r.powi(-3)), self.s * (OUTER.powi(-3) + 0.5 * r.powi(-3))];
         }
         let (top, power) = (self.y / (self.al - 1.0), -2.0 * (self.al - 1.0) / self.al);
         let border = self.s * (OUTER.powi(-3) - self.radius.powi(-3));
@@ -69,8 +66,17 @@ impl Exact {
             r.powf(m) * (radial + m * hoop)
         };
         let (n, h) = (400, (self.radius - INNER) / 400.0);
-        let weight = |i: i32| if i == 0 || i == n { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
-        let integral: f64 = (0..=n).map(|i| weight(i) * source(INNER + h * f64::from(i))).sum::<f64>() * h / 3.0;
+        let weight = |i: i32| {
+            if i == 0 || i == n {
+                1.0
+            } else if i % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+        };
+        let integral: f64 =
+            (0..=n).map(|i| weight(i) * source(INNER + h * f64::from(i))).sum::<f64>() * h / 3.0;
         let border = self.radius * self.elastic_strain(self.radius * (1.0 + 1e-12))[1];
         (border * self.radius.powf(m) - integral) / INNER.powf(m)
     }
@@ -98,7 +104,8 @@ fn octant(psi: f64, across: usize, first: f64, ratio: f64) -> (Model, Vec<f64>) 
         }
     }
     let materials: BTreeMap<u32, _> = [(1, mohr_coulomb(SOIL, COHESION, PHI, psi))].into();
-    let input = ModelInput { mesh, materials, quadrature: Quadrature::Gauss2, constraints, ..Default::default() };
+    let input =
+        ModelInput { mesh, materials, quadrature: Quadrature::Gauss2, constraints, ..Default::default() };
     let model = Model::new(input).unwrap();
     let mut unit = vec![0.0; model.dof_count()];
     let radius = |n: &u32| model.mesh().coordinates[*n as usize].iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -133,7 +140,7 @@ fn points(model: &Model, state: &State) -> Vec<(f64, [f64; 2], bool)> {
 }
 
 fn check(psi: f64) {
-    let (model, unit) = octant(psi, 3, 0.12, 1.18);
+    let (model, unit) = octant(psi, 2, 0.15, 1.2);
     let mut pressure = |time: f64, load: &mut [f64]| {
         load.iter_mut().zip(&unit).for_each(|(l, u)| *l = time * u);
     };
@@ -176,7 +183,11 @@ fn check(psi: f64) {
         assert!(yielded < radius + 0.25 && intact > radius - 0.25);
     }
     let s = solver.statistics();
-    println!("cavity psi {psi}: {} elements, {} dofs, {s:?}", model.mesh().element_count(), model.free_dof_count());
+    println!(
+        "cavity psi {psi}: {} elements, {} dofs, {s:?}",
+        model.mesh().element_count(),
+        model.free_dof_count()
+    );
 }
 
 #[test]

@@ -40,21 +40,28 @@ impl Builder {
 
     /// A block of `counts` cells, each one hexahedron, two wedges (axis along the second direction) or six tetrahedra.
     /// `position` [m] takes indices on the grid of half cells.
-    pub fn block(&mut self, counts: [usize; 3], kind: ElementKind, position: impl Fn([usize; 3]) -> [f64; 3]) {
+    pub fn block(
+        &mut self,
+        counts: [usize; 3],
+        kind: ElementKind,
+        position: impl Fn([usize; 3]) -> [f64; 3],
+    ) {
         let parts: &[&[usize]] = match kind.corner_count() {
             8 => &[&[0, 1, 2, 3, 4, 5, 6, 7]],
             6 => &[&[0, 4, 1, 3, 7, 2], &[5, 1, 4, 6, 2, 7]],
             4 => &[&[0, 1, 2, 6], &[0, 5, 1, 6], &[0, 2, 3, 6], &[0, 3, 7, 6], &[0, 4, 5, 6], &[0, 7, 4, 6]],
             _ => panic!("no such cells"),
         };
-        let corners = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]];
+        let corners =
+            [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]];
         for cell in 0..counts.iter().product() {
             let at = [cell % counts[0], cell / counts[0] % counts[1], cell / (counts[0] * counts[1])];
             for part in parts {
                 let mut points: Vec<[usize; 3]> =
                     part.iter().map(|&c| std::array::from_fn(|d| 2 * at[d] + corners[c][d])).collect();
                 if !kind.is_linear() {
-                    let middle = |e: &[usize; 2]| std::array::from_fn(|d| (points[e[0]][d] + points[e[1]][d]) / 2);
+                    let middle =
+                        |e: &[usize; 2]| std::array::from_fn(|d| (points[e[0]][d] + points[e[1]][d]) / 2);
                     let middles: Vec<[usize; 3]> = kind.edges().iter().map(middle).collect();
                     points.extend(middles);
                 }
@@ -133,9 +140,8 @@ impl Footing {
             [between(&x, i), between(&y, j), between(&z, k)]
         });
         let mesh = builder.mesh;
-        let loaded = |p: &[f64; 3]| {
-            p[2] > -1e-9 && p[0] < 1.0 + 1e-9 && (!ground.square || p[1] < 1.0 + 1e-9)
-        };
+        let loaded =
+            |p: &[f64; 3]| p[2] > -1e-9 && p[0] < 1.0 + 1e-9 && (!ground.square || p[1] < 1.0 + 1e-9);
         let mut constraints = Vec::new();
         for (node, p) in mesh.coordinates.iter().enumerate() {
             let base = p[2] < 1e-9 - depth;
@@ -162,7 +168,8 @@ impl Footing {
     /// Mean pressure [Pa] under the footing.
     pub fn pressure(&self, reactions: &[f64]) -> f64 {
         let fixed = self.model.supports().fixed().iter().zip(&self.moved);
-        -fixed.filter(|(_, moved)| **moved).map(|((dof, _), _)| reactions[*dof as usize]).sum::<f64>() / self.area
+        -fixed.filter(|(_, moved)| **moved).map(|((dof, _), _)| reactions[*dof as usize]).sum::<f64>()
+            / self.area
     }
 }
 
@@ -183,6 +190,16 @@ pub fn loose() -> NewtonOptions {
         energy_tolerance: 1e-4,
         max_iterations: 40,
         ..NewtonOptions::new(Variant::Full)
+    }
+}
+
+/// The elastic matrix with line search, to 1e-4 of the forces. Hundreds of cheap iterations per step; for psi < phi it gets through where
+/// the tangent's iterations run in circles between the planes of the yield surface.
+pub fn patient() -> NewtonOptions {
+    NewtonOptions {
+        force_tolerance: 1e-4,
+        energy_tolerance: 1e-4,
+        ..NewtonOptions::new(Variant::InitialStiffness)
     }
 }
 
@@ -215,7 +232,12 @@ impl Course {
 /// or is halved, at most six times.
 pub fn push(footing: &Footing, options: NewtonOptions, settlement: f64, stations: u32) -> Course {
     let length = settlement / f64::from(stations);
-    let control = StepControl { initial: length, min: length / 64.0, max: length, target_iterations: options.max_iterations / 2 };
+    let control = StepControl {
+        initial: length,
+        min: length / 64.0,
+        max: length,
+        target_iterations: options.max_iterations / 2,
+    };
     let mut solver = QuasiStatic::new(&footing.model, options, control).unwrap();
     let mut state = State::new(&footing.model);
     let (mut curve, mut stopped) = (Vec::new(), None);
