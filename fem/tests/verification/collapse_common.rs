@@ -212,7 +212,6 @@ pub struct Course {
     pub stopped: Option<String>,
     /// Settlement at the end [m].
     pub settlement: f64,
-    pub state: State,
 }
 
 impl Course {
@@ -248,7 +247,7 @@ pub fn push(footing: &Footing, options: NewtonOptions, settlement: f64, stations
             stopped = Some(error.to_string());
             break;
         }
-        curve.push([to, footing.pressure(&solver.reactions())]);
+        curve.push([to, footing.pressure(solver.reactions())]);
     }
-    Course { curve, statistics: solver.statistics(), stopped, settlement: state.time, state }
+    Course { curve, statistics: solver.statistics(), stopped, settlement: state.time }
 }
