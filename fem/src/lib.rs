@@ -1,4 +1,5 @@
-//! Implicit finite elements for ballasted track: 20-node hexahedra and their companions, statics and Newmark dynamics.
+//! Implicit finite elements for ballasted track: 20-node hexahedra and their companions, statics and dynamics, elastic and
+//! elastoplastic ([`nonlinear`]).
 //!
 //! A [`model::Model`] is built once from a mesh, materials and supports and never changes; a [`state::State`] is what a
 //! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`window::WindowSolver`]) hold a

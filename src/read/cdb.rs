@@ -24,6 +24,14 @@ const MECHANICAL: [&str; 14] = [
     "CERIG",
 ];
 
+/// A named set of nodes or elements.
+pub(super) struct Component {
+    pub name: String,
+    pub of_nodes: bool,
+    /// First and last numbers of ranges.
+    pub ranges: Vec<(u32, u32)>,
+}
+
 /// What the commands of an archive tell, before it is put together.
 #[derive(Default)]
 pub(super) struct Archive {
@@ -33,8 +41,7 @@ pub(super) struct Archive {
     pub elements: Vec<RawElement>,
     /// Node number and line of nodes in turned coordinate systems.
     pub turned: BTreeMap<u32, usize>,
-    /// Components: line, name, whether of nodes, first and last numbers of ranges.
-    components: Vec<(usize, String, bool, Vec<(u32, u32)>)>,
+    components: Vec<Component>,
     /// Constraints as commands: line and fields.
     constraints: Vec<(usize, Vec<String>)>,
     /// Material number to its values by label.
@@ -96,7 +103,7 @@ fn command(
         "MP" | "MPDATA" => property(builder, archive, line, &fields),
         "N" | "EN" | "E" | "EMORE" => {
             // N,R5.3,LOC,-1 and EN,R5.5,ATTR,-1 end the blocks.
-            let ends = fields.iter().any(|f| *f == "-1");
+            let ends = fields.contains(&"-1");
             let found = format!("{name} commands, one per item");
             let expected = "a blocked archive (CDWRITE without UNBLOCKED)";
             if ends { Ok(()) } else { Err(builder.fault(line, "archive", found, expected)) }
@@ -143,8 +150,8 @@ fn property(
     line: usize,
     fields: &[&str],
 ) -> Result<(), ReadError> {
-    let label = |f: &&str| ["EX", "NUXY", "PRXY", "DENS"].contains(&f.to_ascii_uppercase().as_str());
-    let Some(at) = fields.iter().position(|f| label(&f)) else {
+    let label = |f: &str| ["EX", "NUXY", "PRXY", "DENS"].contains(&f.to_ascii_uppercase().as_str());
+    let Some(at) = fields.iter().position(|f| label(f)) else {
         let anisotropic = ["EY", "EZ", "GXY", "GYZ", "GXZ"];
         if let Some(f) = fields.iter().find(|f| anisotropic.contains(&f.to_ascii_uppercase().as_str())) {
             builder.warn(format!("line {line}: {f} is not read: materials are isotropic"));
@@ -188,7 +195,7 @@ fn add_materials(builder: &mut Builder, archive: &Archive) {
 }
 
 fn add_components(builder: &mut Builder, archive: &Archive) {
-    for (_, name, of_nodes, ranges) in &archive.components {
+    for Component { name, of_nodes, ranges } in &archive.components {
         let mut members = Vec::new();
         let mut absent = 0;
         let mesh = &builder.made.mesh;
@@ -262,7 +269,7 @@ fn constrain(
             let index = builder.node_index(first).ok_or_else(|| builder.fault(line, "D", found, expected))?;
             nodes.push(index);
         } else {
-            let of_range = |id: &u32| (first..=last).contains(id) && (id - first) % step == 0;
+            let of_range = |id: &u32| (first..=last).contains(id) && (id - first).is_multiple_of(step);
             let ids = builder.made.mesh.node_ids.iter().enumerate();
             nodes.extend(ids.filter(|(_, id)| of_range(id)).map(|(index, _)| index as u32));
         }
@@ -273,6 +280,9 @@ fn constrain(
             return Err(builder.fault(line, "node of D", found, "a node number or a component of nodes"));
         };
         nodes.extend(set);
+    }
+    if nodes.is_empty() {
+        return Err(builder.fault(line, "D", fields[1..].join(","), "at least one node of the file"));
     }
     for node in nodes {
         let id = builder.made.mesh.node_ids[node as usize];

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::cdb::Archive;
+use super::cdb::{Archive, Component};
 use super::cdb_elements::RawElement;
 use super::error::ReadError;
 use super::mesh_file::Builder;
@@ -234,11 +234,7 @@ pub(super) fn types(lines: &mut Lines, _line: usize, archive: &mut Archive) -> R
 }
 
 /// `CMBLOCK, name, NODE or ELEM, count`: a negative number ends a range that the number before it begins.
-pub(super) fn component(
-    lines: &mut Lines,
-    line: usize,
-    fields: &[&str],
-) -> Result<(usize, String, bool, Vec<(u32, u32)>), ReadError> {
+pub(super) fn component(lines: &mut Lines, line: usize, fields: &[&str]) -> Result<Component, ReadError> {
     let (Some(name), Some(kind), Some(count)) = (fields.get(1), fields.get(2), fields.get(3)) else {
         return Err(lines.fault(line, "CMBLOCK", fields.join(","), "CMBLOCK, name, NODE or ELEM, count"));
     };
@@ -279,7 +275,7 @@ pub(super) fn component(
             return Err(lines.fault(line, &format!("component {name}"), "an empty row", "numbers"));
         }
     }
-    Ok((line, name.to_string(), of_nodes, ranges))
+    Ok(Component { name: name.to_string(), of_nodes, ranges })
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ const MATERIALS: [&str; 5] = ["material", "MaterialIds", "MaterialID", "gmsh:phy
 /// The mesh of a grid.
 pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadError> {
     let (nodes, cells) = (grid.points.len() / 3, grid.types.len());
-    if grid.points.len() % 3 != 0 {
+    if !grid.points.len().is_multiple_of(3) {
         let found = format!("{} numbers", grid.points.len());
         return Err(builder.fault(0, "points", found, "three numbers per point"));
     }

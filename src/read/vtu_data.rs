@@ -135,7 +135,7 @@ fn numbers(data: &[u8], kind: &str, big_endian: bool) -> Result<Vec<f64>, String
         "Int64" | "UInt64" | "Float64" => 8,
         _ => return Err(format!("type \"{kind}\"")),
     };
-    if data.len() % width != 0 {
+    if !data.len().is_multiple_of(width) {
         return Err(format!("{} bytes of {kind}", data.len()));
     }
     let shift = 64 - 8 * width;

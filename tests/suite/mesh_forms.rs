@@ -96,7 +96,8 @@ fn archives_that_ansys_wrote() {
         eprintln!("skipped: no archives in {}", data.display());
         return;
     }
-    let cases: [(&str, usize, &[(&str, usize)]); 3] = [
+    type Types = [(&'static str, usize)];
+    let cases: [(&str, usize, &Types); 3] = [
         ("sector.cdb", 655, &[("SOLID185 hex8", 101), ("SOLID185 wedge6", 4)]),
         ("TetBeam.cdb", 1041, &[("SOLID187 tet4", 3913)]),
         ("academic_rotor.cdb", 786, &[("SOLID185 hex8", 524)]),

@@ -174,7 +174,7 @@ impl Dynamics {
         self.rhs.copy_from_slice(load_end);
         subtract_springs(model, &state.u, &mut self.rhs);
         for d in 0..n {
-            mixed[d] = self.next.a[d] / new + c.alpha_m * self.next.v[d] + old * state.a[d] * -1.0;
+            mixed[d] = self.next.a[d] / new + c.alpha_m * self.next.v[d] - old * state.a[d];
         }
         model.mass_times(mixed, product);
         self.rhs.iter_mut().zip(&*product).for_each(|(r, p)| *r -= p);

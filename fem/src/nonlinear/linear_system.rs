@@ -23,9 +23,9 @@ const RESTART: usize = 60;
 /// Iterations of GMRES at most.
 const LIMIT: usize = 180;
 /// Residual that GMRES aims at, over the right-hand side.
-const TOLERANCE: f64 = 1e-4;
+const TOLERANCE: f64 = 1e-3;
 /// Residual that a Newton iteration can still use.
-const ACCEPTED: f64 = 1e-2;
+const ACCEPTED: f64 = 1e-1;
 /// Pivot over diagonal below which a dof counts as having no stiffness, as in statics.
 const NO_STIFFNESS: f64 = 1e-11;
 

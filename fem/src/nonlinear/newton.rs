@@ -14,7 +14,7 @@
 //!
 //! Converged when the residual on the free dofs is at most `force_tolerance` of the forces (the larger of |rhs| and |f| over all
 //! dofs, so that reactions count) *and* the work of the residual on the last correction is at most `energy_tolerance` of the largest
-//! such work before a correction in the step.
+//! such work before a correction in the step; a residual a tenth of its tolerance needs no second criterion.
 //!
 //! Line search: the step length is sought for which the work of the residual on the correction falls to
 //! half of that before it (Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section 9.2), within bounds.
@@ -76,11 +76,11 @@ pub struct NewtonOptions {
 }
 
 impl NewtonOptions {
-    /// The usual choices for a variant: tolerances 1e-6 and 1e-8, line search, 25 iterations (full), 60 (modified) or 400
+    /// The usual choices for a variant: tolerances 1e-6 and 1e-8, line search, 50 iterations (full), 60 (modified) or 400
     /// (elastic matrix).
     pub fn new(variant: Variant) -> NewtonOptions {
         let max_iterations = match variant {
-            Variant::Full => 25,
+            Variant::Full => 50,
             Variant::Modified(_) => 60,
             Variant::InitialStiffness => 400,
         };
@@ -221,6 +221,8 @@ pub(crate) struct Problem<'a> {
     pub forces: Option<f64>,
 }
 
+/// Part of the force tolerance below which the energy criterion is not asked any more.
+const WELL_BELOW: f64 = 0.1;
 /// Smallest length of a correction.
 const SHORTEST: f64 = 0.1;
 /// Longest length of a correction with a matrix that is not the tangent.
@@ -316,7 +318,9 @@ impl Newton {
             }
             let left = self.work(model).abs();
             most = most.max(work.abs());
-            if size <= self.options.force_tolerance && left <= self.options.energy_tolerance * most {
+            let NewtonOptions { force_tolerance, energy_tolerance, .. } = self.options;
+            let quiet = left <= energy_tolerance * most || size <= WELL_BELOW * force_tolerance;
+            if size <= force_tolerance && quiet {
                 self.report.plastic_points = self.force.plastic;
                 return Ok(());
             }
@@ -369,7 +373,7 @@ impl Newton {
             return Matrix::Elastic;
         }
         let start = Instant::now();
-        self.tangent.assemble(model, &self.force, problem.old, &self.w, problem.linear);
+        self.tangent.assemble(model, &self.force, problem.old, &self.w, problem.linear, iteration);
         self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
         self.system.take_tangent(model, &self.tangent, self.options.linear, &mut self.statistics)
     }

@@ -140,7 +140,7 @@ fn points(model: &Model, state: &State) -> Vec<(f64, [f64; 2], bool)> {
 }
 
 fn check(psi: f64) {
-    let (model, unit) = octant(psi, 3, 0.12, 1.18);
+    let (model, unit) = octant(psi, 2, 0.15, 1.2);
     let mut pressure = |time: f64, load: &mut [f64]| {
         load.iter_mut().zip(&unit).for_each(|(l, u)| *l = time * u);
     };

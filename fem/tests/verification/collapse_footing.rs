@@ -6,7 +6,8 @@
 //! part of that, as if the footing were wider by a fraction of an element, so Nc falls to the exact value from above as they shrink.
 //! Tolerances: 3 % (phi = 0) and 5 % (phi = 20°) on the finest mesh.
 
-use crate::collapse_common::{Course, Footing, Ground, drucker_prager, loose, mohr_coulomb, push};
+use crate::collapse_common::{Course, Footing, Ground, drucker_prager, loose, mohr_coulomb, patient, push};
+use trackbed_fem::nonlinear::NewtonOptions;
 use trackbed_fem::{Elastic, ElementKind, Material};
 
 const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
@@ -36,9 +37,16 @@ fn ground(kind: ElementKind, mesh: usize, phi: f64) -> Ground {
     Ground { kind, first, ratio, extent, square: false }
 }
 
-fn run(name: &str, ground: &Ground, material: Material, phi: f64, settlement: f64, stations: u32) -> Course {
+fn run(
+    name: &str,
+    options: NewtonOptions,
+    ground: &Ground,
+    material: Material,
+    phi: f64,
+    [settlement, stations]: [f64; 2],
+) -> Course {
     let footing = Footing::new(ground, material);
-    let course = push(&footing, loose(), settlement, stations);
+    let course = push(&footing, options, settlement, stations as u32);
     let (s, exact) = (course.statistics, prandtl(phi));
     println!(
         "{name} {} {} elements, {} dofs: Nc {:.3}, {:+.2} % of {exact:.3}, last tenth {:+.1e}; {} steps {} halvings {} iterations{}",
@@ -63,8 +71,11 @@ fn run(name: &str, ground: &Ground, material: Material, phi: f64, settlement: f6
 fn errors(name: &str, meshes: &[usize], phi: f64, psi: f64, settlement: f64, law: Law) -> Vec<f64> {
     let course = |&mesh: &usize| {
         let material = law(SOIL, COHESION, phi, psi);
-        let course = run(name, &ground(ElementKind::Hex20, mesh, phi), material, phi, settlement, 20);
+        let course =
+            run(name, loose(), &ground(ElementKind::Hex20, mesh, phi), material, phi, [settlement, 20.0]);
         assert!(course.stopped.is_none() && course.growth().abs() < 5e-3, "{name}: no plateau");
+        // Only associated flow has symmetric tangents.
+        assert!(phi != psi || course.statistics.factorizations_unsymmetric == 0, "{name}: not associated");
         course.factor(COHESION) / prandtl(phi) - 1.0
     };
     meshes.iter().map(course).collect()
@@ -80,9 +91,9 @@ fn exact_factors() {
 }
 
 #[test]
-fn tresca() {
-    let e = errors("Tresca", &[0, 1], 0.0, 0.0, 0.04, mohr_coulomb);
-    assert!(0.0 < e[1] && e[1] < 0.7 * e[0] && e[0] < 0.15, "{e:?}");
+fn tresca_converges() {
+    let e = errors("Tresca", &[0, 1, 2], 0.0, 0.0, 0.04, mohr_coulomb);
+    assert!(e[0] > e[1] && e[1] > e[2] && e[2] > 0.0 && e[2] < 0.03, "{e:?}");
 }
 
 #[test]
@@ -93,48 +104,52 @@ fn von_mises_in_plane_strain() {
 
 #[test]
 fn friction_associated() {
-    let e = errors("phi 20 psi 20", &[0], 20.0, 20.0, 0.25, mohr_coulomb);
-    assert!(0.0 < e[0] && e[0] < 0.2, "{e:?}");
+    let e = errors("phi 20 psi 20", &[0, 1], 20.0, 20.0, 0.25, mohr_coulomb);
+    assert!(0.0 < e[1] && e[1] < 0.6 * e[0] && e[0] < 0.12, "{e:?}");
 }
 
 #[test]
-#[ignore = "three meshes, minutes"]
-fn tresca_and_von_mises_converge() {
-    for (name, law) in [("Tresca", mohr_coulomb as Law), ("von Mises", drucker_prager)] {
-        let e = errors(name, &[0, 1, 2], 0.0, 0.0, 0.04, law);
-        assert!(e[0] > e[1] && e[1] > e[2] && e[2] > 0.0 && e[2] < 0.03, "{name}: {e:?}");
-    }
+#[ignore = "three meshes, 2 s"]
+fn von_mises_converges() {
+    let e = errors("von Mises", &[0, 1, 2], 0.0, 0.0, 0.04, drucker_prager);
+    assert!(e[0] > e[1] && e[1] > e[2] && e[2] > 0.0 && e[2] < 0.03, "{e:?}");
 }
 
 #[test]
-#[ignore = "three meshes, minutes"]
+#[ignore = "three meshes, 5 s"]
 fn friction_associated_converges() {
     let e = errors("phi 20 psi 20", &[0, 1, 2], 20.0, 20.0, 0.25, mohr_coulomb);
     assert!(e[0] > e[1] && e[1] > e[2] && e[2].abs() < 0.05, "{e:?}");
 }
 
-/// Flow without dilation: no theorem gives the limit load; it lies somewhat below Prandtl's and scatters as shear bands form.
-#[test]
-#[ignore = "three meshes, minutes"]
-fn friction_without_dilation() {
-    for mesh in 0..3 {
-        let material = mohr_coulomb(SOIL, COHESION, 20.0, 0.0);
-        let course = run("phi 20 psi 0", &ground(ElementKind::Hex20, mesh, 20.0), material, 20.0, 0.12, 40);
-        let error = course.factor(COHESION) / prandtl(20.0) - 1.0;
-        assert!(course.stopped.is_none() && error.abs() < 0.15, "{error}");
+/// Flow without dilation: no theorem gives the limit load; on these meshes it stays near Prandtl's.
+fn without_dilation(phi: f64, mesh: usize, options: NewtonOptions, path: [f64; 2]) -> Course {
+    let material = mohr_coulomb(SOIL, COHESION, phi, 0.0);
+    run(&format!("phi {phi} psi 0"), options, &ground(ElementKind::Hex20, mesh, phi), material, phi, path)
+}
+
+fn check_without_dilation(phi: f64, meshes: &[usize], path: [f64; 2]) {
+    for &mesh in meshes {
+        let course = without_dilation(phi, mesh, patient(), path);
+        let error = course.factor(COHESION) / prandtl(phi) - 1.0;
+        assert!(course.stopped.is_none() && error.abs() < 0.1, "{error}");
+        assert!(course.growth().abs() < 0.02, "no plateau: {}", course.growth());
     }
+}
+
+#[test]
+fn friction_without_dilation() {
+    check_without_dilation(20.0, &[0], [0.12, 40.0]);
 }
 
 /// phi = 25°, psi = 0: a plain full Newton iteration is known to stall at 43 % of the load.
 #[test]
-#[ignore = "minutes"]
-fn strong_friction_without_dilation() {
-    for mesh in 0..2 {
-        let material = mohr_coulomb(SOIL, COHESION, 25.0, 0.0);
-        let course = run("phi 25 psi 0", &ground(ElementKind::Hex20, mesh, 25.0), material, 25.0, 0.2, 60);
-        let share = course.curve.iter().fold(0.0_f64, |m, p| m.max(p[1])) / COHESION / prandtl(25.0);
-        println!("largest load {share:.3} of Prandtl's");
-        assert!(share > 0.85, "{share}");
+#[ignore = "five runs and the course of full Newton beside them, minutes"]
+fn friction_without_dilation_on_finer_meshes() {
+    check_without_dilation(20.0, &[0, 1, 2], [0.12, 40.0]);
+    check_without_dilation(25.0, &[0, 1], [0.2, 60.0]);
+    for (phi, path) in [(20.0, [0.12, 40.0]), (25.0, [0.2, 60.0])] {
+        without_dilation(phi, 0, loose(), path);
     }
 }
 
@@ -144,7 +159,14 @@ fn strong_friction_without_dilation() {
 fn kinds_of_elements() {
     for kind in [ElementKind::Hex20, ElementKind::Hex8, ElementKind::Wedge15, ElementKind::Tet10] {
         for mesh in 0..2 {
-            run("Tresca", &ground(kind, mesh, 0.0), mohr_coulomb(SOIL, COHESION, 0.0, 0.0), 0.0, 0.04, 20);
+            run(
+                "Tresca",
+                loose(),
+                &ground(kind, mesh, 0.0),
+                mohr_coulomb(SOIL, COHESION, 0.0, 0.0),
+                0.0,
+                [0.04, 20.0],
+            );
         }
     }
 }

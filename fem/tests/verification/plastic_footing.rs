@@ -3,9 +3,9 @@
 //! And what the variants of the iteration cost on it.
 
 use crate::common::difference;
-use crate::plastic_common::{cpu_seconds, footing, mohr_coulomb};
-use trackbed_fem::nonlinear::{NewtonOptions, QuasiStatic, StepControl, Variant};
-use trackbed_fem::{Elastic, State};
+use crate::plastic_common::{cpu_seconds, footing, model, mohr_coulomb};
+use trackbed_fem::nonlinear::{Driven, NewtonOptions, QuasiStatic, StepControl, Variant};
+use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, State};
 
 const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
 const COHESION: f64 = 10e3;
@@ -25,7 +25,7 @@ fn variants() -> Vec<(&'static str, NewtonOptions)> {
 #[ignore = "prints the cost of the variants, a minute"]
 fn cost_of_the_variants() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    pool.install(|| table_of_costs());
+    pool.install(table_of_costs);
 }
 
 fn table_of_costs() {
@@ -50,7 +50,7 @@ fn table_of_costs() {
             let outcome = solver.advance(&footing.model, &mut state, end, &mut footing.loading(), |_, _| ());
             let cpu = cpu_seconds() - start;
             let s = solver.statistics();
-            let factor = footing.pressure(&solver.reactions()) / COHESION;
+            let factor = footing.pressure(solver.reactions()) / COHESION;
             let miss = difference(&state.u, reference.get_or_insert_with(|| state.u.clone()));
             println!(
                 "phi {phi} psi {psi} {name}: q/c {factor:.4} at {:.4} m{}, u {miss:.1e}; {} steps {} halvings {} iterations {} evaluations {} L L^T {} L U, {} not positive, {} singular; CPU {cpu:.2} s",
@@ -85,4 +85,60 @@ fn footing_on_clay_reaches_its_plateau() {
     println!("footing: q/c {factors:.4?}, Prandtl {exact:.4}; {:?}", solver.statistics());
     assert!(factors[2] > exact && factors[2] < 1.10 * exact, "{factors:?}");
     assert!((factors[2] / factors[1] - 1.0).abs() < 3e-3, "not a plateau: {factors:?}");
+}
+
+/// A quarter of a square footing pushed into a block: cost of associated flow (L L^T), and of non-associated flow by L U and by
+/// GMRES on the elastic factor.
+#[test]
+#[ignore = "prints the cost of unsymmetric systems, a minute"]
+fn cost_of_unsymmetric_systems() {
+    use trackbed_fem::nonlinear::LinearMethod;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        for side in [10, 14] {
+            for (psi, linear) in
+                [(20.0, LinearMethod::Direct), (5.0, LinearMethod::Direct), (5.0, LinearMethod::Krylov)]
+            {
+                let mesh = Mesh::block([side, side, side * 7 / 10], [5.0, 5.0, 3.5]);
+                let mut constraints = Vec::new();
+                for (n, x) in mesh.coordinates.iter().enumerate() {
+                    let pushed = x[2] == 3.5 && x[0] <= 1.0 && x[1] <= 1.0;
+                    for (direction, held) in [
+                        (0, x[0] == 0.0 || x[0] == 5.0 || x[2] == 0.0 || pushed),
+                        (1, x[1] == 0.0 || x[1] == 5.0 || x[2] == 0.0 || pushed),
+                        (2, x[2] == 0.0 || pushed),
+                    ] {
+                        if held {
+                            constraints.push(Constraint { node: n as u32, direction, value: 0.0 });
+                        }
+                    }
+                }
+                let model = model(mesh, constraints, mohr_coulomb(SOIL, COHESION, 20.0, psi), Quadrature::Gauss2);
+                let pushed: Vec<bool> = model
+                    .supports()
+                    .fixed()
+                    .iter()
+                    .map(|(d, _)| d % 3 == 2 && model.mesh().coordinates[*d as usize / 3][2] == 3.5)
+                    .collect();
+                let mut loading = Driven {
+                    load: |_: f64, _: &mut [f64]| (),
+                    prescribed: |time: f64, values: &mut [f64]| {
+                        values.iter_mut().zip(&pushed).filter(|(_, p)| **p).for_each(|(v, _)| *v = -time);
+                    },
+                };
+                let options = NewtonOptions { linear, ..NewtonOptions::default() };
+                let mut state = State::new(&model);
+                let mut solver = QuasiStatic::new(&model, options, StepControl::fixed(0.02)).unwrap();
+                let start = cpu_seconds();
+                let outcome = solver.advance(&model, &mut state, 0.1, &mut loading, |_, _| ());
+                let s = solver.statistics();
+                println!(
+                    "{} free dofs, psi {psi} {linear:?}: {} steps{}, {} iterations, {} halvings, {} L L^T, {} L U, {} of GMRES ({} failed); CPU {:.1} s of which assembly {:.1} factor {:.1} solve {:.1} (clock)",
+                    model.free_dof_count(), s.steps, if outcome.is_ok() { "" } else { " STOPPED" }, s.iterations, s.halvings,
+                    s.factorizations_symmetric, s.factorizations_unsymmetric, s.krylov_iterations, s.krylov_failures,
+                    cpu_seconds() - start, s.assembly_seconds, s.factor_seconds, s.solve_seconds
+                );
+            }
+        }
+    });
 }

@@ -94,7 +94,7 @@ pub struct Newton {
     pub line_search: Option<bool>,
     /// Residual force over the largest force at which equilibrium counts as found; default 1e-6.
     pub tolerance: Option<f64>,
-    /// Iterations at most; default 25 (full), 60 (modified) or 400 (initial stiffness).
+    /// Iterations at most; default 50 (full), 60 (modified) or 400 (initial stiffness).
     pub max_iterations: Option<u32>,
     /// How unsymmetric equations are solved; default `auto`.
     pub solver: Option<LinearSolver>,
