@@ -10,6 +10,8 @@ mod suite {
     mod mesh_forms_files;
     mod mesh_orders;
     mod scenes;
+    mod solid_runs;
+    mod solid_scenes;
     mod summary;
     pub mod support;
 }

@@ -119,23 +119,28 @@ impl System for QuasiStaticSystem<'_> {
         let before = self.state.clone();
         let to = (self.steps + 1) as f64 * self.step;
         let mut course = Course { part, gravity: &self.gravity, carried: self.carried };
-        self.solver
+        let outcome = self
+            .solver
             .advance(model, &mut self.state, to, &mut course, |_, _| {})
-            .map_err(|e| part.failure(&e))?;
-        self.steps += 1;
+            .map_err(|e| part.failure(&e));
+        // A step given up half-way counts as far as it came, so that the accounts belong to the state that is kept.
+        let reached = if outcome.is_ok() { to } else { self.state.time };
+        self.steps += u64::from(outcome.is_ok());
         let mut load = vec![0.0; self.load.len()];
-        course.load(to, &mut load);
+        course.load(reached, &mut load);
         let reactions = self.solver.reactions().to_vec();
-        // The mean of the forces at both ends does exactly the work of the mean stresses (virtual work).
-        let mut work = 0.0;
-        for d in 0..load.len() {
-            let ends = self.load[d] + load[d] - 2.0 * self.gravity[d] + self.reactions[d] + reactions[d];
-            work += 0.5 * ends * (self.state.u[d] - before.u[d]);
+        if reached > before.time {
+            // The mean of the forces at both ends does exactly the work of the mean stresses (virtual work).
+            let mut work = 0.0;
+            for d in 0..load.len() {
+                let ends = self.load[d] + load[d] - 2.0 * self.gravity[d] + self.reactions[d] + reactions[d];
+                work += 0.5 * ends * (self.state.u[d] - before.u[d]);
+            }
+            self.spent.solid_load_work += work;
+            self.spent.plastic += energy::plastic_work(model, &before.points, &self.state.points);
+            (self.load, self.reactions) = (load, reactions);
         }
-        self.spent.solid_load_work += work;
-        self.spent.plastic += energy::plastic_work(model, &before.points, &self.state.points);
-        (self.load, self.reactions) = (load, reactions);
-        Ok(())
+        outcome
     }
 
     fn stored(&self) -> Stored {
@@ -221,7 +226,8 @@ impl System for PlasticDynamics<'_> {
         let to = (self.steps + 1) as f64 * self.step;
         let mut course = Course { part, gravity: &self.gravity, carried: 1.0 };
         let spent = &mut self.spent;
-        self.solver
+        let outcome = self
+            .solver
             .advance(&part.model, &mut self.state, to, &mut course, |_, _, audit| {
                 spent.solid_load_work += audit.external_work + audit.support_work;
                 spent.rayleigh += audit.damping_dissipation;
@@ -229,13 +235,15 @@ impl System for PlasticDynamics<'_> {
                 spent.plastic += audit.plastic_dissipation;
                 spent.numerical += audit.numerical_dissipation;
             })
-            .map_err(|e| part.failure(&e))?;
-        self.steps += 1;
+            .map_err(|e| part.failure(&e));
+        // A step given up half-way counts as far as it came, so that the accounts belong to the state that is kept.
+        let reached = if outcome.is_ok() { to } else { self.state.time };
+        self.steps += u64::from(outcome.is_ok());
         let moved = self.state.u.iter().zip(&before).map(|(u, b)| u - b);
         self.spent.solid_load_work -= self.gravity.iter().zip(moved).map(|(f, du)| f * du).sum::<f64>();
         self.load.fill(0.0);
-        course.load(to, &mut self.load);
-        Ok(())
+        course.load(reached, &mut self.load);
+        outcome
     }
 
     fn stored(&self) -> Stored {

@@ -48,7 +48,13 @@ impl Stage<'_> {
     ) -> Result<(), Failure> {
         summary.model.solid_step = self.job.solid_step;
         self.prepare()?;
-        self.main_stage(system, None, summary)?;
+        let outcome = self.main_stage(system, None, summary);
+        // A step without equilibrium leaves the last state that had one.
+        match &outcome {
+            Ok(()) => {}
+            Err(Failure::Numerical(_)) if system.keeps_its_state() => {}
+            Err(_) => return outcome,
+        }
         let reactions = system.reactions().unwrap_or_default();
         summary.reactions = solid
             .named_sums(&reactions)
@@ -58,6 +64,6 @@ impl Stage<'_> {
             let state = system.solid().expect("a system with a solid").state;
             statics::write_tables(&solid.model, state, &reactions, self.dir)?;
         }
-        Ok(())
+        outcome
     }
 }

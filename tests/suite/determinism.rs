@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Runs a scene with 1, 2 and 3 threads; all files must be the same, and those of `expected` must be there.
-fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder {
+pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder {
     let folder = Folder::new("threads");
     let outs = ["1", "2", "3"].map(|threads| {
         let out = folder.join(threads);

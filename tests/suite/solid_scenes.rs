@@ -1,0 +1,336 @@
+//! The shipped scenes of the solid, against closed forms and published values. Each test states the source and the
+//! tolerance; what is left below the tolerance is the mesh's.
+
+use super::support::{Folder, Table, json, repository, run, trackbed};
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+/// A shipped scene.
+fn shipped(name: &str) -> PathBuf {
+    repository().join("inputs").join(name)
+}
+
+/// Runs a shipped scene; its folder and its history.
+fn finished(name: &str, set: &[&str]) -> (Folder, Table) {
+    let folder = Folder::new("shipped");
+    run(&shipped(name), &folder.join("out"), set).good();
+    let history = Table::read(&folder.join("out/history.csv"));
+    (folder, history)
+}
+
+/// Frequencies [Hz] that `trackbed modal` finds in a shipped scene; effective masses must not exceed the mass [kg].
+fn frequencies(name: &str, count: usize, mass: f64) -> Vec<f64> {
+    let folder = Folder::new("modal");
+    let out = folder.join("out").display().to_string();
+    let scene = shipped(name).display().to_string();
+    trackbed(["modal", &scene, "-n", &count.to_string(), "--out", &out]).good();
+    let table = Table::read(&folder.join("out/modes.csv"));
+    assert_eq!(table.rows.len(), count);
+    for axis in ["x", "y", "z"] {
+        let sum: f64 = table.column(&format!("effective_mass_{axis}")).iter().sum();
+        assert!(sum <= mass * (1.0 + 1e-6), "{axis}: {sum} kg of {mass} kg");
+    }
+    for mode in 1..=count {
+        assert!(folder.join(&format!("out/frames/mode_{mode:03}.vtu")).is_file());
+    }
+    table.column("frequency")
+}
+
+#[track_caller]
+fn near(what: &str, found: f64, exact: f64, tolerance: f64) {
+    println!("{what}: {found:.6e}, exact {exact:.6e}, {:+.3} %", 100.0 * (found / exact - 1.0));
+    assert!((found / exact - 1.0).abs() <= tolerance, "{what}: {found} against {exact}");
+}
+
+/// Frequency of a beam of steel in bending, Euler–Bernoulli: `square` is (βL)², `depth` [m] that of the section.
+fn beam(square: f64, depth: f64) -> f64 {
+    let (length, young, density): (f64, f64, f64) = (2.0, 210e9, 7850.0);
+    square / (2.0 * PI * length * length) * (young / density).sqrt() * depth / 12.0_f64.sqrt()
+}
+
+/// Prandtl: N_c = (N_q − 1) cot φ. Displacement elements come from above; the shipped mesh by 8 %.
+#[test]
+fn footing_reaches_prandtls_load() {
+    let (folder, history) = finished("solid/footing.toml", &[]);
+    let phi = 20.0_f64.to_radians();
+    let nq = (PI * phi.tan()).exp() * (PI / 4.0 + phi / 2.0).tan().powi(2);
+    let exact = (nq - 1.0) / phi.tan();
+    // Half a metre by a quarter, cohesion 20 kPa.
+    let factor: Vec<f64> =
+        history.column("footing_reaction_z").iter().map(|r| -r / (0.5 * 0.25 * 20e3)).collect();
+    let (last, before) = (factor[factor.len() - 1], factor[factor.len() * 4 / 5]);
+    println!("Nc {last:.3}, Prandtl {exact:.3}: {:+.1} %", 100.0 * (last / exact - 1.0));
+    assert!(last > exact && last < 1.10 * exact, "{last} against {exact}");
+    assert!((last / before - 1.0).abs() < 5e-3, "a plateau: {before} then {last}");
+    let summary = json(&folder.join("out/summary.json"));
+    assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 1e-4, "{}", summary["energy"]);
+    assert!(summary["newton"]["iterations"].as_u64().unwrap() > summary["newton"]["steps"].as_u64().unwrap());
+    let reaction = summary["reactions"][0]["force"][2].as_f64().unwrap();
+    assert_eq!(reaction, *history.column("footing_reaction_z").last().unwrap());
+}
+
+/// Griffiths and Lane 1999, example 1: 1.4; Bishop and Morgenstern: 1.380. On a quarter of the shipped mesh's elements, to
+/// 5 % of the latter.
+#[test]
+fn slope_has_the_published_factor_of_safety() {
+    let folder = Folder::new("slope");
+    let set = [
+        "solid.block.x.counts=[10]",
+        "solid.block.z.counts=[4]",
+        "solid.strength_reduction.tolerance=0.05",
+        "output.tecplot=false",
+    ];
+    run(&shipped("solid/slope.toml"), &folder.join("out"), &set).good();
+    let safety = &json(&folder.join("out/summary.json"))["safety"];
+    let [stands, fails] = ["stands_at", "fails_at"].map(|k| safety[k].as_f64().unwrap());
+    println!("stands at {stands:.4}, fails at {fails:.4}");
+    assert!(stands < fails && fails - stands <= 0.05);
+    near("factor of safety", 0.5 * (stands + fails), 1.380, 0.05);
+    let table = Table::read(&folder.join("out/safety.csv"));
+    assert_eq!(table.rows.len(), safety["trials"].as_array().unwrap().len());
+    // The trials that stand move the further the weaker they are.
+    let mut standing: Vec<[f64; 2]> = table
+        .rows
+        .iter()
+        .filter(|r| r[table.index("stands")] == 1.0)
+        .map(|r| [r[table.index("factor")], r[table.index("largest_displacement")]])
+        .collect();
+    standing.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    assert!(standing.len() >= 3 && standing.windows(2).all(|w| w[1][1] > w[0][1]), "{standing:?}");
+    assert!(folder.join("out/frames/solid_00000.vtu").is_file());
+}
+
+/// Hill 1950, Yu 1992: displacement of the bore when the plastic zone reaches 0.6, 0.8 and 1.0 m. Tolerance 1 %.
+#[test]
+fn thick_cylinder_opens_as_the_closed_form_says() {
+    for (dilation, exact) in [
+        ("25 deg", [2.652713650909448e-4, 4.371477541776971e-4, 6.193686171384218e-4]),
+        ("5 deg", [2.6825e-4, 4.6462e-4, 6.9498e-4]),
+    ] {
+        let set = format!("solid.material.0.dilation=\"{dilation}\"");
+        let (_folder, history) = finished("solid/cylinder/scene.toml", &[&set]);
+        let (time, bore) = (history.column("time"), history.column("bore_u_x"));
+        for (level, exact) in exact.into_iter().enumerate() {
+            let row = time.iter().position(|t| (t - (level + 1) as f64).abs() < 1e-9).unwrap();
+            near(&format!("dilation {dilation}, level {}", level + 1), bore[row], exact, 0.01);
+        }
+    }
+}
+
+/// Pressure [Pa] in the cavity and displacement of its wall [m] at the plastic radius `c` [m], after Yu and Houlsby 1991 in
+/// small strain; the shipped scene's constants. Tension positive inside, `s_r` and `s_t` being the stresses.
+fn cavity(c: f64) -> (f64, f64) {
+    let (young, nu, cohesion, b): (f64, f64, f64, f64) = (50e6, 0.3, 20e3, 8.0);
+    let ratio = |angle: f64| (1.0 + angle.to_radians().sin()) / (1.0 - angle.to_radians().sin());
+    let (al, be) = (ratio(25.0), ratio(10.0));
+    let y = 2.0 * cohesion * al.sqrt();
+    // Elastic outside c: s_r = -s (1/r³ - 1/b³), s_t = s (1/(2 r³) + 1/b³), at yield al s_t - s_r = y in c.
+    let s = y / ((0.5 * al + 1.0) / c.powi(3) + (al - 1.0) / b.powi(3));
+    let border = [-s * (c.powi(-3) - b.powi(-3)), s * (0.5 * c.powi(-3) + b.powi(-3))];
+    let power = 2.0 * (al - 1.0) / al;
+    let radial = |r: f64| y / (al - 1.0) + (border[0] - y / (al - 1.0)) * (r / c).powf(-power);
+    // u' + (2/be) u/r is that of the elastic strains: integrated inwards by Simpson's rule.
+    let q = 2.0 / be;
+    let source = |r: f64| {
+        let (s_r, s_t) = (radial(r), (radial(r) + y) / al);
+        ((s_r - 2.0 * nu * s_t) + q * ((1.0 - nu) * s_t - nu * s_r)) / young * r.powf(q)
+    };
+    let (n, h) = (400, (c - 1.0) / 400.0);
+    let weight = |i: i32| if i == 0 || i == n { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+    let integral: f64 = (0..=n).map(|i| weight(i) * source(1.0 + f64::from(i) * h)).sum::<f64>() * h / 3.0;
+    let at_border = c * ((1.0 - nu) * border[1] - nu * border[0]) / young;
+    (-radial(1.0), at_border * c.powf(q) - integral)
+}
+
+/// Tolerance 1 %: the mesh is coarse.
+#[test]
+fn cavity_expands_as_the_closed_form_says() {
+    let (pressure, exact) = cavity(2.0);
+    let (_folder, history) = finished("verify/cavity/scene.toml", &[]);
+    let text = std::fs::read_to_string(shipped("verify/cavity/scene.toml")).unwrap();
+    let given = text.split("pressure = ").nth(1).unwrap().split('\n').next().unwrap();
+    near("pressure of the scene", given.parse().unwrap(), pressure, 1e-9);
+    near("wall", *history.column("wall_u_x").last().unwrap(), exact, 0.01);
+}
+
+/// Mohr–Coulomb: axial stress −(k p0 + 2 c √k) and dilatancy k_ψ − 1. Tolerance 1e-6 of the stress, the iteration's.
+#[test]
+fn triaxial_test_ends_on_its_plateau() {
+    let (folder, history) = finished("verify/triaxial.toml", &[]);
+    let ratio = |angle: f64| (1.0 + angle.to_radians().sin()) / (1.0 - angle.to_radians().sin());
+    let (k, flow) = (ratio(30.0), ratio(10.0));
+    let plateau = -(k * 100e3 + 2.0 * 20e3 * k.sqrt());
+    let axial = history.column("plate_reaction_z");
+    near("axial stress", *axial.last().unwrap(), plateau, 1e-6);
+    let gauss = Table::read(&folder.join("out/gauss.csv"));
+    for (found, lateral) in gauss.column("szz").into_iter().zip(gauss.column("sxx")) {
+        assert!((found / plateau - 1.0).abs() < 1e-6 && (lateral / -100e3 - 1.0).abs() < 1e-6, "{found}");
+    }
+    assert!(gauss.column("equivalent_plastic_strain").iter().all(|kappa| *kappa > 0.01));
+    let rate = |name: &str| {
+        let column = history.column(name);
+        column[column.len() - 1] - column[column.len() - 2]
+    };
+    let [x, y, z] = ["corner_u_x", "corner_u_y", "corner_u_z"].map(rate);
+    near("dilatancy", (x + y + z) / z.abs(), flow - 1.0, 1e-4);
+    // The base carries what the plate puts on: the sums of the reactions are equal and opposite.
+    let base = history.column("base_reaction_z");
+    assert!(axial.iter().zip(base).all(|(a, b)| (a + b).abs() <= 1e-9 * plateau.abs()));
+}
+
+/// A wave in one dimension: below 1 % of the energy may stay behind, and every point ends lower by ∫ p dt/(ρ c_p), to
+/// 0.5 %.
+#[test]
+fn wave_leaves_through_the_absorbing_base() {
+    let (folder, history) = finished("verify/wave_column.toml", &[]);
+    let energy = &json(&folder.join("out/summary.json"))["energy"];
+    let of = |part: &str, key: &str| energy[part][key].as_f64().unwrap();
+    let left = (of("end", "solid_kinetic") + of("end", "solid_strain")) / of("spent", "solid_load_work");
+    println!("energy left {left:.1e} of the work, absorbed {:.5} J", of("spent", "absorbed"));
+    assert!(left < 0.01);
+    near("absorbed", of("spent", "absorbed"), of("spent", "solid_load_work"), 1e-3);
+    let modulus = 50e6 * 0.7 / (1.3 * 0.4);
+    let exact = -10e3 * 0.5 / 40.0 / (2000.0_f64 * modulus).sqrt();
+    for probe in ["top_u_z", "middle_u_z"] {
+        near(probe, *history.column(probe).last().unwrap(), exact, 5e-3);
+    }
+}
+
+/// Clamped beam: (βL)² = 3.51602 and 22.0345. Tolerance 1 %: the clamp, shear and rotary inertia.
+#[test]
+fn clamped_beam_has_the_frequencies_of_euler_and_bernoulli() {
+    let found = frequencies("verify/beam_modes.toml", 4, 78.5);
+    let exact = [beam(3.51602, 0.05), beam(3.51602, 0.1), beam(22.0345, 0.05), beam(22.0345, 0.1)];
+    for ((i, found), (exact, tolerance)) in
+        found.iter().enumerate().zip(exact.into_iter().zip([0.01, 0.01, 0.01, 0.015]))
+    {
+        near(&format!("mode {}", i + 1), *found, exact, tolerance);
+    }
+}
+
+/// Free beam: six rigid motions, then (βL)² = 22.3733. Tolerance 1 %.
+#[test]
+fn free_beam_has_six_rigid_motions() {
+    let found = frequencies("verify/free_beam.toml", 8, 78.5);
+    assert!(found[..6].iter().all(|f| *f < 0.01), "{found:?}");
+    near("mode 7", found[6], beam(22.3733, 0.05), 0.01);
+    near("mode 8", found[7], beam(22.3733, 0.1), 0.01);
+}
+
+/// d'Alembert: the surface of a layer moves by 2 [u(t − H/c) − u(t − 3H/c) + …] when its base moves by u. Tolerance 1 %
+/// of the largest motion, at every row.
+#[test]
+fn layer_answers_the_motion_of_its_base() {
+    let (_folder, history) = finished("solid/base_motion/scene.toml", &["output.vtk=false"]);
+    let pulse = |t: f64| if (0.0..0.1).contains(&t) { 0.01 * (PI * t / 0.1).sin().powi(4) } else { 0.0 };
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    let columns = ["time", "surface_u_x", "ground_u_x"].map(|name| history.column(name));
+    for ((t, surface), ground) in columns[0].iter().zip(&columns[1]).zip(&columns[2]) {
+        let exact: f64 =
+            (0..4).map(|n| 2.0 * (-1.0_f64).powi(n) * pulse(t - 0.1 * f64::from(2 * n + 1))).sum();
+        worst = worst.max((surface - exact).abs());
+        largest = largest.max(surface.abs());
+        assert!((ground - pulse(*t)).abs() < 1e-5, "the base at {t}: {ground}");
+    }
+    println!("surface: largest {largest:.6} m, farthest from d'Alembert {:.2} %", 100.0 * worst / 0.02);
+    assert!(worst < 0.01 * 0.02 && largest > 0.0198);
+}
+
+/// The trough runs along with the axle, at 50 m/s; it is deeper than that of a load that stands, since the axle
+/// runs at a third of the speed of shear waves, but not by more than a quarter.
+#[test]
+fn deflection_runs_along_with_the_axle() {
+    let (folder, history) = finished("solid/moving_load.toml", &["output.vtk=false"]);
+    let time = history.column("time");
+    let trough = |history: &Table, probe: &str| {
+        let course = history.column(&format!("{probe}_u_z"));
+        let least = (0..course.len()).min_by(|&a, &b| course[a].total_cmp(&course[b])).unwrap();
+        (least, course[least], course[course.len() - 1])
+    };
+    let [three, six, nine] = ["y3", "y6", "y9"].map(|probe| trough(&history, probe));
+    println!("troughs at {:.3} {:.3} {:.3} s", time[three.0], time[six.0], time[nine.0]);
+    for (first, second) in [(three, six), (six, nine)] {
+        let speed = 3.0 / (time[second.0] - time[first.0]);
+        assert!((speed / 50.0 - 1.0).abs() < 0.1, "{speed} m/s");
+    }
+    assert!(six.2.abs() < 0.1 * six.1.abs(), "what stays: {} of {}", six.2, six.1);
+    let energy = &json(&folder.join("out/summary.json"))["energy"];
+    for sink in ["absorbed", "rayleigh"] {
+        assert!(energy["spent"][sink].as_f64().unwrap() > 0.0, "{sink}");
+    }
+    // The same loads, each in turn at rest.
+    let text = std::fs::read_to_string(shipped("solid/moving_load.toml")).unwrap();
+    let line = |start: &str| text.lines().find(|l| l.starts_with(start)).unwrap();
+    let slow = text
+        .replace(&format!("{}\n{}\n", line("dynamics"), line("rayleigh")), "quasi_static = {}\n")
+        .replace("solid_step = \"2 ms\"", "solid_step = \"20 ms\"")
+        .replace("history_interval = \"2 ms\"", "history_interval = \"10 ms\"");
+    let scene = folder.write("slow.toml", &slow);
+    run(&scene, &folder.join("slow"), &["output.vtk=false"]).good();
+    let standing = trough(&Table::read(&folder.join("slow/history.csv")), "y6");
+    let factor = six.1 / standing.1;
+    println!("trough {:.3} mm, of a standing load {:.3} mm: {factor:.3}", 1e3 * six.1, 1e3 * standing.1);
+    assert!(factor > 1.0 && factor < 1.25, "{factor}");
+}
+
+/// Weight and load are carried by the base at every step (1e-5 of them, ten times the iteration's tolerance), the
+/// embankment keeps its tension below the cut-off, the ground stays inside its cone, and a settlement is left.
+#[test]
+fn plastic_embankment_carries_and_settles() {
+    let (folder, history) = finished("solid/embankment_plastic.toml", &[]);
+    let (time, base) = (history.column("time"), history.column("base_reaction_z"));
+    // Four elements of 4/14 m each lie under the load.
+    let (weight, load) = (base[0], 100e3 * 4.0 * 4.0 / 14.0);
+    for (t, carried) in time.iter().zip(&base) {
+        let share = if *t <= 1.0 { *t } else { 2.0 - t };
+        near("base", *carried, weight + share * load, 1e-5);
+    }
+    // Width 28 m at the base, 8 m on top, over 7 m: areas of the two layers of this half, by the heights of the layers.
+    let width = |z: f64| 14.0 - 10.0 * (z + 4.0) / 7.0;
+    let ground = 0.5 * (width(-4.0) + width(0.0)) * 4.0 * 1800.0;
+    let embankment = 0.5 * (width(0.0) + width(3.0)) * 3.0 * 2000.0;
+    near("weight", weight, 9.81 * (ground + embankment), 1e-5);
+    let crest = history.column("crest_u_z");
+    let deepest = crest.iter().copied().fold(0.0, f64::min);
+    let left = crest[crest.len() - 1];
+    println!("settles by {:.2} mm under the load, {:.2} mm stay", -1e3 * deepest, -1e3 * left);
+    assert!(left < -1e-3 && deepest < 1.5 * left, "{left} of {deepest}");
+
+    trackbed([
+        "mesh",
+        "convert",
+        &shipped("solid/embankment_plastic.toml").display().to_string(),
+        &folder.join("lists").display().to_string(),
+    ])
+    .good();
+    let list = std::fs::read_to_string(folder.join("lists/ELEMENTNUM.DAT")).unwrap();
+    let material: std::collections::HashMap<u32, u32> = list
+        .lines()
+        .map(|l| l.split_whitespace().map(|w| w.parse().unwrap()).collect::<Vec<u32>>())
+        .map(|row| (row[0], row[1]))
+        .collect();
+    let gauss = Table::read(&folder.join("out/gauss.csv"));
+    let at = ["element", "sxx", "syy", "szz", "sxy", "syz", "szx"].map(|name| gauss.index(name));
+    let tan = 20.0_f64.to_radians().tan();
+    let root = (9.0 + 12.0 * tan * tan).sqrt();
+    let (kappa, mut seen, mut yielded) = (gauss.index("equivalent_plastic_strain"), [0; 2], [0; 2]);
+    for row in &gauss.rows {
+        let [e, xx, yy, zz, xy, yz, zx] = at.map(|i| row[i]);
+        let stress = nalgebra::Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
+        let upper = usize::from(material[&(e as u32)] == 2);
+        seen[upper] += 1;
+        yielded[upper] += usize::from(row[kappa] > 1e-6);
+        if upper == 1 {
+            let most = stress.symmetric_eigenvalues().max();
+            assert!(most < 2e3 * 1.001, "element {e}: tension {most} Pa");
+        } else {
+            let p = stress.trace() / 3.0;
+            let deviator = stress - nalgebra::Matrix3::identity() * p;
+            let f = (0.5 * deviator.norm_squared()).sqrt() + 3.0 * tan / root * p - 3.0 / root * 15e3;
+            assert!(f < 1.0, "element {e}: {f} Pa outside the cone");
+        }
+    }
+    assert_eq!(seen, [14 * 4 * 8, 14 * 3 * 8]);
+    println!("points that have yielded: {yielded:?} of {seen:?}");
+    assert!(yielded.iter().all(|n| *n > 50), "both materials yield: {yielded:?}");
+}
