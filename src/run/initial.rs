@@ -36,7 +36,7 @@ pub fn state(part: &SolidPart, gravity: &[f64]) -> Result<(State, f64), Failure>
 pub fn under_load(part: &SolidPart, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
     let model = &part.model;
     let (mut state, carried) = state(part, gravity)?;
-    let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 12 };
+    let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 40 };
     let mut solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
     let mut loading = |time: f64, f: &mut [f64]| {
         for d in 0..f.len() {

@@ -193,7 +193,7 @@ impl<'a> PlasticDynamics<'a> {
         let gravity = model.gravity_load();
         let (mut state, _) = super::initial::state(part, &gravity)?;
         let control =
-            StepControl { initial: step, min: step * SMALLEST_PART, max: step, target_iterations: 12 };
+            StepControl { initial: step, min: step * SMALLEST_PART, max: step, target_iterations: 40 };
         let solver = match method {
             TimeMethod::Newmark(m) => Dynamics::newmark(model, m, part.newton, control),
             TimeMethod::Hht(alpha) => Dynamics::hht(model, alpha, part.newton, control),

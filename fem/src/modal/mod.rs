@@ -244,7 +244,7 @@ mod tests {
     fn a_missed_mode_is_found_by_the_check() {
         let model = Model::new(ModelInput {
             mesh: Mesh::block([2, 2, 3], [1.0, 1.0, 1.6]),
-            materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 })].into(),
+            materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 }.into())].into(),
             quadrature: Quadrature::Gauss3,
             ..Default::default()
         })

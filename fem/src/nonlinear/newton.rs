@@ -221,6 +221,10 @@ pub(crate) struct Problem<'a> {
     pub forces: Option<f64>,
 }
 
+/// An iteration that leaves more than this part of the smallest residual of its step so far makes no progress.
+const PROGRESS: f64 = 0.5;
+/// Iterations without progress after which a step counts as stalled.
+const STALLED: u32 = 3;
 /// Part of the force tolerance below which the energy criterion is not asked any more.
 const WELL_BELOW: f64 = 0.1;
 /// Smallest length of a correction.
@@ -246,6 +250,8 @@ pub(crate) struct Newton {
     pub residual: Vec<f64>,
     pub statistics: Statistics,
     pub report: StepReport,
+    /// Iterations of the step without progress so far.
+    stalls: u32,
     base: Vec<f64>,
     correction: Vec<f64>,
     product: Vec<f64>,
@@ -269,6 +275,7 @@ impl Newton {
             residual: vec![0.0; n],
             statistics: Statistics::default(),
             report,
+            stalls: 0,
             base: vec![0.0; n],
             correction: vec![0.0; n],
             product: vec![0.0; n],
@@ -292,6 +299,8 @@ impl Newton {
             return Ok(());
         }
         let mut most = 0.0_f64;
+        let mut best = f64::INFINITY;
+        self.stalls = 0;
         let mut matrix = Matrix::Elastic;
         for iteration in 1..=self.options.max_iterations {
             self.correction.fill(0.0);
@@ -316,6 +325,8 @@ impl Newton {
             if !size.is_finite() || size > HOPELESS {
                 break;
             }
+            self.stalls += u32::from(iteration > 2 && size > PROGRESS * best);
+            best = best.min(size);
             let left = self.work(model).abs();
             most = most.max(work.abs());
             let NewtonOptions { force_tolerance, energy_tolerance, .. } = self.options;
@@ -373,7 +384,14 @@ impl Newton {
             return Matrix::Elastic;
         }
         let start = Instant::now();
-        self.tangent.assemble(model, &self.force, problem.old, &self.w, problem.linear, iteration);
+        self.tangent.assemble(
+            model,
+            &self.force,
+            problem.old,
+            &self.w,
+            problem.linear,
+            self.stalls >= STALLED,
+        );
         self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
         self.system.take_tangent(model, &self.tangent, self.options.linear, &mut self.statistics)
     }

@@ -23,7 +23,8 @@ pub struct ReductionOptions {
     pub tolerance: f64,
     /// Factors beyond this and below its reciprocal are not tried.
     pub largest: f64,
-    /// The iteration; more iterations than usual are worth their while near failure.
+    /// The iteration. More iterations than usual are worth their while near failure; a looser tolerance than usual keeps the
+    /// search from taking a slow iteration for a failure of the body.
     pub newton: NewtonOptions,
     /// Steps of the load, from 0 to 1.
     pub control: StepControl,
@@ -35,8 +36,8 @@ impl Default for ReductionOptions {
             start: 1.0,
             tolerance: 0.02,
             largest: 16.0,
-            newton: NewtonOptions { max_iterations: 60, ..NewtonOptions::default() },
-            control: StepControl { initial: 1.0, min: 1.0 / 32.0, max: 1.0, target_iterations: 60 },
+            newton: NewtonOptions { max_iterations: 100, force_tolerance: 1e-3, ..NewtonOptions::default() },
+            control: StepControl { initial: 1.0, min: 1.0 / 32.0, max: 1.0, target_iterations: 100 },
         }
     }
 }

@@ -8,8 +8,8 @@
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 2 (2000), chapter 3; B-bar as in the internal force.
 //! Where the strength fixes the stress the consistent tangent is singular: a share of the elastic matrix is mixed in at every
 //! yielding point, which slows the last digits of the iteration and does not move its solution. [`REGULARISATION`] is
-//! enough for that; an unsymmetric tangent that does not get there soon takes [`STABILISATION`], with which the iteration no
-//! longer runs in circles between neighbouring sets of yielding points.
+//! enough for that; an unsymmetric tangent whose iteration stalls takes [`STABILISATION`], with which it no longer runs in
+//! circles between neighbouring sets of yielding points.
 
 use super::internal_force::{InternalForce, element_increment};
 use crate::assembly::Combination;
@@ -18,16 +18,9 @@ use crate::material::{PointState, REGULARISATION, Region, update};
 use crate::model::Model;
 use crate::supports::CONSTRAINED;
 
-/// Share of the elastic matrix in an unsymmetric tangent after [`FAST`] iterations. Measured on footings without dilation: with
-/// less a step stalls by luck, with more it converges slowly.
+/// Share of the elastic matrix in an unsymmetric tangent whose iteration has stalled. Measured on footings without dilation:
+/// with less a step stalls by luck, with more it converges slowly.
 const STABILISATION: f64 = 1e-2;
-/// Iterations of a step that an unsymmetric tangent has to converge fast.
-const FAST: u32 = 6;
-
-/// Share of the elastic matrix in the tangent of an iteration.
-pub(crate) fn elastic_share(symmetric: bool, iteration: u32) -> f64 {
-    if symmetric || iteration <= FAST { REGULARISATION } else { STABILISATION }
-}
 
 /// Rows of an element matrix in memory.
 const ROWS: usize = 3 * MAX_NODES;
@@ -109,9 +102,9 @@ impl Tangent {
         old: &[PointState],
         increment: &[f64],
         linear: Combination,
-        iteration: u32,
+        stalled: bool,
     ) {
-        let share = elastic_share(self.symmetric, iteration);
+        let share = if stalled && !self.symmetric { STABILISATION } else { REGULARISATION };
         self.set_elastic(model, linear);
         let mut yielding = std::mem::take(&mut self.yielding);
         yielding.clear();

@@ -81,7 +81,7 @@ fn tangent_is_the_derivative_of_the_internal_force() {
         assert!(force.plastic > 0, "{}", kind.name());
         let mut tangent = Tangent::new(&model);
         assert_eq!(tangent.symmetric(), material.symmetric_tangent());
-        tangent.assemble(&model, &force, &old, &w, Combination::default(), 1);
+        tangent.assemble(&model, &force, &old, &w, Combination::default(), false);
         let mut product = vec![0.0; n];
         tangent.times(&model, &direction, &mut product);
         let size = product.iter().fold(0.0, |m: f64, p| m.max(p.abs()));

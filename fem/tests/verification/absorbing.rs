@@ -31,7 +31,7 @@ fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
     } else {
         constraints.extend(fix(&mesh, &[direction], |x| x[2] == 0.0));
     }
-    let materials = [(1, SOIL)].into();
+    let materials = [(1, SOIL.into())].into();
     let input = ModelInput {
         mesh,
         materials,
@@ -104,7 +104,7 @@ fn column_on_springs_settles_as_the_closed_form_says() {
         let others: Vec<u8> = (0..3).filter(|k| usize::from(*k) != direction).collect();
         let constraints = fix(&mesh, &others, |_| true);
         let boundaries = vec![BoundaryLayer::springs(side(&mesh, 0), normal, tangential)];
-        let materials = [(1, SOIL)].into();
+        let materials = [(1, SOIL.into())].into();
         let model = Model::new(ModelInput {
             mesh: mesh.clone(),
             materials,
@@ -153,7 +153,7 @@ fn ring_on_viscous_springs_is_an_infinite_medium() {
         let rim = side(&mesh, 2);
         let boundaries =
             springs.map(|f| BoundaryLayer::viscous_spring(rim, &SOIL, outer, f)).into_iter().collect();
-        let materials = [(1, SOIL)].into();
+        let materials = [(1, SOIL.into())].into();
         let model = Model::new(ModelInput {
             mesh,
             materials,
@@ -184,7 +184,7 @@ fn shaken_block(mass: Mass) -> Model {
     let boundaries = vec![base, BoundaryLayer { dashpot_tangential: 0.0, ..far }];
     Model::new(ModelInput {
         mesh,
-        materials: [(1, SOIL)].into(),
+        materials: [(1, SOIL.into())].into(),
         quadrature: Gauss3,
         constraints,
         boundaries,

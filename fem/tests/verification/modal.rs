@@ -176,7 +176,7 @@ fn no_mode_is_missed() {
         ("eight cubes", apart(8), false, Mass::Consistent, vec![8, 48, 50]),
     ] {
         let constraints = fix(&mesh, &[0, 1, 2], |x| held && x[2] == 0.0);
-        let materials = [(1, SOIL)].into();
+        let materials = [(1, SOIL.into())].into();
         let input =
             ModelInput { mesh, materials, quadrature: Gauss3, constraints, mass, ..Default::default() };
         let model = Model::new(input).unwrap();
@@ -240,7 +240,7 @@ fn block_on_springs_rides_at_the_closed_frequency() {
     let base = mesh.boundary_faces().into_iter().filter(|f| f.side == 0).collect();
     let model = Model::new(ModelInput {
         mesh,
-        materials: [(1, STEEL)].into(),
+        materials: [(1, STEEL.into())].into(),
         quadrature: Gauss3,
         boundaries: vec![BoundaryLayer::springs(base, 4e6, 0.5e6)],
         ..Default::default()
@@ -273,7 +273,7 @@ fn lumped_mass_gives_frequencies_of_second_order_from_below() {
         let mesh = Mesh::block([1, 1, count], [width, width, 10.0]);
         let mut constraints = fix(&mesh, &[0, 1], |_| true);
         constraints.extend(fix(&mesh, &[2], |x| x[2] == 0.0));
-        let materials = [(1, SOIL)].into();
+        let materials = [(1, SOIL.into())].into();
         let input =
             ModelInput { mesh, materials, quadrature: Gauss3, constraints, mass, ..Default::default() };
         let model = Model::new(input).unwrap();

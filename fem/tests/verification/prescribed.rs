@@ -24,7 +24,7 @@ fn shear_column(rayleigh: Rayleigh) -> Model {
     constraints.extend(fix(&mesh, &[0], |x| x[2] == 0.0));
     Model::new(ModelInput {
         mesh,
-        materials: [(1, SOIL)].into(),
+        materials: [(1, SOIL.into())].into(),
         quadrature: Gauss3,
         constraints,
         rayleigh,
@@ -192,7 +192,7 @@ fn block() -> Model {
         BoundaryLayer::viscous_spring(faces(0), &SOIL, 2.0, SpringFactors::SPATIAL),
         BoundaryLayer::absorbing(faces(2), &SOIL),
     ];
-    let materials = [(1, SOIL)].into();
+    let materials = [(1, SOIL.into())].into();
     let rayleigh = Rayleigh { alpha_m: 3.0, beta_k: 1e-4 };
     Model::new(ModelInput {
         mesh,
@@ -275,7 +275,7 @@ fn sums_of_reactions_carry_the_weight() {
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     let model = Model::new(ModelInput {
         mesh,
-        materials: [(1, SOIL)].into(),
+        materials: [(1, SOIL.into())].into(),
         quadrature: Gauss3,
         constraints,
         gravity: [0.0, 0.0, -9.81],

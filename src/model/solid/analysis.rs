@@ -175,7 +175,7 @@ fn time_method(document: &Document, d: &Dynamics) -> Result<TimeMethod, SceneErr
 fn quasi_static(document: &Document, q: &QuasiStatic) -> Result<QuasiStaticPlan, SceneError> {
     let plan = QuasiStaticPlan {
         smallest_step: q.smallest_step.unwrap_or(1.0 / 1024.0),
-        target_iterations: q.target_iterations.unwrap_or(12),
+        target_iterations: q.target_iterations.unwrap_or(40),
     };
     let good = plan.smallest_step > 0.0 && plan.smallest_step <= 1.0;
     check(document, "solid.quasi_static.smallest_step", plan.smallest_step, good, "above 0, at most 1")?;

@@ -38,7 +38,7 @@ pub struct Rayleigh {
 pub struct QuasiStatic {
     /// Smallest part of `time.solid_step` that is tried before the run gives up; default 1/1024.
     pub smallest_step: Option<f64>,
-    /// Newton iterations above which the next step is made shorter; default 12.
+    /// Newton iterations above which the next step is made shorter; default 40.
     pub target_iterations: Option<u32>,
 }
 
