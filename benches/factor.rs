@@ -90,12 +90,12 @@ impl Case {
             .collect();
         let soil = Elastic { young: 60e6, poisson: 0.3, density: 1900.0 };
         let model = Model::new(ModelInput {
-            materials: mesh.materials.iter().map(|&number| (number, soil)).collect(),
+            materials: mesh.materials.iter().map(|&number| (number, soil.into())).collect(),
             mesh,
             quadrature: Quadrature::Gauss3,
             constraints,
             gravity: [0.0; 3],
-            rayleigh: Rayleigh::default(),
+            ..Default::default()
         })
         .expect("the mesh is a model");
         let mut watch = Watch::default();

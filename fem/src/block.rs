@@ -27,7 +27,7 @@ impl Mesh {
         let [nx, ny, nz] = counts.map(|n| 2 * n + 1);
         let at = |d: usize, i: usize| {
             let low = planes[d][i / 2];
-            if i % 2 == 0 { low } else { 0.5 * (low + planes[d][i / 2 + 1]) }
+            if i.is_multiple_of(2) { low } else { 0.5 * (low + planes[d][i / 2 + 1]) }
         };
         // On the grid of half elements a node has at most one odd index (a mid-side).
         let mut index = vec![u32::MAX; nx * ny * nz];

@@ -196,7 +196,7 @@ impl Model {
 
     /// Index of the first Gauss point of element `element` (index) in [`crate::State::points`]; for the number of elements,
     /// the number of all points. The points of an element follow
-    /// [`stiffness_points`](crate::element::stiffness_points).
+    /// [`stiffness_points`].
     pub fn point_start(&self, element: usize) -> usize {
         self.point_start[element] as usize
     }

@@ -2,7 +2,7 @@
 //!
 //! Shift and invert: the eigenvalues of `(K + s M)^-1 M` are `1/(w² + s)`, so the lowest modes come first. A held body
 //! takes s = 0; a body that can move freely a small s > 0, which keeps the matrix positive definite and lets its rigid
-//! motions through as modes of 0 Hz. The modes come from a block Krylov space with thick restarts ([`krylov`]); each
+//! motions through as modes of 0 Hz. The modes come from a block Krylov space with thick restarts (`krylov.rs`); each
 //! is checked by its residual, and a further run in the space orthogonal to all of them, from a fresh start, looks for a
 //! mode that was missed, until there is none. The frequencies depend on no random choice: the start vectors are fixed.
 //!

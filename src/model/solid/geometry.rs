@@ -44,7 +44,7 @@ pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure>
         (None, Some(nodes), Some(elements), None) => {
             let constraints = solid.constraints.as_ref().map(|c| document.resolve(c));
             let element_file = document.resolve(elements);
-            let layout = solid.layout.clone().unwrap_or_default();
+            let layout = solid.layout.unwrap_or_default();
             let lists =
                 read::read_lists(&document.resolve(nodes), &element_file, constraints.as_deref(), &layout)?;
             let constraint_file = constraints.unwrap_or_else(|| element_file.clone());
