@@ -20,6 +20,7 @@ pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
 use crate::model::grains::refused;
+use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
@@ -167,7 +168,7 @@ impl Stage<'_> {
             summary.model.nodes = mesh.node_count();
             summary.model.elements = mesh.element_count();
             summary.model.unknowns = solid.model.free_dof_count();
-            summary.sources.extend(SOLID_SOURCES);
+            summary.sources.extend(solid_sources(solid, self.job.grains.is_some()));
         }
         if self.job.grains.is_some() {
             summary.sources.extend(GRAIN_SOURCES);
@@ -282,12 +283,40 @@ impl Stage<'_> {
     }
 }
 
-const SOLID_SOURCES: [&str; 3] = [
-    "20-node hexahedron: serendipity functions, Zienkiewicz & Taylor, The Finite Element Method",
-    "time integration: Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959",
-    "sparse factorization: multifrontal (Duff & Reid 1983) over dense kernels of the crate faer, nested dissection by \
-     coordinates (George 1973)",
-];
+/// Sources of the methods that a solid uses.
+fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
+    let mut sources = vec![
+        "elements: serendipity and linear kinds with mean dilatation, Zienkiewicz & Taylor, The Finite Element Method; Hughes \
+         1980",
+        "sparse factorization: multifrontal (Duff & Reid 1983) over dense kernels of the crate faer, nested dissection by \
+         coordinates (George 1973)",
+    ];
+    match &part.analysis {
+        _ if coupled => {
+            sources.push("time integration of a window: mid-point form, Simo & Tarnow, ZAMP 43, 1992")
+        }
+        Analysis::Dynamic(TimeMethod::Hht(_)) => {
+            sources.push("time integration: Hilber, Hughes & Taylor, Earthq. Eng. Struct. Dyn. 5, 1977");
+        }
+        Analysis::Dynamic(TimeMethod::Newmark(_)) => {
+            sources.push("time integration: Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959");
+        }
+        Analysis::StrengthReduction(_) => {
+            sources.push("strength reduction: Griffiths & Lane, Geotechnique 49(3), 1999");
+        }
+        Analysis::Static | Analysis::QuasiStatic(_) => {}
+    }
+    if !part.model.is_linear() {
+        sources.push(
+            "plasticity: return maps in principal stresses, de Souza Neto, Peric & Owen 2008; Clausen, Damkilde & Andersen \
+             2006",
+        );
+    }
+    if !part.model.matrices().dashpots().is_empty() {
+        sources.push("absorbing boundaries: Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969");
+    }
+    sources
+}
 
 const GRAIN_SOURCES: [&str; 3] = [
     "contact: linear spring-dashpot with Coulomb friction, Cundall & Strack, Geotechnique 29(1), 1979",
