@@ -168,6 +168,9 @@ impl Stage<'_> {
             summary.model.nodes = mesh.node_count();
             summary.model.elements = mesh.element_count();
             summary.model.unknowns = solid.model.free_dof_count();
+            let prediction = Prediction::of(solid)?;
+            prediction.check(self.memory)?;
+            summary.model.predicted_memory = Some(prediction.total());
             summary.sources.extend(solid_sources(solid, self.job.grains.is_some()));
         }
         if self.job.grains.is_some() {

@@ -1,6 +1,5 @@
 //! A solid that runs alone: static, quasi-static, dynamic, or brought to failure.
 
-use super::memory::Prediction;
 use super::plastic::{PlasticDynamics, QuasiStaticSystem};
 use super::summary::{NewtonRecord, Summary};
 use super::system::{SolidSystem, System};
@@ -11,9 +10,6 @@ use crate::model::solid::{Analysis, SolidPart};
 impl Stage<'_> {
     /// Runs a solid without grains.
     pub(super) fn solid_alone(&self, solid: &SolidPart, summary: &mut Summary) -> Result<(), Failure> {
-        let prediction = Prediction::of(solid)?;
-        summary.model.predicted_memory = Some(prediction.total());
-        prediction.check(self.memory)?;
         match &solid.analysis {
             Analysis::Static => statics::run(self.job, solid, self.dir, || self.prepare(), summary),
             Analysis::Dynamic(method) if solid.is_linear() => {
