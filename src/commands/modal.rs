@@ -50,6 +50,9 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
             writeln!(text, "  {:4}  {f:14.6}  {x:.4e} {y:.4e} {z:.4e}", i + 1)
                 .expect("writing to a string does not fail");
         }
+        if !part.model.is_linear() {
+            text += "  note: materials that yield vibrate with their elastic stiffness here\n";
+        }
         let total = part.model.total_mass();
         writeln!(text, "  total mass {total:.6e} kg; modes are in {}", dir.display())
             .expect("writing to a string does not fail");
