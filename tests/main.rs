@@ -10,6 +10,7 @@ mod suite {
     mod mesh_forms_files;
     mod mesh_orders;
     mod scenes;
+    mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
     mod summary;

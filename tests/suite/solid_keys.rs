@@ -1,0 +1,187 @@
+//! Scene keys of the solid whose effect is known in closed form, each through the program.
+
+use super::support::{Folder, Table, run};
+
+/// One cubic metre between smooth plates, pressed by 10 mm.
+const CUBE: &str = r#"title = "cube"
+
+[solid]
+gravity = false
+integration = "full"
+
+[solid.block]
+x = { lines = [0.0, 1.0], counts = [1] }
+y = { lines = [0.0, 1.0], counts = [1] }
+z = { lines = [0.0, 1.0], counts = [1] }
+
+[[solid.material]]
+id = 1
+YIELD
+young = "20 MPa"
+poisson = 0.3
+density = 2000
+
+[[solid.support]]
+side = "x-"
+directions = ["x"]
+
+[[solid.support]]
+side = "y-"
+directions = ["y"]
+
+[[solid.support]]
+side = "z-"
+directions = ["z"]
+
+[[solid.support]]
+name = "plate"
+side = "z+"
+directions = ["z"]
+displacement = "-10 mm"
+history = { kind = "ramp", duration = 1.0 }
+
+[solid.quasi_static]
+
+[time]
+end = 1.0
+solid_step = 0.1
+
+[output]
+vtk = false
+tecplot = false
+tables = true
+"#;
+
+/// Stress of the plate at the end [Pa].
+fn pressed(yielding: &str, set: &[&str]) -> f64 {
+    let folder = Folder::new("cube");
+    let scene = folder.write("scene.toml", &CUBE.replace("YIELD", yielding));
+    run(&scene, &folder.join("out"), set).good();
+    let history = Table::read(&folder.join("out/history.csv"));
+    *history.column("plate_reaction_z").last().unwrap()
+}
+
+/// Uniaxial stress with linear hardening: E (Y + H ε)/(E + H), by slope and by table, for both criteria, and on linear elements.
+#[test]
+fn hardening_in_uniaxial_stress() {
+    let exact = -20e6 * (50e3 + 2e6 * 0.01) / (20e6 + 2e6);
+    for model in ["von_mises", "tresca"] {
+        let slope = format!("model = \"{model}\"\nyield_stress = \"50 kPa\"\nhardening = \"2 MPa\"");
+        let table = format!("model = \"{model}\"\nhardening_table = [[0.0, 50e3], [1.0, 2.05e6]]");
+        for (law, set) in [(&slope, None), (&table, None), (&slope, Some("solid.order=linear"))] {
+            let found = pressed(law, set.as_slice());
+            assert!((found / exact - 1.0).abs() < 1e-6, "{law} {set:?}: {found}, expected {exact}");
+        }
+    }
+}
+
+/// The strength of a frictional cube, 2 c cos φ/(1 − sin φ); the friction angle by a table that is level at 30 degrees; and by
+/// GMRES in place of L U.
+#[test]
+fn strength_of_a_frictional_cube() {
+    let phi = 30.0_f64.to_radians();
+    let exact = -2.0 * 20e3 * phi.cos() / (1.0 - phi.sin());
+    let law = |friction: &str| {
+        format!("model = \"mohr_coulomb\"\ncohesion = \"20 kPa\"\n{friction}\ndilation = \"10 deg\"")
+    };
+    let plain = law("friction = \"30 deg\"");
+    let table = law("friction_table = [[0.0, \"30 deg\"], [0.5, \"30 deg\"]]");
+    for (law, set) in [(&plain, None), (&table, None), (&plain, Some("solid.newton.solver=krylov"))] {
+        let found = pressed(law, set.as_slice());
+        assert!((found / exact - 1.0).abs() < 1e-6, "{law} {set:?}: {found}, expected {exact}");
+    }
+}
+
+/// Level ground of two densities under K₀: the stress is γ z and K₀ γ z at every Gauss point and nothing moves; gravity turned on
+/// gives ν/(1 − ν) in place of K₀.
+#[test]
+fn initial_stress_of_level_ground() {
+    const GROUND: &str = r#"title = "ground"
+
+[solid]
+integration = "full"
+
+[solid.block]
+x = { lines = [0.0, 1.0], counts = [1] }
+y = { lines = [0.0, 1.0], counts = [1] }
+z = { lines = [0.0, 2.0, 4.0], counts = [2, 2] }
+layer = [{ material = 1, top = 2.0 }, { material = 2 }]
+
+[solid.initial_stress]
+method = "k0"
+k0 = 0.6
+layers = [[4.0, 1000], [2.0, 2000]]
+
+[[solid.material]]
+id = 1
+model = "mohr_coulomb"
+young = "20 MPa"
+poisson = 0.25
+density = 2000
+cohesion = "20 kPa"
+friction = "30 deg"
+dilation = "5 deg"
+
+[[solid.material]]
+id = 2
+k0 = 0.7
+young = "20 MPa"
+poisson = 0.25
+density = 1000
+
+[[solid.support]]
+side = "x-"
+directions = ["x"]
+
+[[solid.support]]
+side = "x+"
+directions = ["x"]
+
+[[solid.support]]
+side = "y-"
+directions = ["y"]
+
+[[solid.support]]
+side = "y+"
+directions = ["y"]
+
+[[solid.support]]
+side = "z-"
+directions = ["z"]
+
+[solid.quasi_static]
+
+[time]
+end = 1.0
+solid_step = 1.0
+
+[output]
+vtk = false
+tecplot = false
+tables = true
+"#;
+    let gravity = GROUND
+        .replace("method = \"k0\"\nk0 = 0.6\nlayers = [[4.0, 1000], [2.0, 2000]]", "method = \"gravity\"")
+        .replace("k0 = 0.7\n", "");
+    // Horizontal over vertical stress of the lower and of the upper layer.
+    for (scene, ratios) in [(GROUND, [0.6, 0.7]), (gravity.as_str(), [1.0 / 3.0; 2])] {
+        let folder = Folder::new("ground");
+        let file = folder.write("scene.toml", scene);
+        run(&file, &folder.join("out"), &[]).good();
+        let gauss = Table::read(&folder.join("out/gauss.csv"));
+        let column = |name: &str| gauss.column(name);
+        let (element, zeta) = (column("element"), column("zeta"));
+        for i in 0..element.len() {
+            let z = element[i] - 0.5 + 0.5 * zeta[i];
+            let vertical = -9.81 * if z > 2.0 { 1000.0 * (4.0 - z) } else { 2000.0 + 2000.0 * (2.0 - z) };
+            let ratio = ratios[usize::from(z > 2.0)];
+            for (name, expected) in [("szz", vertical), ("sxx", ratio * vertical), ("syy", ratio * vertical)]
+            {
+                let found = column(name)[i];
+                assert!((found - expected).abs() < 1.0, "{name} at {z}: {found}, expected {expected} Pa");
+            }
+        }
+        let nodes = Table::read(&folder.join("out/nodes.csv"));
+        assert!(nodes.column("uz").iter().all(|u| u.abs() < 1e-9), "displacements are set to zero");
+    }
+}
