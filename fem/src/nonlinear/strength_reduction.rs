@@ -2,7 +2,7 @@
 //! equilibrium.
 //!
 //! Each trial starts from the same state and takes the whole load; a trial without convergence is a failure of the body. F is
-//! bracketed by doubling, then halved. Source: Griffiths and Lane, Géotechnique 49(3) (1999) 387-403; Zienkiewicz, Humpheson and Lewis,
+//! bracketed in steps of a factor 1.5, then halved. Source: Griffiths and Lane, Géotechnique 49(3) (1999) 387-403; Zienkiewicz, Humpheson and Lewis,
 //! Géotechnique 25(4) (1975) 671-689. Limits: failure is judged by the iteration, so the bracket depends on its limits to some
 //! per cent; the displacements of the trials, which rise steeply near failure, are recorded to judge it by.
 
