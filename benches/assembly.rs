@@ -4,6 +4,8 @@
 //!
 //! `cargo bench --bench assembly` (about 10 s).
 
+#[path = "common/remarks.rs"]
+mod remarks;
 #[path = "common/watch.rs"]
 mod watch;
 
@@ -13,7 +15,7 @@ use trackbed_fem::{Elastic, Mesh, Model, ModelInput, Quadrature};
 
 fn main() {
     divan::main();
-    watch::print_remarks();
+    remarks::print();
 }
 
 #[divan::bench(args = [(8, 1), (8, 2), (16, 1), (16, 2)], sample_count = 20, sample_size = 1, max_time = 3)]
@@ -41,7 +43,7 @@ fn assemble(bencher: Bencher<'_, '_>, side: usize, threads: usize, quadrature: Q
         elements += input.mesh.element_count();
         watch.time(|| pool.install(|| Model::new(input).expect("a block is a model")))
     });
-    watch::remark(format!(
+    remarks::add(format!(
         "{quadrature:?}, {side}³ elements, {threads} threads: {:.1} k elements per processor second",
         elements as f64 / watch.cpu / 1e3
     ));

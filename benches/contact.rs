@@ -19,6 +19,8 @@
 mod bed;
 #[path = "common/grains.rs"]
 mod grains;
+#[path = "common/remarks.rs"]
+mod remarks;
 #[path = "common/watch.rs"]
 mod watch;
 
@@ -30,7 +32,7 @@ use watch::Watch;
 
 fn main() {
     divan::main();
-    watch::print_remarks();
+    remarks::print();
 }
 
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
@@ -54,7 +56,7 @@ fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, s
     });
     let after = bed.work.rebuilds();
     let contacts = measure::contacts(&bed.model, &bed.state).len();
-    watch::remark(format!(
+    remarks::add(format!(
         "{name}, {threads} threads: {:.3} M body-steps per processor second, {:.3} per second; {:.2} contacts per body, \
          coordination {:.3}; {} searches, {} near lists in {done} steps",
         count as f64 * f64::from(done) / watch.cpu / 1e6,

@@ -18,6 +18,8 @@
 
 #[path = "common/grains.rs"]
 mod grains;
+#[path = "common/remarks.rs"]
+mod remarks;
 #[path = "common/watch.rs"]
 mod watch;
 
@@ -37,7 +39,7 @@ const SUBSTEPS: u32 = 10;
 
 fn main() {
     divan::main();
-    watch::print_remarks();
+    remarks::print();
 }
 
 #[divan::bench(sample_count = 1, sample_size = 1)]
@@ -129,7 +131,7 @@ fn run(
     let after = work.grains.rebuilds();
     let per_window = |seconds: f64| 1e3 * seconds / f64::from(split.windows);
     let simulated = model.window() * f64::from(split.windows);
-    watch::remark(format!(
+    remarks::add(format!(
         "{name}, {threads} threads, {} windows, {} searches, {} near lists: grains {:.3} ms, transfer {:.3} ms, solid {:.3} ms per window; {:.4} \
          simulated seconds per second, {:.4} per processor second; {} contacts with the solid at the end",
         split.windows,

@@ -12,7 +12,6 @@
 //! * `-- peer 16 THREADS` prints one line for `benches/factor_peers.py`.
 
 #[path = "common/watch.rs"]
-#[allow(dead_code, reason = "remarks belong to the divan benches")]
 mod watch;
 
 use faer::dyn_stack::{MemBuffer, MemStack};

@@ -11,7 +11,6 @@
 #[allow(dead_code, reason = "shared with the verification tests")]
 #[path = "../fem/tests/verification/collapse_common.rs"]
 mod collapse_common;
-#[allow(dead_code, reason = "shared with the other benchmarks")]
 #[path = "common/watch.rs"]
 mod watch;
 

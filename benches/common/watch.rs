@@ -1,21 +1,6 @@
-//! Wall and processor time, thread pools, and remarks that are printed below divan's table.
+//! Wall and processor time, and thread pools.
 
-use std::sync::Mutex;
 use std::time::Instant;
-
-static REMARKS: Mutex<Vec<String>> = Mutex::new(Vec::new());
-
-/// Keeps a line for [`print_remarks`].
-pub fn remark(line: String) {
-    REMARKS.lock().expect("no benchmark panicked").push(line);
-}
-
-/// Prints what was remarked, in order.
-pub fn print_remarks() {
-    for line in REMARKS.lock().expect("no benchmark panicked").drain(..) {
-        println!("{line}");
-    }
-}
 
 /// A pool of so many threads. It is never dropped, so that its threads' time stays in [`Watch`]'s account.
 pub fn pool(threads: usize) -> &'static rayon::ThreadPool {
