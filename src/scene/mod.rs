@@ -4,12 +4,15 @@
 //! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
+pub mod deposition;
 mod document;
 pub mod grains;
 pub mod history;
+pub mod material;
 pub mod solid;
 pub mod track;
 pub mod units;
+pub mod walls;
 
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
@@ -32,18 +35,18 @@ pub struct Scene {
     pub solid: Option<solid::Solid>,
     /// Materials of grains, walls and sleeper.
     #[serde(default)]
-    pub material: Vec<grains::GrainMaterial>,
+    pub material: Vec<material::GrainMaterial>,
     /// Constants of single material pairs, in place of the mixing rules.
     #[serde(default)]
-    pub contact: Vec<grains::PairContact>,
+    pub contact: Vec<material::PairContact>,
     /// Groups of grains.
     #[serde(default)]
     pub grains: Vec<grains::Grains>,
     /// Fixed or moving walls.
     #[serde(default)]
-    pub walls: Vec<grains::Wall>,
+    pub walls: Vec<walls::Wall>,
     /// Gravity deposition before the run proper.
-    pub deposition: Option<grains::Deposition>,
+    pub deposition: Option<deposition::Deposition>,
     /// Sleeper and its load.
     pub track: Option<track::Track>,
     /// Exchange between grains and solid; needed when a scene has both.

@@ -1,8 +1,8 @@
 //! `[[walls]]` resolved.
 
 use super::{GrainsPart, check};
-use crate::scene::grains::{Wall, WallKind};
 use crate::scene::units::vector;
+use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{Document, SceneError};
 use trackbed_dem::{Plane, TriangleSurface, Vec3};
 

@@ -1,0 +1,26 @@
+//! Settling of filled grains as written in a scene.
+
+use super::units::{Length, Quantity, Time, Velocity};
+use serde::Deserialize;
+
+/// `[deposition]`: the filled grains fall and come to rest before the run proper.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Deposition {
+    /// Longest time [s].
+    pub max_time: Quantity<Time>,
+    /// Settled when the root-mean-square speed of the grains stays below this [m/s]; default 5 mm/s.
+    #[serde(default = "slow")]
+    pub settled_speed: Quantity<Velocity>,
+    /// Friction between grains while they settle, instead of their own: lower packs denser.
+    pub friction: Option<f64>,
+    /// Local non-viscous damping while they settle, 0–1; default 0.
+    #[serde(default)]
+    pub local_damping: f64,
+    /// Grains whose centre lies above this height are taken away after settling [m]: a levelled bed.
+    pub level: Option<Quantity<Length>>,
+}
+
+fn slow() -> Quantity<Velocity> {
+    Quantity::new(5e-3)
+}

@@ -1,0 +1,40 @@
+//! Contact materials and exceptions for pairs of them, as written in a scene.
+
+use super::units::{Density, Quantity, Stiffness};
+use serde::Deserialize;
+
+/// `[[material]]`: linear spring–dashpot contact with Coulomb friction.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GrainMaterial {
+    /// Name by which groups and walls refer to it.
+    pub name: String,
+    /// Density [kg/m³]; needed by materials of grains and sleepers.
+    pub density: Option<Quantity<Density>>,
+    /// Contact stiffness of a like pair [N/m]; absent: rigid (a contact with it is twice as stiff as a like pair).
+    pub stiffness: Option<Quantity<Stiffness>>,
+    /// Tangential over normal stiffness, 0–1; default 0.5.
+    #[serde(default = "super::half")]
+    pub tangential_ratio: f64,
+    /// Tangential over normal damping coefficient, 0–1; default 0.
+    #[serde(default)]
+    pub tangential_damping_ratio: f64,
+    /// Coulomb friction coefficient, 0 or more.
+    pub friction: f64,
+    /// Coefficient of restitution, above 0 and at most 1.
+    pub restitution: f64,
+}
+
+/// `[[contact]]`: constants of one pair of materials.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PairContact {
+    /// Names of the two materials (twice the same for a like pair).
+    pub between: [String; 2],
+    /// Friction coefficient of the pair.
+    pub friction: Option<f64>,
+    /// Restitution of the pair.
+    pub restitution: Option<f64>,
+    /// Normal stiffness of the pair [N/m].
+    pub stiffness: Option<Quantity<Stiffness>>,
+}
