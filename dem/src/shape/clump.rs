@@ -151,7 +151,7 @@ fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) {
 }
 
 /// Principal moments, rising, and a right-handed matrix whose columns are the axes.
-fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
+pub(crate) fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
     // Below the quadrature's noise a tensor counts as diagonal: a sphere keeps the axes it was given in.
     let noise = 1e-11 * inertia.trace();
     for (i, j) in [(0, 1), (1, 2), (0, 2)] {

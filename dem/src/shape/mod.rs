@@ -2,6 +2,7 @@
 
 pub mod clump;
 pub mod cuboid;
+pub mod polyhedron;
 pub mod triangle;
 
 use clump::Clump;
