@@ -144,7 +144,7 @@ fn check(spheres: &[([f64; 3], f64)]) -> Result<(), ShapeError> {
     reached.iter().position(|r| !r).map_or(Ok(()), |i| Err(ShapeError::Disconnected(i)))
 }
 
-fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) {
+pub(super) fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) {
     let fold =
         |sign: f64, k: usize| spheres.iter().map(|(c, r)| sign * c[k] + r).fold(f64::NEG_INFINITY, f64::max);
     (std::array::from_fn(|k| -fold(-1.0, k)), std::array::from_fn(|k| fold(1.0, k)))

@@ -1,6 +1,7 @@
 //! Shapes of bodies.
 
 pub mod clump;
+pub mod cluster;
 pub mod cuboid;
 pub mod polyhedron;
 pub mod triangle;
