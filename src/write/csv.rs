@@ -76,7 +76,8 @@ impl History {
             old.read_exact(&mut last).map_err(WriteError::io(file))?;
         }
         if last != *b"\n" {
-            let message = format!("is not the history that the checkpoint goes on from: {rows} rows in {bytes} bytes");
+            let message =
+                format!("is not the history that the checkpoint goes on from: {rows} rows in {bytes} bytes");
             return Err(WriteError::format(file, message));
         }
         old.set_len(bytes).map_err(WriteError::io(file))?;
@@ -195,7 +196,9 @@ mod tests {
         (3..6).for_each(|i| whole.row(&row(i)).unwrap());
         let expected = std::fs::read_to_string(&file).unwrap();
         // Later rows already written, the last cut short; then nothing beyond the mark; then nothing at all.
-        for (left, mark, first) in [(expected.len() - 4, mark, 3), (mark.bytes as usize, mark, 3), (40, start, 0)] {
+        for (left, mark, first) in
+            [(expected.len() - 4, mark, 3), (mark.bytes as usize, mark, 3), (40, start, 0)]
+        {
             std::fs::write(&file, &expected[..left]).unwrap();
             let mut second = History::resume(&file, columns(), mark).unwrap();
             (first..6).for_each(|i| second.row(&row(i)).unwrap());

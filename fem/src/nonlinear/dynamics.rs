@@ -12,8 +12,8 @@
 //! method; a step that is halved takes its loads at the time that it reaches.
 
 use super::internal_force::InternalForce;
-use super::motion::{close, inner_force};
 use super::memory::Memory;
+use super::motion::{close, inner_force};
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::quasi_static::{Loading, check_state, ensure_points, prescribe, subtract_springs};
 use super::step_control::{StepControl, StepLength};

@@ -10,8 +10,8 @@
 //! Source: as the elastic one; the stresses are returned at the end of the step (backward Euler) and weighted as forces, so the
 //! ledger closes without approximation with the mean of the stresses at both ends. Limits: second order for theta = 1/2 only.
 
-use super::motion::{close, inner_force};
 use super::memory::Memory;
+use super::motion::{close, inner_force};
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::quasi_static::{check_state, ensure_points, subtract_springs};
 use crate::assembly::Combination;
