@@ -118,7 +118,9 @@ mod tests {
         let (c, r) = (Vec3::new(0.3, -0.2, 5.0), 0.7);
         let whole = 4.0 / 3.0 * PI * r * r * r;
         let far = 10.0;
-        let at = |d: [f64; 3]| sphere_box_volume(&c, r, &BoxRegion { low: c + Vec3::from(d), high: c.add_scalar(far) });
+        let at = |d: [f64; 3]| {
+            sphere_box_volume(&c, r, &BoxRegion { low: c + Vec3::from(d), high: c.add_scalar(far) })
+        };
         assert_relative_eq!(at([-far, -far, -far]), whole, max_relative = 1e-15);
         assert_relative_eq!(at([0.0, -far, -far]), whole / 2.0, max_relative = 1e-14);
         assert_relative_eq!(at([-far, 0.0, 0.0]), whole / 4.0, max_relative = 1e-14);
@@ -145,7 +147,8 @@ mod tests {
         for i in 0..n {
             let t = t0 + (i as f64 + 0.5) * (t1 - t0) / n as f64;
             let r = t.cos();
-            let (s0, s1) = ((region.low.y / r).clamp(-1.0, 1.0).asin(), (region.high.y / r).clamp(-1.0, 1.0).asin());
+            let (s0, s1) =
+                ((region.low.y / r).clamp(-1.0, 1.0).asin(), (region.high.y / r).clamp(-1.0, 1.0).asin());
             for j in 0..n {
                 let s = s0 + (j as f64 + 0.5) * (s1 - s0) / n as f64;
                 let z = r * s.cos();
@@ -169,7 +172,11 @@ mod tests {
             let region = unit_box(low, high);
             let volume = sphere_box_volume(&Vec3::zeros(), 1.0, &region);
             if k < 10 {
-                assert!((volume - quadrature(&region)).abs() < 2e-5, "{region:?}: {volume} {}", quadrature(&region));
+                assert!(
+                    (volume - quadrature(&region)).abs() < 2e-5,
+                    "{region:?}: {volume} {}",
+                    quadrature(&region)
+                );
             }
             let middle: [f64; 3] = std::array::from_fn(|d| low[d] + unit() * (high[d] - low[d]));
             let parts: f64 = (0..8_usize)

@@ -106,7 +106,8 @@ pub fn strong_network(contacts: &[ContactRecord]) -> StrongNetwork {
 /// Unbalanced-force ratio: mean of |sum of contact forces and weight| over the bodies that are free to move, over the
 /// mean of |contact force|. It tends to 0 in equilibrium; without contacts it is infinite.
 pub fn unbalanced_ratio(model: &Model, contacts: &[ContactRecord]) -> f64 {
-    let mut net: Vec<crate::Vec3> = (0..model.body_count()).map(|b| model.gravity() * model.mass(b)).collect();
+    let mut net: Vec<crate::Vec3> =
+        (0..model.body_count()).map(|b| model.gravity() * model.mass(b)).collect();
     let mut carried = 0.0;
     for c in contacts {
         net[c.a] += c.force;

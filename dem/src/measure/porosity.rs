@@ -78,7 +78,9 @@ fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) ->
         return (x - reach, x + reach);
     }
     let start = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    spheres.iter().fold(start, |(low, high), (c, r)| (low.inf(&c.add_scalar(-r)), high.sup(&c.add_scalar(*r))))
+    spheres
+        .iter()
+        .fold(start, |(low, high), (c, r)| (low.inf(&c.add_scalar(-r)), high.sup(&c.add_scalar(*r))))
 }
 
 /// Where the vertical line through (x, y) passes through a box body.
