@@ -3,12 +3,12 @@
 //! With this sign pressure is negative: tension positive, as in the solid. The symmetric part is taken: the rest
 //! is the unbalanced torque.
 //!
-//! The mean stress in a region of volume V is Σ V_p σ_p w_p / V over its bodies, w_p the share of the body that lies
-//! inside. For a region that holds every body and ends at the walls, and bodies in equilibrium without weight, this
-//! is the force on a wall over its area.
+//! The mean stress in a region of volume V is Σ V_p σ_p / V over the bodies with their centre in it. For a region that
+//! ends at walls which hold all bodies, in equilibrium without weight, this is the force on a wall over its area.
+//! Limits: a region with sides amid the bodies should be many of them wide: those on its border count whole or not.
 
+use super::BoxRegion;
 use super::contacts::{ContactRecord, contacts};
-use super::{BoxRegion, body_volume_in};
 use crate::Vec3;
 use crate::error::Partner;
 use crate::model::Model;
@@ -46,8 +46,10 @@ pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) 
 pub fn region_stress(model: &Model, state: &State, bodies: &[[f64; 6]], region: &BoxRegion) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (body, stress) in bodies.iter().enumerate() {
-        let inside = body_volume_in(model, state, body, region);
-        sum.iter_mut().zip(stress).for_each(|(s, x)| *s += inside * x);
+        if region.holds(&state.position(body)) {
+            let volume = model.volume(body);
+            sum.iter_mut().zip(stress).for_each(|(s, x)| *s += volume * x);
+        }
     }
     sum.map(|s| s / region.volume())
 }
