@@ -45,7 +45,8 @@ impl Bed {
         input.time_step = TimeStep::Fixed(2e-5);
         input.planes = grains::walls(width);
         if input.triangles.is_empty() {
-            let floor = Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0, velocity: Vec3::zeros() };
+            let floor =
+                Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0, velocity: Vec3::zeros() };
             input.planes.push(floor);
         }
         let model = Model::new(input).expect("the bed is a model");

@@ -1,7 +1,7 @@
 //! One step of the grains: search when due, contacts, integration.
 
 use crate::Vec3;
-use crate::contact::{pass, patches};
+use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
 use crate::integrate::leapfrog;
@@ -46,11 +46,11 @@ pub fn step<S: Surface>(
     }
     place_loads(model, state, work, applied)?;
     near::update(model, state, work, surface);
-    if model.rigid {
-        contacts_and_motion::<S, true>(model, state, work, surface);
+    with_law!(&model.laws, laws => if model.rigid {
+        contacts_and_motion::<_, S, true>(model, laws, state, work, surface);
     } else {
-        contacts_and_motion::<S, false>(model, state, work, surface);
-    }
+        contacts_and_motion::<_, S, false>(model, laws, state, work, surface);
+    });
     collect(model, state, work, surface.max_speed())
 }
 
@@ -77,14 +77,14 @@ pub fn find_contacts<S: Surface>(
     Ok(())
 }
 
-fn contacts_and_motion<S: Surface, const RIGID: bool>(
+fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     model: &Model,
+    laws: &PairTable<L>,
     state: &mut State,
     work: &mut Work,
     surface: &S,
 ) {
     let dt = model.dt();
-    let laws = &model.table;
     let State { blocks, cross, planes, walls: wall_states, .. } = state;
     let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
 
@@ -251,6 +251,7 @@ mod tests {
             tangential_damping_ratio: 0.1,
             friction: 0.5,
             restitution: 0.5,
+            ..Material::RIGID
         };
         let mut input = ModelInput {
             materials: vec![material],

@@ -1,6 +1,8 @@
 //! Surfaces made of patches: triangle walls of this crate, and surfaces that another crate owns and moves
 //! (the deformed faces of a solid). One mechanism serves both.
 
+use crate::Vec3;
+
 /// What of its patch a closest point lies on. Edge and vertex numbers are unique within the surface and shared
 /// by neighbouring patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +95,11 @@ pub trait Surface: Sync {
     /// Point that moments on the patch's wall refer to [m].
     fn moment_centre(&self, _patch: u32) -> [f64; 3] {
         [0.0; 3]
+    }
+
+    /// Angular velocity of the patch's wall [rad/s].
+    fn spin(&self, _patch: u32) -> Vec3 {
+        Vec3::zeros()
     }
 
     /// One over the mass of the patch's wall [1/kg]; zero where its motion is prescribed.

@@ -15,6 +15,7 @@ use crate::wall::advance::WallSum;
 pub(crate) struct Slot {
     pub force: Vec3,
     pub point: Vec3,
+    pub moment: Vec3,
 }
 
 /// One body's share in a slot.

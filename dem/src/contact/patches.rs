@@ -216,7 +216,14 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             let wall = Vec3::from(t.closest.velocity);
             let mass = 1.0 / (block.velocity[a][3] + surface.inverse_mass(t.patch));
             let law = laws.get(own, material(t.patch));
-            let f = law.respond(mass, g, &(ma.at_point() - wall), &mut contact.history, dt);
+            let f = law.respond(
+                mass,
+                g,
+                &(ma.at_point() - wall),
+                &(ma.spin() - surface.spin(t.patch)),
+                &mut contact.history,
+                dt,
+            );
             contact.point = g.point;
             contact.normal = g.normal;
             contact.velocity = wall;
@@ -225,10 +232,11 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             dashpot += f.dashpot;
             friction += f.friction;
             w.force[a] += f.force;
-            w.torque[a] += ma.arm.cross(&f.force);
+            w.torque[a] += ma.arm.cross(&f.force) + f.moment;
             if external {
                 exchange.work += f.force.dot(&wall) * dt;
                 exchange.impulse.add(&g.point, &(f.force * dt));
+                exchange.impulse.angular += f.moment * dt;
                 w.contacts.push(SurfaceContact {
                     sphere: sphere - w.first[a],
                     body: block.bodies[a],
@@ -242,7 +250,8 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
                 let sum = &mut sums[surface.group(t.patch)];
                 let stiffness = law.stiffness(g.overlap, g.radius);
                 sum.force += f.force;
-                sum.moment += (g.point - Vec3::from(surface.moment_centre(t.patch))).cross(&f.force);
+                sum.moment +=
+                    (g.point - Vec3::from(surface.moment_centre(t.patch))).cross(&f.force) + f.moment;
                 sum.stiffness += stiffness;
                 sum.damping += (stiffness * mass).sqrt();
             }

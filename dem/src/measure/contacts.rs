@@ -1,7 +1,7 @@
 //! Contacts as they are now, for force chains and coordination numbers.
 
 use crate::Vec3;
-use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass};
+use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass, with_law};
 use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
@@ -37,7 +37,10 @@ pub(crate) struct Visited<'a> {
     /// Effective mass [kg].
     pub mass: f64,
     pub history: &'a History,
-    pub law: &'a crate::contact::linear::Linear,
+    /// Spin of the body less that of its partner [rad/s].
+    pub spin: Vec3,
+    /// Materials of the two.
+    pub materials: [u32; 2],
 }
 
 /// Bodies as they are, or moved back in time by `back` seconds.
@@ -105,7 +108,8 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                     velocity: ma.at_point() - mb.at_point(),
                     mass: 1.0 / (block.velocity[a][3] + second.velocity[c][3]),
                     history,
-                    law: model.law(block.spin[a][3] as u32, second.spin[c][3] as u32),
+                    spin: ma.spin() - mb.spin(),
+                    materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
                 });
             }
         };
@@ -120,6 +124,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 material: wall.material,
                 partner: model.walls.partner(contact.patch),
                 velocity: state.walls[k].velocity_at(&wall.centre, &contact.point),
+                spin: state.walls[k].spin,
                 inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
             };
             patch(model, &now, b, contact, &partner, &mut f);
@@ -129,6 +134,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 material: model.surface_material.unwrap_or(0),
                 partner: Partner::Patch(contact.patch),
                 velocity: contact.velocity,
+                spin: Vec3::zeros(),
                 inverse_mass: 0.0,
             };
             patch(model, &now, b, contact, &partner, &mut f);
@@ -142,6 +148,8 @@ struct Partnership {
     partner: Partner,
     /// Velocity of the patch at the contact point [m/s].
     velocity: Vec3,
+    /// Spin of what it belongs to [rad/s].
+    spin: Vec3,
     /// One over the mass that it belongs to [1/kg].
     inverse_mass: f64,
 }
@@ -170,7 +178,8 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
                 velocity: pass::motion(block, a, &geometry.point).at_point() - wall.velocity,
                 mass: 1.0 / block.velocity[a][3],
                 history: &pair.history,
-                law: model.law(block.spin[a][3] as u32, plane.material as u32),
+                spin: xyz(&block.spin[a]),
+                materials: [block.spin[a][3] as u32, plane.material as u32],
             });
         }
     }
@@ -201,7 +210,8 @@ fn patch(
             velocity,
             mass: 1.0 / (block.velocity[a][3] + partner.inverse_mass),
             history: &pair.history,
-            law: model.law(block.spin[a][3] as u32, partner.material),
+            spin: xyz(&block.spin[a]) - partner.spin,
+            materials: [block.spin[a][3] as u32, partner.material],
         });
     }
 }
@@ -211,8 +221,10 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
         let mut history = *c.history;
-        let ContactForce { force, normal, .. } =
-            c.law.respond(c.mass, &c.geometry, &c.velocity, &mut history, model.dt());
+        let [a, b] = c.materials;
+        let ContactForce { force, normal, .. } = with_law!(&model.laws, laws => {
+            laws.get(a, b).respond(c.mass, &c.geometry, &c.velocity, &c.spin, &mut history, model.dt())
+        });
         out.push(ContactRecord {
             a: c.body as usize,
             b: c.partner,

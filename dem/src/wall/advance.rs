@@ -5,6 +5,7 @@
 
 use super::body;
 use crate::Vec3;
+use crate::contact::with_law;
 use crate::ledger::Ledger;
 use crate::model::Model;
 use crate::state::State;
@@ -55,8 +56,7 @@ pub(crate) fn walls(
         own.moment = -sum.moment;
         let speed = match &wall.body {
             Some(b) => {
-                let (force, torque) =
-                    body::stand(model, &model.table, &state.planes, b, wall.material, own, ledger);
+                let (force, torque) = with_law!(&model.laws, laws => body::stand(model, laws, &state.planes, b, wall.material, own, ledger));
                 let (force, torque) = (force + own.force, torque + own.moment);
                 b.advance(own, &force, &torque, &model.gravity, dt, ledger);
                 let speed = b.speed(own);

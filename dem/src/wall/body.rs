@@ -309,19 +309,20 @@ pub(crate) fn stand<L: ContactLaw>(
         let law = laws.get(material, plane.material as u32);
         for (v, vertex) in body.vertices.iter().enumerate() {
             let at = state.to_world(&body.centre, vertex);
-            let Some(g) = detect::sphere_plane(&at, 0.0, &origin, &plane.normal) else { continue };
+            let Some(g) = tip(model, &at, &origin, &plane.normal) else { continue };
             let mut foot = Foot { plane: p as u32, vertex: v as u32, history: History::NONE };
             if let Some(known) = old.iter_mut().find(|f| (f.plane, f.vertex) == (foot.plane, foot.vertex)) {
                 foot.history = std::mem::replace(&mut known.history, History::NONE);
             }
             let relative = state.velocity_at(&body.centre, &g.point) - wall.velocity;
-            let f = law.respond(mass, &g, &relative, &mut foot.history, dt);
+            let f = law.respond(mass, &g, &relative, &state.spin, &mut foot.history, dt);
             ledger.dissipated_dashpot += f.dashpot;
             ledger.dissipated_friction += f.friction;
             ledger.work_walls += f.force.dot(&wall.velocity) * dt;
             ledger.walls.add(&g.point, &(f.force * dt));
             force += f.force;
-            torque += (g.point - x).cross(&f.force);
+            ledger.walls.angular += f.moment * dt;
+            torque += (g.point - x).cross(&f.force) + f.moment;
             state.feet.push(foot);
         }
     }
@@ -330,6 +331,12 @@ pub(crate) fn stand<L: ContactLaw>(
         ledger.dissipated_friction += law.release(&mut foot.history);
     }
     (force, torque)
+}
+
+/// A vertex against a plane: a point, for laws with curvature one of the radius of the smallest grain.
+fn tip(model: &Model, at: &Vec3, origin: &Vec3, normal: &Vec3) -> Option<ContactGeometry> {
+    let g = detect::sphere_plane(at, 0.0, origin, normal)?;
+    Some(ContactGeometry { radius: model.radii.0, ..g })
 }
 
 /// Energy in the springs between a body's vertices and the planes at the last half step: normal, tangential [J].
@@ -350,14 +357,15 @@ pub(crate) fn stored(
         let at = then.to_world(&body.centre, &body.vertices[foot.vertex as usize]);
         let origin = plane.point + wall.offset - wall.velocity * back;
         let Some(ContactGeometry { point, normal, overlap, radius }) =
-            detect::sphere_plane(&at, 0.0, &origin, &plane.normal)
+            tip(model, &at, &origin, &plane.normal)
         else {
             continue;
         };
         let velocity = state.velocity_at(&body.centre, &point) - wall.velocity;
         let slip = velocity - normal * velocity.dot(&normal);
-        let law = model.law(material, plane.material as u32);
-        let (n, t) = law.stored(overlap, radius, &(foot.history.spring + slip * back));
+        let mut history = foot.history;
+        history.spring += slip * back;
+        let (n, t) = model.laws.stored(material, plane.material as u32, overlap, radius, &history);
         sum[0] += n;
         sum[1] += t;
     }

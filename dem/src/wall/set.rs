@@ -10,8 +10,7 @@ use super::servo::Servo;
 use super::state::WallState;
 use super::triangulated::{self, Triangle};
 use crate::Vec3;
-use crate::contact::linear::Linear;
-use crate::contact::{ContactLaw, PairTable};
+use crate::contact::Laws;
 use crate::error::{ModelError, Partner};
 use crate::input::Plane;
 use crate::search::bvh::Bvh;
@@ -139,28 +138,31 @@ impl Walls {
         Ok(())
     }
 
-    /// Lowers the limit of the time step where a rigid body of triangles needs it; `radius` is that of the smallest
-    /// sphere [m].
+    /// Lowers the limit of the time step where a rigid body of triangles needs it; `radii` are those of the smallest
+    /// and the largest sphere [m], `expected` the overlap expected over the radius.
     pub(crate) fn limit_step(
         &self,
         limit: &mut DtLimit,
         bodies: &[crate::model::Body],
         planes: &[Plane],
-        table: &PairTable<Linear>,
-        radius: f64,
+        laws: &Laws,
+        expected: f64,
+        radii: (f64, f64),
     ) {
         let partners = || bodies.iter().map(|b| b.material).chain(planes.iter().map(|p| p.material as u32));
         for (k, wall) in self.walls.iter().enumerate() {
             let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
             let mut tried = None;
             for partner in partners() {
-                let law = table.get(wall.material, partner);
-                let stiffness = law.stiffness(0.0, 1.0);
+                let stiffness = laws.stiffness(wall.material, partner, expected * radii.1, radii.1);
                 if tried == Some(partner) || !stiffness.is_finite() {
                     continue;
                 }
                 tried = Some(partner);
-                let dt = body.step_limit(stiffness, law.tangential, law.damping_ratio, radius);
+                let ratio =
+                    laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
+                let zeta = laws.damping_ratio(wall.material, partner);
+                let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
                 if dt < limit.dt {
                     let (partner, mass) = (partner as usize, body.mass);
                     *limit = DtLimit { dt, body: 0, partner, stiffness, mass, wall: Some(k) };
@@ -382,6 +384,10 @@ impl Surface for PlacedWalls<'_> {
     fn moment_centre(&self, patch: u32) -> [f64; 3] {
         let (_, wall, state) = self.parts(patch);
         (wall.centre + state.offset).into()
+    }
+
+    fn spin(&self, patch: u32) -> Vec3 {
+        self.states[self.walls.wall_of(patch)].spin
     }
 
     fn inverse_mass(&self, patch: u32) -> f64 {
