@@ -72,6 +72,9 @@ pub fn find_contacts<S: Surface>(
         *block = Block { pairs, planes, walls, surface, ..std::mem::take(block) };
     }
     state.cross = probe.cross;
+    for (wall, seen) in state.walls.iter_mut().zip(probe.walls) {
+        (wall.force, wall.moment, wall.feet) = (seen.force, seen.moment, seen.feet);
+    }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
     Ok(())

@@ -13,6 +13,7 @@ mod solid_alone;
 mod statics;
 mod summary;
 mod system;
+mod wall_output;
 
 pub use cycles::{Cycle, CycleRecorder};
 pub use memory::{Prediction, parse_size, size};
@@ -142,6 +143,7 @@ fn hash(document: &Document, scene: &Scene) -> String {
         files.extend(g.packing.as_deref());
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
     }
+    files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     for file in files {
         // Every one of them was read before; one that has gone since changes the hash, which is what it is for.
         hash.add(&std::fs::read(document.resolve(file)).unwrap_or_default());

@@ -4,6 +4,7 @@
 use super::cycles::{Cycle, CycleRecorder};
 use super::frames;
 use super::system::System;
+use super::wall_output;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::write;
@@ -78,6 +79,7 @@ impl<'a> Recorder<'a> {
             vector(&mut columns, &format!("{name}_u"), "m");
             vector(&mut columns, &format!("{name}_v"), "m/s");
         }
+        columns.extend(job.grains.iter().flat_map(wall_output::columns));
         let history = History::create(&dir.join("history.csv"), columns)?;
         let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
         let cycles_file =
@@ -145,6 +147,9 @@ impl<'a> Recorder<'a> {
                 row.extend_from_slice(&solid.state.u[3 * node..3 * node + 3]);
                 row.extend_from_slice(&solid.state.v[3 * node..3 * node + 3]);
             }
+        }
+        if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
+            wall_output::values(part, view, &mut row);
         }
         self.history.row(&row)?;
         Ok(())
