@@ -280,7 +280,7 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
         applied_work: ledger.work_applied,
-        wall_work: ledger.work_walls + ledger.work_constraints,
+        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
         local_damping: ledger.dissipated_local_damping,

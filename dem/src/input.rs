@@ -3,6 +3,7 @@
 use crate::Vec3;
 use crate::material::{Material, PairOverride};
 use crate::shape::Shape;
+use crate::wall::WallInput;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +72,7 @@ pub struct TriangleSurface {
     pub triangles: Vec<[u32; 3]>,
     /// Material (index).
     pub material: usize,
-    /// Velocity at the start [m/s]. [`crate::state::State::set_triangles_velocity`] changes it.
+    /// Velocity at the start [m/s]. [`crate::state::State::set_wall_velocity`] changes it.
     pub velocity: Vec3,
 }
 
@@ -124,6 +125,8 @@ pub struct ModelInput {
     pub planes: Vec<Plane>,
     /// Triangle surfaces.
     pub triangles: Vec<TriangleSurface>,
+    /// Walls of other shapes, and triangle surfaces that turn, swing, are driven by a force or are bodies.
+    pub walls: Vec<WallInput>,
     /// Material (index) of the external surface, when the scene has one.
     pub surface_material: Option<usize>,
     /// Acceleration of gravity [m/s²].
@@ -149,6 +152,7 @@ impl Default for ModelInput {
             bodies: Vec::new(),
             planes: Vec::new(),
             triangles: Vec::new(),
+            walls: Vec::new(),
             surface_material: None,
             gravity: Vec3::new(0.0, 0.0, -9.81),
             time_step: TimeStep::Auto { fraction: 0.1 },
@@ -156,5 +160,12 @@ impl Default for ModelInput {
             skin: None,
             damping: None,
         }
+    }
+}
+
+impl ModelInput {
+    /// All walls of patches: triangle surfaces, then walls.
+    pub(crate) fn all_walls(&self) -> impl Iterator<Item = WallInput> {
+        self.triangles.iter().map(WallInput::of_triangles).chain(self.walls.iter().cloned())
     }
 }

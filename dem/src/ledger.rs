@@ -44,15 +44,17 @@ pub struct Ledger {
     pub dissipated_local_damping: f64,
     /// Work of applied forces [J].
     pub work_applied: f64,
-    /// Work of moving planes and triangle surfaces on the bodies [J].
+    /// Work of planes and walls with prescribed motion on the bodies [J].
     pub work_walls: f64,
+    /// Work of walls that are driven by a force on the bodies [J].
+    pub work_servo: f64,
     /// Work of the external surface's motion on the bodies [J].
     pub work_surface: f64,
     /// Work of what keeps fixed motions at their speed [J].
     pub work_constraints: f64,
     /// Impulse of gravity.
     pub gravity: Impulse,
-    /// Impulse of planes and triangle surfaces.
+    /// Impulse of planes and walls, rigid bodies excepted: they count among the bodies.
     pub walls: Impulse,
     /// Impulse of the external surface.
     pub surface: Impulse,
@@ -72,7 +74,7 @@ impl Ledger {
 
     /// All work received from outside, gravity excepted (it has a potential) [J].
     pub fn work(&self) -> f64 {
-        self.work_applied + self.work_walls + self.work_surface + self.work_constraints
+        self.work_applied + self.work_walls + self.work_servo + self.work_surface + self.work_constraints
     }
 
     /// Sum of all impulses: the change of momentum since the start.
@@ -92,6 +94,7 @@ impl AddAssign<&Ledger> for Ledger {
         self.dissipated_local_damping += other.dissipated_local_damping;
         self.work_applied += other.work_applied;
         self.work_walls += other.work_walls;
+        self.work_servo += other.work_servo;
         self.work_surface += other.work_surface;
         self.work_constraints += other.work_constraints;
         self.gravity += &other.gravity;

@@ -33,6 +33,7 @@ pub use model::Model;
 pub use shape::Shape;
 pub use state::State;
 pub use step::{find_contacts, step};
+pub use wall::{Motion, Oscillation, RigidBody, Servo, WallInput, WallShape};
 pub use work::Work;
 
 /// A vector of three components.

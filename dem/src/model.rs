@@ -6,7 +6,7 @@ use crate::error::ModelError;
 use crate::input::{ModelInput, Plane, TimeStep};
 use crate::shape::{Shape, cuboid};
 use crate::timestep::{self, DtLimit};
-use crate::wall::triangulated::TriangleWalls;
+use crate::wall::{WallInput, set::Walls};
 use crate::{check, input};
 use nalgebra::UnitQuaternion;
 
@@ -51,7 +51,7 @@ pub struct Model {
     pub(crate) shapes: Vec<Shape>,
     /// Planes with unit normals.
     pub(crate) planes: Vec<Plane>,
-    pub(crate) triangles: TriangleWalls,
+    pub(crate) walls: Walls,
     pub(crate) surface_material: Option<u32>,
     pub(crate) laws: Laws,
     /// Largest overlap expected, over the effective radius: what stiffnesses that grow with the overlap are taken at.
@@ -79,7 +79,8 @@ impl Model {
         let bodies: Vec<Body> =
             input.bodies.iter().enumerate().map(|(k, b)| resolve(&input, k, b)).collect::<Result<_, _>>()?;
         let laws = Laws::new(&input.materials, &input.contacts);
-        let triangles = TriangleWalls::new(&input.triangles)?;
+        let walls: Vec<WallInput> = input.all_walls().collect();
+        let walls = Walls::new(&walls, input.triangles.len())?;
         check::rigid_pairs(&bodies, &input)?;
 
         let mut radii = (f64::INFINITY, 0.0_f64);
@@ -99,7 +100,8 @@ impl Model {
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
-        let limit = timestep::limit(&bodies, &input, &laws, expected, radii.0);
+        let mut limit = timestep::limit(&bodies, &input, &laws, expected, radii.0);
+        walls.limit_step(&mut limit, &bodies, &input.planes, &laws, expected, radii);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
             TimeStep::Fixed(dt) if dt > limit.dt => {
@@ -114,7 +116,7 @@ impl Model {
             bodies,
             shapes: input.shapes,
             planes,
-            triangles,
+            walls,
             surface_material: input.surface_material.map(|m| m as u32),
             laws,
             expected,
@@ -219,6 +221,26 @@ impl Model {
             Shape::Box { half } => Vec3::from(*half) * self.bodies[body].scale,
             _ => Vec3::zeros(),
         }
+    }
+
+    /// Number of walls: triangle surfaces, then walls.
+    pub fn wall_count(&self) -> usize {
+        self.walls.walls.len()
+    }
+
+    /// Largest damping ratio of contacts with a material [-].
+    pub(crate) fn wall_damping(&self, material: u32) -> f64 {
+        self.bodies
+            .iter()
+            .map(|b| b.material)
+            .fold((0.0_f64, u32::MAX), |(most, last), m| {
+                if m == last {
+                    (most, m)
+                } else {
+                    (most.max(self.contact_stiffness(m as usize, material as usize).1), m)
+                }
+            })
+            .0
     }
 
     /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that

@@ -9,7 +9,7 @@
 use crate::Vec3;
 use crate::contact::History;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Cross, CrossPair, Pair, PatchPair, PlanePair, State};
+use crate::state::{Block, Cross, CrossPair, Pair, PatchContact, PatchPair, PlanePair, State};
 
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
@@ -137,19 +137,26 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
             };
             state.blocks[b as usize].planes.push(PlanePair { i, ..*p });
         }
-        for (from, pick) in [(&block.triangles, true), (&block.surface, false)] {
-            for p in from {
+        for (from, pick) in [(&block.walls, true), (&block.surface, false)] {
+            for p in &from.live {
                 let (b, i) = new(names[p.i as usize]);
                 let to = &mut state.blocks[b as usize];
-                (if pick { &mut to.triangles } else { &mut to.surface }).push(PatchPair { i, ..*p });
+                (if pick { &mut to.walls } else { &mut to.surface }).live.push(PatchContact { i, ..*p });
+            }
+            for p in &from.pairs {
+                let (b, i) = new(names[p.i as usize]);
+                let to = &mut state.blocks[b as usize];
+                (if pick { &mut to.walls } else { &mut to.surface }).pairs.push(PatchPair { i, ..*p });
             }
         }
     }
     for block in &mut state.blocks {
         block.pairs.sort_unstable_by_key(|p| (p.i, p.j));
         block.planes.sort_unstable_by_key(|p| (p.i, p.plane));
-        block.triangles.sort_unstable_by_key(|p| (p.i, p.patch));
-        block.surface.sort_unstable_by_key(|p| (p.i, p.patch));
+        for list in [&mut block.walls, &mut block.surface] {
+            list.pairs.sort_unstable_by_key(|p| (p.i, p.patch));
+            list.live.sort_unstable_by_key(|p| (p.i, p.patch));
+        }
     }
     for cross in &mut state.cross {
         cross.spheres.sort_unstable_by_key(|p| (p.i, p.block, p.j));

@@ -11,6 +11,7 @@ use crate::order;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
+use crate::wall::advance::{self, WallSum};
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Work};
 use rayon::prelude::*;
 
@@ -67,10 +68,13 @@ pub fn find_contacts<S: Surface>(
     let mut probe = state.clone();
     step(model, &mut probe, work, surface, &[])?;
     for (block, seen) in state.blocks.iter_mut().zip(probe.blocks) {
-        let Block { pairs, planes, triangles, surface, .. } = seen;
-        *block = Block { pairs, planes, triangles, surface, ..std::mem::take(block) };
+        let Block { pairs, planes, walls, surface, .. } = seen;
+        *block = Block { pairs, planes, walls, surface, ..std::mem::take(block) };
     }
     state.cross = probe.cross;
+    for (wall, seen) in state.walls.iter_mut().zip(probe.walls) {
+        (wall.force, wall.moment, wall.feet) = (seen.force, seen.moment, seen.feet);
+    }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
     Ok(())
@@ -84,7 +88,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     surface: &S,
 ) {
     let dt = model.dt();
-    let State { blocks, cross, planes, triangles, .. } = state;
+    let State { blocks, cross, planes, walls: wall_states, .. } = state;
     let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
 
     // Contacts between blocks: they read any block, and write slots.
@@ -100,7 +104,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
 
     // All else concerns one block at a time.
     let (slots, applied) = (&*slots, &**applied);
-    let walls = model.triangles.moved(triangles);
+    let walls = model.walls.placed(wall_states);
     let surface_material = model.surface_material.unwrap_or(0);
     let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
         w.ledger = Ledger::default();
@@ -111,23 +115,25 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         pass::gather(block, w, slots);
         pass::interior::<_, RIGID>(laws, block, w, dt);
         pass::planes::<_, RIGID>(model, laws, planes, block, w, dt);
-        if !block.triangles.is_empty() {
-            let mut list = std::mem::take(&mut block.triangles);
-            let material = |patch| model.triangles.material(patch);
-            let done = patches::contacts::<_, _, RIGID>(
+        w.wall_sums.clear();
+        if !block.walls.is_empty() {
+            let mut list = std::mem::take(&mut block.walls);
+            let mut sums = std::mem::take(&mut w.wall_sums);
+            sums.resize(walls.groups(), WallSum::default());
+            patches::contacts::<_, _, RIGID>(
                 laws,
                 &walls,
-                material,
-                Partner::Triangle,
+                |patch| model.walls.material(patch),
+                |patch| model.walls.partner(patch),
                 &mut list,
                 block,
                 w,
+                &mut sums,
                 false,
                 dt,
             );
-            w.ledger.work_walls += done.work;
-            w.ledger.walls += &done.impulse;
-            block.triangles = list;
+            w.wall_sums = sums;
+            block.walls = list;
         }
         if !block.surface.is_empty() {
             let mut list = std::mem::take(&mut block.surface);
@@ -139,6 +145,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
                 &mut list,
                 block,
                 w,
+                &mut [],
                 true,
                 dt,
             );
@@ -198,11 +205,12 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
     }
+    let (wall_speed, wall_failure) = advance::walls(model, state, work, &mut sum);
+    failure = failure.or(wall_failure);
     state.ledger += &sum;
     let time = state.time;
-    let walls = state.planes.iter_mut().chain(&mut state.triangles);
-    let mut wall_speed = surface_speed;
-    for wall in walls {
+    let mut wall_speed = wall_speed.max(surface_speed);
+    for wall in &mut state.planes {
         wall.offset += wall.velocity * dt;
         wall_speed = wall_speed.max(wall.velocity.norm());
     }
@@ -218,6 +226,12 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         }
         Some(Failure::Speed { body, speed, bound }) => {
             Err(StepError::Speed { time, body: body as usize, speed, bound })
+        }
+        Some(Failure::Wall { wall, speed, bound }) => {
+            Err(StepError::WallSpeed { time, wall: wall as usize, speed, bound })
+        }
+        Some(Failure::Meeting { walls }) => {
+            Err(StepError::WallsMeet { time, walls: walls.map(|w| w as usize) })
         }
     }
 }

@@ -52,10 +52,19 @@ pub struct DtLimit {
     pub stiffness: f64,
     /// Effective mass of the body at its outermost contact [kg].
     pub mass: f64,
+    /// The rigid body of this wall sets it, in place of `body`.
+    pub wall: Option<usize>,
 }
 
 impl fmt::Display for DtLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(wall) = self.wall {
+            return write!(
+                f,
+                "the rigid body of wall {wall} in contact with material {} (stiffness {:.3e} N/m)",
+                self.partner, self.stiffness
+            );
+        }
         write!(
             f,
             "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
@@ -75,7 +84,7 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, laws: &Laws, expected: 
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0 };
+    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, wall: None };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -111,7 +120,7 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, laws: &Laws, expected: 
             let dt = bound / (sides * own).sqrt();
             if !found || dt < least.dt {
                 found = true;
-                least = DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own };
+                least = DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own, wall: None };
             }
         }
     }
@@ -151,6 +160,7 @@ fn partners(bodies: &[Body], input: &ModelInput) -> Vec<usize> {
     bodies.iter().for_each(|b| used[b.material as usize] = true);
     input.planes.iter().for_each(|p| used[p.material] = true);
     input.triangles.iter().for_each(|t| used[t.material] = true);
+    input.walls.iter().for_each(|w| used[w.material] = true);
     input.surface_material.into_iter().for_each(|m| used[m] = true);
     (0..used.len()).filter(|&m| used[m]).collect()
 }

@@ -6,8 +6,9 @@ use crate::error::Partner;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::cells::Cells;
-use crate::state::{Lanes, PatchPair, State, xyz};
+use crate::state::{Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
+use crate::wall::advance::WallSum;
 
 /// Force on the first partner of a contact between blocks, and where it acts.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,6 +33,8 @@ pub(crate) struct Gather {
 pub(crate) enum Failure {
     Overlap { body: u32, partner: Partner, overlap: f64, bound: f64 },
     Speed { body: u32, speed: f64, bound: f64 },
+    Wall { wall: u32, speed: f64, bound: f64 },
+    Meeting { walls: [u32; 2] },
 }
 
 /// Contacts of a block with others: their forces, what they dissipated, and the first failure.
@@ -69,7 +72,7 @@ pub(crate) struct BlockWork {
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
     pub planes: Vec<[u32; 2]>,
-    pub triangles: Vec<[u32; 2]>,
+    pub walls: Vec<[u32; 2]>,
     pub surface: Vec<[u32; 2]>,
 
     // The step.
@@ -83,6 +86,9 @@ pub(crate) struct BlockWork {
     pub row: Vec<u32>,
     pub patches: Vec<PatchPair>,
     pub touches: Vec<Touch>,
+    pub live: Vec<PatchContact>,
+    /// What the block's spheres felt from each wall; empty in blocks near none.
+    pub wall_sums: Vec<WallSum>,
 }
 
 /// A force applied to a body in this step.
@@ -107,6 +113,7 @@ pub struct Work {
     /// Whether the candidates exist, and where walls were when they were found.
     pub(crate) listed: bool,
     pub(crate) wall_reference: Vec<Vec3>,
+    pub(crate) wall_places: Vec<(Vec3, nalgebra::UnitQuaternion<f64>)>,
     pub(crate) surface_drift: f64,
     pub(crate) searches: u64,
     pub(crate) refreshes: u64,
@@ -130,6 +137,7 @@ impl Work {
             names: Vec::new(),
             listed: false,
             wall_reference: Vec::new(),
+            wall_places: Vec::new(),
             surface_drift: 0.0,
             searches: 0,
             refreshes: 0,

@@ -3,7 +3,7 @@
 mod groups;
 mod materials;
 mod track;
-mod walls;
+pub mod walls;
 
 use super::seat_load::CyclicLoad;
 use crate::failure::Failure;
@@ -11,8 +11,8 @@ use crate::scene::{Document, Scene, SceneError, TimeControl};
 use trackbed_coupling::step::{self, Stability};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
-    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep,
-    TriangleSurface, Vec3,
+    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
+    WallInput,
 };
 use trackbed_fem::Face;
 
@@ -22,7 +22,8 @@ pub struct GrainsPart {
     contacts: Vec<PairOverride>,
     shapes: Vec<Shape>,
     planes: Vec<Plane>,
-    triangles: Vec<TriangleSurface>,
+    walls: Vec<WallInput>,
+    recorded: Vec<walls::Recorded>,
     surface_material: Option<usize>,
     gravity: Vec3,
     time_step: TimeStep,
@@ -95,7 +96,7 @@ impl GrainsPart {
         let mut input = ModelInput { contacts, damping, ..self.input(self.bodies.clone()) };
         // Walls wait for the run proper, which starts with them in their first place.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
-        input.triangles.iter_mut().for_each(|t| t.velocity = Vec3::zeros());
+        input.walls.iter_mut().for_each(|w| *w = w.at_rest());
         input
     }
 
@@ -107,7 +108,8 @@ impl GrainsPart {
             shapes: self.shapes.clone(),
             bodies,
             planes: self.planes.clone(),
-            triangles: self.triangles.clone(),
+            triangles: Vec::new(),
+            walls: self.walls.clone(),
             surface_material: self.surface_material,
             gravity: self.gravity,
             time_step: self.time_step,
@@ -147,9 +149,14 @@ impl GrainsPart {
         &self.planes
     }
 
-    /// Triangle walls, for the pictures.
-    pub fn triangles(&self) -> &[TriangleSurface] {
-        &self.triangles
+    /// Walls other than plain planes, for the pictures.
+    pub fn walls(&self) -> &[WallInput] {
+        &self.walls
+    }
+
+    /// Walls whose force goes to the history.
+    pub fn recorded(&self) -> &[walls::Recorded] {
+        &self.recorded
     }
 
     /// The sleeper as a body with its centre at height `z` [m].
@@ -211,7 +218,8 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         contacts,
         shapes: Vec::new(),
         planes: Vec::new(),
-        triangles: Vec::new(),
+        walls: Vec::new(),
+        recorded: Vec::new(),
         surface_material: scene
             .coupling
             .as_ref()

@@ -1,6 +1,7 @@
 //! What the writers show, taken from a running system.
 
 use super::system::{GrainsView, SolidView};
+use super::wall_output;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::write::{self, ChainFrame, GrainFrame, SolidFrame, WallFrame};
@@ -99,6 +100,7 @@ pub fn chains(view: GrainsView<'_>) -> ChainFrame {
             dem::Partner::Plane(_) => 1,
             dem::Partner::Triangle(_) => 2,
             dem::Partner::Patch(_) => 3,
+            dem::Partner::Wall(_) => 4,
         });
     }
     frame
@@ -107,33 +109,17 @@ pub fn chains(view: GrainsView<'_>) -> ChainFrame {
 /// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
 pub fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
     let mut frame = WallFrame::default();
-    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| {
-        let first = frame.points.len() as u32;
-        frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
-        for polygon in polygons {
-            frame.polygons.push(polygon.iter().map(|v| v + first).collect());
-            frame.id.push(id);
-        }
-    };
-    let (centre, half) = extent(view);
+    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
+    let extent = extent(view);
     let mut id = 0;
     for (i, plane) in part.planes().iter().enumerate() {
-        let normal = plane.normal.normalize();
         let point = view.state.plane_point(view.model, i);
-        let middle = centre - normal * (centre - point).dot(&normal);
-        let helper = if normal.x.abs() < 0.9 { dem::Vec3::x() } else { dem::Vec3::y() };
-        let (u, v) = (normal.cross(&helper).normalize(), normal.cross(&normal.cross(&helper)).normalize());
-        let corner = |a: f64, b: f64| middle + (u * a + v * b) * half;
-        add(id, &[corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)], &[&[0, 1, 2, 3]]);
+        let (points, polygons) = wall_output::square(&point, &plane.normal.normalize(), extent);
+        add(id, &points, &polygons.iter().map(Vec::as_slice).collect::<Vec<_>>());
         id += 1;
     }
-    for (i, surface) in part.triangles().iter().enumerate() {
-        let offset = view.state.triangles_offset(i);
-        let points: Vec<dem::Vec3> = surface.vertices.iter().map(|p| p + offset).collect();
-        let polygons: Vec<&[u32]> = surface.triangles.iter().map(|t| t.as_slice()).collect();
-        add(id, &points, &polygons);
-        id += 1;
-    }
+    id = wall_output::polygons(view, part, extent, id, &mut frame);
+    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
     for body in 0..view.model.body_count() {
         if let Shape::Box { half } = view.model.shape(body) {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
@@ -150,6 +136,16 @@ pub fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
         }
     }
     frame
+}
+
+/// Adds polygons of one wall.
+fn push(frame: &mut WallFrame, id: u32, points: &[dem::Vec3], polygons: &[&[u32]]) {
+    let first = frame.points.len() as u32;
+    frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
+    for polygon in polygons {
+        frame.polygons.push(polygon.iter().map(|v| v + first).collect());
+        frame.id.push(id);
+    }
 }
 
 /// Middle of the grains and half the largest side of the box around them [m].

@@ -15,6 +15,7 @@ mod solid_alone;
 mod statics;
 mod summary;
 mod system;
+mod wall_output;
 
 pub use cycles::{Cycle, CycleRecorder};
 pub use keeper::Interrupt;
@@ -244,6 +245,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.packing.as_deref());
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
     }
+    files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     files
 }
 

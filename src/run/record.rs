@@ -5,6 +5,7 @@ use super::checkpoint::{Body, Loaded};
 use super::cycles::{Cycle, CycleRecorder};
 use super::frames;
 use super::system::System;
+use super::wall_output;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::write;
@@ -190,6 +191,9 @@ impl<'a> Recorder<'a> {
                 row.extend_from_slice(&solid.state.v[3 * node..3 * node + 3]);
             }
         }
+        if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
+            wall_output::values(part, view, &mut row);
+        }
         self.history.row(&row)?;
         Ok(())
     }
@@ -342,6 +346,7 @@ fn columns<S: System>(job: &Job, system: &S, sleeper: Option<Sleeper>) -> Vec<Co
         vector(&mut columns, &format!("{name}_u"), "m");
         vector(&mut columns, &format!("{name}_v"), "m/s");
     }
+    columns.extend(job.grains.iter().flat_map(wall_output::columns));
     columns
 }
 

@@ -9,7 +9,7 @@ use crate::model::{Kind, Model};
 use crate::search::candidates::spheres;
 use crate::shape::cuboid;
 use crate::state::{Block, Cross, Lanes, Pair, xyz};
-use crate::wall::triangulated::WallMotion;
+use crate::wall::state::WallMotion;
 use crate::work::{BlockWork, CrossWork, Failure, Slot};
 
 /// Motion of one body as a contact needs it.

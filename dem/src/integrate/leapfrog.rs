@@ -178,7 +178,7 @@ fn rotate(
 }
 
 /// Spin after the impulse about the fixed axes that gives it the components `target` there.
-fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fixed: u8) -> Vec3 {
+pub(crate) fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fixed: u8) -> Vec3 {
     if fixed == 7 {
         return *target;
     }

@@ -6,7 +6,7 @@ use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::shape::cuboid;
-use crate::state::{Block, Lanes, PatchPair, State, xyz};
+use crate::state::{Block, Lanes, PatchContact, State, xyz};
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,15 +119,41 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         state.cross[b].spheres.iter().for_each(|p| pair(p.i, p.block, p.j, false, &p.history));
         state.cross[b].boxes.iter().for_each(|p| pair(p.i, p.block, p.j, true, &p.history));
         planes(model, state, &now, b, &mut f);
-        for pair in &block.triangles {
-            let material = model.triangles.material(pair.patch);
-            patch(model, &now, b, pair, material, Partner::Triangle(pair.patch), &mut f);
+        for contact in &block.walls.live {
+            let k = model.walls.wall_of(contact.patch);
+            let wall = &model.walls.walls[k];
+            let partner = Partnership {
+                material: wall.material,
+                partner: model.walls.partner(contact.patch),
+                velocity: state.walls[k].velocity_at(&wall.centre, &contact.point),
+                spin: state.walls[k].spin,
+                inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
+            };
+            patch(model, &now, b, contact, &partner, &mut f);
         }
-        for pair in &block.surface {
-            let material = model.surface_material.unwrap_or(0);
-            patch(model, &now, b, pair, material, Partner::Patch(pair.patch), &mut f);
+        for contact in &block.surface.live {
+            let partner = Partnership {
+                material: model.surface_material.unwrap_or(0),
+                partner: Partner::Patch(contact.patch),
+                velocity: contact.velocity,
+                spin: Vec3::zeros(),
+                inverse_mass: 0.0,
+            };
+            patch(model, &now, b, contact, &partner, &mut f);
         }
     }
+}
+
+/// What a sphere in touch with a patch needs to know of the patch.
+struct Partnership {
+    material: u32,
+    partner: Partner,
+    /// Velocity of the patch at the contact point [m/s].
+    velocity: Vec3,
+    /// Spin of what it belongs to [rad/s].
+    spin: Vec3,
+    /// One over the mass that it belongs to [1/kg].
+    inverse_mass: f64,
 }
 
 fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
@@ -166,9 +192,8 @@ fn patch(
     model: &Model,
     now: &Snapshot,
     b: usize,
-    pair: &PatchPair,
-    material: u32,
-    partner: Partner,
+    pair: &PatchContact,
+    partner: &Partnership,
     f: &mut impl FnMut(&Visited<'_>),
 ) {
     if pair.history.is_fresh() {
@@ -176,19 +201,19 @@ fn patch(
     }
     let block = &now.blocks[b];
     let a = now.owners[b][pair.i as usize] as usize;
-    let velocity = pass::motion(block, a, &pair.point).at_point() - pair.velocity;
+    let velocity = pass::motion(block, a, &pair.point).at_point() - partner.velocity;
     let overlap = pair.overlap - velocity.dot(&pair.normal) * (model.dt() - now.back);
     if overlap > 0.0 {
         let radius = now.spheres[b][pair.i as usize][3];
         f(&Visited {
             body: block.bodies[a],
-            partner,
+            partner: partner.partner,
             geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
             velocity,
-            mass: 1.0 / block.velocity[a][3],
+            mass: 1.0 / (block.velocity[a][3] + partner.inverse_mass),
             history: &pair.history,
-            spin: xyz(&block.spin[a]),
-            materials: [block.spin[a][3] as u32, material],
+            spin: xyz(&block.spin[a]) - partner.spin,
+            materials: [block.spin[a][3] as u32, partner.material],
         });
     }
 }

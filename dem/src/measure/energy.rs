@@ -4,6 +4,7 @@ use super::contacts::visit;
 use crate::ledger::Impulse;
 use crate::model::Model;
 use crate::state::{State, xyz};
+use crate::wall;
 
 /// Energies of all bodies and contacts [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,6 +56,16 @@ pub fn energies(model: &Model, state: &State) -> Energies {
             e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
         }
     }
+    for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
+        let Some(body) = &wall.body else { continue };
+        let [translation, rotation, gravity] = body.energies(own, &model.gravity, model.dt());
+        let [normal, tangential] = wall::body::stored(model, body, wall.material, own, &state.planes);
+        e.kinetic_translation += translation;
+        e.kinetic_rotation += rotation;
+        e.gravity += gravity;
+        e.elastic_normal += normal;
+        e.elastic_tangential += tangential;
+    }
     visit(model, state, back, |c| {
         // The spring belongs to the last full step: half a step of sliding brings it to the half step.
         let n = &c.geometry.normal;
@@ -89,6 +100,11 @@ pub fn momentum(model: &Model, state: &State) -> Impulse {
                 Some(r) if b.kind != crate::model::Kind::Sphere => r.momentum,
                 _ => xyz(&block.spin[k]) * b.inertia.x,
             };
+        }
+    }
+    for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
+        if let Some(body) = &wall.body {
+            body.momentum(own, &mut sum);
         }
     }
     sum

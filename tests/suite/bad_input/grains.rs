@@ -5,8 +5,8 @@ use super::*;
 #[test]
 fn unknown_kind_of_wall() {
     grains_scene()
-        .scene("kind = \"plane\"", "kind = \"cone\"")
-        .refused("scene.toml:17: walls.0.kind: found \"cone\", expected \"plane\" or \"triangles\"");
+        .scene("kind = \"plane\"", "kind = \"torus\"")
+        .refused("scene.toml:17: walls.0.kind: found \"torus\", expected one of \"plane\", \"cylinder\", \"cone\", \"sphere\", \"triangles\", \"mesh\"");
 }
 
 #[test]
@@ -16,7 +16,9 @@ fn wall_without_area() {
             "kind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]",
             "kind = \"triangles\"\nvertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\ntriangles = [[0, 1, 2]]",
         )
-        .refused("scene.toml:16: walls: found triangle 0 of surface 0: it has no area, expected walls with an area");
+        .refused(
+            "scene.toml:16: walls: found triangle 0 of wall 0: it has no area, expected walls with an area",
+        );
 }
 
 #[test]
