@@ -1,6 +1,7 @@
 //! One step of the grains: search when due, contacts, integration.
 
 use crate::Vec3;
+use crate::bond;
 use crate::contact::{pass, patches};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
@@ -45,6 +46,9 @@ pub fn step<S: Surface>(
     }
     place_loads(model, state, work, applied)?;
     near::update(model, state, work, surface);
+    if !model.bonds.is_empty() {
+        bond::pass::cross(model, state, work);
+    }
     if model.rigid {
         contacts_and_motion::<S, true>(model, state, work, surface);
     } else {
@@ -73,6 +77,8 @@ pub fn find_contacts<S: Surface>(
     state.cross = probe.cross;
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    // The probe may have broken bonds.
+    bond::pass::arrange(model, state, work);
     Ok(())
 }
 
@@ -84,8 +90,8 @@ fn contacts_and_motion<S: Surface, const RIGID: bool>(
 ) {
     let dt = model.dt();
     let laws = &model.table;
-    let State { blocks, cross, planes, triangles, .. } = state;
-    let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
+    let State { blocks, cross, planes, triangles, bonds, .. } = state;
+    let Work { blocks: works, cross: slots, applied, parallel, bonds: bonded, .. } = work;
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
@@ -99,7 +105,7 @@ fn contacts_and_motion<S: Surface, const RIGID: bool>(
     }
 
     // All else concerns one block at a time.
-    let (slots, applied) = (&*slots, &**applied);
+    let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
     let walls = model.triangles.moved(triangles);
     let surface_material = model.surface_material.unwrap_or(0);
     let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
@@ -109,6 +115,9 @@ fn contacts_and_motion<S: Surface, const RIGID: bool>(
         w.force.fill(Vec3::zeros());
         w.torque.fill(Vec3::zeros());
         pass::gather(block, w, slots);
+        if !model.bonds.is_empty() {
+            bond::pass::within(model, b, block, w, bonded, bonds.fresh);
+        }
         pass::interior::<_, RIGID>(laws, block, w, dt);
         pass::planes::<_, RIGID>(model, laws, planes, block, w, dt);
         if !block.triangles.is_empty() {
@@ -199,6 +208,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         work.surface_contacts.extend_from_slice(&w.contacts);
     }
     state.ledger += &sum;
+    if !model.bonds.is_empty() {
+        failure = failure.or(bond::pass::settle(model, state, work));
+    }
     let time = state.time;
     let walls = state.planes.iter_mut().chain(&mut state.triangles);
     let mut wall_speed = surface_speed;

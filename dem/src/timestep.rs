@@ -14,9 +14,12 @@
 //! it with more than one member), and for a box twice as many as neighbours of the smallest bounding radius find
 //! room on its largest side, two contacts each. Contacts on a clump may all lie far out, so its r² is the largest;
 //! those on the side of a box are spread over it, so its r² is the mean over the side.
+//! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
+//!
 //! Limits: linear contacts; very unlike sizes, where one large body has more contacts than s, are on the safe side
 //! because its mass grows faster than their number.
 
+use crate::bond;
 use crate::contact::linear::Linear;
 use crate::contact::{ContactLaw, PairTable};
 use crate::input::ModelInput;
@@ -37,6 +40,8 @@ pub struct DtLimit {
     pub stiffness: f64,
     /// Effective mass of the body at its outermost contact [kg].
     pub mass: f64,
+    /// Square of the highest frequency that the body's bonds alone could give it [1/s²].
+    pub bonds: f64,
 }
 
 impl fmt::Display for DtLimit {
@@ -45,12 +50,23 @@ impl fmt::Display for DtLimit {
             f,
             "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
             self.body, self.mass, self.partner, self.stiffness
-        )
+        )?;
+        if self.bonds > 0.0 {
+            write!(f, " and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt())?;
+        }
+        Ok(())
     }
 }
 
 /// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
-pub(crate) fn limit(bodies: &[Body], input: &ModelInput, table: &PairTable<Linear>, r_min: f64) -> DtLimit {
+pub(crate) fn limit(
+    bodies: &[Body],
+    input: &ModelInput,
+    table: &PairTable<Linear>,
+    bonds: &[bond::Constants],
+    r_min: f64,
+) -> DtLimit {
+    let bonded = bond::stiffest(bonds, bodies);
     let partners = partners(bodies, input);
     let r_min = bodies
         .iter()
@@ -58,7 +74,7 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, table: &PairTable<Linea
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0 };
+    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, bonds: 0.0 };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -88,10 +104,20 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, table: &PairTable<Linea
             };
             let zeta = law.damping_ratio * f64::sqrt(0.5 * sides);
             let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
-            let dt = bound / (sides * own).sqrt();
+            let alone = bound / (sides * own).sqrt();
+            let [bond_stiffness, bond_damping] = bonded.get(k).copied().unwrap_or_default();
+            let dt = if bond_stiffness > 0.0 {
+                // Contacts and bonds together: (λ₁ + λ₂) dt² + (8 ζ' √λ₁ + 2 γ) dt = 4.
+                let all = sides * own + bond_stiffness;
+                let damping = 4.0 * zeta * (sides * own).sqrt() + bond_damping;
+                ((damping * damping + 4.0 * all).sqrt() - damping) / all
+            } else {
+                alone
+            };
             if !found || dt < least.dt {
                 found = true;
-                least = DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own };
+                least =
+                    DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own, bonds: bond_stiffness };
             }
         }
     }

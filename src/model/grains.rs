@@ -112,6 +112,7 @@ impl GrainsPart {
             time_step: self.time_step,
             skin: None,
             damping: None,
+            ..ModelInput::default()
         }
     }
 

@@ -6,4 +6,4 @@
 pub mod gradation;
 pub mod library;
 pub mod place;
-mod random;
+pub(crate) mod random;

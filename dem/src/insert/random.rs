@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
 /// A stream for one purpose; different purposes of one seed are independent.
-pub(super) struct Random(Pcg64);
+pub(crate) struct Random(Pcg64);
 
 impl Random {
     pub fn new(seed: u64, purpose: u64) -> Random {
