@@ -163,7 +163,7 @@ fn cantilever(bonds: usize, kind: ParallelBond) -> Run {
     }
     input.bond_kinds.push(Bond::Parallel(kind));
     input.time_step = TimeStep::Auto { fraction: 0.8 };
-    input.damping = Some(LocalDamping { factor: 0.1 });
+    input.damping = Some(LocalDamping { factor: 0.2 });
     Run::new(input)
 }
 
@@ -180,7 +180,7 @@ fn cantilever_deflects_as_a_beam() {
     for _ in 0..30_000 {
         run.step_under(&[AppliedForce { body: n, force: load, point }]);
     }
-    assert!(measure::energies(&run.model, &run.state).kinetic() < 1e-12);
+    assert!(measure::energies(&run.model, &run.state).kinetic() < 1e-10);
     let (a, i, _) = section(R);
     let (l, young, p) = (2.0 * R, 1e9, load.norm());
     let length = l * n as f64;
@@ -243,10 +243,10 @@ fn free_pair_turns_without_shear_or_bending() {
     }
     let turned = w.norm() * run.state.time / std::f64::consts::TAU;
     println!("free pair: {turned} turns, shear, bending and twisting hold {worst:e} of the kinetic energy");
-    assert!(worst < 1e-9 && turned > 2.0);
+    // What is there comes from the line of centres, which slows down as the turning stretches it.
+    assert!(worst < 1e-6 && turned > 5.0);
 }
 
-/// A cantilever of contact points would fold: nothing but the contact holds its spheres in line. It hangs instead.
 #[test]
 fn inputs_that_make_no_bond_are_refused() {
     let base = || {
