@@ -13,7 +13,7 @@
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A number, or several side by side.
-pub(crate) trait Real:
+pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// One truth value per lane.
@@ -21,25 +21,34 @@ pub(crate) trait Real:
 
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
+    /// Square root.
     fn sqrt(self) -> Self;
+    /// Magnitude.
     fn abs(self) -> Self;
     /// `self` where it is the smaller, else `other` (so `other` where one is not a number).
     fn min(self, other: Self) -> Self;
     /// `self` where it is the larger, else `other`.
     fn max(self, other: Self) -> Self;
+    /// Where `self` is less.
     fn lt(self, other: Self) -> Self::Mask;
+    /// Where `self` is less or equal.
     fn le(self, other: Self) -> Self::Mask;
+    /// Where both are equal.
     fn equals(self, other: Self) -> Self::Mask;
     /// `yes` where the mask holds, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Whether the mask holds in any lane.
     fn any(mask: Self::Mask) -> bool;
+    /// Whether the mask holds in all lanes.
     fn all(mask: Self::Mask) -> bool;
 
+    /// Where `self` is greater.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
 
+    /// Zero in every lane.
     #[inline(always)]
     fn zero() -> Self {
         Self::splat(0.0)
@@ -458,18 +467,23 @@ fn with_avx2<K: Kernel>(kernel: K) -> K::Output {
 
 /// A vector of three lanes-full of numbers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct V3<R> {
+pub struct V3<R> {
+    /// First component.
     pub x: R,
+    /// Second component.
     pub y: R,
+    /// Third component.
     pub z: R,
 }
 
 impl<R: Real> V3<R> {
+    /// A vector of its components.
     #[inline(always)]
     pub fn new(x: R, y: R, z: R) -> V3<R> {
         V3 { x, y, z }
     }
 
+    /// The zero vector.
     #[inline(always)]
     pub fn zero() -> V3<R> {
         V3 { x: R::zero(), y: R::zero(), z: R::zero() }
@@ -481,21 +495,25 @@ impl<R: Real> V3<R> {
         V3 { x: R::splat(v.x), y: R::splat(v.y), z: R::splat(v.z) }
     }
 
+    /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: V3<R>) -> R {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
 
+    /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: V3<R>) -> V3<R> {
         V3 { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
     }
 
+    /// Square of the length.
     #[inline(always)]
     pub fn norm2(self) -> R {
         self.dot(self)
     }
 
+    /// `yes` where the mask holds, else `no`.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: V3<R>, no: V3<R>) -> V3<R> {
         V3 {

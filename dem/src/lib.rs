@@ -12,7 +12,7 @@ pub mod input;
 pub mod insert;
 pub mod integrate;
 #[allow(dead_code)] // Until all loops use it.
-pub(crate) mod lanes;
+pub mod lanes;
 pub mod ledger;
 pub mod material;
 pub mod measure;

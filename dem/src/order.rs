@@ -106,7 +106,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
 
     let mut file = |a: (u32, u32), b: (u32, u32), history: History| {
         // The spring is that of the first against the second.
-        let turned = History { spring: -history.spring, ..history };
+        let turned = history.turned();
         let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
         if a.0 == b.0 {
             state.blocks[a.0 as usize].pairs.push(Pair { i: a.1, j: b.1, history });
@@ -184,6 +184,7 @@ mod tests {
             tangential_damping_ratio: 0.0,
             friction: 0.5,
             restitution: 0.5,
+            ..Material::RIGID
         };
         let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
         let mut input = ModelInput {

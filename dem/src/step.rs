@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::bond;
-use crate::contact::{pass, patches};
+use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
 use crate::integrate::leapfrog;
@@ -49,11 +49,11 @@ pub fn step<S: Surface>(
     if !model.bonds.is_empty() {
         bond::pass::cross(model, state, work);
     }
-    if model.rigid {
-        contacts_and_motion::<S, true>(model, state, work, surface);
+    with_law!(&model.laws, laws => if model.rigid {
+        contacts_and_motion::<_, S, true>(model, laws, state, work, surface);
     } else {
-        contacts_and_motion::<S, false>(model, state, work, surface);
-    }
+        contacts_and_motion::<_, S, false>(model, laws, state, work, surface);
+    });
     collect(model, state, work, surface.max_speed())
 }
 
@@ -82,14 +82,14 @@ pub fn find_contacts<S: Surface>(
     Ok(())
 }
 
-fn contacts_and_motion<S: Surface, const RIGID: bool>(
+fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     model: &Model,
+    laws: &PairTable<L>,
     state: &mut State,
     work: &mut Work,
     surface: &S,
 ) {
     let dt = model.dt();
-    let laws = &model.table;
     let State { blocks, cross, planes, triangles, bonds, .. } = state;
     let Work { blocks: works, cross: slots, applied, parallel, bonds: bonded, .. } = work;
 
@@ -252,6 +252,7 @@ mod tests {
             tangential_damping_ratio: 0.1,
             friction: 0.5,
             restitution: 0.5,
+            ..Material::RIGID
         };
         let mut input = ModelInput {
             materials: vec![material],

@@ -16,6 +16,7 @@ use crate::surface::SurfaceContact;
 pub(crate) struct Slot {
     pub force: Vec3,
     pub point: Vec3,
+    pub moment: Vec3,
 }
 
 /// One body's share in a slot.

@@ -11,7 +11,7 @@
 
 use super::pass::BondSlot;
 use crate::Vec3;
-use crate::contact::{ContactGeometry, ContactLaw, History};
+use crate::contact::{ContactGeometry, ContactLaw, History, with_law};
 use crate::error::Partner;
 use crate::model::Model;
 use crate::state::{Block, State, xyz};
@@ -36,8 +36,8 @@ pub(crate) struct Remnant {
 }
 
 /// The largest overlap at which a contact presses no harder than `pressure` [N] and stores no more than `energy` [J].
-pub(crate) fn overlap_for<L: ContactLaw>(law: &L, radius: f64, pressure: f64, energy: f64) -> f64 {
-    let stored = |d: f64| law.stored(d, radius, &Vec3::zeros()).0;
+/// `stored` is the energy of the contact at an overlap.
+pub(crate) fn overlap_for(stored: impl Fn(f64) -> f64, radius: f64, pressure: f64, energy: f64) -> f64 {
     let fits = |d: f64| {
         let step = 1e-4 * d;
         stored(d) <= energy && stored(d + step) - stored(d - step) <= 2.0 * step * pressure
@@ -75,17 +75,25 @@ pub(crate) type Spent = (f64, f64, Option<Failure>);
 /// The contact of one pair; `a` and `b` are the blocks of its bodies.
 pub(crate) fn contact(model: &Model, a: &Block, b: &Block, r: &mut Remnant, dt: f64) -> (BondSlot, Spent) {
     let (i, j) = (r.i as usize, r.j as usize);
-    let law = model.law(a.spin[i][3] as u32, b.spin[j][3] as u32);
+    let materials = [a.spin[i][3] as u32, b.spin[j][3] as u32];
     let (g, overlap) = geometry(a, i, b, j, r.reference);
     if g.overlap <= 0.0 {
-        let friction = if r.history.is_fresh() { 0.0 } else { law.release(&mut r.history) };
+        let friction = if r.history.is_fresh() {
+            0.0
+        } else {
+            with_law!(&model.laws, laws => laws.get(materials[0], materials[1]).release(&mut r.history))
+        };
         return (BondSlot::default(), (0.0, friction, None));
     }
     let (arm_a, arm_b) = (g.point - xyz(&a.centre[i]), g.point - xyz(&b.centre[j]));
     let relative = xyz(&a.velocity[i]) + xyz(&a.spin[i]).cross(&arm_a)
         - xyz(&b.velocity[j])
         - xyz(&b.spin[j]).cross(&arm_b);
-    let f = law.respond(1.0 / (a.velocity[i][3] + b.velocity[j][3]), &g, &relative, &mut r.history, dt);
+    let mass = 1.0 / (a.velocity[i][3] + b.velocity[j][3]);
+    let spin = xyz(&a.spin[i]) - xyz(&b.spin[j]);
+    let f = with_law!(&model.laws, laws => {
+        laws.get(materials[0], materials[1]).respond(mass, &g, &relative, &spin, &mut r.history, dt)
+    });
     let bound = a.centre[i][3].min(b.centre[j][3]);
     let failure = (overlap > bound).then(|| Failure::Overlap {
         body: a.bodies[i],
@@ -93,7 +101,7 @@ pub(crate) fn contact(model: &Model, a: &Block, b: &Block, r: &mut Remnant, dt: 
         overlap,
         bound,
     });
-    let slot = BondSlot::new(f.force, arm_a.cross(&f.force), -arm_b.cross(&f.force));
+    let slot = BondSlot::new(f.force, arm_a.cross(&f.force) + f.moment, -arm_b.cross(&f.force) - f.moment);
     (slot, (f.dashpot, f.friction, failure))
 }
 

@@ -22,6 +22,11 @@ pub(crate) struct Motion<'a> {
 
 impl Motion<'_> {
     #[inline(always)]
+    pub fn spin(&self) -> Vec3 {
+        xyz(self.spin)
+    }
+
+    #[inline(always)]
     pub fn at_point(&self) -> Vec3 {
         xyz(self.velocity) + xyz(self.spin).cross(&self.arm)
     }
@@ -45,7 +50,7 @@ fn between<L: ContactLaw>(
 ) -> ContactForce {
     let law = laws.get(a.spin[3] as u32, b.spin[3] as u32);
     let mass = 1.0 / (a.velocity[3] + b.velocity[3]);
-    law.respond(mass, g, &(a.at_point() - b.at_point()), history, dt)
+    law.respond(mass, g, &(a.at_point() - b.at_point()), &(xyz(a.spin) - xyz(b.spin)), history, dt)
 }
 
 /// Contacts between spheres of one block.
@@ -94,14 +99,16 @@ fn lone_spheres<L: ContactLaw>(
         let (va, vb) = (&velocity[a], &velocity[b]);
         let turning = xyz(&spin[a]) * la + xyz(&spin[b]) * lb;
         let relative = xyz(va) - xyz(vb) + g.normal.cross(&turning);
-        let f = law(a, b).respond(1.0 / (va[3] + vb[3]), &g, &relative, &mut pair.history, dt);
+        let spin_difference = xyz(&spin[a]) - xyz(&spin[b]);
+        let f =
+            law(a, b).respond(1.0 / (va[3] + vb[3]), &g, &relative, &spin_difference, &mut pair.history, dt);
         dashpot += f.dashpot;
         friction += f.friction;
         force[a] += f.force;
         force[b] -= f.force;
         let moment = f.force.cross(&g.normal);
-        torque[a] += moment * la;
-        torque[b] += moment * lb;
+        torque[a] += moment * la + f.moment;
+        torque[b] += moment * lb - f.moment;
         let bound = p[3].min(q[3]);
         if g.overlap > bound && w.failure.is_none() {
             let partner = Partner::Body(block.bodies[b] as usize);
@@ -138,8 +145,8 @@ fn members<L: ContactLaw>(
         friction += f.friction;
         w.force[a] += f.force;
         w.force[b] -= f.force;
-        w.torque[a] += ma.arm.cross(&f.force);
-        w.torque[b] -= mb.arm.cross(&f.force);
+        w.torque[a] += ma.arm.cross(&f.force) + f.moment;
+        w.torque[b] -= mb.arm.cross(&f.force) + f.moment;
         let bound = p[3].min(q[3]);
         if g.overlap > bound && w.failure.is_none() {
             let partner = Partner::Body(block.bodies[b] as usize);
@@ -190,7 +197,7 @@ pub(crate) fn cross<L: ContactLaw, const RIGID: bool>(
         let f = between(laws, &g, &ma, &mb, &mut pair.history, dt);
         out.dashpot += f.dashpot;
         out.friction += f.friction;
-        out.slots[slot] = Slot { force: f.force, point: g.point };
+        out.slots[slot] = Slot { force: f.force, point: g.point, moment: f.moment };
         if g.overlap > bound && out.failure.is_none() {
             let partner = Partner::Body(other.bodies[body_b] as usize);
             out.failure = Some(Failure::Overlap { body: mine.bodies[a], partner, overlap: g.overlap, bound });
@@ -205,7 +212,7 @@ pub(crate) fn gather(block: &Block, w: &mut BlockWork, cross: &[CrossWork]) {
         let k = entry.place as usize;
         let force = slot.force * entry.sign;
         w.force[k] += force;
-        w.torque[k] += (slot.point - xyz(&block.centre[k])).cross(&force);
+        w.torque[k] += (slot.point - xyz(&block.centre[k])).cross(&force) + slot.moment * entry.sign;
     }
 }
 
@@ -241,13 +248,14 @@ pub(crate) fn planes<L: ContactLaw, const RIGID: bool>(
         };
         let ma = motion(block, a, &g.point);
         let relative = ma.at_point() - wall.velocity;
-        let f = law.respond(1.0 / ma.velocity[3], &g, &relative, &mut pair.history, dt);
+        let f = law.respond(1.0 / ma.velocity[3], &g, &relative, &ma.spin(), &mut pair.history, dt);
         w.ledger.dissipated_dashpot += f.dashpot;
         w.ledger.dissipated_friction += f.friction;
         w.ledger.work_walls += f.force.dot(&wall.velocity) * dt;
         w.ledger.walls.add(&g.point, &(f.force * dt));
         w.force[a] += f.force;
-        w.torque[a] += ma.arm.cross(&f.force);
+        w.torque[a] += ma.arm.cross(&f.force) + f.moment;
+        w.ledger.walls.angular += f.moment * dt;
         if g.overlap > bound && w.failure.is_none() {
             let partner = Partner::Plane(pair.plane as usize);
             w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap: g.overlap, bound });

@@ -1,7 +1,7 @@
 //! Contacts as they are now, for force chains and coordination numbers.
 
 use crate::Vec3;
-use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass};
+use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass, with_law};
 use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
@@ -37,7 +37,10 @@ pub(crate) struct Visited<'a> {
     /// Effective mass [kg].
     pub mass: f64,
     pub history: &'a History,
-    pub law: &'a crate::contact::linear::Linear,
+    /// Spin of the body less that of its partner [rad/s].
+    pub spin: Vec3,
+    /// Materials of the two.
+    pub materials: [u32; 2],
 }
 
 /// Bodies as they are, or moved back in time by `back` seconds.
@@ -80,7 +83,7 @@ impl Snapshot {
 /// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
 pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&Visited<'_>)) {
     let now = Snapshot::new(model, state, back);
-    remnants(model, state, &now, &mut f);
+    remnants(state, &now, &mut f);
     for b in 0..now.blocks.len() {
         let block = &now.blocks[b];
         let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History| {
@@ -106,7 +109,8 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                     velocity: ma.at_point() - mb.at_point(),
                     mass: 1.0 / (block.velocity[a][3] + second.velocity[c][3]),
                     history,
-                    law: model.law(block.spin[a][3] as u32, second.spin[c][3] as u32),
+                    spin: ma.spin() - mb.spin(),
+                    materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
                 });
             }
         };
@@ -126,7 +130,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
 }
 
 /// Contacts of pairs whose bond has broken.
-fn remnants(model: &Model, state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
+fn remnants(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
     crate::bond::each_touch(&now.blocks, state, |p, q, r, geometry| {
         let (i, j) = (r.i as usize, r.j as usize);
         let (ma, mb) = (pass::motion(p, i, &geometry.point), pass::motion(q, j, &geometry.point));
@@ -137,7 +141,8 @@ fn remnants(model: &Model, state: &State, now: &Snapshot, f: &mut impl FnMut(&Vi
             velocity: ma.at_point() - mb.at_point(),
             mass: 1.0 / (p.velocity[i][3] + q.velocity[j][3]),
             history: &r.history,
-            law: model.law(p.spin[i][3] as u32, q.spin[j][3] as u32),
+            spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
+            materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
         });
     });
 }
@@ -166,7 +171,8 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
                 velocity: pass::motion(block, a, &geometry.point).at_point() - wall.velocity,
                 mass: 1.0 / block.velocity[a][3],
                 history: &pair.history,
-                law: model.law(block.spin[a][3] as u32, plane.material as u32),
+                spin: xyz(&block.spin[a]),
+                materials: [block.spin[a][3] as u32, plane.material as u32],
             });
         }
     }
@@ -198,7 +204,8 @@ fn patch(
             velocity,
             mass: 1.0 / block.velocity[a][3],
             history: &pair.history,
-            law: model.law(block.spin[a][3] as u32, material),
+            spin: xyz(&block.spin[a]),
+            materials: [block.spin[a][3] as u32, material],
         });
     }
 }
@@ -208,8 +215,10 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
         let mut history = *c.history;
-        let ContactForce { force, normal, .. } =
-            c.law.respond(c.mass, &c.geometry, &c.velocity, &mut history, model.dt());
+        let [a, b] = c.materials;
+        let ContactForce { force, normal, .. } = with_law!(&model.laws, laws => {
+            laws.get(a, b).respond(c.mass, &c.geometry, &c.velocity, &c.spin, &mut history, model.dt())
+        });
         out.push(ContactRecord {
             a: c.body as usize,
             b: c.partner,

@@ -242,7 +242,8 @@ fn contact_takes_over_without_creating_energy() {
     // Stiffness of the contact over that of the bond: 100 and 0.01.
     for (ratio, expected) in [(100.0, 1.0), (0.01, 0.1)] {
         let k = 1e6;
-        let material = trackbed_dem::Material { stiffness: ratio * k, friction: 0.0, restitution: 1.0, ..stone() };
+        let material =
+            trackbed_dem::Material { stiffness: ratio * k, friction: 0.0, restitution: 1.0, ..stone() };
         let mut input = weightless(material);
         let held = BodyInput { fixed: [true; 6], ..BodyInput::default() };
         // Overlap 0.4 mm when bonded.
