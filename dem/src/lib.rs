@@ -3,6 +3,7 @@
 //! A [`model::Model`] is what a run never changes, a [`state::State`] all that it changes, a [`work::Work`] its
 //! scratch; [`step::step`] advances the state. SI units throughout.
 
+pub mod bond;
 mod check;
 pub mod contact;
 pub mod detect;

@@ -65,6 +65,8 @@ pub struct Model {
     pub(crate) rigid: bool,
     /// Bodies per block.
     pub(crate) block: usize,
+    /// Bonds, resolved.
+    pub(crate) bonds: Vec<crate::bond::Constants>,
     dt: f64,
     limit: DtLimit,
 }
@@ -99,8 +101,9 @@ impl Model {
         }
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
+        let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
-        let mut limit = timestep::limit(&bodies, &input, &laws, expected, radii.0);
+        let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
         walls.limit_step(&mut limit, &bodies, &input.planes, &laws, expected, radii);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
@@ -123,6 +126,7 @@ impl Model {
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
             skin: input.skin.unwrap_or(0.2 * mean),
+            bonds,
             radii,
             dt,
             limit,
@@ -142,6 +146,16 @@ impl Model {
     /// Number of bodies.
     pub fn body_count(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// Number of bonds at the start.
+    pub fn bond_count(&self) -> usize {
+        self.bonds.len()
+    }
+
+    /// The two bodies of a bond.
+    pub fn bond_ends(&self, bond: usize) -> [usize; 2] {
+        self.bonds[bond].ends.map(|b| b as usize)
     }
 
     /// Number of spheres: single ones and members of clumps.

@@ -1,6 +1,7 @@
 //! One step of the grains: search when due, contacts, integration.
 
 use crate::Vec3;
+use crate::bond;
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
@@ -46,6 +47,9 @@ pub fn step<S: Surface>(
     }
     place_loads(model, state, work, applied)?;
     near::update(model, state, work, surface);
+    if !model.bonds.is_empty() {
+        bond::pass::cross(model, state, work);
+    }
     with_law!(&model.laws, laws => if model.rigid {
         contacts_and_motion::<_, S, true>(model, laws, state, work, surface);
     } else {
@@ -77,6 +81,8 @@ pub fn find_contacts<S: Surface>(
     }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    // The probe may have broken bonds.
+    bond::pass::arrange(model, state, work);
     Ok(())
 }
 
@@ -88,8 +94,8 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     surface: &S,
 ) {
     let dt = model.dt();
-    let State { blocks, cross, planes, walls: wall_states, .. } = state;
-    let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
+    let State { blocks, cross, planes, walls: wall_states, bonds, .. } = state;
+    let Work { blocks: works, cross: slots, applied, parallel, bonds: bonded, .. } = work;
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
@@ -103,7 +109,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     }
 
     // All else concerns one block at a time.
-    let (slots, applied) = (&*slots, &**applied);
+    let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
     let surface_material = model.surface_material.unwrap_or(0);
     let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
@@ -113,6 +119,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         w.force.fill(Vec3::zeros());
         w.torque.fill(Vec3::zeros());
         pass::gather(block, w, slots);
+        if !model.bonds.is_empty() {
+            bond::pass::within(model, b, block, w, bonded, bonds.fresh);
+        }
         pass::interior::<_, RIGID>(laws, block, w, dt);
         pass::planes::<_, RIGID>(model, laws, planes, block, w, dt);
         w.wall_sums.clear();
@@ -208,6 +217,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
     let (wall_speed, wall_failure) = advance::walls(model, state, work, &mut sum);
     failure = failure.or(wall_failure);
     state.ledger += &sum;
+    if !model.bonds.is_empty() {
+        failure = failure.or(bond::pass::settle(model, state, work));
+    }
     let time = state.time;
     let mut wall_speed = wall_speed.max(surface_speed);
     for wall in &mut state.planes {

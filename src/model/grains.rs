@@ -116,6 +116,7 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            ..ModelInput::default()
         }
     }
 

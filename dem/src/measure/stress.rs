@@ -1,4 +1,4 @@
-//! Mean stress of each body from its contact forces (Love 1927; Weber 1966):
+//! Mean stress of each body from its contact and bond forces (Love 1927; Weber 1966):
 //! σ = (1/V) Σ ½ (r ⊗ F + F ⊗ r), r from the body's centre to the contact point, F the force on the body.
 //! With this sign pressure is negative: tension positive, as in the solid. The symmetric part is taken: the rest
 //! is the unbalanced torque.
@@ -22,17 +22,19 @@ pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
 /// As [`mean_stress`], from contacts that are known already.
 pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<[f64; 6]> {
     let mut stress = vec![[0.0; 6]; model.body_count()];
-    for c in contacts {
+    let bonds = crate::bond::records(model, state);
+    let bonds = bonds.iter().map(|b| (b.a, Partner::Body(b.b), b.point, b.force));
+    for (a, b, point, force) in contacts.iter().map(|c| (c.a, c.b, c.point, c.force)).chain(bonds) {
         let mut add = |body: usize, force: Vec3| {
-            let r = c.point - state.position(body);
+            let r = point - state.position(body);
             let s = &mut stress[body];
             for (k, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
                 s[k] += 0.5 * (r[i] * force[j] + r[j] * force[i]);
             }
         };
-        add(c.a, c.force);
-        if let Partner::Body(b) = c.b {
-            add(b, -c.force);
+        add(a, force);
+        if let Partner::Body(b) = b {
+            add(b, -force);
         }
     }
     for (body, s) in stress.iter_mut().enumerate() {

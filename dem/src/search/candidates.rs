@@ -18,7 +18,8 @@ pub(crate) fn spheres<'a>(block: &'a Block, work: &'a BlockWork, rigid: bool) ->
 
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
-    let Work { blocks, points, names, cells, parallel, .. } = &mut *work;
+    work.held.update(model, state);
+    let Work { blocks, points, names, cells, parallel, held, .. } = &mut *work;
     points.clear();
     names.clear();
     for (b, (block, w)) in state.blocks.iter().zip(blocks.iter()).enumerate() {
@@ -30,7 +31,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
 
     let walls = model.walls.placed(&state.walls);
     let boxes = boxes(model, state);
-    let (points, names, cells) = (&*points, &*names, &*cells);
+    let (points, names, cells, held) = (&*points, &*names, &*cells, &*held);
     // First sphere of each block among all points.
     let first: Vec<u32> = blocks
         .iter()
@@ -45,6 +46,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         let [block, _] = names[point as usize];
         (block, owners[point as usize])
     };
+    let number = |(block, place): (u32, u32)| state.blocks[block as usize].bodies[place as usize];
     let still = |(block, place): (u32, u32)| state.blocks[block as usize].velocity[place as usize][3] == 0.0;
 
     let one = |(b, w): (usize, &mut BlockWork)| {
@@ -66,7 +68,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
                 let reach = p[3] + q[3] + model.skin;
                 if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
                     let other = body(j);
-                    if other != me && !(fixed && still(other)) {
+                    if other != me && !(fixed && still(other)) && !held.has(number(me), number(other)) {
                         w.row.push(j);
                     }
                 }

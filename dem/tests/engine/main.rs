@@ -1,6 +1,8 @@
 //! The engine against closed forms, balances, and itself.
 
 mod balance;
+mod bonds;
+mod bonds_many;
 mod determinism;
 mod friction;
 mod impact;
