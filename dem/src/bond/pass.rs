@@ -6,7 +6,7 @@ use super::remnant::{self, Remnant};
 use super::store::{BondList, Entry, Group};
 use super::{Break, BreakMode};
 use crate::Vec3;
-use crate::contact::{ContactLaw, History, with_law};
+use crate::contact::History;
 use crate::lanes::{self, Four, Kernel, Simd, V3};
 use crate::model::Model;
 use crate::state::{Block, Lanes, State, xyz};
@@ -441,7 +441,7 @@ fn part(
     let (i, j) = (e.i as usize, e.j as usize);
     let mobile = p.velocity[i][3] + q.velocity[j][3] > 0.0;
     if !bond.contact && mobile {
-        let materials = [p.spin[i][3] as u32, q.spin[j][3] as u32];
+        let (one, two) = (p.spin[i][3] as u32, q.spin[j][3] as u32);
         let (ra, rb) = (p.centre[i][3], q.centre[j][3]);
         let dt = model.dt();
         let (x, v) = (xyz(&p.centre[i]) - xyz(&q.centre[j]), xyz(&p.velocity[i]) - xyz(&q.velocity[j]));
@@ -449,14 +449,10 @@ fn part(
         let half = ra + rb - (x - v * (0.5 * dt)).norm();
         let then = ra + rb - (x - v * dt).norm();
         let radius = ra * rb / (ra + rb);
-        let taken = with_law!(&model.laws, laws => {
-            let law = laws.get(materials[0], materials[1]);
-            remnant::overlap_for(law, radius, broken.pressure, broken.pressed)
-        });
+        let stored = |overlap: f64| model.laws.stored(one, two, overlap, radius, &History::NONE).0;
+        let taken = remnant::overlap_for(stored, radius, broken.pressure, broken.pressed);
         let reference = if taken > 0.0 { then - taken } else { then.max(0.0) };
-        energy -= with_law!(&model.laws, laws => {
-            laws.get(materials[0], materials[1]).stored((half - reference).max(0.0), radius, &Vec3::zeros()).0
-        });
+        energy -= stored((half - reference).max(0.0));
         let history =
             if taken > 0.0 { History { rate: broken.approach, ..History::NONE } } else { History::NONE };
         remnant = Some(Remnant { number: e.number, i: e.i, block: e.block, j: e.j, reference, history });
