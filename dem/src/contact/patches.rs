@@ -168,9 +168,8 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             w.ledger.dissipated_friction += f.friction;
             exchange.work += f.force.dot(&wall) * dt;
             exchange.impulse.add(&g.point, &(f.force * dt));
-            w.force[a] += f.force;
             exchange.impulse.angular += f.moment * dt;
-            w.torque[a] += ma.arm.cross(&f.force) + f.moment;
+            w.push(a, &f.force, &(ma.arm.cross(&f.force) + f.moment));
             if external {
                 let sphere = i as u32 - w.first[a];
                 w.contacts.push(SurfaceContact {
