@@ -285,3 +285,21 @@ impl BondDamping {
         }
     }
 }
+
+impl Bond {
+    /// The same bond without a limit of strength.
+    pub fn unbreakable(&self) -> Bond {
+        let endless = f64::INFINITY;
+        match self {
+            Bond::Parallel(p) => Bond::Parallel(ParallelBond {
+                tensile_strength: endless,
+                shear_strength: ShearStrength::Constant(endless),
+                ..*p
+            }),
+            Bond::ContactPoint(p) => {
+                Bond::ContactPoint(ContactPoint { tension_limit: endless, shear_limit: endless, ..*p })
+            }
+            Bond::Direct(d) => Bond::Direct(DirectBond { strength: [endless; 4], ..*d }),
+        }
+    }
+}

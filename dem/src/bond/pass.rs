@@ -7,10 +7,10 @@ use super::store::{BondList, Entry, Group};
 use super::{Break, BreakMode};
 use crate::Vec3;
 use crate::contact::History;
-use crate::lanes::{self, Four, Kernel, Simd, V3};
+use crate::lanes::{self, Four, Kernel, Portable, Simd, V3};
 use crate::model::Model;
 use crate::state::{Block, Lanes, State, xyz};
-use crate::work::{BlockWork, Failure, Work};
+use crate::work::{BlockWork, Failure, Sums, Work};
 use rayon::prelude::*;
 
 /// Force on the first body, and torques on both.
@@ -60,10 +60,17 @@ pub(crate) struct ListWork {
 }
 
 /// Scratch of the bonds.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct BondWork {
+    simd: Simd,
     cross: Vec<ListWork>,
     shares: Vec<Vec<Share>>,
+}
+
+impl Default for BondWork {
+    fn default() -> BondWork {
+        BondWork { simd: Simd::best(), cross: Vec::new(), shares: Vec::new() }
+    }
 }
 
 /// Lays constants and slots out in the state's present order.
@@ -106,17 +113,28 @@ impl BondSlot {
 }
 
 #[inline(always)]
-fn add(to: &mut Vec3, v: &Lanes) {
-    to.x += v[0];
-    to.y += v[1];
-    to.z += v[2];
+fn add<R: Four>(to: &mut Lanes, v: R) {
+    (R::load(to) + v).store(to);
 }
 
 #[inline(always)]
-fn subtract(to: &mut Vec3, v: &Lanes) {
-    to.x -= v[0];
-    to.y -= v[1];
-    to.z -= v[2];
+fn subtract<R: Four>(to: &mut Lanes, v: R) {
+    (R::load(to) - v).store(to);
+}
+
+impl BondSlot {
+    /// Adds the first body's share to its sums, or the second's.
+    #[inline(always)]
+    fn share(&self, sums: &mut Sums, first: bool) {
+        let (force, torque) = sums.both();
+        if first {
+            add(force, Portable::load(&self.force));
+            add(torque, Portable::load(&self.torque_a));
+        } else {
+            subtract(force, Portable::load(&self.force));
+            add(torque, Portable::load(&self.torque_b));
+        }
+    }
 }
 
 fn motion(block: &Block, k: usize) -> Motion<f64> {
@@ -168,8 +186,7 @@ struct Interior<'a> {
     centre: &'a [Lanes],
     velocity: &'a [Lanes],
     spin: &'a [Lanes],
-    force: &'a mut [Vec3],
-    torque: &'a mut [Vec3],
+    sums: &'a mut [Sums],
     found: &'a mut Vec<u32>,
     dt: f64,
 }
@@ -181,7 +198,7 @@ impl Kernel for Interior<'_> {
     fn run<R: Four>(self) -> f64 {
         let n = self.centre.len();
         let (centre, velocity, spin) = (&self.centre[..n], &self.velocity[..n], &self.spin[..n]);
-        let (force, torque) = (&mut self.force[..n], &mut self.torque[..n]);
+        let sums = &mut self.sums[..n];
         let dt = R::splat(self.dt);
         let mut power = R::zero();
         for (number, (g, constants)) in self.groups.iter_mut().zip(self.constants).enumerate() {
@@ -197,11 +214,12 @@ impl Kernel for Interior<'_> {
             let live = (self.count - 4 * number).min(4);
             for l in 0..live {
                 let (a, b) = (i[l] as usize, j[l] as usize);
-                let f = f[l].array();
-                add(&mut force[a], &f);
-                subtract(&mut force[b], &f);
-                add(&mut torque[a], &ta[l].array());
-                add(&mut torque[b], &tb[l].array());
+                let (force, torque) = sums[a].both();
+                add(force, f[l]);
+                add(torque, ta[l]);
+                let (force, torque) = sums[b].both();
+                subtract(force, f[l]);
+                add(torque, tb[l]);
             }
             if holds != 15 {
                 self.found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));
@@ -290,7 +308,7 @@ impl ListWork {
 /// Bonds and remnants between blocks: forces go to slots.
 pub(crate) fn cross(model: &Model, state: &mut State, work: &mut Work) {
     let dt = if state.bonds.fresh { 0.0 } else { model.dt() };
-    let blocks = &state.blocks;
+    let (blocks, simd) = (&state.blocks, work.bonds.simd);
     let one = |(b, (list, w)): (usize, (&mut BondList, &mut ListWork))| {
         w.reset();
         if list.count > 0 {
@@ -304,7 +322,7 @@ pub(crate) fn cross(model: &Model, state: &mut State, work: &mut Work) {
                 found: &mut w.found,
                 dt,
             };
-            w.power = lanes::run(Simd::best(), kernel);
+            w.power = lanes::run(simd, kernel);
         }
         for at in &w.found {
             let e = list.get(*at as usize);
@@ -338,14 +356,7 @@ pub(crate) fn within(
 ) {
     for share in &shared.shares[b] {
         let slot = &shared.cross[share.block as usize].slots[share.slot as usize];
-        let k = share.place as usize;
-        if share.first {
-            add(&mut w.force[k], &slot.force);
-            add(&mut w.torque[k], &slot.torque_a);
-        } else {
-            subtract(&mut w.force[k], &slot.force);
-            add(&mut w.torque[k], &slot.torque_b);
-        }
+        slot.share(&mut w.sums[share.place as usize], share.first);
     }
     let mut list = std::mem::take(&mut block.bonds);
     w.bonds.reset();
@@ -357,12 +368,11 @@ pub(crate) fn within(
             centre: &block.centre,
             velocity: &block.velocity,
             spin: &block.spin,
-            force: &mut w.force,
-            torque: &mut w.torque,
+            sums: &mut w.sums,
             found: &mut w.bonds.found,
             dt: if fresh { 0.0 } else { model.dt() },
         };
-        w.bonds.power = lanes::run(Simd::best(), kernel);
+        w.bonds.power = lanes::run(shared.simd, kernel);
     }
     for at in &w.bonds.found {
         let e = list.get(*at as usize);
@@ -370,11 +380,8 @@ pub(crate) fn within(
     }
     for r in &mut list.remnants {
         let (slot, (dashpot, friction, failure)) = remnant::contact(model, block, block, r, model.dt());
-        let (i, j) = (r.i as usize, r.j as usize);
-        add(&mut w.force[i], &slot.force);
-        subtract(&mut w.force[j], &slot.force);
-        add(&mut w.torque[i], &slot.torque_a);
-        add(&mut w.torque[j], &slot.torque_b);
+        slot.share(&mut w.sums[r.i as usize], true);
+        slot.share(&mut w.sums[r.j as usize], false);
         w.bonds.dashpot += dashpot;
         w.bonds.friction += friction;
         w.bonds.failure = w.bonds.failure.or(failure);
@@ -470,3 +477,7 @@ fn part(
     });
     remnant
 }
+
+#[cfg(test)]
+#[path = "pass_tests.rs"]
+mod tests;

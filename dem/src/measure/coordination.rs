@@ -27,7 +27,8 @@ pub fn neighbours(model: &Model, contacts: &[ContactRecord]) -> Vec<u32> {
             Partner::Body(b) => pairs.extend([(c.a, 0, b), (b, 0, c.a)]),
             Partner::Plane(k) => pairs.push((c.a, 1, k)),
             Partner::Triangle(k) => pairs.push((c.a, 2, k as usize)),
-            Partner::Patch(k) => pairs.push((c.a, 3, k as usize)),
+            Partner::Wall(k) => pairs.push((c.a, 3, k as usize)),
+            Partner::Patch(k) => pairs.push((c.a, 4, k as usize)),
         }
     }
     pairs.sort_unstable();

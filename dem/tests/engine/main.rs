@@ -2,6 +2,7 @@
 
 mod balance;
 mod bonds;
+mod bonds_block;
 mod bonds_many;
 mod determinism;
 mod friction;
