@@ -40,7 +40,7 @@ library = "{}"
 material = "stone"
 count = 25
 size = ["50 mm", "70 mm"]
-fill = {{ low = [0.0, 0.0, 0.0], high = [0.4, 0.4] }}
+fill = {{ low = [0.0, 0.0, 0.1], high = [0.4, 0.4] }}
 
 [[grains]]
 name = "marbles"
@@ -183,7 +183,7 @@ fn spheres_on_a_plastic_block() {
     let folder = scene_folder("coupled_plastic", COUPLED);
     let set = [
         "solid.material.0.model=mohr_coulomb",
-        "solid.material.0.cohesion=2000",
+        "solid.material.0.cohesion=10000",
         "solid.material.0.friction=0.4",
         "solid.material.0.dilation=0.1",
     ];
@@ -195,15 +195,15 @@ fn plastic_solid_at_rest() {
     let folder = Folder::new("plastic");
     let scene = folder.write("scene.toml", PLASTIC);
     // Few iterations allowed, so that steps are halved and their length is something to remember.
-    let set = ["solid.quasi_static.max_iterations=4", "time.solid_step=0.05", "output.tables=true"];
+    let set = ["solid.newton.max_iterations=4", "time.solid_step=0.05", "output.tables=true"];
     broken(&scene, &set, &[0.0, 0.3, 0.5, 0.8, 1.0], &["history.csv", "gauss.csv", "frames/solid_00002.vtu"]);
 }
 
 #[test]
 fn solids_in_motion() {
     let folder = Folder::new("motion");
-    let scene =
-        folder.write("scene.toml", &PLASTIC.replace("[solid.quasi_static]", "[solid.dynamics]\nhht = -0.1"));
+    let scene = folder
+        .write("scene.toml", &PLASTIC.replace("[solid.quasi_static]", "[solid.dynamics]\nhht_alpha = -0.1"));
     let set = ["time.solid_step=0.01", "time.end=0.3", "solid.support.1.history.duration=0.3"];
     broken(&scene, &set, &[0.0, 0.3, 0.5, 1.0], &["history.csv"]);
     let elastic = [&set[..], &["solid.material.1.model=elastic"]].concat();
@@ -230,7 +230,7 @@ fn interrupted(name: &str) -> (Folder, PathBuf, PathBuf) {
 fn refused(scene: &Path, out: &Path, set: &[&str], words: &[&str]) {
     let before = super::support::snapshot(out);
     let mut arguments: Vec<String> =
-        ["run", &scene.display().to_string(), "--resume", "--out", &out.display().to_string()]
+        ["run", &scene.display().to_string(), "--resume", "--quiet", "--out", &out.display().to_string()]
             .map(String::from)
             .into();
     set.iter().for_each(|s| arguments.extend(["--set".to_string(), s.to_string()]));
@@ -335,7 +335,7 @@ fn damaged_checkpoints() {
 fn a_numerical_failure_keeps_the_last_checkpoint() {
     let folder = Folder::new("failing");
     let scene = folder.write("scene.toml", PLASTIC);
-    let set = ["solid.quasi_static.max_iterations=1", "solid.quasi_static.smallest_step=0.5"];
+    let set = ["solid.newton.max_iterations=2", "solid.quasi_static.smallest_step=0.5"];
     let (whole, out) = (folder.join("whole"), folder.join("out"));
     let alone = run(&scene, &whole, &set);
     assert_eq!(alone.code, 3, "{alone:?}");

@@ -15,9 +15,10 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A scene whose run takes about this many times half a second.
+/// Overrides of the box scene: enough spheres to be shared among threads.
 fn set(time: &str) -> Vec<String> {
-    [&format!("time.end={time}"), "output.frames=4", "output.checkpoint=0.01"].map(String::from).into()
+    let end = format!("time.end={time}");
+    ["grains.0.count=3000", &end, "output.frames=4", "output.checkpoint=0.01"].map(String::from).into()
 }
 
 fn start(scene: &Path, out: &Path, set: &[String], threads: u32, resume: bool) -> Child {
@@ -41,45 +42,51 @@ fn same(whole: &Path, broken: &Path) {
 }
 
 /// Kills a run so many times at random moments, resumes it every time, and compares what it leaves with a run without a break.
-/// Returns how many of the kills found the run further than the last.
+/// A run is killed up to 15 ms after it has written none to two checkpoints, so while it starts, reads, steps or writes. Returns how
+/// many of the kills found the run further on.
 fn kill(scene: &Path, set: &[String], kills: u32) -> u32 {
     let folder = Folder::new("killed");
     let (whole, out) = (folder.join("whole"), folder.join("out"));
-    let begun = Instant::now();
     run(scene, &whole, &set.iter().map(String::as_str).collect::<Vec<_>>()).good();
-    let share = begun.elapsed() / kills;
-    let (mut done, mut ahead, mut last, mut number) = (0, 0, 0, 0x9e37_79b9_u64 + u64::from(kills));
-    while done < kills {
-        // The numbers of the slots tell how far the run is.
-        let slots = ["a", "b"].map(|slot| fs::read(out.join(format!("checkpoint/{slot}.checkpoint"))));
-        let any = slots.iter().any(Result::is_ok);
-        let mut child = start(scene, &out, set, 1 + done % 2, any);
+    let mut number = 0x9e37_79b9_u64 + u64::from(kills);
+    let mut random = |below: f64| {
         number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let random = (number >> 40) as f64 / f64::from(1 << 24);
-        sleep(Duration::from_millis(15) + share.mul_f64(1.2 * random));
-        if let Some(status) = child.try_wait().unwrap() {
-            let said = child.wait_with_output().unwrap();
-            assert!(status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-            break;
+        below * (number >> 40) as f64 / f64::from(1 << 24)
+    };
+    let (mut done, mut ahead) = (0, 0);
+    let resumed = loop {
+        let before = latest(&out);
+        let mut child = start(scene, &out, set, 1 + done % 2, before.is_some());
+        if done == kills {
+            break child;
+        }
+        let target = before.map_or(0, |b| b + 1) + random(3.0) as u64;
+        while latest(&out).map_or(0, |n| n + 1) < target && child.try_wait().unwrap().is_none() {
+            sleep(Duration::from_millis(1));
+        }
+        sleep(Duration::from_micros(random(15_000.0) as u64));
+        if child.try_wait().unwrap().is_some() {
+            break child;
         }
         child.kill().unwrap();
         child.wait().unwrap();
         done += 1;
-        let step =
-            ["a", "b"].iter().filter_map(|s| step(&out.join(format!("checkpoint/{s}.checkpoint")))).max();
-        ahead += u32::from(step.unwrap_or(0) > last);
-        last = step.unwrap_or(0).max(last);
-    }
-    let any = out.join("checkpoint/a.checkpoint").exists() || out.join("checkpoint/b.checkpoint").exists();
-    let end = start(scene, &out, set, 2, any || done < kills).wait_with_output().unwrap();
+        ahead += u32::from(latest(&out) > before);
+    };
+    let end = resumed.wait_with_output().unwrap();
     assert!(end.status.success(), "{}", String::from_utf8_lossy(&end.stderr));
     same(&whole, &out);
     println!(
-        "{done} kills, {ahead} of them found the run further on; whole run {:.1} s",
-        begun.elapsed().as_secs_f64()
+        "{done} kills, {ahead} of them found the run further on; the same bytes in {} files",
+        results(&out).len()
     );
-    assert!(done >= kills.min(3), "the run ended before it could be killed");
+    assert!(done == kills, "the run was done after {done} kills: take a longer one");
     ahead
+}
+
+/// Number of the latest checkpoint.
+fn latest(out: &Path) -> Option<u64> {
+    ["a", "b"].iter().filter_map(|slot| step(&out.join(format!("checkpoint/{slot}.checkpoint")))).max()
 }
 
 /// Number in the header of a checkpoint.
@@ -91,7 +98,7 @@ fn step(file: &Path) -> Option<u64> {
 
 #[test]
 fn three_kills_leave_the_same_bytes() {
-    kill(&repository().join("inputs/grains/box.toml"), &set("0.1"), 3);
+    kill(&repository().join("inputs/grains/box.toml"), &set("0.2"), 3);
 }
 
 #[test]
@@ -103,7 +110,7 @@ fn kill_and_resume() {
     let set = match (&scene, variable("TRACKBED_KILL_SET")) {
         (_, Some(text)) => text.split_whitespace().map(String::from).collect(),
         (Some(_), None) => vec!["output.checkpoint=0.05".to_string()],
-        (None, None) => set("0.8"),
+        (None, None) => set("2.0"),
     };
     let scene = scene.map_or_else(|| repository().join("inputs/grains/box.toml"), Into::into);
     let ahead = kill(&scene, &set, kills);
@@ -115,10 +122,11 @@ fn kill_and_resume() {
 fn ctrl_c_and_sigterm() {
     let folder = Folder::new("ctrl_c");
     let scene = repository().join("inputs/grains/box.toml");
-    let set: Vec<String> = ["time.end=0.1", "output.frames=2"].map(String::from).into();
+    let set: Vec<String> =
+        ["grains.0.count=3000", "time.end=0.1", "output.frames=2"].map(String::from).into();
     let (whole, out) = (folder.join("whole"), folder.join("out"));
     run(&scene, &whole, &set.iter().map(String::as_str).collect::<Vec<_>>()).good();
-    for (signal, resume, rows) in [("INT", false, 2), ("TERM", true, 40)] {
+    for (signal, resume, rows) in [("INT", false, 5), ("TERM", true, 40)] {
         let child = start(&scene, &out, &set, 1, resume);
         let begun = Instant::now();
         let lines = || fs::read_to_string(out.join("history.csv")).map_or(0, |t| t.lines().count());
