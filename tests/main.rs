@@ -3,6 +3,8 @@
 
 mod suite {
     mod bad_input;
+    mod checkpoint;
+    mod checkpoint_kill;
     mod cli;
     mod determinism;
     mod fem_cases;

@@ -137,7 +137,8 @@ pub const FOLDER: &str = "checkpoint";
 const SLOTS: [&str; 2] = ["a.checkpoint", "b.checkpoint"];
 
 impl Slots {
-    /// The slots of a run that begins. What an earlier run left there stays until the first checkpoint is written.
+    /// The slots of a run that begins. What an earlier run left there stays until the first checkpoint is written, or the
+    /// results of that run are cleared away.
     pub fn new(results: &Path, origin: Origin) -> Slots {
         Slots { dir: results.join(FOLDER), origin, next: 0, own: false }
     }
@@ -161,9 +162,7 @@ impl Slots {
         moment: Moment,
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        if !self.own {
-            self.clear()?;
-        }
+        self.clear_others()?;
         fs::create_dir_all(&self.dir).map_err(|e| failure(&self.dir, &e))?;
         let header = Header { number: self.next, moment, origin: self.origin.clone() };
         let header = serde_json::to_string(&header).map_err(|e| Failure::Other(e.to_string()))?;
@@ -178,6 +177,14 @@ impl Slots {
         self.own = true;
         self.next += 1;
         Ok(())
+    }
+
+    /// Removes the checkpoints that another run left.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn clear_others(&mut self) -> Result<(), Failure> {
+        if self.own { Ok(()) } else { self.clear() }
     }
 
     /// Removes all checkpoints and their folder, if nothing else is in it.

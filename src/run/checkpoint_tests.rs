@@ -159,3 +159,58 @@ fn another_form_is_refused() {
     assert!(error.to_string().ends_with("found form 7 of a checkpoint, expected 1"), "{error}");
     fs::remove_dir_all(&dir).unwrap();
 }
+
+/// `cargo test --release --lib checkpoint_of_a_bed -- --ignored --nocapture` prints size and time.
+#[test]
+#[ignore = "figures of 100,000 spheres, 5 s"]
+fn checkpoint_of_a_bed() {
+    use std::time::Instant;
+    use trackbed_dem as dem;
+    let side = 47_usize;
+    let mut input = dem::ModelInput {
+        materials: vec![dem::Material {
+            density: 2600.0,
+            stiffness: 1e5,
+            tangential_ratio: 0.5,
+            tangential_damping_ratio: 0.1,
+            friction: 0.5,
+            restitution: 0.5,
+        }],
+        shapes: vec![dem::shape::Shape::Sphere { radius: 0.01 }],
+        ..dem::ModelInput::default()
+    };
+    // Face-centred cubic, every sphere touching twelve: more contacts than any bed has.
+    let pitch = 0.02 * 0.999 * std::f64::consts::SQRT_2;
+    for k in 0..side * side * side {
+        let cell = dem::Vec3::new((k % side) as f64, (k / side % side) as f64, (k / side / side) as f64);
+        if (cell.x + cell.y + cell.z) as u64 % 2 == 0 {
+            input.bodies.push(dem::BodyInput { position: cell * (0.5 * pitch), ..dem::BodyInput::default() });
+        }
+    }
+    let model = dem::Model::new(input).unwrap();
+    let mut state = dem::State::new(&model);
+    let mut work = dem::Work::new(&model, &state);
+    for _ in 0..5 {
+        dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]).unwrap();
+    }
+    let dir = folder("checkpoint_bed");
+    let mut slots = Slots::new(&dir, origin(SCENE, "5"));
+    for _ in 0..3 {
+        let begun = Instant::now();
+        slots.save(moment(5), |body| body.put(&state)).unwrap();
+        let written = begun.elapsed().as_secs_f64();
+        let begun = Instant::now();
+        let (mut loaded, _) = Slots::new(&dir, origin(SCENE, "5")).load(&document(SCENE)).unwrap();
+        let back: dem::State = loaded.take().unwrap();
+        let read = begun.elapsed().as_secs_f64();
+        assert_eq!((back.steps, back.time.to_bits()), (state.steps, state.time.to_bits()));
+        let bytes = fs::metadata(dir.join("checkpoint/a.checkpoint")).unwrap().len() as f64;
+        println!(
+            "{} spheres, {:.1} contacts each: {:.0} bytes per sphere, written in {written:.2} s, read in {read:.2} s",
+            model.body_count(),
+            dem::measure::coordination(&model, &state),
+            bytes / model.body_count() as f64
+        );
+    }
+    fs::remove_dir_all(&dir).unwrap();
+}

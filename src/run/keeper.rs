@@ -134,6 +134,14 @@ impl Keeper {
         self.slots.borrow_mut().clear()
     }
 
+    /// Removes checkpoints that another run left.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn clear_others(&self) -> Result<(), Failure> {
+        self.slots.borrow_mut().clear_others()
+    }
+
     /// Where the last checkpoint is, if there is one.
     pub fn kept(&self) -> Option<String> {
         let slots = self.slots.borrow();

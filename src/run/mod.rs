@@ -342,6 +342,7 @@ impl Stage<'_> {
         if self.goes_on {
             record::take_up(self.dir, &self.job.output)?;
         } else {
+            self.keeper.clear_others()?;
             record::prepare(self.dir, &self.job.output)?;
         }
         self.prepared.set(true);
