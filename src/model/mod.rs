@@ -9,8 +9,12 @@ mod tables;
 use crate::failure::Failure;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
+use std::time::Duration;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
+
+/// Time by the clock between two checkpoints, unless the scene says otherwise [s].
+const CHECKPOINT: f64 = 600.0;
 
 /// A resolved scene.
 pub struct Job {
@@ -39,6 +43,8 @@ pub struct OutputPlan {
     pub frames: u32,
     /// Time between rows of the history [s].
     pub history_interval: f64,
+    /// Time by the clock between two checkpoints.
+    pub checkpoint: Duration,
     /// VTK files.
     pub vtk: bool,
     /// Tecplot files of the solid.
@@ -177,6 +183,9 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
         if o.history_interval.is_some() {
             return Err(without("history_interval", "time: a static solid has no history"));
         }
+        if o.checkpoint.is_some() {
+            return Err(without("checkpoint", "time: a static solid is solved in one go"));
+        }
     }
     let frames = o.frames.unwrap_or(20);
     if frames > 100_000 {
@@ -190,8 +199,13 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
             "a time above 0",
         ));
     }
+    let checkpoint = o.checkpoint.map_or(CHECKPOINT, |c| c.si);
+    let Some(checkpoint) = Duration::try_from_secs_f64(checkpoint).ok().filter(|c| !c.is_zero()) else {
+        return Err(document.error("output.checkpoint", format!("{checkpoint} s"), "a time above 0"));
+    };
     Ok(OutputPlan {
         frames,
+        checkpoint,
         history_interval,
         vtk: o.vtk.unwrap_or(true),
         tecplot: scene.solid.is_some() && o.tecplot.unwrap_or(true),

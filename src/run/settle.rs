@@ -1,10 +1,12 @@
 //! Before the run proper: filled grains settle, the bed is levelled, the sleeper is set down.
 
 use super::Stage;
+use super::checkpoint::{Loaded, Moment};
 use super::summary::{StageRecord, Summary};
 use crate::failure::Failure;
 use crate::model::grains::{DepositionPlan, GrainsPart, refused};
 use crate::progress::Progress;
+use serde::{Deserialize, Serialize};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
@@ -12,61 +14,112 @@ use trackbed_dem::BodyInput;
 /// Time that bodies need to get going before slowness counts as rest [s].
 const START_OF_SETTLING: f64 = 0.05;
 
+/// Stage of a checkpoint from within the settling.
+const SETTLING: &str = "settling";
+/// Stage of the checkpoint between settling and run proper.
+const SETTLED: &str = "settled";
+
+/// A bed that has settled.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Settled {
+    /// The grains at rest.
+    bodies: Vec<BodyInput>,
+    /// Time that it took [s].
+    time: f64,
+    stage: StageRecord,
+    warnings: Vec<String>,
+}
+
 impl Stage<'_> {
-    /// Lets filled grains settle and levels the bed; the bodies come back at rest where they lie.
+    /// Lets filled grains settle and levels the bed; the bodies come back at rest where they lie. `resumed` is the checkpoint
+    /// of a run proper, which has them already.
     pub(super) fn deposit(
         &self,
         grains: &GrainsPart,
         surface: Option<&SolidSurface>,
+        resumed: Option<&mut Loaded>,
         summary: &mut Summary,
     ) -> Result<Vec<BodyInput>, Failure> {
         let Some(plan) = &grains.deposition else { return Ok(grains.bodies.clone()) };
+        let settled = match (resumed, self.resumed(SETTLED)) {
+            (Some(loaded), _) => loaded.take()?,
+            (None, Some(mut loaded)) => loaded.take()?,
+            (None, None) => {
+                let settled = self.settle(grains, plan, surface)?;
+                let moment =
+                    Moment { stage: SETTLED.into(), step: settled.stage.grain_steps, time: settled.time };
+                self.keeper.save(moment, |body| body.put(&settled))?;
+                settled
+            }
+        };
+        summary.warnings.extend(settled.warnings.iter().cloned());
+        summary.stages.push(settled.stage.clone());
+        let bodies = settled.bodies.clone();
+        self.settled.replace(Some(settled));
+        Ok(bodies)
+    }
+
+    /// The settling itself.
+    fn settle(
+        &self,
+        grains: &GrainsPart,
+        plan: &DepositionPlan,
+        surface: Option<&SolidSurface>,
+    ) -> Result<Settled, Failure> {
         let input = grains.deposition_input(plan);
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-        let mut state = dem::State::new(&model);
+        let (mut state, seconds) = match self.resumed(SETTLING) {
+            Some(mut loaded) => loaded.take()?,
+            None => (dem::State::new(&model), 0.0),
+        };
         let mut work = dem::Work::new(&model, &state);
-        let progress = Progress::start("settling", plan.max_time, self.quiet);
+        let progress = Progress::start(SETTLING, plan.max_time, self.quiet).resumed(state.time, seconds);
         // Look at the speed about every millisecond.
         let stride = ((1e-3 / model.dt()) as u64).max(1);
         let mut settled = false;
-        while state.time < plan.max_time && !settled {
-            for _ in 0..stride {
-                match surface {
-                    Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
-                    None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
-                }
-                .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+        let mut going = true;
+        self.keeper.begin();
+        while going {
+            match surface {
+                Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
+                None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
             }
-            let speed = rms_speed(&model, &state);
-            // Everything starts at rest: free fall has to be under way before slowness means anything.
-            settled = state.time > START_OF_SETTLING && speed < plan.settled_speed;
-            progress.at(state.time);
-            progress.message(format!("rms speed {speed:.2e} m/s"));
+            .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+            if state.steps.is_multiple_of(stride) {
+                let speed = rms_speed(&model, &state);
+                // Everything starts at rest: free fall has to be under way before slowness means anything.
+                settled = state.time > START_OF_SETTLING && speed < plan.settled_speed;
+                going = !settled && state.time < plan.max_time;
+                progress.at(state.time);
+                progress.message(format!("rms speed {speed:.2e} m/s"));
+            }
+            if going {
+                self.keeper.step(
+                    || Moment { stage: SETTLING.into(), step: state.steps, time: state.time },
+                    |body| body.put(&(&state, progress.seconds())),
+                )?;
+            }
         }
+        self.keeper.end();
+        let mut warnings = Vec::new();
         if !settled {
             let speed = rms_speed(&model, &state);
-            summary.warnings.push(format!(
+            warnings.push(format!(
                 "the grains were still moving at {speed:.2e} m/s (root mean square) after {} s of settling",
                 plan.max_time
             ));
         }
-        let steps = state.steps;
         let (bodies, removed) = at_rest(&grains.bodies, &model, &state, plan);
         let seconds = progress.finish(&format!(
             "{} grains at rest after {:.2} s, {removed} above the level taken away",
             bodies.len(),
             state.time
         ));
-        summary.stages.push(StageRecord {
-            name: "settling".into(),
-            seconds,
-            grain_steps: steps,
-            solid_steps: 0,
-        });
         if bodies.is_empty() {
             return Err(self.document.error("deposition.level", "no grain below it", "at least one").into());
         }
-        Ok(bodies)
+        let stage = StageRecord { name: SETTLING.into(), seconds, grain_steps: state.steps, solid_steps: 0 };
+        Ok(Settled { bodies, time: state.time, stage, warnings })
     }
 
     /// Adds the sleeper, just above the highest grain below it.

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::write::WriteError;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::step::Stability;
@@ -61,7 +61,7 @@ pub struct Summary {
 }
 
 /// One stage of a run.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StageRecord {
     /// Name.
     pub name: String,
@@ -362,6 +362,11 @@ impl Hash {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }
+    }
+
+    /// The hash as a number.
+    pub fn value(self) -> u64 {
+        self.0
     }
 
     /// The hash in hexadecimal.

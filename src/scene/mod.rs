@@ -137,6 +137,9 @@ pub struct Output {
     /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
     /// solid (coupled and solid runs) or of the grains.
     pub history_interval: Option<Quantity<Time>>,
+    /// Time by the clock after which the state of the run is kept anew for `--resume` [s]; default 10 minutes. The state is
+    /// kept too when settling ends and when the run is interrupted.
+    pub checkpoint: Option<Quantity<Time>>,
     /// Write VTK files (`results.pvd`); default true.
     pub vtk: Option<bool>,
     /// Write the solid as Tecplot files; default true.
