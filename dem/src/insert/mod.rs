@@ -11,6 +11,6 @@ pub mod grow;
 pub mod lattice;
 pub mod library;
 pub mod place;
-mod random;
+pub mod random;
 pub mod scatter;
 pub mod sizes;
