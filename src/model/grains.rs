@@ -9,10 +9,10 @@ mod track;
 mod walls;
 
 use super::seat_load::CyclicLoad;
+use super::tables::Grading;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use compaction::{CompactionPlan, Press};
-use super::tables::Grading;
 use trackbed_coupling::step::{self, Stability};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
@@ -84,7 +84,9 @@ impl DepositionPlan {
     pub fn settled(&self, speed: f64, model: &Model, state: &trackbed_dem::State) -> bool {
         use trackbed_dem::measure::{contacts, unbalanced_ratio};
         speed < self.settled_speed
-            && self.unbalanced_ratio.is_none_or(|most| unbalanced_ratio(model, &contacts(model, state)) < most)
+            && self
+                .unbalanced_ratio
+                .is_none_or(|most| unbalanced_ratio(model, &contacts(model, state)) < most)
     }
 }
 
@@ -165,6 +167,11 @@ impl GrainsPart {
     /// Shapes, at scale 1.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
+    }
+
+    /// Radius about its centre of mass that holds a body [m].
+    pub fn reach(&self, body: &BodyInput) -> f64 {
+        body.scale * groups::bounding_radius(&self.shapes[body.shape])
     }
 
     /// Puts a plane elsewhere [m].

@@ -42,33 +42,30 @@ impl<'a> Bed<'a> {
         .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))
     }
 
+    /// Steps in about a millisecond, the time between two looks at the bed.
+    pub fn stride(&self) -> u64 {
+        ((1e-3 / self.model.dt()) as u64).max(1)
+    }
+
     /// Lets the bed come to rest, for as long as the plan allows; whether it did.
     ///
     /// # Errors
     /// As [`Bed::step`].
     pub fn rest(&mut self, plan: &DepositionPlan) -> Result<bool, Failure> {
-        let stride = ((1e-3 / self.model.dt()) as u64).max(1);
         let begun = self.state.time;
         while self.state.time - begun < plan.max_time {
-            for _ in 0..stride {
+            for _ in 0..self.stride() {
                 self.step(&[])?;
             }
             let moving = self.state.time - begun < START;
-            if !moving && plan.settled(self.rms_speed(), &self.model, &self.state) {
+            if !moving && plan.settled(rms_speed(&self.model, &self.state), &self.model, &self.state) {
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    /// Root-mean-square speed of all bodies [m/s].
-    pub fn rms_speed(&self) -> f64 {
-        let n = self.model.body_count();
-        let sum: f64 = (0..n).map(|b| self.state.velocity(b).norm_squared()).sum();
-        (sum / n.max(1) as f64).sqrt()
-    }
-
-    /// The first bodies of the model where they are now, at rest; as many as `inputs`, of which the rest is taken.
+    /// The first bodies of the model where they are now, at rest: as many as `inputs`, which tell all else.
     pub fn at_rest(&self, inputs: &[BodyInput]) -> Vec<BodyInput> {
         let place = |(b, input): (usize, &BodyInput)| BodyInput {
             position: self.state.position(b),
@@ -79,4 +76,33 @@ impl<'a> Bed<'a> {
         };
         inputs.iter().enumerate().map(place).collect()
     }
+}
+
+/// Root-mean-square speed of all bodies [m/s].
+pub fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
+    let n = model.body_count();
+    let sum: f64 = (0..n).map(|b| state.velocity(b).norm_squared()).sum();
+    (sum / n.max(1) as f64).sqrt()
+}
+
+/// Height at which a box with half sides `half`, let down at `centre` in plan, meets the highest sphere below it [m];
+/// where there is none, the highest point of the solid, or 0.
+pub fn top_below(
+    model: &dem::Model,
+    state: &dem::State,
+    centre: [f64; 2],
+    half: &[f64; 3],
+    surface: Option<&SolidSurface>,
+) -> f64 {
+    let mut top = f64::NEG_INFINITY;
+    for body in 0..model.body_count() {
+        for (x, r) in state.spheres(model, body) {
+            let over = [0, 1].map(|d| ((x[d] - centre[d]).abs() - half[d]).max(0.0));
+            let reach = r * r - over[0] * over[0] - over[1] * over[1];
+            if reach > 0.0 {
+                top = top.max(x.z + reach.sqrt());
+            }
+        }
+    }
+    if top.is_finite() { top } else { surface.map_or(0.0, |s| s.highest()) }
 }

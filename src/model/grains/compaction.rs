@@ -159,7 +159,13 @@ fn refuse_idle_keys(document: &Document, index: usize, c: &Compaction) -> Result
 }
 
 /// A value that this kind cannot do without.
-fn needed<T>(document: &Document, index: usize, key: &str, value: Option<T>, what: &str) -> Result<T, SceneError> {
+fn needed<T>(
+    document: &Document,
+    index: usize,
+    key: &str,
+    value: Option<T>,
+    what: &str,
+) -> Result<T, SceneError> {
     value.ok_or_else(|| document.error(&format!("compaction.{index}.{key}"), "nothing", what))
 }
 
@@ -167,7 +173,13 @@ fn swing(document: &Document, index: usize, c: &Compaction) -> Result<(f64, u32)
     let frequency = needed(document, index, "frequency", c.frequency, "a frequency")?.si;
     check(document, &format!("compaction.{index}.frequency"), Some(frequency), |f| f > 0.0, "above 0")?;
     let cycles = needed(document, index, "cycles", c.cycles, "a number of cycles")?;
-    check(document, &format!("compaction.{index}.cycles"), Some(f64::from(cycles)), |n| n >= 1.0, "1 or more")?;
+    check(
+        document,
+        &format!("compaction.{index}.cycles"),
+        Some(f64::from(cycles)),
+        |n| n >= 1.0,
+        "1 or more",
+    )?;
     Ok((frequency, cycles))
 }
 

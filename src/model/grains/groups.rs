@@ -100,7 +100,11 @@ fn given(
                 shape: first + p.stone,
                 scale: p.scale,
                 position: Vec3::from(p.position),
-                orientation: if exact { UnitQuaternion::new_unchecked(q) } else { UnitQuaternion::new_normalize(q) },
+                orientation: if exact {
+                    UnitQuaternion::new_unchecked(q)
+                } else {
+                    UnitQuaternion::new_normalize(q)
+                },
                 ..model.clone()
             }
         }));

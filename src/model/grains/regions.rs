@@ -2,11 +2,12 @@
 
 use super::groups::{bounding_radius, shapes};
 use super::sizes::SizeSource;
-use super::{GrainsPart, GradedGroup, GrowthPlan, check};
+use super::{GradedGroup, GrainsPart, GrowthPlan, check};
 use crate::failure::Failure;
 use crate::scene::grains::{GrainShape, Grains, GrowthSource, LatticeFill, LatticeKind, Region};
 use crate::scene::units::vector;
 use crate::scene::{Document, SceneError};
+use trackbed_dem::insert::closed::ClosedSurface;
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::insert::lattice::Lattice;
@@ -38,7 +39,11 @@ pub(super) fn lattice(
     };
     let few = |n: f64, k: &str| {
         let expected = "1 to 10000000 spheres";
-        if (1.0..=MOST).contains(&n) { Ok(()) } else { Err(document.error(&key(k), format!("{n} spheres"), expected)) }
+        if (1.0..=MOST).contains(&n) {
+            Ok(())
+        } else {
+            Err(document.error(&key(k), format!("{n} spheres"), expected))
+        }
     };
     let sites = match (&fill.counts, &fill.high) {
         (Some(counts), None) => {
@@ -84,23 +89,29 @@ pub(super) fn scattered(
     let unit_scale = shapes(document, index, group, part)?;
     let shape = |i: usize| first + i % unit_scale.len();
     // Volume and reach of a grain of sieve size 1 m.
-    let unit_volume = |i: usize| unit_scale[i % unit_scale.len()].powi(3) * shape_volume(&part.shapes[shape(i)]);
+    let unit_volume =
+        |i: usize| unit_scale[i % unit_scale.len()].powi(3) * shape_volume(&part.shapes[shape(i)]);
     let reach = |i: usize| unit_scale[i % unit_scale.len()] * bounding_radius(&part.shapes[shape(i)]);
     let source = SizeSource::of(document, index, group)?;
-    let mean_volume = source.mean_cube() * (0..unit_scale.len()).map(unit_volume).sum::<f64>() / unit_scale.len() as f64;
+    let mean_volume =
+        source.mean_cube() * (0..unit_scale.len()).map(unit_volume).sum::<f64>() / unit_scale.len() as f64;
 
     let growth = group.growth.as_ref().map(|g| growth(document, index, g)).transpose()?;
     check(document, &key("concentration"), group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
     let share = match (&growth, group.concentration) {
         (Some(_), Some(_)) => {
-            return Err(document.error(&key("concentration"), "a value", "no such key beside `growth`").into());
+            return Err(document
+                .error(&key("concentration"), "a value", "no such key beside `growth`")
+                .into());
         }
         (Some((porosity, _)), None) => Some(1.0 - porosity),
         (None, share) => share,
     };
     let count = match (group.count, share) {
         (Some(_), Some(_)) if growth.is_none() => {
-            return Err(document.error(&key("count"), "a value", "no such key beside `concentration`").into());
+            return Err(document
+                .error(&key("count"), "a value", "no such key beside `concentration`")
+                .into());
         }
         (Some(count), _) => count as f64,
         (None, Some(share)) => (share * volume / mean_volume).round(),
@@ -149,9 +160,21 @@ pub(super) fn scattered(
 fn growth(document: &Document, index: usize, g: &GrowthSource) -> Result<(f64, Growth), SceneError> {
     let key = |k: &str| format!("grains.{index}.growth.{k}");
     check(document, &key("porosity"), Some(g.porosity), |n| n > 0.0 && n < 1.0, "above 0, below 1")?;
-    check(document, &key("rounds"), g.rounds.map(|n| n as f64), |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    check(
+        document,
+        &key("rounds"),
+        g.rounds.map(|n| n as f64),
+        |n| (1.0..=1000.0).contains(&n),
+        "1 to 1000",
+    )?;
     check(document, &key("friction"), g.friction, |f| f >= 0.0, "0 or more")?;
-    check(document, &key("unbalanced_ratio"), g.unbalanced_ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
+    check(
+        document,
+        &key("unbalanced_ratio"),
+        g.unbalanced_ratio,
+        |r| r > 0.0 && r < 1.0,
+        "above 0, below 1",
+    )?;
     let default = Growth::default();
     let how = Growth {
         rounds: g.rounds.unwrap_or(default.rounds),
@@ -167,7 +190,11 @@ fn container(document: &Document, index: usize, region: &Region) -> Result<Conta
     let sources = [region.cuboid.is_some(), region.cone.is_some(), region.surface.is_some()];
     if sources.iter().filter(|s| **s).count() != 1 {
         let expected = "exactly one of `box`, `cone` and `surface`";
-        return Err(document.error(&format!("grains.{index}.region"), "another number of containers", expected));
+        return Err(document.error(
+            &format!("grains.{index}.region"),
+            "another number of containers",
+            expected,
+        ));
     }
     if region.surface.is_none() {
         for (k, present) in [("scale", region.scale.is_some()), ("shift", region.shift.is_some())] {
@@ -181,7 +208,11 @@ fn container(document: &Document, index: usize, region: &Region) -> Result<Conta
         if (0..3).all(|d| low[d] < high[d] && (high[d] - low[d]).is_finite()) {
             return Ok(Container::Box { low, high });
         }
-        return Err(document.error(&key("box"), "corners in another order", "the lower corner, then the upper"));
+        return Err(document.error(
+            &key("box"),
+            "corners in another order",
+            "the lower corner, then the upper",
+        ));
     }
     if let Some(cone) = &region.cone {
         let (from, to) = (Vec3::from(vector(&cone.from)), Vec3::from(vector(&cone.to)));
@@ -198,13 +229,22 @@ fn container(document: &Document, index: usize, region: &Region) -> Result<Conta
     surface(document, &key("surface"), file, region)
 }
 
+/// The inside of a closed surface from a file.
 fn surface(
     document: &Document,
     key: &str,
     file: &std::path::Path,
-    _region: &Region,
+    region: &Region,
 ) -> Result<Container, SceneError> {
-    Err(document.error(key, file.display().to_string(), "pending"))
+    let surface = crate::read::read_surface(&document.resolve(file))?;
+    let scale = region.scale.unwrap_or(1.0);
+    let scale_key = key.replace(".surface", ".scale");
+    check(document, &scale_key, Some(scale), |s| s > 0.0, "above 0")?;
+    let shift = region.shift.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v)));
+    let vertices: Vec<Vec3> = surface.vertices.iter().map(|v| Vec3::from(*v) * scale + shift).collect();
+    ClosedSurface::new(&vertices, &surface.triangles)
+        .map(Container::Surface)
+        .map_err(|e| document.error(key, e.to_string(), "a closed surface"))
 }
 
 /// Whether a group of this shape can come from a lattice.

@@ -41,9 +41,11 @@ impl SizeSource {
                 law.check().map_err(|e| document.error(&key("sizes"), e.to_string(), expected))?;
                 Ok(SizeSource::Law(law))
             }
-            (None, None, None) => {
-                Err(document.error(&key("gradation"), "none of `gradation`, `size` and `sizes`", "one of them"))
-            }
+            (None, None, None) => Err(document.error(
+                &key("gradation"),
+                "none of `gradation`, `size` and `sizes`",
+                "one of them",
+            )),
             _ => Err(document.error(
                 &key("gradation"),
                 "more than one of `gradation`, `size` and `sizes`",
