@@ -8,7 +8,7 @@ mod tables;
 
 use crate::failure::Failure;
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Chains, Document, Scene, SceneError};
 use std::time::Duration;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
@@ -51,6 +51,10 @@ pub struct OutputPlan {
     pub tecplot: bool,
     /// Nodes and Gauss points of the last state as CSV.
     pub tables: bool,
+    /// Grains of the last state as CSV.
+    pub packing: bool,
+    /// Frames show the contacts above the mean force only.
+    pub strong_chains: bool,
 }
 
 /// The exchange, resolved.
@@ -92,6 +96,8 @@ impl Job {
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
                 ("deposition", scene.deposition.is_some()),
+                ("compaction", !scene.compaction.is_empty()),
+                ("measure", !scene.measure.is_empty()),
                 ("track", scene.track.is_some()),
             ] {
                 if present {
@@ -177,6 +183,14 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
             return Err(without("tables", "[solid]"));
         }
     }
+    if scene.grains.is_empty() {
+        if o.packing.is_some() {
+            return Err(without("packing", "[[grains]]"));
+        }
+        if o.chains.is_some() {
+            return Err(without("chains", "[[grains]]"));
+        }
+    }
     if end == 0.0 {
         if o.frames.is_some() {
             return Err(without("frames", "time: a static solid has one frame"));
@@ -211,6 +225,8 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
         vtk: o.vtk.unwrap_or(true),
         tecplot: scene.solid.is_some() && o.tecplot.unwrap_or(true),
         tables: o.tables.unwrap_or(false),
+        packing: o.packing.unwrap_or(false),
+        strong_chains: o.chains == Some(Chains::Strong),
     })
 }
 

@@ -1,6 +1,8 @@
 //! The run: fill, settle, place the sleeper, load, write.
 
+mod bed;
 mod checkpoint;
+mod compact;
 mod cycles;
 mod failure_factor;
 mod frames;
@@ -8,6 +10,8 @@ mod initial;
 mod keeper;
 mod main_stage;
 mod memory;
+mod packed;
+mod packing;
 mod plastic;
 mod record;
 mod settle;
@@ -244,6 +248,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.library.as_deref());
         files.extend(g.packing.as_deref());
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
+        files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     files
@@ -287,7 +292,8 @@ impl Stage<'_> {
             (Some(solid), None, _) => self.solid_alone(solid, summary),
             (None, Some(grains), _) => {
                 let mut resumed = self.resumed(RUN);
-                let deposited = self.deposit(grains, None, resumed.as_mut(), summary)?;
+                let (grains, deposited) = self.deposit(grains, None, resumed.as_mut(), summary)?;
+                let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, None)?;
                 let model = self.grain_model(grains.input(bodies), summary)?;
                 let mut system = match &mut resumed {
@@ -295,12 +301,14 @@ impl Stage<'_> {
                     None => GrainsSystem::new(model)?,
                 };
                 self.prepare()?;
-                self.grain_stage(&mut system, grains, resumed, summary)
+                self.grain_stage(&mut system, grains, resumed, summary)?;
+                self.record_packing(&system, grains, summary)
             }
             (Some(solid), Some(grains), Some(plan)) => {
                 let surface = SolidSurface::new(solid.model.mesh(), plan.faces.clone());
                 let mut resumed = self.resumed(RUN);
-                let deposited = self.deposit(grains, Some(&surface), resumed.as_mut(), summary)?;
+                let (grains, deposited) = self.deposit(grains, Some(&surface), resumed.as_mut(), summary)?;
+                let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
                 let model = self.grain_model(grains.input(bodies), summary)?;
                 let mut system = self.couple(solid, model, plan, surface, resumed.as_mut(), summary)?;
@@ -319,6 +327,7 @@ impl Stage<'_> {
                 }
                 self.prepare()?;
                 self.grain_stage(&mut system, grains, resumed, summary)?;
+                self.record_packing(&system, grains, summary)?;
                 if self.job.output.tables {
                     let moved = &system.state.solid;
                     let reactions = fem::energy::reactions(&solid.model, moved, system.work.load());

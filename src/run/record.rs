@@ -245,7 +245,10 @@ impl<'a> Recorder<'a> {
         if let (Some(view), Some(part), true) = (system.grains(), &self.job.grains, vtk) {
             let name = |kind: &str| format!("frames/{kind}_{k:05}.vtp");
             write::vtp::write_grains(&self.dir.join(name("grains")), &frames::grains(view))?;
-            write::vtp::write_chains(&self.dir.join(name("chains")), &frames::chains(view))?;
+            write::vtp::write_chains(
+                &self.dir.join(name("chains")),
+                &frames::chains(view, self.job.output.strong_chains),
+            )?;
             self.series.push(time, 1, "grains", &name("grains"));
             self.series.push(time, 2, "force chains", &name("chains"));
             let walls = frames::walls(view, part);
@@ -379,7 +382,7 @@ fn cycle_columns() -> Vec<Column> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 10] = [
+const FILES: [&str; 13] = [
     "summary.json",
     "log.txt",
     "history.csv",
@@ -390,7 +393,17 @@ const FILES: [&str; 10] = [
     "results.pvd",
     "settlement.svg",
     "sleeper.svg",
+    "gradation.csv",
+    "gradation.svg",
+    "packing.csv",
 ];
+
+/// The packing of one of several groups.
+fn of_a_group(path: &Path) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let number = name.strip_prefix("packing_").and_then(|rest| rest.strip_suffix(".csv"));
+    number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
+}
 
 /// Whether a file is one of the frames that this program writes, or the beginning of one.
 fn is_frame(path: &Path) -> bool {
@@ -437,6 +450,14 @@ pub fn prepare(dir: &Path, output: &crate::model::OutputPlan) -> Result<(), Fail
     let of_a_run = dir.join("summary.json").is_file();
     for file in FILES.map(|name| dir.join(name)).iter().filter(|file| of_a_run && file.is_file()) {
         fs::remove_file(file).map_err(fail)?;
+    }
+    if of_a_run {
+        for entry in fs::read_dir(dir).map_err(fail)? {
+            let path = entry.map_err(fail)?.path();
+            if of_a_group(&path) {
+                fs::remove_file(&path).map_err(fail)?;
+            }
+        }
     }
     for (sub, wanted) in [("frames", output.vtk), ("tecplot", output.tecplot)] {
         let folder = dir.join(sub);

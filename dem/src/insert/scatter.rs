@@ -7,8 +7,10 @@
 use super::container::Container;
 use super::random::Random;
 use crate::Vec3;
+use nalgebra::UnitQuaternion;
 
 const PURPOSE: u64 = 4;
+const TURNS: u64 = 5;
 /// Tries per sphere before giving up.
 const TRIES: usize = 20_000;
 
@@ -75,6 +77,12 @@ pub fn scatter(container: &Container, radii: &[f64], seed: u64) -> Result<Vec<Ve
         volume += 4.0 / 3.0 * std::f64::consts::PI * r * r * r;
     }
     Ok(centres)
+}
+
+/// Orientations of `n` grains, uniform over all rotations; the same for the same seed.
+pub fn orientations(n: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
+    let mut random = Random::new(seed, TURNS);
+    (0..n).map(|_| random.orientation()).collect()
 }
 
 /// Spheres by cells.
