@@ -2,6 +2,7 @@
 
 mod balance;
 mod determinism;
+mod extremes;
 mod friction;
 mod impact;
 mod order;

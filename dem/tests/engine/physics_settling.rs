@@ -77,7 +77,13 @@ fn settle(number: u32, end: f64) -> (f64, f64) {
         {
             let (low, high) =
                 range(&peers, column, |r| r[0] == f64::from(number) && (r[2] - time).abs() < 1e-9);
-            let factor = if time > 0.16 { 3.0 } else if column == 3 { 1.03 } else { 1.1 };
+            let factor = if time > 0.16 {
+                3.0
+            } else if column == 3 {
+                1.03
+            } else {
+                1.1
+            };
             println!("cloud {number}, t = {time} s, {name}: {ours:.4e} J, others {low:.4e} to {high:.4e} J");
             assert!(ours > low / factor && ours < high * factor, "t = {time} s, {name}: {ours:e} J");
         }
