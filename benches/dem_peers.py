@@ -23,7 +23,7 @@ import argparse, gzip, json, math, os, re, statistics, subprocess, sys, tempfile
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
 DENSITY, STEP = 2600.0, 2e-5
 RELAX = {"s1": 300, "s1hertz": 300, "s2": 300, "s3": 0, "s5": 300}
-STEPS = {"s1": 700, "s1hertz": 700, "s2": 1000, "s3": 500, "s5": 200}
+STEPS = {"s1": 700, "s1hertz": 700, "s2": 1000, "s3": 500, "s5": 300}
 
 HEAD = """units si
 atom_modify map array
@@ -186,8 +186,7 @@ def run(command, cores, folder):
     return done.stdout
 
 
-def ours(options, scene, packing, threads, cores, folder):
-    steps = options.steps or STEPS[scene]
+def ours(options, scene, packing, threads, steps, cores, folder):
     command = [options.bed, "--scene", scene, "--threads", str(threads), "--relax", str(RELAX[scene]), "--steps", str(steps)]
     out = run(command + (["--packing", packing] if packing else []), cores, folder)
     return {key: float(value) for key, value in re.findall(r"(\w+)=([-+.\deE]+)(?=\s|$)", out)}
@@ -242,9 +241,9 @@ def compare(options, scene, packing, threads, cores, folder, base):
     file = packing or os.path.join(DATA, "s1_10k.csv")
     bodies = len(rows(file)[1]) if scene in ("s1", "s1hertz", "s5") else 1000
     relax, steps = RELAX[scene], options.steps or STEPS[scene]
-    programs = {"trackbed": lambda: ours(options, scene, packing, threads, cores, folder)}
+    programs = {"trackbed": lambda: ours(options, scene, packing, threads, steps, cores, folder)}
     if scene == "s5":
-        programs["trackbed on the plane"] = lambda: ours(options, "s1", packing, threads, cores, folder)
+        programs["trackbed on the plane"] = lambda: ours(options, "s1", packing, threads, steps, cores, folder)
         if options.yade:
             programs["YADE"] = lambda: yade(options, file, threads, cores, folder, bodies)
     elif options.lammps and (threads == 1 or options.mpiexec):

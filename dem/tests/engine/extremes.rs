@@ -254,7 +254,7 @@ fn masses_a_million_and_radii_a_hundred_apart() {
     let position = Vec3::new(0.0, 0.0, 1.02);
     input.bodies.push(BodyInput { fixed: guided, scale: 100.0, ..sphere(position, Vec3::zeros()) });
     let mut run = Run::new(input);
-    while run.state.time < 0.3 {
+    while run.state.time < 0.12 {
         run.step();
     }
     let weight = 9.81 * (run.model.mass(0) + run.model.mass(1));
@@ -374,12 +374,12 @@ fn quiet_bed_for_ten_million_steps() {
         input.planes.push(plane(point, normal));
     }
     let mut run = Run::new(input);
-    run.steps(1_000_000);
+    run.steps(3_000_000);
     let start = measure::energies(&run.model, &run.state);
     let before: Vec<Vec3> = (0..27).map(|b| run.state.position(b)).collect();
-    run.steps(9_000_000);
+    run.steps(7_000_000);
     let end = measure::energies(&run.model, &run.state);
     let moved = (0..27).map(|b| (run.state.position(b) - before[b]).norm()).fold(0.0, f64::max);
     println!("{start:?}\n{end:?}\nmoved {moved:e} m, dt {:e}", run.model.dt());
-    assert!(end.kinetic() < 1e-12 && moved < 1e-6, "{end:?} {moved:e}");
+    assert!(end.kinetic() < 1e-20 && moved < 1e-9, "{end:?} {moved:e}");
 }

@@ -210,7 +210,7 @@ fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
         advance(&model, &mut state, &mut work, start);
         let first = out(&state);
         let (mut time, mut gone) = (0.0, first);
-        while gone - first < 0.3 * mass && time < 0.9 {
+        while gone - first < 0.15 * mass && time < 0.6 {
             time += 0.05;
             advance(&model, &mut state, &mut work, start + time);
             gone = out(&state);
@@ -233,8 +233,8 @@ fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
 #[test]
 #[ignore = "11,000 grains, four orifices: 150 s"]
 fn orifices_discharge_by_beverloos_law() {
-    let diameters = [5.0 * D, 7.0 * D, 9.0 * D, 11.0 * D];
-    let (rates, bulk) = discharge(&diameters, 11.0 * D, 18);
+    let diameters = [5.0 * D, 6.5 * D, 8.0 * D, 10.0 * D];
+    let (rates, bulk) = discharge(&diameters, 12.0 * D, 30);
     let (slope, cut) = line(&diameters, &rates.iter().map(|w| w.powf(0.4)).collect::<Vec<_>>());
     let (c, k) = (slope.powf(2.5) / (bulk * 9.81_f64.sqrt()), -cut / slope / D);
     let logs = |values: Vec<f64>| values.into_iter().map(f64::ln).collect::<Vec<_>>();
