@@ -11,7 +11,8 @@
 //! z³ + (Ω² + 3b/2 − 2) z² + (1 − 2b) z + b/2, b = 2ζ'Ω, is −1.)
 //!
 //! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
-//! it with more than one member), and for a box twice as many as neighbours of the smallest bounding radius find
+//! it with more than one member) or twice as many as touch a plane at once where that is more (needles and plates
+//! made of many), and for a box twice as many as neighbours of the smallest bounding radius find
 //! room on its largest side, two contacts each. Contacts on a clump may all lie far out, so its r² is the largest;
 //! those on the side of a box are spread over it, so its r² is the mean over the side.
 //! A rolling or twisting spring turns the body as the tangential spring does, with a lever no longer than the sphere's
@@ -31,7 +32,8 @@
 //! that is taken (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
 //! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
 //!
-//! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side
+//! Limits: sides of a clump that are flat, yet not across a principal axis, are not looked for; very unlike sizes,
+//! where one large body has more contacts than s, are on the safe side
 //! because its mass grows faster than their number.
 
 use crate::Vec3;
@@ -40,6 +42,7 @@ use crate::contact::Laws;
 use crate::input::ModelInput;
 use crate::model::{Body, Kind};
 use crate::shape::Shape;
+use crate::shape::clump::Clump;
 use std::fmt;
 
 /// The limit and its cause.
@@ -112,7 +115,7 @@ pub(crate) fn limit(
         let softness = compliance(body, shape);
         let sides = match shape {
             Shape::Sphere { .. } => 12.0,
-            Shape::Clump(_) => 24.0,
+            Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
             Shape::Box { half } => {
                 let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
                 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
@@ -198,6 +201,17 @@ fn partners(bodies: &[Body], input: &ModelInput) -> Vec<usize> {
     input.walls.iter().for_each(|w| used[w.material] = true);
     input.surface_material.into_iter().for_each(|m| used[m] = true);
     (0..used.len()).filter(|&m| used[m]).collect()
+}
+
+/// Number of members that a plane across a principal axis touches at once (to a tenth of the largest radius).
+fn flat(clump: &Clump) -> usize {
+    let slack = 0.1 * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max);
+    let touching = |axis: usize, sign: f64| {
+        let reach = |s: &([f64; 3], f64)| sign * s.0[axis] + s.1;
+        let furthest = clump.spheres.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+        clump.spheres.iter().filter(|s| reach(s) >= furthest - slack).count()
+    };
+    (0..3).map(|axis| touching(axis, 1.0).max(touching(axis, -1.0))).max().unwrap_or(0)
 }
 
 /// 1/m + max over the principal axes of (distance of contacts from the axis)²/I [1/kg].
