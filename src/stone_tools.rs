@@ -18,6 +18,9 @@ use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
 
 pub use measure::StoneReport;
 
+/// Least share of its bounding box that a body may fill.
+const LEAST_SHARE: f64 = 1e-3;
+
 /// What a stone is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
@@ -56,6 +59,16 @@ pub enum StoneError {
         /// Number of bodies.
         pieces: usize,
     },
+    /// There is hardly any body in its bounding box.
+    #[error(
+        "stone '{name}': the body fills {share:e} of its bounding box, too thin to be filled with spheres"
+    )]
+    Thin {
+        /// Name of the stone.
+        name: String,
+        /// Volume over that of the bounding box.
+        share: f64,
+    },
     /// The spheres make no clump.
     #[error("stone '{name}': {source}")]
     Clump {
@@ -91,11 +104,17 @@ fn make_one(source: &Source, kind: Kind) -> Result<Made, StoneError> {
     // Sieve size 1 in its own frame, so that every tolerance means the same for every file.
     let body = source.body.in_principal_frame();
     let body = body.scaled(1.0 / body.sieve_size());
+    let [lo, hi] = body.surface().bounds();
+    let share = body.moments().volume / (0..3).map(|k| hi[k] - lo[k]).product::<f64>();
+    let thin = || StoneError::Thin { name: name(), share };
+    if share < LEAST_SHARE {
+        return Err(thin());
+    }
     let distance = SurfaceDistance::new(&body);
     let row = |(c, r): &([f64; 3], f64), s: f64| [c[0] * s, c[1] * s, c[2] * s, r * s];
     Ok(match kind {
         Kind::Clump(options) => {
-            let spheres = fill::fill(&body, &distance, &options);
+            let spheres = fill::fill(&body, &distance, &options).ok_or_else(thin)?;
             let clump =
                 Clump::from_spheres(&spheres).map_err(|source| StoneError::Clump { name: name(), source })?;
             let report = measure::clump(&body, &distance, &spheres, &clump);

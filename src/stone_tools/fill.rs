@@ -39,8 +39,13 @@ pub struct Options {
 
 /// Lattice cells along the longest side.
 const CELLS: f64 = 26.0;
-/// Points on the surface; as many inside at most.
-const POINTS: usize = 1200;
+/// The lattice is refined while it has fewer points inside, down to this many cells along the longest side.
+const FEW: usize = 300;
+const FINEST: f64 = 120.0;
+/// Points on the surface, at least and for each sphere; as many inside at most.
+const POINTS: [usize; 2] = [1200, 40];
+/// About so many of them judge a candidate.
+const GREEDY_POINTS: usize = 2400;
 /// Candidates of the greedy choice at most.
 const CANDIDATES: usize = 2500;
 const DESCENTS: usize = 60;
@@ -48,9 +53,12 @@ const EXCHANGES: usize = 12;
 /// Least radius as a share of the largest inscribed one.
 const LEAST: f64 = 0.05;
 
-/// Fills a body; `distance` belongs to it.
-pub fn fill(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) -> Vec<Ball> {
-    let problem = Problem::new(body, distance, options.overhang);
+/// Fills a body; `distance` belongs to it. `None` when it is too thin for a lattice point to fall inside.
+pub fn fill(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) -> Option<Vec<Ball>> {
+    let problem = Problem::new(body, distance, options);
+    if problem.candidates.is_empty() {
+        return None;
+    }
     let mut balls: Vec<Ball> = Vec::new();
     for _ in 0..options.spheres {
         let next = problem.best_candidate(&balls);
@@ -70,7 +78,7 @@ pub fn fill(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) ->
         }
         (balls, error) = (changed, lower);
     }
-    balls
+    Some(balls)
 }
 
 struct Problem<'a> {
@@ -87,35 +95,25 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(body: &Polyhedron, distance: &'a SurfaceDistance, overhang: f64) -> Problem<'a> {
+    fn new(body: &Polyhedron, distance: &'a SurfaceDistance, options: &Options) -> Problem<'a> {
         let [lo, hi] = body.surface().bounds();
         let longest = (0..3).map(|k| hi[k] - lo[k]).fold(0.0, f64::max);
         let shortest = (0..3).map(|k| hi[k] - lo[k]).fold(f64::INFINITY, f64::min);
-        // A flat body gets a finer lattice, so that points lie near its middle.
-        let h = (longest / CELLS).min(shortest / 6.0);
-        let count: [usize; 3] = std::array::from_fn(|k| ((hi[k] - lo[k]) / h).ceil().max(1.0) as usize);
-        let mut inside: Vec<Ball> = Vec::new();
-        for i in 0..count[0] {
-            for j in 0..count[1] {
-                for k in 0..count[2] {
-                    let at = [i, j, k];
-                    let p = std::array::from_fn(|d| {
-                        lo[d] + (at[d] as f64 + 0.5) * (hi[d] - lo[d]) / count[d] as f64
-                    });
-                    let depth = distance.depth(p);
-                    if depth > 0.0 {
-                        inside.push((p, depth));
-                    }
-                }
-            }
+        // A flat body gets a finer lattice, and one of thin walls too, so that points lie near their middle.
+        let mut h = (longest / CELLS).min(shortest / 6.0);
+        let mut inside = lattice(distance, [lo, hi], h);
+        while inside.len() < FEW && h > longest / FINEST {
+            h *= 0.6;
+            inside = lattice(distance, [lo, hi], h);
         }
         let largest = inside.iter().map(|b| b.1).fold(0.0, f64::max);
-        let overhang = overhang * largest;
+        let overhang = options.overhang * largest;
+        let points = POINTS[0].max(POINTS[1] * options.spheres);
         let least = LEAST * largest;
         let wide: Vec<&Ball> = inside.iter().filter(|b| b.1 > least).collect();
         let candidates = thinned(wide.len(), CANDIDATES).map(|i| (wide[i].0, wide[i].1 + overhang)).collect();
-        let surface = body.surface_points(POINTS);
-        let filling: Vec<[f64; 3]> = thinned(inside.len(), POINTS).map(|i| inside[i].0).collect();
+        let surface = body.surface_points(points);
+        let filling: Vec<[f64; 3]> = thinned(inside.len(), points).map(|i| inside[i].0).collect();
         let weights = [1.0 / surface.len() as f64, 1.0 / filling.len().max(1) as f64];
         Problem {
             distance,
@@ -159,6 +157,8 @@ impl<'a> Problem<'a> {
     /// The candidate that touches the others and lowers E most.
     fn best_candidate(&self, balls: &[Ball]) -> Ball {
         let present: Vec<f64> = self.distances(balls).iter().map(|d| d.0).collect();
+        // Every so many points do for a first choice.
+        let stride = (self.points.len() / GREEDY_POINTS).max(1);
         let mut best = (f64::INFINITY, self.candidates[0]);
         for &(c, r) in &self.candidates {
             let centre = Vector3::from(c);
@@ -166,7 +166,7 @@ impl<'a> Problem<'a> {
                 continue;
             }
             let mut error = 0.0;
-            for (i, (p, present)) in self.points.iter().zip(&present).enumerate() {
+            for (i, (p, present)) in self.points.iter().zip(&present).enumerate().step_by(stride) {
                 let d = ((p - centre).norm() - r).min(*present);
                 error += self.weight(i) * self.residual(i, d).powi(2);
             }
@@ -255,6 +255,26 @@ impl<'a> Problem<'a> {
             })
             .collect()
     }
+}
+
+/// Points of a lattice of about the width `h` [m] that lie inside, with their depths [m].
+fn lattice(distance: &SurfaceDistance, [lo, hi]: [[f64; 3]; 2], h: f64) -> Vec<Ball> {
+    let count: [usize; 3] = std::array::from_fn(|k| ((hi[k] - lo[k]) / h).ceil().max(1.0) as usize);
+    let mut inside = Vec::new();
+    for i in 0..count[0] {
+        for j in 0..count[1] {
+            for k in 0..count[2] {
+                let at = [i, j, k];
+                let p =
+                    std::array::from_fn(|d| lo[d] + (at[d] as f64 + 0.5) * (hi[d] - lo[d]) / count[d] as f64);
+                let depth = distance.depth(p);
+                if depth > 0.0 {
+                    inside.push((p, depth));
+                }
+            }
+        }
+    }
+    inside
 }
 
 /// `count` indices at most, spread evenly over 0..n.

@@ -1,7 +1,7 @@
 //! A body filled with separate spheres that grow until they jam, for a bonded stone.
 //!
 //! Spheres of given size ratios start small at random points inside and grow together. After each growth they are moved
-//! apart, pair by pair and away from the surface, by their overlaps, until none is larger than a thousandth of a radius;
+//! apart, pair by pair and away from the surface, by their overlaps, until none is larger than 0.3 % of the mean radius;
 //! where that fails the growth was too large and is halved. When they are jammed, the overlaps left are taken from the
 //! radii, and each sphere grows alone until it meets a neighbour or the surface. So no two spheres overlap, and none
 //! stands out over the surface.
@@ -20,8 +20,8 @@ use super::fill::Ball;
 
 const PURPOSE: u64 = 12;
 /// Largest overlap left by relaxation, as a share of the mean radius.
-const OVERLAP: f64 = 1e-3;
-const SWEEPS: usize = 300;
+const OVERLAP: f64 = 3e-3;
+const SWEEPS: usize = 1000;
 /// Growth of the radii in one step, at first and at last.
 const GROWTH: [f64; 2] = [0.1, 1e-3];
 /// Neighbours are looked for within this many mean diameters, and again after so many sweeps.
