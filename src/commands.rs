@@ -3,6 +3,7 @@
 mod check;
 mod mesh;
 mod modal;
+mod stone;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
@@ -25,6 +26,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Mesh { command: MeshCommand::Convert { mesh, output, format } } => {
             mesh::convert(&mesh, &output, format)
         }
+        Command::Stone { command } => stone::stone(&command),
     }
 }
 

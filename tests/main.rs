@@ -16,6 +16,7 @@ mod suite {
     mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
+    mod stones;
     mod summary;
     pub mod support;
 }
