@@ -175,6 +175,7 @@ fn checkpoint_of_a_bed() {
             tangential_damping_ratio: 0.1,
             friction: 0.5,
             restitution: 0.5,
+            ..dem::Material::default()
         }],
         shapes: vec![dem::shape::Shape::Sphere { radius: 0.01 }],
         ..dem::ModelInput::default()
