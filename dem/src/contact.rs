@@ -3,10 +3,12 @@
 //! A law is written once, over [`Real`]: the loops over many pairs ask it for four contacts at a time
 //! ([`ContactLaw::answer`]), walls, boxes and measures for one ([`ContactLaw::respond`]). Both give the same bits.
 
+pub(crate) mod groups;
 pub mod hertz;
 pub mod linear;
 pub(crate) mod pass;
 pub(crate) mod patches;
+pub(crate) mod planes;
 pub mod restitution;
 pub(crate) mod slide;
 
@@ -128,8 +130,11 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// Mixes the constants of two materials.
     fn mix(a: &Material, b: &Material, exception: Option<&PairOverride>) -> Self;
 
-    /// Constants in lanes, each picked by a function of a law's field.
-    fn lanes<R: Real>(pick: impl Fn(fn(&Self) -> f64) -> R) -> Self::Lanes<R>;
+    /// The same constants in every lane.
+    fn splat<R: Real>(&self) -> Self::Lanes<R>;
+
+    /// Constants of four laws in lanes, put together by `join`.
+    fn mixed<R: Real>(laws: [&Self; 4], join: fn(&[f64; 4]) -> R) -> Self::Lanes<R>;
 
     /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
     /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance.
@@ -188,7 +193,7 @@ pub trait ContactLaw: Copy + Send + Sync {
             roll: V3::new(x, y, z),
             twist,
         };
-        let law = Self::lanes(|pick| pick(self));
+        let law = self.splat::<f64>();
         let a = if self.rolls() {
             Self::answer::<f64, true>(&law, &touch, &mut memory, true, dt)
         } else {
@@ -216,7 +221,7 @@ pub trait ContactLaw: Copy + Send + Sync {
             twist,
         };
         *history = History::NONE;
-        Self::left::<f64, true>(&Self::lanes(|pick| pick(self)), &memory)
+        Self::left::<f64, true>(&self.splat(), &memory)
     }
 }
 
@@ -257,7 +262,13 @@ impl<L: ContactLaw> PairTable<L> {
     #[inline(always)]
     pub(crate) fn lanes<R: Four>(&self, a: R, b: R) -> L::Lanes<R> {
         let (a, b) = (a.array(), b.array());
-        L::lanes(|pick| R::from_fn(|k| pick(self.get(a[k] as u32, b[k] as u32))))
+        let laws = [
+            self.get(a[0] as u32, b[0] as u32),
+            self.get(a[1] as u32, b[1] as u32),
+            self.get(a[2] as u32, b[2] as u32),
+            self.get(a[3] as u32, b[3] as u32),
+        ];
+        L::mixed(laws, R::load)
     }
 
     /// Whether any pair resists rolling or twisting.

@@ -8,7 +8,8 @@
 //!
 //! A [`Kernel`] is a loop written once over `R: Four`; [`run`] picks the implementation, and compiles the whole loop
 //! with the processor's features on. Everything that a kernel calls must be `#[inline(always)]` as well: an operation
-//! on [`Avx2`] that is not inlined below that entry becomes a call per operation, ten times slower.
+//! on [`Avx2`] that is not inlined below that entry becomes a call per operation, ten times slower. That rules out
+//! closures with such operations in them, hence also `map` and `from_fn`.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -122,13 +123,13 @@ pub(crate) trait Four: Real {
     /// The four numbers of a record as four lanes of each number: element k holds number k of the records `at`.
     #[inline(always)]
     fn gather(records: &[[f64; 4]], at: &[u32; 4]) -> [Self; 4] {
-        Self::transpose(at.map(|k| Self::load(&records[k as usize])))
-    }
-
-    /// Lanes in order, from a function of the lane.
-    #[inline(always)]
-    fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
-        Self::load(&std::array::from_fn(f))
+        let [a, b, c, d] = *at;
+        Self::transpose([
+            Self::load(&records[a as usize]),
+            Self::load(&records[b as usize]),
+            Self::load(&records[c as usize]),
+            Self::load(&records[d as usize]),
+        ])
     }
 
     #[inline(always)]
@@ -400,7 +401,7 @@ mod avx2 {
         }
         #[inline(always)]
         fn transpose(rows: [Avx2; 4]) -> [Avx2; 4] {
-            let [a, b, c, d] = rows.map(|r| r.0);
+            let [Avx2(a), Avx2(b), Avx2(c), Avx2(d)] = rows;
             unsafe {
                 let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
                 let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));

@@ -72,15 +72,34 @@ impl ContactLaw for Hertz {
     }
 
     #[inline(always)]
-    fn lanes<R: Real>(pick: impl Fn(fn(&Hertz) -> f64) -> R) -> Hertz<R> {
+    fn splat<R: Real>(&self) -> Hertz<R> {
         Hertz {
-            modulus: pick(|l| l.modulus),
-            shear: pick(|l| l.shear),
-            damping_ratio: pick(|l| l.damping_ratio),
-            tangential_damping: pick(|l| l.tangential_damping),
-            friction: pick(|l| l.friction),
-            rolling: pick(|l| l.rolling),
-            twisting: pick(|l| l.twisting),
+            modulus: R::splat(self.modulus),
+            shear: R::splat(self.shear),
+            damping_ratio: R::splat(self.damping_ratio),
+            tangential_damping: R::splat(self.tangential_damping),
+            friction: R::splat(self.friction),
+            rolling: R::splat(self.rolling),
+            twisting: R::splat(self.twisting),
+        }
+    }
+
+    #[inline(always)]
+    fn mixed<R: Real>(laws: [&Hertz; 4], join: fn(&[f64; 4]) -> R) -> Hertz<R> {
+        let [a, b, c, d] = laws;
+        Hertz {
+            modulus: join(&[a.modulus, b.modulus, c.modulus, d.modulus]),
+            shear: join(&[a.shear, b.shear, c.shear, d.shear]),
+            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
+            tangential_damping: join(&[
+                a.tangential_damping,
+                b.tangential_damping,
+                c.tangential_damping,
+                d.tangential_damping,
+            ]),
+            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
+            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
+            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
         }
     }
 

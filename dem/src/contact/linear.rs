@@ -68,16 +68,36 @@ impl ContactLaw for Linear {
     }
 
     #[inline(always)]
-    fn lanes<R: Real>(pick: impl Fn(fn(&Linear) -> f64) -> R) -> Linear<R> {
+    fn splat<R: Real>(&self) -> Linear<R> {
         Linear {
-            normal: pick(|l| l.normal),
-            tangential: pick(|l| l.tangential),
-            damping: pick(|l| l.damping),
-            tangential_damping: pick(|l| l.tangential_damping),
-            friction: pick(|l| l.friction),
-            rolling: pick(|l| l.rolling),
-            twisting: pick(|l| l.twisting),
-            damping_ratio: pick(|l| l.damping_ratio),
+            normal: R::splat(self.normal),
+            tangential: R::splat(self.tangential),
+            damping: R::splat(self.damping),
+            tangential_damping: R::splat(self.tangential_damping),
+            friction: R::splat(self.friction),
+            rolling: R::splat(self.rolling),
+            twisting: R::splat(self.twisting),
+            damping_ratio: R::splat(self.damping_ratio),
+        }
+    }
+
+    #[inline(always)]
+    fn mixed<R: Real>(laws: [&Linear; 4], join: fn(&[f64; 4]) -> R) -> Linear<R> {
+        let [a, b, c, d] = laws;
+        Linear {
+            normal: join(&[a.normal, b.normal, c.normal, d.normal]),
+            tangential: join(&[a.tangential, b.tangential, c.tangential, d.tangential]),
+            damping: join(&[a.damping, b.damping, c.damping, d.damping]),
+            tangential_damping: join(&[
+                a.tangential_damping,
+                b.tangential_damping,
+                c.tangential_damping,
+                d.tangential_damping,
+            ]),
+            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
+            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
+            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
+            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
         }
     }
 

@@ -158,7 +158,8 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
     let mut touched = std::mem::take(&mut w.touches);
     let mut live = std::mem::take(&mut w.live);
     live.clear();
-    let owner = |i: u32| if RIGID { w.owner[i as usize] as usize } else { i as usize };
+    let owners = std::mem::take(&mut w.owner);
+    let owner = |i: u32| if RIGID { owners[i as usize] as usize } else { i as usize };
     let end = |c: &mut PatchContact| {
         if c.history.is_fresh() {
             return 0.0;
@@ -231,8 +232,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             contact.side = side;
             dashpot += f.dashpot;
             friction += f.friction;
-            w.force[a] += f.force;
-            w.torque[a] += ma.arm.cross(&f.force) + f.moment;
+            w.push(a, &f.force, &(ma.arm.cross(&f.force) + f.moment));
             if external {
                 exchange.work += f.force.dot(&wall) * dt;
                 exchange.impulse.add(&g.point, &(f.force * dt));
@@ -262,6 +262,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
     w.ledger.dissipated_friction += friction;
     std::mem::swap(&mut list.live, &mut live);
     w.live = live;
+    w.owner = owners;
     w.touches = touched;
     exchange
 }

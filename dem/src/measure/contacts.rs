@@ -6,7 +6,7 @@ use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::shape::cuboid;
-use crate::state::{Block, Lanes, PatchContact, State, xyz};
+use crate::state::{Block, Cross, Lanes, PatchContact, State, xyz};
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,9 +113,10 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 });
             }
         };
-        block.pairs.iter().for_each(|p| pair(p.i, b as u32, p.j, false, &p.history));
-        state.cross[b].spheres.iter().for_each(|p| pair(p.i, p.block, p.j, false, &p.history));
-        state.cross[b].boxes.iter().for_each(|p| pair(p.i, p.block, p.j, true, &p.history));
+        block.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history));
+        let Cross { spheres, boxes } = &state.cross[b];
+        spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history));
+        boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history));
         planes(model, state, &now, b, &mut f);
         for contact in &block.walls.live {
             let k = model.walls.wall_of(contact.patch);
@@ -156,28 +157,29 @@ struct Partnership {
 
 fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
     let block = &now.blocks[b];
-    for pair in &block.planes {
-        let (i, k) = (pair.i as usize, pair.plane as usize);
+    for (name, history) in block.planes.iter() {
+        let [i, k] = name.map(|n| n as usize);
         let (plane, wall) = (&model.planes[k], &state.planes[k]);
         let boxes = model.bodies[block.bodies[0] as usize].kind == Kind::Box;
-        let (a, x, r) = if boxes {
+        let (a, x, r, radius) = if boxes {
             let a = i / 8;
             let half = model.half(block.bodies[a] as usize);
             let corner = block.rotation[a].orientation * cuboid::corner(&half, i % 8);
-            (a, xyz(&block.centre[a]) + corner, 0.0)
+            (a, xyz(&block.centre[a]) + corner, 0.0, half.min())
         } else {
             let p = &now.spheres[b][i];
-            (now.owners[b][i] as usize, xyz(p), p[3])
+            (now.owners[b][i] as usize, xyz(p), p[3], p[3])
         };
         let origin = plane.point + wall.offset - wall.velocity * now.back;
         if let Some(geometry) = detect::sphere_plane(&x, r, &origin, &plane.normal) {
+            let geometry = ContactGeometry { radius, ..geometry };
             f(&Visited {
                 body: block.bodies[a],
                 partner: Partner::Plane(k),
                 geometry,
                 velocity: pass::motion(block, a, &geometry.point).at_point() - wall.velocity,
                 mass: 1.0 / block.velocity[a][3],
-                history: &pair.history,
+                history: &history,
                 spin: xyz(&block.spin[a]),
                 materials: [block.spin[a][3] as u32, plane.material as u32],
             });

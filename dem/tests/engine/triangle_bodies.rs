@@ -2,8 +2,8 @@
 
 use crate::scene::{Run, plane, sphere, stone, weightless};
 use trackbed_dem::{
-    BodyInput, Material, Model, ModelError, ModelInput, RigidBody, StepError, TimeStep, Vec3, WallInput, WallShape,
-    measure,
+    BodyInput, Material, Model, ModelError, ModelInput, RigidBody, StepError, TimeStep, Vec3, WallInput,
+    WallShape, measure,
 };
 
 /// A box with its centre at `centre`, its sides split into triangles.

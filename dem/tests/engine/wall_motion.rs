@@ -127,7 +127,11 @@ fn servo_holds_its_pressure() {
             run.step();
             let t = run.state.time;
             if std::env::var("TRACE").is_ok() && run.state.steps % 400 == 0 {
-                eprintln!("{t:.4} {:.1} {:.5}", run.state.wall_force(0).0.z / area, run.state.wall_offset(0).z);
+                eprintln!(
+                    "{t:.4} {:.1} {:.5}",
+                    run.state.wall_force(0).0.z / area,
+                    run.state.wall_offset(0).z
+                );
             }
             let target = if t < 0.5 { 1e3 } else { 2e3 };
             if (t > 0.4 && t < 0.5) || t > 0.7 {
