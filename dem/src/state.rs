@@ -309,6 +309,11 @@ impl State {
         (self.walls[wall].force, self.walls[wall].moment)
     }
 
+    /// Number of contacts of spheres with walls in the last step.
+    pub fn wall_contact_count(&self) -> usize {
+        self.blocks.iter().map(|b| b.walls.live.len()).sum()
+    }
+
     /// Gives a wall another steady velocity [m/s]. Driven walls and rigid bodies do not follow it.
     pub fn set_wall_velocity(&mut self, wall: usize, velocity: Vec3) {
         let own = &mut self.walls[wall];

@@ -6,7 +6,7 @@ use crate::contact::planes::{self, Planes};
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
-use crate::integrate::leapfrog;
+use crate::integrate::leapfrog::Advance;
 use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
@@ -187,7 +187,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         }
         let from = applied.partition_point(|a| (a.block as usize) < b);
         let to = applied.partition_point(|a| a.block as usize <= b);
-        leapfrog::advance::<RIGID>(model, block, w, &applied[from..to], dt);
+        lanes::run(simd, Advance::<RIGID> { model, block, w, applied: &applied[from..to], dt });
     };
     if *parallel {
         blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().for_each(within);

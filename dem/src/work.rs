@@ -64,6 +64,9 @@ pub(crate) struct CrossWork {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockWork {
     // Constants of the bodies, in block order.
+    /// Whether no motion is fixed and no body is a box.
+    pub free: bool,
+    pub mass_sum: f64,
     pub kind: Vec<Kind>,
     pub mass: Vec<f64>,
     pub inertia: Vec<Vec3>,
@@ -244,6 +247,8 @@ impl BlockWork {
             });
         }
         self.first.push(self.owner.len() as u32);
+        self.free = self.fixed.iter().all(|&f| f == 0) && self.kind.iter().all(|&k| k != Kind::Box);
+        self.mass_sum = self.mass.iter().sum();
         self.sums.clear();
         self.sums.resize(bodies.len(), Sums::default());
     }
