@@ -47,6 +47,9 @@ pub struct RunArgs {
     /// Refuse a solid that needs more memory than this, such as 8GB; default: what the machine has free.
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
+    /// Go on from the last checkpoint in the folder of the results. Scene and overrides must be the same, threads need not.
+    #[arg(long)]
+    pub resume: bool,
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,

@@ -30,10 +30,22 @@ pub fn execute(command: Command) -> Result<(), Failure> {
 
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let memory = memory(args.memory.as_deref())?;
-    let options =
-        run::Options { out: args.out, threads: args.threads, set: args.set, memory, quiet: args.quiet };
-    let summary = run::run(&args.scene, &options)?;
-    if args.quiet { Ok(()) } else { print(&summary.report()) }
+    let options = run::Options {
+        out: args.out,
+        threads: args.threads,
+        set: args.set,
+        memory,
+        resume: args.resume,
+        interrupt: run::Interrupt::on_signals()?,
+        quiet: args.quiet,
+    };
+    match run::run(&args.scene, &options)? {
+        run::Outcome::Done(_) if args.quiet => Ok(()),
+        run::Outcome::Done(summary) => print(&summary.report()),
+        run::Outcome::WasDone(dir) => {
+            print(&format!("{}: the run is finished, there is nothing to go on with\n", dir.display()))
+        }
+    }
 }
 
 /// The size that `--memory` names [bytes].

@@ -9,6 +9,7 @@ mod suite {
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
+    mod packings;
     mod scenes;
     mod solid_keys;
     mod solid_runs;

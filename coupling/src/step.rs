@@ -20,7 +20,7 @@ use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
-use trackbed_fem::nonlinear::{NewtonOptions, PlasticWindowSolver, Statistics};
+use trackbed_fem::nonlinear::{Memory, NewtonOptions, PlasticWindowSolver, Statistics};
 use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::StepAudit;
 use trackbed_fem::window::WindowSolver;
@@ -156,6 +156,25 @@ impl Work {
         match &self.solver {
             SolidSolver::Elastic(_) => None,
             SolidSolver::Plastic(solver) => Some(solver.statistics()),
+        }
+    }
+
+    /// What the solver of a plastic solid remembers beside the state, for a checkpoint.
+    pub fn memory(&self) -> Option<Memory> {
+        match &self.solver {
+            SolidSolver::Elastic(_) => None,
+            SolidSolver::Plastic(solver) => Some(solver.memory()),
+        }
+    }
+
+    /// Goes on with the memory of scratch that was made for the same model.
+    ///
+    /// # Errors
+    /// A matrix cannot be factored.
+    pub fn recall(&mut self, model: &Model<'_>, memory: Option<&Memory>) -> Result<(), SolveError> {
+        match (&mut self.solver, memory) {
+            (SolidSolver::Plastic(solver), Some(memory)) => solver.recall(model.solid, memory),
+            _ => Ok(()),
         }
     }
 

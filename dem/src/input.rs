@@ -8,7 +8,7 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
 /// One body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyInput {
     /// Shape (index).
     pub shape: usize,

@@ -186,6 +186,11 @@ impl Model {
         &self.shapes[self.bodies[body].shape]
     }
 
+    /// Number of a body's shape in the input.
+    pub fn shape_number(&self, body: usize) -> usize {
+        self.bodies[body].shape
+    }
+
     /// Factor on the lengths of the body's shape.
     pub fn scale(&self, body: usize) -> f64 {
         self.bodies[body].scale

@@ -60,7 +60,9 @@ fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
 
 /// The grains: one point per sphere.
 pub fn grains(view: GrainsView<'_>) -> GrainFrame {
-    let stress = dem::measure::mean_stress(view.model, view.state);
+    let contacts = dem::measure::contacts(view.model, view.state);
+    let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
+    let neighbours = dem::measure::neighbours(view.model, &contacts);
     let force = dem::measure::contact_forces(view.model, view.state);
     let mut frame = GrainFrame::default();
     for body in 0..view.model.body_count() {
@@ -76,15 +78,24 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
             frame.part.push(view.model.part(body));
             frame.mean_stress.push((stress[body][0] + stress[body][1] + stress[body][2]) / 3.0);
             frame.force.push(force[body].into());
+            frame.coordination.push(neighbours[body]);
         }
     }
     frame
 }
 
-/// Force chains: a line from partner to partner for each contact that carries force.
-pub fn chains(view: GrainsView<'_>) -> ChainFrame {
+/// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
+/// than the mean normal force.
+pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
-    for c in dem::measure::contacts(view.model, view.state) {
+    let contacts = dem::measure::contacts(view.model, view.state);
+    let mean = dem::measure::strong_network(&contacts).mean_force;
+    for c in contacts {
+        let strong = c.normal_force > mean;
+        if strong_only && !strong {
+            continue;
+        }
+        frame.strong.push(u32::from(strong));
         let first = view.state.position(c.a);
         let second = match c.b {
             dem::Partner::Body(b) => view.state.position(b),

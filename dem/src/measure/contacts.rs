@@ -21,6 +21,8 @@ pub struct ContactRecord {
     pub normal: Vec3,
     /// Overlap [m].
     pub overlap: f64,
+    /// Reduced radius of the two spheres, r₁r₂/(r₁ + r₂); of the sphere alone where the partner is flat [m].
+    pub radius: f64,
     /// Normal force, pressure positive [N].
     pub normal_force: f64,
     /// Whole force on a [N].
@@ -227,6 +229,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             point: c.geometry.point,
             normal: c.geometry.normal,
             overlap: c.geometry.overlap,
+            radius: c.geometry.radius,
             normal_force: normal,
             force,
         });

@@ -8,6 +8,7 @@ mod determinism;
 mod friction;
 mod impact;
 mod order;
+mod packing;
 mod refusals;
 mod scene;
 mod seams;
