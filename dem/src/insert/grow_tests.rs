@@ -13,6 +13,7 @@ fn material() -> Material {
         tangential_damping_ratio: 0.0,
         friction: 0.5,
         restitution: 0.5,
+        ..Material::default()
     }
 }
 

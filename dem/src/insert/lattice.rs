@@ -119,6 +119,7 @@ mod tests {
                 tangential_damping_ratio: 0.0,
                 friction: 0.5,
                 restitution: 0.5,
+                ..Material::default()
             };
             let at = |position| BodyInput { position, ..BodyInput::default() };
             let model = Model::new(ModelInput {
