@@ -184,7 +184,7 @@ fn checkpoint_of_a_bed() {
     let pitch = 0.02 * 0.999 * std::f64::consts::SQRT_2;
     for k in 0..side * side * side {
         let cell = dem::Vec3::new((k % side) as f64, (k / side % side) as f64, (k / side / side) as f64);
-        if (cell.x + cell.y + cell.z) as u64 % 2 == 0 {
+        if ((cell.x + cell.y + cell.z) as u64).is_multiple_of(2) {
             input.bodies.push(dem::BodyInput { position: cell * (0.5 * pitch), ..dem::BodyInput::default() });
         }
     }
