@@ -182,12 +182,17 @@ fn gradation_of_the_shipped_bed() {
 /// The bed settles in layers, and every stage of the compaction leaves it denser than the one before.
 #[test]
 fn compaction_of_the_shipped_bed() {
-    let region = "region = [[0.0, 0.0, 0.0], [0.24, 0.24, 0.15]]";
+    let region = "region = [[0.0, 0.0, 0.0], [0.2, 0.2, 0.12]]";
     let text = fs::read_to_string(repository().join("inputs/grains/compaction.toml")).unwrap();
     assert_eq!(text.matches(region).count(), 4);
     let (_, summary) = shipped(
         "compaction.toml",
-        &[("count = 900", "count = 700"), ("cycles = 15", "cycles = 6"), ("cycles = 20", "cycles = 8")],
+        &[
+            ("low = \"20 mm\", high = \"30 mm\"", "low = \"32 mm\", high = \"42 mm\""),
+            ("cycles = 12", "cycles = 5"),
+            ("cycles = 20", "cycles = 8"),
+            ("layers = 3", "layers = 2"),
+        ],
     );
     let stages = summary["compaction"].as_array().unwrap();
     let kinds: Vec<&str> = stages.iter().map(|s| s["kind"].as_str().unwrap()).collect();

@@ -27,7 +27,7 @@ const STRIPS: usize = 96;
 /// Steps between two looks at the forces.
 const STRIDE: u64 = 25;
 /// Overlap over radius below which grains count as apart.
-const APART: f64 = 1e-5;
+const APART: f64 = 1e-3;
 
 /// How to grow.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -124,10 +124,10 @@ pub(super) fn scattered(
         return Err(document.error(&key("count"), format!("{count} grains"), "1 to 10000000").into());
     }
     let mut sizes = source.sample(count as usize, group.seed);
-    let mut start = 1.0;
+    let (mut start, mut factor) = (1.0, 1.0);
     if let Some((porosity, _)) = &growth {
         let solid: f64 = sizes.iter().enumerate().map(|(i, s)| unit_volume(i) * s.powi(3)).sum();
-        let factor = ((1.0 - porosity) * volume / solid).cbrt();
+        factor = ((1.0 - porosity) * volume / solid).cbrt();
         sizes.iter_mut().for_each(|s| *s *= factor);
         let bounding: f64 = sizes.iter().enumerate().map(|(i, s)| (reach(i) * s).powi(3)).sum();
         start = (SEEDLINGS * volume / (4.0 / 3.0 * std::f64::consts::PI * bounding)).cbrt().min(0.7);
@@ -150,8 +150,12 @@ pub(super) fn scattered(
         let how = Growth { start, ..how };
         let group = group.name.clone();
         part.growths.push(GrowthPlan { group, bodies: begin..part.bodies.len(), container, how });
-    } else if let SizeSource::Graded(grading) = source {
-        // Growth changes all sizes by one factor, so that only here the curve asked for is the one to be met.
+    }
+    // A count that growth is to make fit leaves of the curve its form alone: it is then not the one to be met.
+    if let SizeSource::Graded(grading) = source
+        && (group.growth.is_none() || group.count.is_none())
+    {
+        let grading = grading.scaled(factor);
         part.graded.push(GradedGroup { part: model.part, name: group.name.clone(), grading });
     }
     Ok(())
