@@ -46,8 +46,8 @@ const FINEST: f64 = 120.0;
 const POINTS: [usize; 2] = [1200, 40];
 /// About so many of them judge a candidate.
 const GREEDY_POINTS: usize = 2400;
-/// Candidates of the greedy choice at most.
-const CANDIDATES: usize = 2500;
+/// Places of candidates of the greedy choice at most.
+const CANDIDATES: usize = 1400;
 const DESCENTS: usize = 60;
 const EXCHANGES: usize = 12;
 /// Least radius as a share of the largest inscribed one.
@@ -111,7 +111,12 @@ impl<'a> Problem<'a> {
         let points = POINTS[0].max(POINTS[1] * options.spheres);
         let least = LEAST * largest;
         let wide: Vec<&Ball> = inside.iter().filter(|b| b.1 > least).collect();
-        let candidates = thinned(wide.len(), CANDIDATES).map(|i| (wide[i].0, wide[i].1 + overhang)).collect();
+        // Each place with and without overhang: where many spheres are asked for, late ones only fit without.
+        let sizes = if overhang > 0.0 { &[0.0, 0.5, 1.0][..] } else { &[0.0] };
+        let candidates = thinned(wide.len(), CANDIDATES)
+            .flat_map(|i| sizes.iter().map(move |s| (i, s * overhang)))
+            .map(|(i, out)| (wide[i].0, wide[i].1 + out))
+            .collect();
         let surface = body.surface_points(points);
         let filling: Vec<[f64; 3]> = thinned(inside.len(), points).map(|i| inside[i].0).collect();
         let weights = [1.0 / surface.len() as f64, 1.0 / filling.len().max(1) as f64];

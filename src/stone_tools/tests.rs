@@ -98,7 +98,7 @@ fn the_error_falls_with_the_number_of_spheres() {
     for report in &reports[2] {
         assert!((report.volume_ratio - 1.0).abs() < 0.01, "{report}");
         assert!(report.inertia_ratio.iter().all(|i| (i - 1.0).abs() < 0.02), "{report}");
-        assert!(report.mean_distance < 0.01 && report.centroid_offset < 0.005, "{report}");
+        assert!(report.mean_distance < 0.012 && report.centroid_offset < 0.005, "{report}");
     }
 }
 

@@ -108,7 +108,7 @@ fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
             vec!["make", &stone, "--spheres", "9999", "--as", "bonded"],
             "--spheres: found 9999, expected 1 to 2000",
         ),
-        (vec!["make", &stone, "--spheres", "3", "--overhang", "-1"], "--overhang"),
+        (vec!["make", &stone, "--spheres", "3", "--overhang=-1"], "--overhang: found -1, expected 0 to 1"),
         (
             vec!["make", &stone, "--spheres", "3", "--overhang", "1.5"],
             "--overhang: found 1.5, expected 0 to 1",
