@@ -1,7 +1,5 @@
 //! Checks of a model's input: every refusal names what it found.
 
-use crate::contact::linear::Linear;
-use crate::contact::{ContactLaw, PairTable};
 use crate::error::ModelError;
 use crate::input::{ModelInput, TimeStep};
 use crate::model::{Body, Kind};
@@ -33,6 +31,7 @@ pub(crate) fn input(input: &ModelInput) -> Result<(), ModelError> {
 }
 
 fn materials(input: &ModelInput) -> Result<(), ModelError> {
+    let hertz = input.materials.iter().any(|m| m.young.is_some());
     for (material, m) in input.materials.iter().enumerate() {
         for (quantity, value, good, requirement) in [
             ("density", m.density, positive(m.density), POSITIVE),
@@ -46,6 +45,21 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             ),
             ("friction", m.friction, not_negative(m.friction), NOT_NEGATIVE),
             ("restitution", m.restitution, restitution(m.restitution), RESTITUTION),
+            ("Young's modulus", m.young.unwrap_or(1.0), m.young.is_none_or(positive), POSITIVE),
+            (
+                "Poisson's ratio",
+                m.poisson,
+                m.poisson > -1.0 && m.poisson <= 0.5,
+                "lie above -1 and not above 0.5",
+            ),
+            ("rolling friction", m.rolling_friction, not_negative(m.rolling_friction), NOT_NEGATIVE),
+            ("twisting friction", m.twisting_friction, not_negative(m.twisting_friction), NOT_NEGATIVE),
+            (
+                "stiffness",
+                m.stiffness,
+                !hertz || m.stiffness.is_infinite(),
+                "be absent (infinite) where a material has a Young's modulus",
+            ),
         ] {
             if !good {
                 return Err(ModelError::Material { material, quantity, value, requirement });
@@ -60,6 +74,12 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             ("friction", e.friction, e.friction.is_none_or(not_negative), NOT_NEGATIVE),
             ("restitution", e.restitution, e.restitution.is_none_or(restitution), RESTITUTION),
             ("stiffness", e.stiffness, e.stiffness.is_none_or(positive), POSITIVE),
+            (
+                "stiffness",
+                e.stiffness,
+                !hertz || e.stiffness.is_none(),
+                "be absent where materials have a Young's modulus",
+            ),
         ] {
             if !good {
                 let value = value.unwrap_or(f64::NAN);
@@ -150,6 +170,9 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
     if let Some(&g) = input.gravity.iter().find(|x| !x.is_finite()) {
         return error("gravity", g, "be finite");
     }
+    if let Some(speed) = input.impact_speed.filter(|&v| !not_negative(v)) {
+        return error("impact speed", speed, NOT_NEGATIVE);
+    }
     match input.time_step {
         TimeStep::Auto { fraction } if !(fraction > 0.0 && fraction <= 1.0) => {
             return error("time step fraction", fraction, "lie above 0 and not above 1");
@@ -179,15 +202,14 @@ fn in_range(
 }
 
 /// Refuses contacts between two rigid partners that may come about.
-pub(crate) fn rigid_pairs(
-    bodies: &[Body],
-    input: &ModelInput,
-    table: &PairTable<Linear>,
-) -> Result<(), ModelError> {
-    let endless = |a: u32, b: usize| table.get(a, b as u32).stiffness(0.0, 1.0).is_infinite();
-    let rigid: Vec<usize> = (0..bodies.len())
-        .filter(|&k| input.materials[bodies[k].material as usize].stiffness.is_infinite())
-        .collect();
+pub(crate) fn rigid_pairs(bodies: &[Body], input: &ModelInput) -> Result<(), ModelError> {
+    let hard = |m: usize| input.materials[m].stiffness.is_infinite() && input.materials[m].young.is_none();
+    let endless = |a: u32, b: usize| {
+        let a = a as usize;
+        let exception = input.contacts.iter().rfind(|e| (e.a, e.b) == (a, b) || (e.a, e.b) == (b, a));
+        hard(a) && hard(b) && exception.is_none_or(|e| e.stiffness.is_none())
+    };
+    let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies[k].material as usize)).collect();
     for (n, &i) in rigid.iter().enumerate() {
         let a = &bodies[i];
         let error = |b: String| Err(ModelError::RigidPair { a: format!("body {i}"), b });

@@ -1,11 +1,19 @@
 //! Contact: detection yields a [`ContactGeometry`], a law turns it into a force; neither knows the other.
+//!
+//! A law is written once, over [`Real`]: the loops over many pairs ask it for four contacts at a time
+//! ([`ContactLaw::answer`]), walls, boxes and measures for one ([`ContactLaw::respond`]). Both give the same bits.
 
+pub(crate) mod groups;
+pub mod hertz;
 pub mod linear;
 pub(crate) mod pass;
 pub(crate) mod patches;
+pub(crate) mod planes;
 pub mod restitution;
+pub(crate) mod slide;
 
 use crate::Vec3;
+use crate::lanes::{Four, Real, V3};
 use crate::material::{Material, PairOverride};
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +37,9 @@ pub struct History {
     pub spring: Vec3,
     /// Approach speed half a step before the last force [m/s]; [`FRESH`] before the first.
     pub rate: f64,
+    /// Rolling spring (three components) and twisting spring: angles of a against b that still turn back, times the
+    /// effective radius [m]. Zero where neither resistance is modelled.
+    pub turn: [f64; 4],
 }
 
 /// Marks a history without a contact (finite, so that every format can hold it).
@@ -36,56 +47,181 @@ pub const FRESH: f64 = f64::MAX;
 
 impl History {
     /// Memory of a contact that has not begun.
-    pub const NONE: History = History { spring: Vec3::new(0.0, 0.0, 0.0), rate: FRESH };
+    pub const NONE: History = History { spring: Vec3::new(0.0, 0.0, 0.0), rate: FRESH, turn: [0.0; 4] };
 
     /// Whether a contact goes on.
     #[inline(always)]
     pub fn is_fresh(&self) -> bool {
         self.rate == FRESH
     }
+
+    /// The same contact seen from the other partner. A twist has the same sense from both sides.
+    pub(crate) fn turned(&self) -> History {
+        let [x, y, z, twist] = self.turn;
+        History { spring: -self.spring, rate: self.rate, turn: [-x, -y, -z, twist] }
+    }
 }
 
 /// What a law answers for one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactForce {
     /// Force on a [N]; b takes the opposite.
     pub force: Vec3,
     /// Its normal part, pressure positive [N].
     pub normal: f64,
+    /// Moment of rolling and twisting resistance on a [N m]; b takes the opposite.
+    pub moment: Vec3,
     /// Energy that dashpots took in this step [J].
     pub dashpot: f64,
-    /// Energy that sliding took in this step [J].
+    /// Energy that sliding, rolling and twisting took in this step [J].
     pub friction: f64,
+}
+
+/// Contacts as a law sees them, in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<R> {
+    /// Effective mass m₁m₂/(m₁ + m₂) of the bodies [kg].
+    pub mass: R,
+    /// Effective radius [m].
+    pub radius: R,
+    /// Overlap [m].
+    pub overlap: R,
+    /// Unit normal from b to a.
+    pub normal: V3<R>,
+    /// Velocity of a relative to b at the contact point, half a step ago [m/s].
+    pub velocity: V3<R>,
+    /// Spin of a less that of b, half a step ago [rad/s].
+    pub spin: V3<R>,
+}
+
+/// [`History`] in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Memory<R> {
+    /// Tangential spring [m].
+    pub spring: V3<R>,
+    /// Approach speed before, or [`FRESH`] [m/s].
+    pub rate: R,
+    /// Rolling spring [m].
+    pub roll: V3<R>,
+    /// Twisting spring [m].
+    pub twist: R,
+}
+
+/// [`ContactForce`] in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer<R> {
+    /// Force on a [N].
+    pub force: V3<R>,
+    /// Normal force [N].
+    pub normal: R,
+    /// Moment on a [N m].
+    pub moment: V3<R>,
+    /// Energy taken by dashpots [J].
+    pub dashpot: R,
+    /// Energy taken by sliding, rolling and twisting [J].
+    pub friction: R,
 }
 
 /// A law of contact: constants of one pair of materials, and the force.
 pub trait ContactLaw: Copy + Send + Sync {
+    /// The constants in lanes.
+    type Lanes<R: Real>: Copy;
+
     /// Mixes the constants of two materials.
     fn mix(a: &Material, b: &Material, exception: Option<&PairOverride>) -> Self;
 
-    /// The force, given the effective mass m* = m₁m₂/(m₁ + m₂) of the bodies [kg], the velocity of a relative to b
-    /// at the contact point half a step ago [m/s], and the step [s]. Advances the contact's memory.
+    /// The same constants in every lane.
+    fn splat<R: Real>(&self) -> Self::Lanes<R>;
+
+    /// Constants of four laws in lanes, put together by `join`.
+    fn mixed<R: Real>(laws: [&Self; 4], join: fn(&[f64; 4]) -> R) -> Self::Lanes<R>;
+
+    /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
+    /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance.
+    fn answer<R: Real, const ROLL: bool>(
+        law: &Self::Lanes<R>,
+        touch: &Touch<R>,
+        memory: &mut Memory<R>,
+        on: R::Mask,
+        dt: f64,
+    ) -> Answer<R>;
+
+    /// Energy stored in the normal spring, and in the tangential, rolling and twisting springs together [J].
+    fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
+
+    /// Energy that contacts which end leave in their tangential, rolling and twisting springs [J], given the effective
+    /// radius [m] and the effective mass [kg].
+    fn left<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;
+
+    /// Largest normal stiffness [N/m] at an overlap [m], for the time step.
+    fn stiffness(&self, overlap: f64, radius: f64) -> f64;
+
+    /// Tangential over normal stiffness [-], both at one overlap.
+    fn tangential_ratio(&self) -> f64;
+
+    /// Damping ratio ζ of the contact [-].
+    fn damping_ratio(&self) -> f64;
+
+    /// Whether the contact resists rolling or twisting.
+    fn rolls(&self) -> bool;
+
+    /// The force on one contact, given the effective mass m* = m₁m₂/(m₁ + m₂) of the bodies [kg], the velocity of a
+    /// relative to b at the contact point and the spin of a less that of b, both half a step ago [m/s, rad/s], and
+    /// the step [s]. Advances the contact's memory.
+    #[inline(always)]
     fn respond(
         &self,
         mass: f64,
         geometry: &ContactGeometry,
         velocity: &Vec3,
+        spin: &Vec3,
         history: &mut History,
         dt: f64,
-    ) -> ContactForce;
+    ) -> ContactForce {
+        let touch = Touch {
+            mass,
+            radius: geometry.radius,
+            overlap: geometry.overlap,
+            normal: V3::from_vec(&geometry.normal),
+            velocity: V3::from_vec(velocity),
+            spin: V3::from_vec(spin),
+        };
+        let [x, y, z, twist] = history.turn;
+        let mut memory = Memory {
+            spring: V3::from_vec(&history.spring),
+            rate: history.rate,
+            roll: V3::new(x, y, z),
+            twist,
+        };
+        let law = self.splat::<f64>();
+        let a = if self.rolls() {
+            Self::answer::<f64, true>(&law, &touch, &mut memory, true, dt)
+        } else {
+            Self::answer::<f64, false>(&law, &touch, &mut memory, true, dt)
+        };
+        let Memory { spring, rate, roll, twist } = memory;
+        *history = History { spring: spring.to_vec(), rate, turn: [roll.x, roll.y, roll.z, twist] };
+        ContactForce {
+            force: a.force.to_vec(),
+            normal: a.normal,
+            moment: a.moment.to_vec(),
+            dashpot: a.dashpot,
+            friction: a.friction,
+        }
+    }
 
-    /// Energy stored in the normal and in the tangential spring [J].
-    fn stored(&self, overlap: f64, radius: f64, spring: &Vec3) -> (f64, f64);
-
-    /// Largest normal stiffness [N/m] at an overlap [m], for the time step.
-    fn stiffness(&self, overlap: f64, radius: f64) -> f64;
-
-    /// Ends a contact: forgets it, and returns the energy left in the tangential spring [J].
+    /// Ends a contact: forgets it, and returns the energy left in its tangential, rolling and twisting springs [J].
     #[inline(always)]
     fn release(&self, history: &mut History) -> f64 {
-        let left = self.stored(0.0, 1.0, &history.spring).1;
+        let [x, y, z, twist] = history.turn;
+        let memory = Memory {
+            spring: V3::from_vec(&history.spring),
+            rate: history.rate,
+            roll: V3::new(x, y, z),
+            twist,
+        };
         *history = History::NONE;
-        left
+        Self::left::<f64, true>(&self.splat(), &memory)
     }
 }
 
@@ -115,5 +251,90 @@ impl<L: ContactLaw> PairTable<L> {
     #[inline(always)]
     pub fn get(&self, a: u32, b: u32) -> &L {
         &self.pairs[a as usize * self.count + b as usize]
+    }
+
+    /// Number of materials.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Constants of four pairs of materials, given as numbers in lanes.
+    #[inline(always)]
+    pub(crate) fn lanes<R: Four>(&self, a: R, b: R) -> L::Lanes<R> {
+        let (a, b) = (a.array(), b.array());
+        let laws = [
+            self.get(a[0] as u32, b[0] as u32),
+            self.get(a[1] as u32, b[1] as u32),
+            self.get(a[2] as u32, b[2] as u32),
+            self.get(a[3] as u32, b[3] as u32),
+        ];
+        L::mixed(laws, R::load)
+    }
+
+    /// Whether any pair resists rolling or twisting.
+    pub(crate) fn rolls(&self) -> bool {
+        self.pairs.iter().any(L::rolls)
+    }
+}
+
+/// 2xy/(x + y), also for infinite values.
+pub(crate) fn harmonic(x: f64, y: f64) -> f64 {
+    if x.is_infinite() {
+        2.0 * y
+    } else if y.is_infinite() {
+        2.0 * x
+    } else if x + y > 0.0 {
+        2.0 * x * y / (x + y)
+    } else {
+        0.0
+    }
+}
+
+/// The law of all contacts of a model.
+#[derive(Clone, Debug)]
+pub(crate) enum Laws {
+    Linear(PairTable<linear::Linear>),
+    Hertz(PairTable<hertz::Hertz>),
+}
+
+/// Runs an expression with the table of the law in use.
+macro_rules! with_law {
+    ($laws:expr, $table:ident => $body:expr) => {
+        match $laws {
+            $crate::contact::Laws::Linear($table) => $body,
+            $crate::contact::Laws::Hertz($table) => $body,
+        }
+    };
+}
+pub(crate) use with_law;
+
+impl Laws {
+    /// Hertz's law where any material has a Young's modulus.
+    pub fn new(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
+        if materials.iter().any(|m| m.young.is_some()) {
+            Laws::Hertz(PairTable::new(materials, exceptions))
+        } else {
+            Laws::Linear(PairTable::new(materials, exceptions))
+        }
+    }
+
+    pub fn stiffness(&self, a: u32, b: u32, overlap: f64, radius: f64) -> f64 {
+        with_law!(self, t => t.get(a, b).stiffness(overlap, radius))
+    }
+
+    pub fn tangential_ratio(&self, a: u32, b: u32) -> f64 {
+        with_law!(self, t => t.get(a, b).tangential_ratio())
+    }
+
+    pub fn damping_ratio(&self, a: u32, b: u32) -> f64 {
+        with_law!(self, t => t.get(a, b).damping_ratio())
+    }
+
+    pub fn stored(&self, a: u32, b: u32, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
+        with_law!(self, t => t.get(a, b).stored(overlap, radius, history))
+    }
+
+    pub fn rolls(&self) -> bool {
+        with_law!(self, t => t.rolls())
     }
 }

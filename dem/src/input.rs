@@ -130,6 +130,9 @@ pub struct ModelInput {
     pub gravity: Vec3,
     /// Time step.
     pub time_step: TimeStep,
+    /// Largest speed at which two bodies are expected to meet [m/s]: sets the overlap at which contacts after Hertz are
+    /// taken for the limit of the time step; the estimate of [`crate::timestep`] when `None`.
+    pub impact_speed: Option<f64>,
     /// Distance beyond touch up to which neighbours are listed [m]; 0.2 of the mean sphere radius when `None`.
     pub skin: Option<f64>,
     /// Local damping, for deposition only.
@@ -149,6 +152,7 @@ impl Default for ModelInput {
             surface_material: None,
             gravity: Vec3::new(0.0, 0.0, -9.81),
             time_step: TimeStep::Auto { fraction: 0.1 },
+            impact_speed: None,
             skin: None,
             damping: None,
         }

@@ -10,6 +10,8 @@ pub mod error;
 pub mod input;
 pub mod insert;
 pub mod integrate;
+#[allow(dead_code)] // Until all loops use it.
+pub mod lanes;
 pub mod ledger;
 pub mod material;
 pub mod measure;

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A contact material.
+/// A contact material. Either all materials of a model that are not rigid have a `stiffness` (linear contact), or all
+/// have a Young's modulus (contact after Hertz and Mindlin).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Mass per volume of the body [kg/m³].
@@ -18,6 +19,37 @@ pub struct Material {
     pub friction: f64,
     /// Coefficient of restitution of a central impact, in (0, 1].
     pub restitution: f64,
+    /// Young's modulus [Pa]; the stiffness is then infinite, and that of contacts follows from their sizes.
+    pub young: Option<f64>,
+    /// Poisson's ratio [-]; used with a Young's modulus.
+    pub poisson: f64,
+    /// Rolling resistance: largest moment over R* F [-]; zero: none.
+    pub rolling_friction: f64,
+    /// Twisting resistance: largest moment about the normal over R* F [-]; zero: none.
+    pub twisting_friction: f64,
+}
+
+impl Material {
+    /// A rigid wall without friction, for the fields that a material does not care about.
+    pub const RIGID: Material = Material {
+        density: 1.0,
+        stiffness: f64::INFINITY,
+        tangential_ratio: 0.5,
+        tangential_damping_ratio: 0.0,
+        friction: 0.0,
+        restitution: 1.0,
+        young: None,
+        poisson: 0.0,
+        rolling_friction: 0.0,
+        twisting_friction: 0.0,
+    };
+}
+
+impl Default for Material {
+    /// [`Material::RIGID`].
+    fn default() -> Material {
+        Material::RIGID
+    }
 }
 
 /// Values of one pair of materials that replace the mixed ones.

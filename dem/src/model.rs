@@ -1,8 +1,7 @@
 //! The checked, resolved and immutable model: what a run needs and never changes.
 
 use crate::Vec3;
-use crate::contact::linear::Linear;
-use crate::contact::{ContactLaw, PairTable};
+use crate::contact::Laws;
 use crate::error::ModelError;
 use crate::input::{ModelInput, Plane, TimeStep};
 use crate::shape::{Shape, cuboid};
@@ -54,7 +53,9 @@ pub struct Model {
     pub(crate) planes: Vec<Plane>,
     pub(crate) triangles: TriangleWalls,
     pub(crate) surface_material: Option<u32>,
-    pub(crate) table: PairTable<Linear>,
+    pub(crate) laws: Laws,
+    /// Largest overlap expected, over the effective radius: what stiffnesses that grow with the overlap are taken at.
+    pub(crate) expected: f64,
     pub(crate) gravity: Vec3,
     pub(crate) damping: f64,
     pub(crate) skin: f64,
@@ -77,9 +78,9 @@ impl Model {
         check::input(&input)?;
         let bodies: Vec<Body> =
             input.bodies.iter().enumerate().map(|(k, b)| resolve(&input, k, b)).collect::<Result<_, _>>()?;
-        let table = PairTable::<Linear>::new(&input.materials, &input.contacts);
+        let laws = Laws::new(&input.materials, &input.contacts);
         let triangles = TriangleWalls::new(&input.triangles)?;
-        check::rigid_pairs(&bodies, &input, &table)?;
+        check::rigid_pairs(&bodies, &input)?;
 
         let mut radii = (f64::INFINITY, 0.0_f64);
         let (mut spheres, mut sum) = (0_usize, 0.0);
@@ -97,7 +98,8 @@ impl Model {
         }
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
-        let limit = timestep::limit(&bodies, &input, &table, radii.0);
+        let expected = timestep::expected_overlap(&bodies, &input, &laws);
+        let limit = timestep::limit(&bodies, &input, &laws, expected, radii.0);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
             TimeStep::Fixed(dt) if dt > limit.dt => {
@@ -114,7 +116,8 @@ impl Model {
             planes,
             triangles,
             surface_material: input.surface_material.map(|m| m as u32),
-            table,
+            laws,
+            expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
             skin: input.skin.unwrap_or(0.2 * mean),
@@ -218,16 +221,12 @@ impl Model {
         }
     }
 
-    /// Constants of the contact of a body with a material.
-    #[inline(always)]
-    pub(crate) fn law(&self, a: u32, b: u32) -> &Linear {
-        self.table.get(a, b)
-    }
-
-    /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates.
+    /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that
+    /// grows with the overlap is taken at the largest overlap expected (see [`crate::timestep`]) of the largest sphere.
     pub fn contact_stiffness(&self, a: usize, b: usize) -> (f64, f64) {
-        let law = self.table.get(a as u32, b as u32);
-        (law.stiffness(0.0, 1.0), law.damping_ratio)
+        let (a, b) = (a as u32, b as u32);
+        let radius = self.radii.1;
+        (self.laws.stiffness(a, b, self.expected * radius, radius), self.laws.damping_ratio(a, b))
     }
 }
 

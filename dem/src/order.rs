@@ -9,7 +9,7 @@
 use crate::Vec3;
 use crate::contact::History;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Cross, CrossPair, Pair, PatchPair, PlanePair, State};
+use crate::state::{Block, Cross, PatchPair, State};
 
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
@@ -57,6 +57,7 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
 
 /// Sorts a state anew; contacts go along with their bodies.
 pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
+    let turning = model.laws.rolls();
     let members: Vec<u32> = (0..positions.len()).map(|b| model.member_count(b)).collect();
     let old = std::mem::take(&mut state.blocks);
     let cross = std::mem::take(&mut state.cross);
@@ -71,7 +72,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         .collect();
 
     for bodies in blocks(model, positions) {
-        let mut block = Block::default();
+        let mut block = Block::new(turning);
         for &body in &bodies {
             let [b, k] = old_places[body as usize];
             let (from, k) = (&old[b as usize], k as usize);
@@ -85,7 +86,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         block.bodies = bodies;
         state.blocks.push(block);
     }
-    state.cross.resize_with(state.blocks.len(), Cross::default);
+    state.cross.resize_with(state.blocks.len(), || Cross::new(turning));
     state.number(model);
 
     // First sphere of each body within its new block.
@@ -102,40 +103,40 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
 
     let mut file = |a: (u32, u32), b: (u32, u32), history: History| {
         // The spring is that of the first against the second.
-        let turned = History { spring: -history.spring, ..history };
+        let turned = history.turned();
         let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
         if a.0 == b.0 {
-            state.blocks[a.0 as usize].pairs.push(Pair { i: a.1, j: b.1, history });
+            state.blocks[a.0 as usize].pairs.push([a.1, b.1], &history);
         } else {
-            state.cross[a.0 as usize].spheres.push(CrossPair { i: a.1, block: b.0, j: b.1, history });
+            state.cross[a.0 as usize].spheres.push([a.1, b.0, b.1], &history);
         }
     };
     for (block, names) in old.iter().zip(&named) {
-        for p in &block.pairs {
-            file(new(names[p.i as usize]), new(names[p.j as usize]), p.history);
+        for ([i, j], history) in block.pairs.iter() {
+            file(new(names[i as usize]), new(names[j as usize]), history);
         }
     }
     for (b, pairs) in cross.iter().enumerate() {
-        for p in &pairs.spheres {
-            file(new(named[b][p.i as usize]), new(named[p.block as usize][p.j as usize]), p.history);
+        for ([i, block, j], history) in pairs.spheres.iter() {
+            file(new(named[b][i as usize]), new(named[block as usize][j as usize]), history);
         }
     }
     for (b, pairs) in cross.iter().enumerate() {
-        for p in &pairs.boxes {
-            let (block, i) = new(named[b][p.i as usize]);
-            let box_body = old[p.block as usize].bodies[p.j as usize];
+        for ([i, from, j], history) in pairs.boxes.iter() {
+            let (block, i) = new(named[b][i as usize]);
+            let box_body = old[from as usize].bodies[j as usize];
             let [box_block, j] = places[box_body as usize];
-            state.cross[block as usize].boxes.push(CrossPair { i, block: box_block, j, history: p.history });
+            state.cross[block as usize].boxes.push([i, box_block, j], &history);
         }
     }
     for (block, names) in old.iter().zip(&named) {
-        for p in &block.planes {
+        for ([i, plane], history) in block.planes.iter() {
             // A block of boxes keeps its corners: boxes never change places among themselves.
-            let (b, i) = match names.get(p.i as usize) {
+            let (b, i) = match names.get(i as usize) {
                 Some(&name) => new(name),
-                None => (state.blocks.len() as u32 - 1, p.i),
+                None => (state.blocks.len() as u32 - 1, i),
             };
-            state.blocks[b as usize].planes.push(PlanePair { i, ..*p });
+            state.blocks[b as usize].planes.push([i, plane], &history);
         }
         for (from, pick) in [(&block.triangles, true), (&block.surface, false)] {
             for p in from {
@@ -146,14 +147,14 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         }
     }
     for block in &mut state.blocks {
-        block.pairs.sort_unstable_by_key(|p| (p.i, p.j));
-        block.planes.sort_unstable_by_key(|p| (p.i, p.plane));
+        block.pairs.sort();
+        block.planes.sort();
         block.triangles.sort_unstable_by_key(|p| (p.i, p.patch));
         block.surface.sort_unstable_by_key(|p| (p.i, p.patch));
     }
     for cross in &mut state.cross {
-        cross.spheres.sort_unstable_by_key(|p| (p.i, p.block, p.j));
-        cross.boxes.sort_unstable_by_key(|p| (p.i, p.block, p.j));
+        cross.spheres.sort();
+        cross.boxes.sort();
     }
     state.stale = true;
 }
@@ -180,6 +181,7 @@ mod tests {
             tangential_damping_ratio: 0.0,
             friction: 0.5,
             restitution: 0.5,
+            ..Material::RIGID
         };
         let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
         let mut input = ModelInput {

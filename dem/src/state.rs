@@ -8,6 +8,7 @@
 
 use crate::Vec3;
 use crate::contact::History;
+use crate::contact::groups::Groups;
 use crate::ledger::Ledger;
 use crate::model::Model;
 use crate::order;
@@ -27,36 +28,13 @@ pub(crate) struct Rotation {
     pub momentum: Vec3,
 }
 
-/// Two spheres of one block that touch or nearly do.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Pair {
-    pub i: u32,
-    pub j: u32,
-    pub history: History,
-}
-
-/// A sphere of this block with a sphere (or a box) of another.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct CrossPair {
-    pub i: u32,
-    pub block: u32,
-    pub j: u32,
-    pub history: History,
-}
-
 /// Contacts of a block's spheres with bodies of other blocks.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Cross {
-    pub spheres: Vec<CrossPair>,
-    pub boxes: Vec<CrossPair>,
-}
-
-/// A sphere, or a corner of a box, with a plane.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct PlanePair {
-    pub i: u32,
-    pub plane: u32,
-    pub history: History,
+    /// Sphere of this block, other block, sphere there.
+    pub spheres: Groups<3>,
+    /// Sphere of this block, block of the box, its place there.
+    pub boxes: Groups<3>,
 }
 
 /// A sphere with a patch of a surface.
@@ -86,10 +64,26 @@ pub(crate) struct Block {
     pub spin: Vec<Lanes>,
     /// Empty in scenes of single spheres only.
     pub rotation: Vec<Rotation>,
-    pub pairs: Vec<Pair>,
-    pub planes: Vec<PlanePair>,
+    /// Two spheres of the block that touch or nearly do.
+    pub pairs: Groups<2>,
+    /// A sphere, or a corner of a box, and a plane.
+    pub planes: Groups<2>,
     pub triangles: Vec<PatchPair>,
     pub surface: Vec<PatchPair>,
+}
+
+impl Block {
+    /// An empty block; `turning`: contacts remember rolling and twisting.
+    pub fn new(turning: bool) -> Block {
+        Block { pairs: Groups::new(turning), planes: Groups::new(turning), ..Block::default() }
+    }
+}
+
+impl Cross {
+    /// No contacts; `turning` as in [`Block::new`].
+    pub fn new(turning: bool) -> Cross {
+        Cross { spheres: Groups::new(turning), boxes: Groups::new(turning) }
+    }
 }
 
 /// The state. Build it with [`State::new`].
@@ -163,7 +157,7 @@ impl State {
         };
         let positions: Vec<Vec3> = model.bodies.iter().map(|b| b.position).collect();
         for members in order::blocks(model, &positions) {
-            let mut block = Block::default();
+            let mut block = Block::new(model.laws.rolls());
             for &body in &members {
                 let b = &model.bodies[body as usize];
                 let c = b.position;
@@ -177,7 +171,7 @@ impl State {
             block.bodies = members;
             state.blocks.push(block);
         }
-        state.cross.resize_with(state.blocks.len(), Cross::default);
+        state.cross.resize_with(state.blocks.len(), || Cross::new(model.laws.rolls()));
         state.number(model);
         for (k, b) in model.bodies.iter().enumerate() {
             let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });

@@ -1,17 +1,19 @@
 //! One step of the grains: search when due, contacts, integration.
 
-use crate::Vec3;
-use crate::contact::{pass, patches};
+use crate::contact::pass::{Between, Interior};
+use crate::contact::planes::{self, Planes};
+use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
 use crate::integrate::leapfrog;
+use crate::lanes;
 use crate::ledger::Ledger;
-use crate::model::Model;
+use crate::model::{Kind, Model};
 use crate::order;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
-use crate::work::{Applied, BlockWork, CrossWork, Failure, Work};
+use crate::work::{Applied, BlockWork, CrossWork, Failure, Sums, Work};
 use rayon::prelude::*;
 
 /// Advances `state` by one step of [`Model::dt`].
@@ -45,11 +47,13 @@ pub fn step<S: Surface>(
     }
     place_loads(model, state, work, applied)?;
     near::update(model, state, work, surface);
-    if model.rigid {
-        contacts_and_motion::<S, true>(model, state, work, surface);
-    } else {
-        contacts_and_motion::<S, false>(model, state, work, surface);
-    }
+    planes::now(model, &state.planes, &mut work.planes);
+    with_law!(&model.laws, laws => match (model.rigid, laws.rolls()) {
+        (false, false) => contacts_and_motion::<_, S, false, false>(model, laws, state, work, surface),
+        (false, true) => contacts_and_motion::<_, S, false, true>(model, laws, state, work, surface),
+        (true, false) => contacts_and_motion::<_, S, true, false>(model, laws, state, work, surface),
+        (true, true) => contacts_and_motion::<_, S, true, true>(model, laws, state, work, surface),
+    });
     collect(model, state, work, surface.max_speed())
 }
 
@@ -76,21 +80,28 @@ pub fn find_contacts<S: Surface>(
     Ok(())
 }
 
-fn contacts_and_motion<S: Surface, const RIGID: bool>(
+fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL: bool>(
     model: &Model,
+    laws: &PairTable<L>,
     state: &mut State,
     work: &mut Work,
     surface: &S,
 ) {
     let dt = model.dt();
-    let laws = &model.table;
-    let State { blocks, cross, planes, triangles, .. } = state;
-    let Work { blocks: works, cross: slots, applied, parallel, .. } = work;
+    let State { blocks, cross, planes: motions, triangles, .. } = state;
+    let Work { blocks: works, cross: slots, applied, parallel, planes: plane_list, simd, .. } = work;
+    let (simd, plane_list) = (*simd, &**plane_list);
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossWork))| {
-        pass::cross::<_, RIGID>(laws, all, scratch, b, pairs, out, dt);
+        (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
+        let (lists, out) = (&mut *pairs, &mut *out);
+        let kernel = Between::<L, RIGID, ROLL> { laws, blocks: all, works: scratch, b, lists, out, dt };
+        lanes::run(simd, kernel);
+        if !pairs.boxes.is_empty() {
+            pass::boxes(laws, all, scratch, b, pairs, out, dt);
+        }
     };
     if *parallel {
         cross.par_iter_mut().zip(slots.par_iter_mut()).enumerate().for_each(between);
@@ -106,11 +117,21 @@ fn contacts_and_motion<S: Surface, const RIGID: bool>(
         w.ledger = Ledger::default();
         w.failure = None;
         w.contacts.clear();
-        w.force.fill(Vec3::zeros());
-        w.torque.fill(Vec3::zeros());
-        pass::gather(block, w, slots);
-        pass::interior::<_, RIGID>(laws, block, w, dt);
-        pass::planes::<_, RIGID>(model, laws, planes, block, w, dt);
+        w.sums.fill(Sums::default());
+        pass::gather(w, slots);
+        let (mut pairs, mut plane_pairs) =
+            (std::mem::take(&mut block.pairs), std::mem::take(&mut block.planes));
+        if !pairs.is_empty() {
+            let (block, pairs) = (&*block, &mut pairs);
+            lanes::run(simd, Interior::<L, RIGID, ROLL> { laws, block, pairs, w: &mut *w, dt });
+        }
+        if RIGID && w.kind.first() == Some(&Kind::Box) {
+            planes::corners(model, laws, motions, block, &mut plane_pairs, w, dt);
+        } else if !plane_pairs.is_empty() {
+            let (block, pairs, planes) = (&*block, &mut plane_pairs, plane_list);
+            lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, block, pairs, w: &mut *w, dt });
+        }
+        (block.pairs, block.planes) = (pairs, plane_pairs);
         if !block.triangles.is_empty() {
             let mut list = std::mem::take(&mut block.triangles);
             let material = |patch| model.triangles.material(patch);
@@ -225,6 +246,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec3;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::material::Material;
     use crate::shape::Shape;
@@ -240,6 +262,7 @@ mod tests {
             tangential_damping_ratio: 0.1,
             friction: 0.5,
             restitution: 0.5,
+            ..Material::RIGID
         };
         let mut input = ModelInput {
             materials: vec![material],

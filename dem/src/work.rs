@@ -2,18 +2,31 @@
 
 use crate::Vec3;
 use crate::contact::patches::Touch;
+use crate::contact::planes::PlaneNow;
 use crate::error::Partner;
+use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::cells::Cells;
 use crate::state::{Lanes, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 
-/// Force on the first partner of a contact between blocks, and where it acts.
+/// A contact between blocks: force on the first partner, torque on the first, torque on the second.
+pub(crate) type Slot = [Lanes; 3];
+
+/// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Slot {
-    pub force: Vec3,
-    pub point: Vec3,
+#[repr(C, align(64))]
+pub(crate) struct Sums {
+    pub force: Lanes,
+    pub torque: Lanes,
+}
+
+impl Sums {
+    #[inline(always)]
+    pub fn both(&mut self) -> (&mut Lanes, &mut Lanes) {
+        (&mut self.force, &mut self.torque)
+    }
 }
 
 /// One body's share in a slot.
@@ -22,8 +35,8 @@ pub(crate) struct Gather {
     pub place: u32,
     pub block: u32,
     pub slot: u32,
-    /// +1 for the first partner, −1 for the second.
-    pub sign: f64,
+    /// Whether the body is the first partner.
+    pub first: bool,
 }
 
 /// A failure that a block met; place is that of the body within the block.
@@ -73,8 +86,7 @@ pub(crate) struct BlockWork {
 
     // The step.
     pub gather: Vec<Gather>,
-    pub force: Vec<Vec3>,
-    pub torque: Vec<Vec3>,
+    pub sums: Vec<Sums>,
     pub contacts: Vec<SurfaceContact>,
     pub ledger: Ledger,
     pub fastest: f64,
@@ -109,6 +121,9 @@ pub struct Work {
     pub(crate) surface_drift: f64,
     pub(crate) searches: u64,
     pub(crate) refreshes: u64,
+    /// What the processor computes four lanes with.
+    pub(crate) simd: Simd,
+    pub(crate) planes: Vec<PlaneNow>,
     /// Whether blocks are shared among threads.
     pub(crate) parallel: bool,
 }
@@ -132,6 +147,8 @@ impl Work {
             surface_drift: 0.0,
             searches: 0,
             refreshes: 0,
+            simd: Simd::best(),
+            planes: Vec::new(),
             parallel: model.sphere_count() >= PARALLEL,
         };
         work.arrange(model, state);
@@ -163,13 +180,13 @@ impl Work {
     /// Sum of the contact forces on a body in the last step [N].
     pub fn contact_force(&self, state: &State, body: usize) -> Vec3 {
         let [b, k] = state.places[body];
-        self.blocks[b as usize].force.get(k as usize).copied().unwrap_or_default()
+        self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(&s.force)).unwrap_or_default()
     }
 
     /// Sum of the contact torques on a body about its centre in the last step [N m].
     pub fn contact_torque(&self, state: &State, body: usize) -> Vec3 {
         let [b, k] = state.places[body];
-        self.blocks[b as usize].torque.get(k as usize).copied().unwrap_or_default()
+        self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(&s.torque)).unwrap_or_default()
     }
 
     /// How often candidates were searched and how often the near list was made from them.
@@ -210,10 +227,18 @@ impl BlockWork {
             });
         }
         self.first.push(self.owner.len() as u32);
-        self.force.clear();
-        self.force.resize(bodies.len(), Vec3::zeros());
-        self.torque.clear();
-        self.torque.resize(bodies.len(), Vec3::zeros());
+        self.sums.clear();
+        self.sums.resize(bodies.len(), Sums::default());
+    }
+
+    /// Adds a force and a torque about the centre to a body's sums.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, body: usize, force: &Vec3, torque: &Vec3) {
+        let (f, t) = self.sums[body].both();
+        for d in 0..3 {
+            f[d] += force[d];
+            t[d] += torque[d];
+        }
     }
 
     /// Puts the spheres of a body where its centre and orientation say.

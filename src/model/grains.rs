@@ -26,6 +26,7 @@ pub struct GrainsPart {
     surface_material: Option<usize>,
     gravity: Vec3,
     time_step: TimeStep,
+    impact_speed: Option<f64>,
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleeper is the group after the last.
@@ -110,6 +111,7 @@ impl GrainsPart {
             surface_material: self.surface_material,
             gravity: self.gravity,
             time_step: self.time_step,
+            impact_speed: self.impact_speed,
             skin: None,
             damping: None,
         }
@@ -186,6 +188,10 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
         check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
+        if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
+            let expected = "no stiffness where materials have a Young's modulus";
+            return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
+        }
         contacts.push(PairOverride {
             a: find(&key("between"), &c.between[0])?,
             b: find(&key("between"), &c.between[1])?,
@@ -193,6 +199,12 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
         });
+    }
+    let impact_speed = scene.time.impact_speed.map(|v| v.si);
+    check(document, "time.impact_speed", impact_speed, |v| v >= 0.0, "0 or more")?;
+    if impact_speed.is_some() && scene.material.iter().all(|m| m.young.is_none()) {
+        let expected = "no such key without a material with `young`";
+        return Err(document.error("time.impact_speed", "a value", expected).into());
     }
     let mut part = GrainsPart {
         materials,
@@ -207,6 +219,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             .transpose()?,
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
+        impact_speed,
         bodies: Vec::new(),
         parts: Vec::new(),
         grain_materials: Vec::new(),

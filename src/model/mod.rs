@@ -132,6 +132,7 @@ fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError
             ("time.grain_step", time.grain_step.is_some()),
             ("time.grain_step_fraction", time.grain_step_fraction.is_some()),
             ("time.accept_step_above_limit", time.accept_step_above_limit),
+            ("time.impact_speed", time.impact_speed.is_some()),
         ] {
             if present {
                 return Err(document.error(key, "a value", "no such key without [[grains]]"));

@@ -1,9 +1,10 @@
 //! Contact materials and exceptions for pairs of them, as written in a scene.
 
-use super::units::{Density, Quantity, Stiffness};
+use super::units::{Density, Quantity, Stiffness, Stress};
 use serde::Deserialize;
 
-/// `[[material]]`: linear spring–dashpot contact with Coulomb friction.
+/// `[[material]]`: contact by a linear spring and dashpot, or after Hertz and Mindlin where materials have a Young's
+/// modulus; with Coulomb friction.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrainMaterial {
@@ -13,9 +14,12 @@ pub struct GrainMaterial {
     pub density: Option<Quantity<Density>>,
     /// Contact stiffness of a like pair [N/m]; absent: rigid (a contact with it is twice as stiff as a like pair).
     pub stiffness: Option<Quantity<Stiffness>>,
+    /// Young's modulus [Pa], in place of a stiffness: contact after Hertz and Mindlin.
+    pub young: Option<Quantity<Stress>>,
+    /// Poisson's ratio, above −1 and at most 0.5; needed with a Young's modulus.
+    pub poisson: Option<f64>,
     /// Tangential over normal stiffness, 0–1; default 0.5.
-    #[serde(default = "super::half")]
-    pub tangential_ratio: f64,
+    pub tangential_ratio: Option<f64>,
     /// Tangential over normal damping coefficient, 0–1; default 0.
     #[serde(default)]
     pub tangential_damping_ratio: f64,
@@ -23,6 +27,12 @@ pub struct GrainMaterial {
     pub friction: f64,
     /// Coefficient of restitution, above 0 and at most 1.
     pub restitution: f64,
+    /// Rolling resistance: largest moment over effective radius times normal force; default 0, none.
+    #[serde(default)]
+    pub rolling_friction: f64,
+    /// Twisting resistance: largest moment about the normal over effective radius times normal force; default 0, none.
+    #[serde(default)]
+    pub twisting_friction: f64,
 }
 
 /// `[[contact]]`: constants of one pair of materials.

@@ -19,7 +19,7 @@ pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 
 use serde::Deserialize;
-use units::{Acceleration, Angle, Length, Quantity, Time};
+use units::{Acceleration, Angle, Length, Quantity, Time, Velocity};
 
 /// A whole scene.
 #[derive(Clone, Debug, Deserialize)]
@@ -115,6 +115,9 @@ pub struct TimeControl {
     /// Accept a `grain_step` above the limit; default false.
     #[serde(default)]
     pub accept_step_above_limit: bool,
+    /// Largest speed at which grains are expected to meet [m/s], for the step limit of contacts after Hertz;
+    /// default: an estimate.
+    pub impact_speed: Option<Quantity<Velocity>>,
 }
 
 fn yes() -> bool {

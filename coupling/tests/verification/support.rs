@@ -148,6 +148,7 @@ pub fn material(density: f64, stiffness: f64, friction: f64, restitution: f64) -
         tangential_damping_ratio: 0.0,
         friction,
         restitution,
+        ..dem::Material::default()
     }
 }
 

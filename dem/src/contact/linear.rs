@@ -16,138 +16,188 @@
 //! first touch, the first force counts it for the part θ + ½ of the step for which the contact has been there,
 //! θ = d/(ḋ dt).
 //!
-//! Limits: no rolling or twisting resistance, no cohesion; overlaps small against the radii.
+//! Rolling and twisting resistance, where the materials have it: `slide.rs`, with the smaller coefficients of the two.
+//!
+//! Limits: no cohesion; overlaps small against the radii.
 
 use super::restitution::damping_ratio;
-use super::{ContactForce, ContactGeometry, ContactLaw, History};
-use crate::Vec3;
+use super::slide::{self, Turning};
+use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, harmonic};
+use crate::lanes::{Real, V3};
 use crate::material::{Material, PairOverride};
 
 /// Constants of one pair of materials.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Linear {
+pub struct Linear<R = f64> {
     /// Normal stiffness K [N/m].
-    pub normal: f64,
+    pub normal: R,
     /// Tangential stiffness Ks [N/m].
-    pub tangential: f64,
-    /// 1/Ks [m/N], zero without a tangential spring.
-    compliance: f64,
+    pub tangential: R,
     /// C/√m* = 2ζ√K [√(N/m)].
-    damping: f64,
+    damping: R,
     /// Cs/C [-].
-    tangential_damping: f64,
+    tangential_damping: R,
     /// Friction coefficient [-].
-    pub friction: f64,
+    pub friction: R,
+    /// Coefficient of rolling resistance [-].
+    rolling: R,
+    /// Coefficient of twisting resistance [-].
+    twisting: R,
     /// Damping ratio ζ [-].
-    pub damping_ratio: f64,
-}
-
-/// 2xy/(x + y), also for infinite values.
-fn harmonic(x: f64, y: f64) -> f64 {
-    if x.is_infinite() {
-        2.0 * y
-    } else if y.is_infinite() {
-        2.0 * x
-    } else if x + y > 0.0 {
-        2.0 * x * y / (x + y)
-    } else {
-        0.0
-    }
+    pub damping_ratio: R,
 }
 
 impl ContactLaw for Linear {
+    type Lanes<R: Real> = Linear<R>;
+
     fn mix(a: &Material, b: &Material, exception: Option<&PairOverride>) -> Linear {
         let given = |pick: fn(&PairOverride) -> Option<f64>| exception.and_then(pick);
         let normal = given(|e| e.stiffness).unwrap_or(harmonic(a.stiffness, b.stiffness));
         let restitution = given(|e| e.restitution).unwrap_or(a.restitution.min(b.restitution));
-        let tangential = normal * harmonic(a.tangential_ratio, b.tangential_ratio);
         let zeta = damping_ratio(restitution);
         Linear {
             normal,
-            tangential,
-            compliance: if tangential > 0.0 { 1.0 / tangential } else { 0.0 },
+            tangential: normal * harmonic(a.tangential_ratio, b.tangential_ratio),
             damping: 2.0 * zeta * normal.sqrt(),
             tangential_damping: harmonic(a.tangential_damping_ratio, b.tangential_damping_ratio),
             friction: given(|e| e.friction).unwrap_or(a.friction.min(b.friction)),
+            rolling: a.rolling_friction.min(b.rolling_friction),
+            twisting: a.twisting_friction.min(b.twisting_friction),
             damping_ratio: zeta,
         }
     }
 
     #[inline(always)]
-    fn respond(
-        &self,
-        mass: f64,
-        geometry: &ContactGeometry,
-        velocity: &Vec3,
-        history: &mut History,
-        dt: f64,
-    ) -> ContactForce {
-        let n = &geometry.normal;
-        let rate = -velocity.dot(n);
-        let slip_velocity = velocity + n * rate;
-
-        // `now`: approach speed at this instant; `part`: share of the last step with contact; `weight`: of the dashpot.
-        let (now, part, weight) = if history.is_fresh() {
-            // Far above 1: the contact is there from the start of the run, not from within this step.
-            let since = if rate > 0.0 { geometry.overlap / (rate * dt) } else { f64::INFINITY };
-            let part = since.min(1.0);
-            (rate, part, if since < 1.5 { part + 0.5 } else { 1.0 })
-        } else {
-            (1.5 * rate - 0.5 * history.rate, 1.0, 1.0)
-        };
-        history.rate = rate;
-
-        let c = self.damping * mass.sqrt();
-        let elastic = self.normal * geometry.overlap;
-        let normal = (elastic + weight * c * now).max(0.0);
-        let mut dashpot = (normal - elastic) * now * dt;
-
-        let along = history.spring.dot(n);
-        let flat = history.spring - n * along;
-        let flat2 = flat.norm_squared();
-        // The projection shortens by half the square of the turn. Below a microradian per step that adds up to less
-        // than 5e-7 of the whole angle turned, and the root and the division are spared.
-        let before = if along * along > 1e-12 * flat2 {
-            if flat2 > 0.0 { flat * (1.0 + along * along / flat2).sqrt() } else { Vec3::zeros() }
-        } else {
-            flat
-        };
-        let stretched = before + slip_velocity * (dt * part);
-        let cs = c * self.tangential_damping;
-        let viscous = slip_velocity * cs;
-        let mut tangential = -(stretched * self.tangential + viscous);
-        let mut friction = 0.0;
-        let limit = self.friction * normal;
-        let size2 = tangential.norm_squared();
-        history.spring = stretched;
-        dashpot += viscous.dot(&slip_velocity) * dt;
-        if size2 > limit * limit {
-            tangential *= limit / size2.sqrt();
-            history.spring = -(tangential + viscous) * self.compliance;
-            let slid = stretched - history.spring;
-            // The spring's mean force over the slide; without a spring the dashpot did all the work.
-            friction = if self.compliance > 0.0 {
-                0.5 * self.tangential * slid.dot(&(history.spring + before))
-            } else {
-                -(tangential + viscous).dot(&slip_velocity) * dt
-            };
+    fn splat<R: Real>(&self) -> Linear<R> {
+        Linear {
+            normal: R::splat(self.normal),
+            tangential: R::splat(self.tangential),
+            damping: R::splat(self.damping),
+            tangential_damping: R::splat(self.tangential_damping),
+            friction: R::splat(self.friction),
+            rolling: R::splat(self.rolling),
+            twisting: R::splat(self.twisting),
+            damping_ratio: R::splat(self.damping_ratio),
         }
-        ContactForce { force: n * normal + tangential, normal, dashpot, friction }
     }
 
     #[inline(always)]
-    fn stored(&self, overlap: f64, _: f64, spring: &Vec3) -> (f64, f64) {
-        (0.5 * self.normal * overlap * overlap, 0.5 * self.tangential * spring.norm_squared())
+    fn mixed<R: Real>(laws: [&Linear; 4], join: fn(&[f64; 4]) -> R) -> Linear<R> {
+        let [a, b, c, d] = laws;
+        Linear {
+            normal: join(&[a.normal, b.normal, c.normal, d.normal]),
+            tangential: join(&[a.tangential, b.tangential, c.tangential, d.tangential]),
+            damping: join(&[a.damping, b.damping, c.damping, d.damping]),
+            tangential_damping: join(&[
+                a.tangential_damping,
+                b.tangential_damping,
+                c.tangential_damping,
+                d.tangential_damping,
+            ]),
+            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
+            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
+            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
+            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
+        }
+    }
+
+    #[inline(always)]
+    fn answer<R: Real, const ROLL: bool>(
+        law: &Linear<R>,
+        touch: &Touch<R>,
+        memory: &mut Memory<R>,
+        on: R::Mask,
+        dt: f64,
+    ) -> Answer<R> {
+        let n = touch.normal;
+        let rate = -touch.velocity.dot(n);
+        let slip_velocity = touch.velocity + n * rate;
+
+        // `now`: approach speed at this instant; `part`: share of the last step with contact; `weight`: of the dashpot.
+        let fresh = memory.rate.equals(R::splat(FRESH));
+        let mut now = R::splat(1.5) * rate - R::splat(0.5) * memory.rate;
+        let one = R::splat(1.0);
+        let (mut part, mut weight) = (one, one);
+        if R::any(fresh & on) {
+            // Far above 1: the contact is there from the start of the run, not from within this step.
+            let closing = R::zero().lt(rate);
+            let since = R::select(closing, touch.overlap / (rate * R::splat(dt)), R::splat(f64::INFINITY));
+            let share = since.min(one);
+            let begun = R::select(since.lt(R::splat(1.5)), share + R::splat(0.5), one);
+            now = R::select(fresh, rate, now);
+            part = R::select(fresh, share, one);
+            weight = R::select(fresh, begun, one);
+        }
+        memory.rate = rate;
+
+        let c = law.damping * touch.mass.sqrt();
+        let elastic = law.normal * touch.overlap;
+        let normal = (elastic + weight * c * now).max(R::zero());
+        let mut dashpot = (normal - elastic) * now * R::splat(dt);
+
+        let cs = c * law.tangential_damping;
+        let time = R::splat(dt) * part;
+        let limit = law.friction * normal;
+        let slid =
+            slide::plane(&mut memory.spring, n, slip_velocity, law.tangential, cs, limit, time, dt, on);
+        dashpot = dashpot + slid.dashpot;
+        let mut friction = slid.friction;
+        let mut moment = V3::zero();
+        if ROLL {
+            let turning = Turning {
+                stiffness: law.tangential,
+                damping: cs,
+                rolling: law.rolling,
+                twisting: law.twisting,
+                normal_force: normal,
+                radius: touch.radius,
+                time,
+            };
+            let t = slide::turning(&turning, &mut memory.roll, &mut memory.twist, n, touch.spin, dt, on);
+            moment = t.force;
+            dashpot = dashpot + t.dashpot;
+            friction = friction + t.friction;
+        }
+        Answer { force: n * normal + slid.force, normal, moment, dashpot, friction }
+    }
+
+    fn stored(&self, overlap: f64, _: f64, history: &History) -> (f64, f64) {
+        let turn2: f64 = history.turn.iter().map(|x| x * x).sum();
+        let held = 0.5 * self.tangential * (history.spring.norm_squared() + turn2);
+        (0.5 * self.normal * overlap * overlap, held)
+    }
+
+    #[inline(always)]
+    fn left<R: Real, const ROLL: bool>(law: &Linear<R>, memory: &Memory<R>) -> R {
+        let mut length2 = memory.spring.norm2();
+        if ROLL {
+            length2 = length2 + memory.roll.norm2() + memory.twist * memory.twist;
+        }
+        R::splat(0.5) * law.tangential * length2
     }
 
     fn stiffness(&self, _: f64, _: f64) -> f64 {
         self.normal
+    }
+
+    fn tangential_ratio(&self) -> f64 {
+        if self.normal > 0.0 { self.tangential / self.normal } else { 0.0 }
+    }
+
+    fn damping_ratio(&self) -> f64 {
+        self.damping_ratio
+    }
+
+    fn rolls(&self) -> bool {
+        self.rolling > 0.0 || self.twisting > 0.0
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec3;
+    use crate::contact::ContactGeometry;
 
     const STONE: Material = Material {
         density: 2600.0,
@@ -156,6 +206,7 @@ mod tests {
         tangential_damping_ratio: 0.0,
         friction: 0.5,
         restitution: 0.5,
+        ..Material::RIGID
     };
 
     fn touch(overlap: f64) -> ContactGeometry {
@@ -176,10 +227,10 @@ mod tests {
         for k in 0..8 {
             let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
             let velocity = Vec3::new(angle.cos(), angle.sin(), 0.0);
-            let mut h = History { spring: Vec3::zeros(), rate: 0.0 };
+            let mut h = History { rate: 0.0, ..History::NONE };
             let mut force = Vec3::zeros();
             for _ in 0..100 {
-                force = law.respond(0.1, &touch(1e-4), &velocity, &mut h, 1e-4).force;
+                force = law.respond(0.1, &touch(1e-4), &velocity, &Vec3::zeros(), &mut h, 1e-4).force;
             }
             let friction = Vec3::new(force.x, force.y, 0.0);
             assert!((friction + velocity * 5.0).norm() < 1e-12, "{friction}");
@@ -190,11 +241,18 @@ mod tests {
     #[test]
     fn spring_turns_with_the_tangent_plane_and_keeps_its_length() {
         let law = Linear::mix(&STONE, &STONE, None);
-        let mut h = History { spring: Vec3::new(1e-6, 0.0, 0.0), rate: 0.0 };
+        let mut h = History { spring: Vec3::new(1e-6, 0.0, 0.0), rate: 0.0, ..History::NONE };
         for k in 0..=100 {
             let a = f64::from(k) * 0.01;
             let normal = Vec3::new(-a.sin(), 0.0, a.cos());
-            law.respond(0.1, &ContactGeometry { normal, ..touch(1e-4) }, &Vec3::zeros(), &mut h, 1e-4);
+            law.respond(
+                0.1,
+                &ContactGeometry { normal, ..touch(1e-4) },
+                &Vec3::zeros(),
+                &Vec3::zeros(),
+                &mut h,
+                1e-4,
+            );
         }
         let expected = Vec3::new(1.0_f64.cos(), 0.0, 1.0_f64.sin()) * 1e-6;
         assert!((h.spring - expected).norm() < 1e-18, "{}", h.spring);

@@ -159,7 +159,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             let wall = Vec3::from(t.closest.velocity);
             let mass = 1.0 / block.velocity[a][3];
             let law = laws.get(own, material(pair.patch));
-            let f = law.respond(mass, g, &(ma.at_point() - wall), &mut pair.history, dt);
+            let f = law.respond(mass, g, &(ma.at_point() - wall), &ma.spin(), &mut pair.history, dt);
             pair.point = g.point;
             pair.normal = g.normal;
             pair.velocity = wall;
@@ -168,8 +168,8 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             w.ledger.dissipated_friction += f.friction;
             exchange.work += f.force.dot(&wall) * dt;
             exchange.impulse.add(&g.point, &(f.force * dt));
-            w.force[a] += f.force;
-            w.torque[a] += ma.arm.cross(&f.force);
+            exchange.impulse.angular += f.moment * dt;
+            w.push(a, &f.force, &(ma.arm.cross(&f.force) + f.moment));
             if external {
                 let sphere = i as u32 - w.first[a];
                 w.contacts.push(SurfaceContact {

@@ -36,10 +36,10 @@ pub(crate) fn advance<const RIGID: bool>(
         let free = plain && own == 0 && w.fixed[k] == 0;
         let speed2 = if free && (!RIGID || w.kind[k] == Kind::Sphere) {
             let inverse_mass = block.velocity[k][3];
-            let v = v + (w.force[k] * inverse_mass + model.gravity) * dt;
+            let v = v + (xyz(&w.sums[k].force) * inverse_mass + model.gravity) * dt;
             set_xyz(&mut block.velocity[k], &v);
             set_xyz(&mut block.centre[k], &(x + v * dt));
-            let spin = xyz(&block.spin[k]) + w.torque[k] * (w.inverse_inertia[k] * dt);
+            let spin = xyz(&block.spin[k]) + xyz(&w.sums[k].torque) * (w.inverse_inertia[k] * dt);
             set_xyz(&mut block.spin[k], &spin);
             v.norm_squared()
         } else {
@@ -77,8 +77,8 @@ fn general<const RIGID: bool>(
     let (mass, fixed) = (w.mass[k], w.fixed[k]);
     let load = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.force);
     let load_torque = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.torque);
-    let mut force = w.force[k] + load + model.gravity * mass;
-    let mut torque = w.torque[k] + load_torque;
+    let mut force = xyz(&w.sums[k].force) + load + model.gravity * mass;
+    let mut torque = xyz(&w.sums[k].torque) + load_torque;
     let held = |v: &Vec3| Vec3::from_fn(|d, _| -model.damping * v[d].abs());
     let damping = held(&force).component_mul(&v0.map(sign));
     let damping_torque = held(&torque).component_mul(&w0.map(sign));

@@ -1,12 +1,12 @@
 //! Contacts as they are now, for force chains and coordination numbers.
 
 use crate::Vec3;
-use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass};
+use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass, with_law};
 use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::shape::cuboid;
-use crate::state::{Block, Lanes, PatchPair, State, xyz};
+use crate::state::{Block, Cross, Lanes, PatchPair, State, xyz};
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,10 @@ pub(crate) struct Visited<'a> {
     /// Effective mass [kg].
     pub mass: f64,
     pub history: &'a History,
-    pub law: &'a crate::contact::linear::Linear,
+    /// Spin of the body less that of its partner [rad/s].
+    pub spin: Vec3,
+    /// Materials of the two.
+    pub materials: [u32; 2],
 }
 
 /// Bodies as they are, or moved back in time by `back` seconds.
@@ -105,13 +108,15 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                     velocity: ma.at_point() - mb.at_point(),
                     mass: 1.0 / (block.velocity[a][3] + second.velocity[c][3]),
                     history,
-                    law: model.law(block.spin[a][3] as u32, second.spin[c][3] as u32),
+                    spin: ma.spin() - mb.spin(),
+                    materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
                 });
             }
         };
-        block.pairs.iter().for_each(|p| pair(p.i, b as u32, p.j, false, &p.history));
-        state.cross[b].spheres.iter().for_each(|p| pair(p.i, p.block, p.j, false, &p.history));
-        state.cross[b].boxes.iter().for_each(|p| pair(p.i, p.block, p.j, true, &p.history));
+        block.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history));
+        let Cross { spheres, boxes } = &state.cross[b];
+        spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history));
+        boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history));
         planes(model, state, &now, b, &mut f);
         for pair in &block.triangles {
             let material = model.triangles.material(pair.patch);
@@ -126,29 +131,31 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
 
 fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
     let block = &now.blocks[b];
-    for pair in &block.planes {
-        let (i, k) = (pair.i as usize, pair.plane as usize);
+    for (name, history) in block.planes.iter() {
+        let [i, k] = name.map(|n| n as usize);
         let (plane, wall) = (&model.planes[k], &state.planes[k]);
         let boxes = model.bodies[block.bodies[0] as usize].kind == Kind::Box;
-        let (a, x, r) = if boxes {
+        let (a, x, r, radius) = if boxes {
             let a = i / 8;
             let half = model.half(block.bodies[a] as usize);
             let corner = block.rotation[a].orientation * cuboid::corner(&half, i % 8);
-            (a, xyz(&block.centre[a]) + corner, 0.0)
+            (a, xyz(&block.centre[a]) + corner, 0.0, half.min())
         } else {
             let p = &now.spheres[b][i];
-            (now.owners[b][i] as usize, xyz(p), p[3])
+            (now.owners[b][i] as usize, xyz(p), p[3], p[3])
         };
         let origin = plane.point + wall.offset - wall.velocity * now.back;
         if let Some(geometry) = detect::sphere_plane(&x, r, &origin, &plane.normal) {
+            let geometry = ContactGeometry { radius, ..geometry };
             f(&Visited {
                 body: block.bodies[a],
                 partner: Partner::Plane(k),
                 geometry,
                 velocity: pass::motion(block, a, &geometry.point).at_point() - wall.velocity,
                 mass: 1.0 / block.velocity[a][3],
-                history: &pair.history,
-                law: model.law(block.spin[a][3] as u32, plane.material as u32),
+                history: &history,
+                spin: xyz(&block.spin[a]),
+                materials: [block.spin[a][3] as u32, plane.material as u32],
             });
         }
     }
@@ -180,7 +187,8 @@ fn patch(
             velocity,
             mass: 1.0 / block.velocity[a][3],
             history: &pair.history,
-            law: model.law(block.spin[a][3] as u32, material),
+            spin: xyz(&block.spin[a]),
+            materials: [block.spin[a][3] as u32, material],
         });
     }
 }
@@ -190,8 +198,10 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
         let mut history = *c.history;
-        let ContactForce { force, normal, .. } =
-            c.law.respond(c.mass, &c.geometry, &c.velocity, &mut history, model.dt());
+        let [a, b] = c.materials;
+        let ContactForce { force, normal, .. } = with_law!(&model.laws, laws => {
+            laws.get(a, b).respond(c.mass, &c.geometry, &c.velocity, &c.spin, &mut history, model.dt())
+        });
         out.push(ContactRecord {
             a: c.body as usize,
             b: c.partner,

@@ -1,8 +1,6 @@
 //! Energies and momentum at the last half step.
 
 use super::contacts::visit;
-use crate::Vec3;
-use crate::contact::ContactLaw;
 use crate::ledger::Impulse;
 use crate::model::Model;
 use crate::state::{State, xyz};
@@ -61,8 +59,18 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         // The spring belongs to the last full step: half a step of sliding brings it to the half step.
         let n = &c.geometry.normal;
         let slip = c.velocity - n * c.velocity.dot(n);
-        let spring = if c.history.is_fresh() { Vec3::zeros() } else { c.history.spring + slip * back };
-        let (normal, tangential) = c.law.stored(c.geometry.overlap, c.geometry.radius, &spring);
+        let mut history = *c.history;
+        if !history.is_fresh() {
+            history.spring += slip * back;
+            if model.laws.rolls() {
+                let about = c.spin.dot(n);
+                let roll = (c.spin - n * about) * (c.geometry.radius * back);
+                let forward = [roll.x, roll.y, roll.z, about * c.geometry.radius * back];
+                history.turn.iter_mut().zip(forward).for_each(|(x, d)| *x += d);
+            }
+        }
+        let [a, b] = c.materials;
+        let (normal, tangential) = model.laws.stored(a, b, c.geometry.overlap, c.geometry.radius, &history);
         e.elastic_normal += normal;
         e.elastic_tangential += tangential;
     });

@@ -6,10 +6,11 @@
 //! neither the skin nor the reach nor the moment of a search changes a bit of the result.
 
 use crate::contact::History;
+use crate::contact::groups::Groups;
 use crate::model::Model;
 use crate::search::candidates::{self, spheres};
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, CrossPair, Pair, PatchPair, PlanePair, State, xyz};
+use crate::state::{Block, Cross, PatchPair, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Gather, Work};
 use rayon::prelude::*;
@@ -118,62 +119,19 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     link(state, work);
 }
 
-/// A pair that can be matched with its former self.
-trait Keyed<const N: usize>: Copy {
-    fn key(&self) -> [u32; N];
-    fn history(&self) -> History;
-    fn new(key: [u32; N], history: History) -> Self;
-}
-
-impl Keyed<2> for Pair {
-    fn key(&self) -> [u32; 2] {
-        [self.i, self.j]
-    }
-    fn history(&self) -> History {
-        self.history
-    }
-    fn new([i, j]: [u32; 2], history: History) -> Pair {
-        Pair { i, j, history }
-    }
-}
-
-impl Keyed<2> for PlanePair {
-    fn key(&self) -> [u32; 2] {
-        [self.i, self.plane]
-    }
-    fn history(&self) -> History {
-        self.history
-    }
-    fn new([i, plane]: [u32; 2], history: History) -> PlanePair {
-        PlanePair { i, plane, history }
-    }
-}
-
-impl Keyed<3> for CrossPair {
-    fn key(&self) -> [u32; 3] {
-        [self.i, self.block, self.j]
-    }
-    fn history(&self) -> History {
-        self.history
-    }
-    fn new([i, block, j]: [u32; 3], history: History) -> CrossPair {
-        CrossPair { i, block, j, history }
-    }
-}
-
-/// Replaces a list by new pairs in ascending order, keeping the memory of those that were there. Works in place:
-/// the new list is appended behind the old one, which then goes.
-fn merge<const N: usize, P: Keyed<N>>(list: &mut Vec<P>, keys: impl Iterator<Item = [u32; N]>) {
-    let old = list.len();
-    let mut k = 0;
+/// Replaces a list by new contacts in ascending order, keeping the memory of those that were there.
+fn merge<const N: usize>(list: &mut Groups<N>, keys: impl Iterator<Item = [u32; N]>) {
+    let mut fresh = Groups::new(list.turning);
+    fresh.groups.reserve(list.groups.len() + 8);
+    let (old, mut k) = (list.len(), 0);
     for key in keys {
-        while k < old && list[k].key() < key {
+        while k < old && list.name(k) < key {
             k += 1;
         }
-        let history = if k < old && list[k].key() == key { list[k].history() } else { History::NONE };
-        list.push(P::new(key, history));
+        let known = k < old && list.name(k) == key;
+        fresh.push(key, &if known { list.history(k) } else { History::NONE });
     }
-    list.drain(..old);
+    list.copy_from(&fresh);
 }
 
 /// As [`merge`], for patches; contacts that go on are kept even if their patch is out of reach by now, so that the
@@ -228,13 +186,15 @@ pub(crate) fn link(state: &State, work: &mut Work) {
         let (cross, boxed) = (&state.cross[b].spheres, &state.cross[b].boxes);
         work.cross[b].slots.clear();
         work.cross[b].slots.resize(cross.len() + boxed.len(), Default::default());
-        for (slot, pair) in cross.iter().chain(boxed).enumerate() {
-            let (block, slot) = (b as u32, slot as u32);
-            let place = work.blocks[b].owner[pair.i as usize];
-            work.blocks[b].gather.push(Gather { place, block, slot, sign: 1.0 });
-            let other = &mut work.blocks[pair.block as usize];
-            let place = if (slot as usize) < cross.len() { other.owner[pair.j as usize] } else { pair.j };
-            other.gather.push(Gather { place, block, slot, sign: -1.0 });
+        for k in 0..cross.len() + boxed.len() {
+            let (block, slot) = (b as u32, k as u32);
+            let boxes = k >= cross.len();
+            let [i, to, j] = if boxes { boxed.name(k - cross.len()) } else { cross.name(k) };
+            let place = work.blocks[b].owner[i as usize];
+            work.blocks[b].gather.push(Gather { place, block, slot, first: true });
+            let other = &mut work.blocks[to as usize];
+            let place = if boxes { j } else { other.owner[j as usize] };
+            other.gather.push(Gather { place, block, slot, first: false });
         }
     }
 }

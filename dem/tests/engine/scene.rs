@@ -18,6 +18,7 @@ pub fn stone() -> Material {
         tangential_damping_ratio: 0.0,
         friction: 0.5,
         restitution: 0.5,
+        ..Material::default()
     }
 }
 
