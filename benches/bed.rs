@@ -9,6 +9,7 @@
 //! | scene | what |
 //! |---|---|
 //! | `s1` | spheres in a box, linear contacts: K = 1e5 N/m, tangential 2/7 of it, restitution 0.5, friction 0.5, step 2e-5 s |
+//! | `s1hertz` | as `s1`, contacts after Hertz and Mindlin: E = 5e7 Pa, ν = 0.25 |
 //! | `s2` | clumps of `benches/data/s2_clump.csv`, same parameters |
 //! | `s5` | as `s1`, on a floor of 2 × 71 × 71 triangles in place of the plane |
 //!
@@ -23,8 +24,8 @@ mod watch;
 use std::path::{Path, PathBuf};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
-    BodyInput, Model, ModelInput, Partner, Plane, Shape, State, TimeStep, TriangleSurface, Vec3, Work,
-    measure,
+    BodyInput, Material, Model, ModelInput, Partner, Plane, Shape, State, TimeStep, TriangleSurface, Vec3,
+    Work, measure,
 };
 use watch::Watch;
 
@@ -75,7 +76,7 @@ fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
     };
     let rows = grains::read(&file);
     match scene {
-        "s1" | "s5" => {
+        "s1" | "s1hertz" | "s5" => {
             input.shapes.push(Shape::Sphere { radius: 1.0 });
             let sphere = |row: &Vec<f64>| BodyInput {
                 position: Vec3::new(row[0], row[1], row[2]),
@@ -90,6 +91,10 @@ fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
             input.bodies = bodies;
         }
         _ => panic!("{scene}: unknown scene"),
+    }
+    if scene == "s1hertz" {
+        let linear = input.materials[0];
+        input.materials[0] = Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..linear };
     }
     if scene == "s5" {
         input.triangles.push(floor(width, 71));

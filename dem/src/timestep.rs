@@ -32,9 +32,8 @@
 //! that is taken (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
 //! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
 //!
-//! Limits: sides of a clump that are flat, yet not across a principal axis, are not looked for; very unlike sizes,
-//! where one large body has more contacts than s, are on the safe side
-//! because its mass grows faster than their number.
+//! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
+//! grows faster than their number. Sides of a clump that are flat, yet not across a principal axis, are not looked for.
 
 use crate::Vec3;
 use crate::bond;
