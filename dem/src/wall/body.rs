@@ -204,7 +204,8 @@ impl Body {
         state.momentum += torque * dt;
         let kicked = self.spin_of(&state.frame, &state.momentum);
         if self.fixed >> 3 == 0 {
-            state.frame = crate::integrate::rotation::free(&state.frame, &state.momentum, &self.inertia, dt);
+            state.frame =
+                crate::integrate::rotation::free_one(&state.frame, &state.momentum, &self.inertia, dt);
             state.spin = self.spin_of(&state.frame, &state.momentum);
         } else {
             let rotation = Rotation { orientation: state.frame, momentum: state.momentum };
