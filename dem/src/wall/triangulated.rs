@@ -11,7 +11,6 @@ use crate::Vec3;
 use crate::error::ModelError;
 use crate::search::bvh::Aabb;
 use crate::shape::triangle::{self, Region};
-use crate::state::Lanes;
 use crate::wall::set::SLACK;
 
 /// Smallest height over longest side that a triangle may have: below it its normal has no meaning.
@@ -23,9 +22,9 @@ const COPLANAR: f64 = 1e-12;
 #[derive(Clone, Debug)]
 pub(crate) struct Triangle {
     /// Unit normal and level of its plane.
-    plane: Lanes,
+    plane: [f64; 4],
     /// Outward normal and level of each edge, within the plane.
-    rims: [Lanes; 3],
+    rims: [[f64; 4]; 3],
     pub corners: [Vec3; 3],
     /// Numbers of edges and vertices, unique within the surface.
     pub edges: [u32; 3],
@@ -33,7 +32,7 @@ pub(crate) struct Triangle {
 }
 
 #[inline(always)]
-fn height(plane: &Lanes, x: &Vec3) -> f64 {
+fn height(plane: &[f64; 4], x: &Vec3) -> f64 {
     plane[0] * x.x + plane[1] * x.y + plane[2] * x.z - plane[3]
 }
 
@@ -163,7 +162,7 @@ pub(crate) fn triangles(
 }
 
 /// Plane of each triangle, the same bits for neighbours that lie in one plane to rounding.
-fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Vec3]) -> Vec<Lanes> {
+fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Vec3]) -> Vec<[f64; 4]> {
     let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
     let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
     for (t, triangle) in welded.iter().enumerate() {
@@ -173,7 +172,7 @@ fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Ve
     let size = triangles.iter().flatten().map(|&v| vertices[v as usize].amax()).fold(0.0, f64::max);
     let mut order: Vec<usize> = (0..triangles.len()).collect();
     order.sort_by(|&a, &b| normals[b].norm_squared().total_cmp(&normals[a].norm_squared()).then(a.cmp(&b)));
-    let mut planes: Vec<Option<Lanes>> = vec![None; triangles.len()];
+    let mut planes: Vec<Option<[f64; 4]>> = vec![None; triangles.len()];
     let mut open = Vec::new();
     for seed in order {
         if planes[seed].is_some() {
