@@ -15,4 +15,5 @@ mod suite {
     mod solid_scenes;
     mod summary;
     pub mod support;
+    mod walls;
 }
