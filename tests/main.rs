@@ -19,4 +19,5 @@ mod suite {
     mod stones;
     mod summary;
     pub mod support;
+    mod walls;
 }

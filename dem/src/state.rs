@@ -62,6 +62,9 @@ pub(crate) struct PatchPair {
     pub i: u32,
     pub patch: u32,
     pub local: [f64; 2],
+    /// Way that sphere and patch can come together before they may touch, counted from when the near list was made
+    /// [m]; negative in touch.
+    pub spare: f64,
 }
 
 /// A sphere in touch with a patch, and what is remembered of the last step.

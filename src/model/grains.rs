@@ -20,7 +20,7 @@ use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
-    WallInput,
+    WallInput, WallShape,
 };
 use trackbed_fem::Face;
 
@@ -155,8 +155,10 @@ impl GrainsPart {
         }
         let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
         let mut input = ModelInput { contacts, damping, ..self.input(self.bodies.clone()) };
-        // Walls wait for the run proper, which starts with them in their first place.
+        // Walls wait for the run proper, which starts with them in their first place; driven walls and rigid bodies come
+        // in only then.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
+        input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
         input.walls.iter_mut().for_each(|w| *w = w.at_rest());
         input
     }
@@ -342,7 +344,14 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     }
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
+        let before = part.walls.len();
         walls::add(document, i, wall, material, &mut part)?;
+        let new = part.walls.get(before).map(|w| &w.shape);
+        if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
+            let expected =
+                "a plane without `record` and motions other than `velocity`: a sleeper touches no other";
+            return Err(document.error(&format!("walls.{i}"), "a plane that is more", expected).into());
+        }
     }
     if let Some(d) = &scene.deposition {
         check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
@@ -401,7 +410,7 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
             document.error("material", found, "`stiffness` for one of their materials, or for the pair")
         }
         ModelError::Wall { wall, problem } => {
-            document.error("walls", format!("{wall}: {problem}"), "walls with an area")
+            document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
         }
         other => document.error("grains", other.to_string(), "grains and walls that make a model"),
     }
