@@ -3,6 +3,7 @@
 
 mod suite {
     mod bad_input;
+    mod bonds;
     mod cli;
     mod determinism;
     mod fem_cases;
