@@ -3,6 +3,7 @@
 
 mod suite {
     mod bad_input;
+    mod bonds;
     mod checkpoint;
     mod checkpoint_kill;
     mod cli;

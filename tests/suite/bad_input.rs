@@ -8,6 +8,7 @@
 use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder, snapshot, trackbed};
 use std::fs;
 
+mod bonds;
 mod grains;
 mod lists;
 mod scene;

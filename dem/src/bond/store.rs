@@ -233,6 +233,11 @@ impl State {
         (self.bonds.broken[0], self.bonds.broken[1])
     }
 
+    /// All breaks that nobody has taken, in the order of time.
+    pub fn breaks(&self) -> &[Break] {
+        &self.bonds.breaks
+    }
+
     /// Breaks since the last call, in the order of time.
     pub fn take_breaks(&mut self) -> Vec<Break> {
         std::mem::take(&mut self.bonds.breaks)

@@ -3,7 +3,6 @@
 use super::*;
 
 /// The plane of the good scene.
-
 const PLANE: &str = "kind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]";
 
 #[test]
