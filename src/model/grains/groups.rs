@@ -186,9 +186,9 @@ fn filled(
     let unit_scale = shapes(document, index, group, part)?;
     let source = SizeSource::of(document, index, group)?;
     let sizes = source.sample(count, group.seed);
-    let shape = |i: usize| first + i % unit_scale.len();
-    let scale: Vec<f64> =
-        sizes.iter().enumerate().map(|(i, s)| s * unit_scale[i % unit_scale.len()]).collect();
+    let dealt = deal(&sizes, unit_scale.len());
+    let shape = |i: usize| first + dealt[i];
+    let scale: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| s * unit_scale[*d]).collect();
     let radii: Vec<f64> =
         scale.iter().enumerate().map(|(i, s)| s * bounding_radius(&part.shapes[shape(i)])).collect();
 
@@ -238,6 +238,16 @@ pub(super) fn shapes(
             Ok(vec![1.0])
         }
     }
+}
+
+/// Deals `shapes` shapes out to grains in the order of their sizes, so that every shape has the sizes of all: mass per
+/// size³ differs between shapes, and would else make the sieve curve err.
+pub(super) fn deal(sizes: &[f64], shapes: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..sizes.len()).collect();
+    order.sort_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
+    let mut dealt = vec![0; sizes.len()];
+    order.into_iter().enumerate().for_each(|(rank, i)| dealt[i] = rank % shapes);
+    dealt
 }
 
 /// Height above which a box is free of the grains that earlier groups have put there [m].
