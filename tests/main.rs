@@ -3,6 +3,8 @@
 
 mod suite {
     mod bad_input;
+    mod checkpoint;
+    mod checkpoint_kill;
     mod cli;
     mod determinism;
     mod fem_cases;
@@ -10,10 +12,12 @@ mod suite {
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
+    mod packings;
     mod scenes;
     mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
+    mod stones;
     mod summary;
     pub mod support;
 }

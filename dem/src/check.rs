@@ -159,6 +159,7 @@ fn walls(input: &ModelInput) -> Result<(), ModelError> {
             return Err(ModelError::Wall { wall: format!("triangle surface {index}"), problem });
         }
     }
+    crate::wall::check::walls(&input.walls, count)?;
     if let Some(m) = input.surface_material {
         in_range("surface", 0, "material", m, count)?;
     }
@@ -191,7 +192,7 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
     Ok(())
 }
 
-fn in_range(
+pub(crate) fn in_range(
     owner: &'static str,
     index: usize,
     kind: &'static str,
@@ -231,9 +232,21 @@ pub(crate) fn rigid_pairs(bodies: &[Body], input: &ModelInput) -> Result<(), Mod
             if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
                 return error(format!("triangle surface {t}"));
             }
+            if let Some(t) = input.walls.iter().position(|w| endless(a.material, w.material)) {
+                return error(format!("wall {t}"));
+            }
             if input.surface_material.is_some_and(|m| endless(a.material, m)) {
                 return error("the surface".to_string());
             }
+        }
+    }
+    for (w, wall) in input.walls.iter().enumerate().filter(|(_, w)| w.body.is_some()) {
+        let error = |b: String| Err(ModelError::RigidPair { a: format!("the rigid body of wall {w}"), b });
+        if let Some(b) = rigid.iter().find(|&&b| endless(bodies[b].material, wall.material)) {
+            return error(format!("body {b}"));
+        }
+        if let Some(p) = input.planes.iter().position(|p| endless(wall.material as u32, p.material)) {
+            return error(format!("plane {p}"));
         }
     }
     Ok(())

@@ -93,6 +93,26 @@ pub enum ModelError {
         /// What sets the limit.
         cause: String,
     },
+    /// A constant of a kind of bond is out of range.
+    #[error("bond kind {kind}: {quantity} is {value}; it must {requirement}")]
+    BondKind {
+        /// Index of the kind.
+        kind: usize,
+        /// Name of the constant.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+    /// A bond cannot be made.
+    #[error("bond {index}: {problem}")]
+    Bond {
+        /// Index of the bond.
+        index: usize,
+        /// What is wrong.
+        problem: String,
+    },
     /// A setting of the run is out of range.
     #[error("{quantity} is {value}; it must {requirement}")]
     Setting {
@@ -114,6 +134,8 @@ pub enum Partner {
     Plane(usize),
     /// A triangle (index over all triangle surfaces in order).
     Triangle(u32),
+    /// A wall that has no triangles (index over all walls in order).
+    Wall(u32),
     /// A patch of the external surface.
     Patch(u32),
 }
@@ -124,6 +146,7 @@ impl fmt::Display for Partner {
             Partner::Body(k) => write!(f, "body {k}"),
             Partner::Plane(k) => write!(f, "plane {k}"),
             Partner::Triangle(k) => write!(f, "triangle {k}"),
+            Partner::Wall(k) => write!(f, "wall {k}"),
             Partner::Patch(k) => write!(f, "surface patch {k}"),
         }
     }
@@ -160,6 +183,34 @@ pub enum StepError {
         speed: f64,
         /// The bound [m/s].
         bound: f64,
+    },
+    /// A rigid triangle body moves so fast that contacts would be missed, or its velocity is not a number.
+    #[error(
+        "at t = {time} s a point of the rigid body of wall {wall} moves at {speed} m/s, above the bound {bound} m/s (half \
+         the smallest radius per step)"
+    )]
+    WallSpeed {
+        /// Time [s].
+        time: f64,
+        /// The wall, counted through.
+        wall: usize,
+        /// The largest speed of its points [m/s].
+        speed: f64,
+        /// The bound [m/s].
+        bound: f64,
+    },
+    /// Two rigid triangle bodies have come within each other's bounds.
+    #[error(
+        "at t = {time} s the rigid bodies of walls {} and {} come within each other's bounds: contact between triangle \
+         bodies is not modelled",
+        walls[0],
+        walls[1]
+    )]
+    WallsMeet {
+        /// Time [s].
+        time: f64,
+        /// The walls, counted through.
+        walls: [usize; 2],
     },
     /// An applied force names no body, or is not finite.
     #[error("at t = {time} s applied force {index} (body {body}) names no body or is not finite")]

@@ -1,13 +1,15 @@
 //! What a model is made of, as given by its user. [`crate::model::Model`] is the checked and resolved form.
 
 use crate::Vec3;
+use crate::bond::{Bond, BondInput};
 use crate::material::{Material, PairOverride};
 use crate::shape::Shape;
+use crate::wall::WallInput;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
 /// One body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyInput {
     /// Shape (index).
     pub shape: usize,
@@ -71,7 +73,7 @@ pub struct TriangleSurface {
     pub triangles: Vec<[u32; 3]>,
     /// Material (index).
     pub material: usize,
-    /// Velocity at the start [m/s]. [`crate::state::State::set_triangles_velocity`] changes it.
+    /// Velocity at the start [m/s]. [`crate::state::State::set_wall_velocity`] changes it.
     pub velocity: Vec3,
 }
 
@@ -124,6 +126,8 @@ pub struct ModelInput {
     pub planes: Vec<Plane>,
     /// Triangle surfaces.
     pub triangles: Vec<TriangleSurface>,
+    /// Walls of other shapes, and triangle surfaces that turn, swing, are driven by a force or are bodies.
+    pub walls: Vec<WallInput>,
     /// Material (index) of the external surface, when the scene has one.
     pub surface_material: Option<usize>,
     /// Acceleration of gravity [m/s²].
@@ -137,6 +141,10 @@ pub struct ModelInput {
     pub skin: Option<f64>,
     /// Local damping, for deposition only.
     pub damping: Option<LocalDamping>,
+    /// Kinds of bonds.
+    pub bond_kinds: Vec<Bond>,
+    /// Bonds between spheres, unstrained at the start.
+    pub bonds: Vec<BondInput>,
 }
 
 impl Default for ModelInput {
@@ -149,12 +157,22 @@ impl Default for ModelInput {
             bodies: Vec::new(),
             planes: Vec::new(),
             triangles: Vec::new(),
+            walls: Vec::new(),
             surface_material: None,
             gravity: Vec3::new(0.0, 0.0, -9.81),
             time_step: TimeStep::Auto { fraction: 0.1 },
             impact_speed: None,
             skin: None,
             damping: None,
+            bond_kinds: Vec::new(),
+            bonds: Vec::new(),
         }
+    }
+}
+
+impl ModelInput {
+    /// All walls of patches: triangle surfaces, then walls.
+    pub(crate) fn all_walls(&self) -> impl Iterator<Item = WallInput> {
+        self.triangles.iter().map(WallInput::of_triangles).chain(self.walls.iter().cloned())
     }
 }

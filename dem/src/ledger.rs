@@ -40,19 +40,27 @@ pub struct Ledger {
     pub dissipated_dashpot: f64,
     /// Energy lost in sliding [J].
     pub dissipated_friction: f64,
+    /// Energy lost in the dashpots of bonds [J].
+    #[serde(default)]
+    pub dissipated_bonds: f64,
+    /// Energy set free by breaking bonds [J].
+    #[serde(default)]
+    pub released_by_breaks: f64,
     /// Energy taken by local damping [J].
     pub dissipated_local_damping: f64,
     /// Work of applied forces [J].
     pub work_applied: f64,
-    /// Work of moving planes and triangle surfaces on the bodies [J].
+    /// Work of planes and walls with prescribed motion on the bodies [J].
     pub work_walls: f64,
+    /// Work of walls that are driven by a force on the bodies [J].
+    pub work_servo: f64,
     /// Work of the external surface's motion on the bodies [J].
     pub work_surface: f64,
     /// Work of what keeps fixed motions at their speed [J].
     pub work_constraints: f64,
     /// Impulse of gravity.
     pub gravity: Impulse,
-    /// Impulse of planes and triangle surfaces.
+    /// Impulse of planes and walls, rigid bodies excepted: they count among the bodies.
     pub walls: Impulse,
     /// Impulse of the external surface.
     pub surface: Impulse,
@@ -67,12 +75,16 @@ pub struct Ledger {
 impl Ledger {
     /// All energy lost [J].
     pub fn dissipated(&self) -> f64 {
-        self.dissipated_dashpot + self.dissipated_friction + self.dissipated_local_damping
+        self.dissipated_dashpot
+            + self.dissipated_friction
+            + self.dissipated_local_damping
+            + self.dissipated_bonds
+            + self.released_by_breaks
     }
 
     /// All work received from outside, gravity excepted (it has a potential) [J].
     pub fn work(&self) -> f64 {
-        self.work_applied + self.work_walls + self.work_surface + self.work_constraints
+        self.work_applied + self.work_walls + self.work_servo + self.work_surface + self.work_constraints
     }
 
     /// Sum of all impulses: the change of momentum since the start.
@@ -90,8 +102,11 @@ impl AddAssign<&Ledger> for Ledger {
         self.dissipated_dashpot += other.dissipated_dashpot;
         self.dissipated_friction += other.dissipated_friction;
         self.dissipated_local_damping += other.dissipated_local_damping;
+        self.dissipated_bonds += other.dissipated_bonds;
+        self.released_by_breaks += other.released_by_breaks;
         self.work_applied += other.work_applied;
         self.work_walls += other.work_walls;
+        self.work_servo += other.work_servo;
         self.work_surface += other.work_surface;
         self.work_constraints += other.work_constraints;
         self.gravity += &other.gravity;

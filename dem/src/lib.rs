@@ -3,6 +3,7 @@
 //! A [`model::Model`] is what a run never changes, a [`state::State`] all that it changes, a [`work::Work`] its
 //! scratch; [`step::step`] advances the state. SI units throughout.
 
+pub mod bond;
 mod check;
 pub mod contact;
 pub mod detect;
@@ -33,6 +34,7 @@ pub use model::Model;
 pub use shape::Shape;
 pub use state::State;
 pub use step::{find_contacts, step};
+pub use wall::{Motion, Oscillation, RigidBody, Servo, WallInput, WallShape};
 pub use work::Work;
 
 /// A vector of three components.

@@ -6,7 +6,7 @@ use crate::error::ModelError;
 use crate::input::{ModelInput, Plane, TimeStep};
 use crate::shape::{Shape, cuboid};
 use crate::timestep::{self, DtLimit};
-use crate::wall::triangulated::TriangleWalls;
+use crate::wall::{WallInput, set::Walls};
 use crate::{check, input};
 use nalgebra::UnitQuaternion;
 
@@ -51,7 +51,7 @@ pub struct Model {
     pub(crate) shapes: Vec<Shape>,
     /// Planes with unit normals.
     pub(crate) planes: Vec<Plane>,
-    pub(crate) triangles: TriangleWalls,
+    pub(crate) walls: Walls,
     pub(crate) surface_material: Option<u32>,
     pub(crate) laws: Laws,
     /// Largest overlap expected, over the effective radius: what stiffnesses that grow with the overlap are taken at.
@@ -65,6 +65,8 @@ pub struct Model {
     pub(crate) rigid: bool,
     /// Bodies per block.
     pub(crate) block: usize,
+    /// Bonds, resolved.
+    pub(crate) bonds: Vec<crate::bond::Constants>,
     dt: f64,
     limit: DtLimit,
 }
@@ -79,7 +81,8 @@ impl Model {
         let bodies: Vec<Body> =
             input.bodies.iter().enumerate().map(|(k, b)| resolve(&input, k, b)).collect::<Result<_, _>>()?;
         let laws = Laws::new(&input.materials, &input.contacts);
-        let triangles = TriangleWalls::new(&input.triangles)?;
+        let walls: Vec<WallInput> = input.all_walls().collect();
+        let walls = Walls::new(&walls, input.triangles.len())?;
         check::rigid_pairs(&bodies, &input)?;
 
         let mut radii = (f64::INFINITY, 0.0_f64);
@@ -98,8 +101,10 @@ impl Model {
         }
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
+        let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
-        let limit = timestep::limit(&bodies, &input, &laws, expected, radii.0);
+        let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
+        walls.limit_step(&mut limit, &bodies, &input.planes, &laws, expected, radii);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
             TimeStep::Fixed(dt) if dt > limit.dt => {
@@ -114,13 +119,14 @@ impl Model {
             bodies,
             shapes: input.shapes,
             planes,
-            triangles,
+            walls,
             surface_material: input.surface_material.map(|m| m as u32),
             laws,
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
             skin: input.skin.unwrap_or(0.2 * mean),
+            bonds,
             radii,
             dt,
             limit,
@@ -140,6 +146,16 @@ impl Model {
     /// Number of bodies.
     pub fn body_count(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// Number of bonds at the start.
+    pub fn bond_count(&self) -> usize {
+        self.bonds.len()
+    }
+
+    /// The two bodies of a bond.
+    pub fn bond_ends(&self, bond: usize) -> [usize; 2] {
+        self.bonds[bond].ends.map(|b| b as usize)
     }
 
     /// Number of spheres: single ones and members of clumps.
@@ -170,6 +186,11 @@ impl Model {
     /// Shape of a body (unscaled).
     pub fn shape(&self, body: usize) -> &Shape {
         &self.shapes[self.bodies[body].shape]
+    }
+
+    /// Number of a body's shape in the input.
+    pub fn shape_number(&self, body: usize) -> usize {
+        self.bodies[body].shape
     }
 
     /// Factor on the lengths of the body's shape.
@@ -219,6 +240,26 @@ impl Model {
             Shape::Box { half } => Vec3::from(*half) * self.bodies[body].scale,
             _ => Vec3::zeros(),
         }
+    }
+
+    /// Number of walls: triangle surfaces, then walls.
+    pub fn wall_count(&self) -> usize {
+        self.walls.walls.len()
+    }
+
+    /// Largest damping ratio of contacts with a material [-].
+    pub(crate) fn wall_damping(&self, material: u32) -> f64 {
+        self.bodies
+            .iter()
+            .map(|b| b.material)
+            .fold((0.0_f64, u32::MAX), |(most, last), m| {
+                if m == last {
+                    (most, m)
+                } else {
+                    (most.max(self.contact_stiffness(m as usize, material as usize).1), m)
+                }
+            })
+            .0
     }
 
     /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that

@@ -7,9 +7,10 @@
 //! run; it depends on the positions alone.
 
 use crate::Vec3;
+use crate::bond;
 use crate::contact::History;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Cross, PatchPair, State};
+use crate::state::{Block, Cross, PatchContact, PatchPair, State};
 
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
@@ -59,6 +60,8 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
 pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     let turning = model.laws.rolls();
     let members: Vec<u32> = (0..positions.len()).map(|b| model.member_count(b)).collect();
+    let lists: Vec<_> = state.blocks.iter_mut().map(|b| std::mem::take(&mut b.bonds)).collect();
+    let bonds = bond::store::take(lists.into_iter(), state);
     let old = std::mem::take(&mut state.blocks);
     let cross = std::mem::take(&mut state.cross);
     let old_places = state.places.clone();
@@ -88,6 +91,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     }
     state.cross.resize_with(state.blocks.len(), || Cross::new(turning));
     state.number(model);
+    bond::store::put(model, state, bonds);
 
     // First sphere of each body within its new block.
     let mut first = vec![0_u32; positions.len()];
@@ -138,19 +142,26 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
             };
             state.blocks[b as usize].planes.push([i, plane], &history);
         }
-        for (from, pick) in [(&block.triangles, true), (&block.surface, false)] {
-            for p in from {
+        for (from, pick) in [(&block.walls, true), (&block.surface, false)] {
+            for p in &from.live {
                 let (b, i) = new(names[p.i as usize]);
                 let to = &mut state.blocks[b as usize];
-                (if pick { &mut to.triangles } else { &mut to.surface }).push(PatchPair { i, ..*p });
+                (if pick { &mut to.walls } else { &mut to.surface }).live.push(PatchContact { i, ..*p });
+            }
+            for p in &from.pairs {
+                let (b, i) = new(names[p.i as usize]);
+                let to = &mut state.blocks[b as usize];
+                (if pick { &mut to.walls } else { &mut to.surface }).pairs.push(PatchPair { i, ..*p });
             }
         }
     }
     for block in &mut state.blocks {
         block.pairs.sort();
         block.planes.sort();
-        block.triangles.sort_unstable_by_key(|p| (p.i, p.patch));
-        block.surface.sort_unstable_by_key(|p| (p.i, p.patch));
+        for list in [&mut block.walls, &mut block.surface] {
+            list.pairs.sort_unstable_by_key(|p| (p.i, p.patch));
+            list.live.sort_unstable_by_key(|p| (p.i, p.patch));
+        }
     }
     for cross in &mut state.cross {
         cross.spheres.sort();

@@ -4,3 +4,4 @@ pub mod bvh;
 pub(crate) mod candidates;
 pub(crate) mod cells;
 pub(crate) mod near;
+pub(crate) mod patches;

@@ -7,12 +7,13 @@
 //! beside the pairs of the near list, which is therefore part of the state.
 
 use crate::Vec3;
+use crate::bond::{self, BondList, BondState};
 use crate::contact::History;
 use crate::contact::groups::Groups;
 use crate::ledger::Ledger;
 use crate::model::Model;
 use crate::order;
-use crate::wall::triangulated::WallMotion;
+use crate::wall::state::{WallMotion, WallState};
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -37,18 +38,40 @@ pub(crate) struct Cross {
     pub boxes: Groups<3>,
 }
 
-/// A sphere with a patch of a surface.
+/// A sphere that touches a patch of a surface or nearly does.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct PatchPair {
     pub i: u32,
     pub patch: u32,
     pub local: [f64; 2],
-    /// Where the patch was touched last, the normal, the patch's velocity and the overlap there.
+}
+
+/// A sphere in touch with a patch, and what is remembered of the last step.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct PatchContact {
+    pub i: u32,
+    pub patch: u32,
+    /// Where the patch was touched, the normal, the patch's velocity and the overlap there.
     pub point: Vec3,
     pub normal: Vec3,
     pub velocity: Vec3,
     pub overlap: f64,
+    /// Cosine between the contact's and the patch's own normal: its sign tells the side.
+    pub side: f64,
     pub history: History,
+}
+
+/// Spheres near the patches of a surface, and those in touch; both in order of sphere and patch.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct PatchList {
+    pub pairs: Vec<PatchPair>,
+    pub live: Vec<PatchContact>,
+}
+
+impl PatchList {
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty() && self.live.is_empty()
+    }
 }
 
 /// A block of neighbouring bodies with the contacts that only it sees.
@@ -68,8 +91,10 @@ pub(crate) struct Block {
     pub pairs: Groups<2>,
     /// A sphere, or a corner of a box, and a plane.
     pub planes: Groups<2>,
-    pub triangles: Vec<PatchPair>,
-    pub surface: Vec<PatchPair>,
+    pub walls: PatchList,
+    pub surface: PatchList,
+    /// Bonds between two of these bodies.
+    pub bonds: BondList,
 }
 
 impl Block {
@@ -100,8 +125,9 @@ pub struct State {
     pub(crate) blocks: Vec<Block>,
     /// Contacts between blocks, by the block of their first sphere.
     pub(crate) cross: Vec<Cross>,
+    pub(crate) bonds: BondState,
     pub(crate) planes: Vec<WallMotion>,
-    pub(crate) triangles: Vec<WallMotion>,
+    pub(crate) walls: Vec<WallState>,
     /// Reach of the near list beyond touch [m], how much of it motion has used up, and the steps it has lasted.
     pub(crate) near: f64,
     pub(crate) drift: f64,
@@ -143,12 +169,13 @@ impl State {
             places: Vec::new(),
             blocks: Vec::new(),
             cross: Vec::new(),
+            bonds: BondState::default(),
             planes: model
                 .planes
                 .iter()
                 .map(|p| WallMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false })
                 .collect(),
-            triangles: model.triangles.motion(),
+            walls: model.walls.start(&model.gravity, model.dt()),
             near: 0.1 * model.skin,
             drift: 0.0,
             wall_drift: 0.0,
@@ -173,6 +200,7 @@ impl State {
         }
         state.cross.resize_with(state.blocks.len(), || Cross::new(model.laws.rolls()));
         state.number(model);
+        bond::store::start(model, &mut state);
         for (k, b) in model.bodies.iter().enumerate() {
             let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
             state.set_velocity(model, k, b.velocity - kick * (0.5 * model.dt()), b.spin);
@@ -255,19 +283,47 @@ impl State {
         self.stale = true;
     }
 
-    /// Displacement of a triangle surface since the start [m].
-    pub fn triangles_offset(&self, surface: usize) -> Vec3 {
-        self.triangles[surface].offset
+    /// Displacement of a wall's centre since the start [m]. Walls are counted through: first
+    /// [`ModelInput::triangles`](crate::ModelInput::triangles), then [`ModelInput::walls`](crate::ModelInput::walls).
+    pub fn wall_offset(&self, wall: usize) -> Vec3 {
+        self.walls[wall].offset
     }
 
-    /// Gives a triangle surface another velocity [m/s].
-    pub fn set_triangles_velocity(&mut self, surface: usize, velocity: Vec3) {
-        self.triangles[surface].velocity = velocity;
+    /// Turn of a wall since the start.
+    pub fn wall_orientation(&self, wall: usize) -> UnitQuaternion<f64> {
+        self.walls[wall].orientation
     }
 
-    /// Opens a triangle surface (grains pass) or closes it again.
-    pub fn open_triangles(&mut self, surface: usize, open: bool) {
-        self.triangles[surface].open = open;
+    /// Where a point of a wall is now that was at `x` at the start [m].
+    pub fn wall_point(&self, model: &Model, wall: usize, x: &Vec3) -> Vec3 {
+        self.walls[wall].to_world(&model.walls.walls[wall].centre, x)
+    }
+
+    /// Velocity of a wall's centre [m/s] and angular velocity [rad/s], half a step before `time`.
+    pub fn wall_velocity(&self, wall: usize) -> (Vec3, Vec3) {
+        (self.walls[wall].velocity, self.walls[wall].spin)
+    }
+
+    /// Force of the grains on a wall in the last step [N] and its moment about the wall's centre where it was then [N m].
+    pub fn wall_force(&self, wall: usize) -> (Vec3, Vec3) {
+        (self.walls[wall].force, self.walls[wall].moment)
+    }
+
+    /// Number of contacts of spheres with walls in the last step.
+    pub fn wall_contact_count(&self) -> usize {
+        self.blocks.iter().map(|b| b.walls.live.len()).sum()
+    }
+
+    /// Gives a wall another steady velocity [m/s]. Driven walls and rigid bodies do not follow it.
+    pub fn set_wall_velocity(&mut self, wall: usize, velocity: Vec3) {
+        let own = &mut self.walls[wall];
+        own.velocity += velocity - own.drive;
+        own.drive = velocity;
+    }
+
+    /// Opens a wall (grains pass) or closes it again.
+    pub fn open_wall(&mut self, wall: usize, open: bool) {
+        self.walls[wall].open = open;
         self.stale = true;
     }
 

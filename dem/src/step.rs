@@ -1,11 +1,12 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::bond;
 use crate::contact::pass::{Between, Interior};
 use crate::contact::planes::{self, Planes};
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
-use crate::integrate::leapfrog;
+use crate::integrate::leapfrog::Advance;
 use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
@@ -13,6 +14,7 @@ use crate::order;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
+use crate::wall::advance::{self, WallSum};
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Sums, Work};
 use rayon::prelude::*;
 
@@ -47,6 +49,9 @@ pub fn step<S: Surface>(
     }
     place_loads(model, state, work, applied)?;
     near::update(model, state, work, surface);
+    if !model.bonds.is_empty() {
+        bond::pass::cross(model, state, work);
+    }
     planes::now(model, &state.planes, &mut work.planes);
     with_law!(&model.laws, laws => match (model.rigid, laws.rolls()) {
         (false, false) => contacts_and_motion::<_, S, false, false>(model, laws, state, work, surface),
@@ -71,12 +76,17 @@ pub fn find_contacts<S: Surface>(
     let mut probe = state.clone();
     step(model, &mut probe, work, surface, &[])?;
     for (block, seen) in state.blocks.iter_mut().zip(probe.blocks) {
-        let Block { pairs, planes, triangles, surface, .. } = seen;
-        *block = Block { pairs, planes, triangles, surface, ..std::mem::take(block) };
+        let Block { pairs, planes, walls, surface, .. } = seen;
+        *block = Block { pairs, planes, walls, surface, ..std::mem::take(block) };
     }
     state.cross = probe.cross;
+    for (wall, seen) in state.walls.iter_mut().zip(probe.walls) {
+        (wall.force, wall.moment, wall.feet) = (seen.force, seen.moment, seen.feet);
+    }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    // The probe may have broken bonds.
+    bond::pass::arrange(model, state, work);
     Ok(())
 }
 
@@ -88,8 +98,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     surface: &S,
 ) {
     let dt = model.dt();
-    let State { blocks, cross, planes: motions, triangles, .. } = state;
-    let Work { blocks: works, cross: slots, applied, parallel, planes: plane_list, simd, .. } = work;
+    let State { blocks, cross, planes: motions, walls: wall_states, bonds, .. } = state;
+    let Work {
+        blocks: works, cross: slots, applied, parallel, planes: plane_list, simd, bonds: bonded, ..
+    } = work;
     let (simd, plane_list) = (*simd, &**plane_list);
 
     // Contacts between blocks: they read any block, and write slots.
@@ -110,8 +122,8 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     }
 
     // All else concerns one block at a time.
-    let (slots, applied) = (&*slots, &**applied);
-    let walls = model.triangles.moved(triangles);
+    let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
+    let walls = model.walls.placed(wall_states);
     let surface_material = model.surface_material.unwrap_or(0);
     let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
         w.ledger = Ledger::default();
@@ -119,6 +131,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.contacts.clear();
         w.sums.fill(Sums::default());
         pass::gather(w, slots);
+        if !model.bonds.is_empty() {
+            bond::pass::within(model, b, block, w, bonded, bonds.fresh);
+        }
         let (mut pairs, mut plane_pairs) =
             (std::mem::take(&mut block.pairs), std::mem::take(&mut block.planes));
         if !pairs.is_empty() {
@@ -132,23 +147,25 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
             lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, block, pairs, w: &mut *w, dt });
         }
         (block.pairs, block.planes) = (pairs, plane_pairs);
-        if !block.triangles.is_empty() {
-            let mut list = std::mem::take(&mut block.triangles);
-            let material = |patch| model.triangles.material(patch);
-            let done = patches::contacts::<_, _, RIGID>(
+        w.wall_sums.clear();
+        if !block.walls.is_empty() {
+            let mut list = std::mem::take(&mut block.walls);
+            let mut sums = std::mem::take(&mut w.wall_sums);
+            sums.resize(walls.groups(), WallSum::default());
+            patches::contacts::<_, _, RIGID>(
                 laws,
                 &walls,
-                material,
-                Partner::Triangle,
+                |patch| model.walls.material(patch),
+                |patch| model.walls.partner(patch),
                 &mut list,
                 block,
                 w,
+                &mut sums,
                 false,
                 dt,
             );
-            w.ledger.work_walls += done.work;
-            w.ledger.walls += &done.impulse;
-            block.triangles = list;
+            w.wall_sums = sums;
+            block.walls = list;
         }
         if !block.surface.is_empty() {
             let mut list = std::mem::take(&mut block.surface);
@@ -160,6 +177,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
                 &mut list,
                 block,
                 w,
+                &mut [],
                 true,
                 dt,
             );
@@ -169,7 +187,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         }
         let from = applied.partition_point(|a| (a.block as usize) < b);
         let to = applied.partition_point(|a| a.block as usize <= b);
-        leapfrog::advance::<RIGID>(model, block, w, &applied[from..to], dt);
+        lanes::run(simd, Advance::<RIGID> { model, block, w, applied: &applied[from..to], dt });
     };
     if *parallel {
         blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().for_each(within);
@@ -219,11 +237,15 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
     }
+    let (wall_speed, wall_failure) = advance::walls(model, state, work, &mut sum);
+    failure = failure.or(wall_failure);
     state.ledger += &sum;
+    if !model.bonds.is_empty() {
+        failure = failure.or(bond::pass::settle(model, state, work));
+    }
     let time = state.time;
-    let walls = state.planes.iter_mut().chain(&mut state.triangles);
-    let mut wall_speed = surface_speed;
-    for wall in walls {
+    let mut wall_speed = wall_speed.max(surface_speed);
+    for wall in &mut state.planes {
         wall.offset += wall.velocity * dt;
         wall_speed = wall_speed.max(wall.velocity.norm());
     }
@@ -239,6 +261,12 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         }
         Some(Failure::Speed { body, speed, bound }) => {
             Err(StepError::Speed { time, body: body as usize, speed, bound })
+        }
+        Some(Failure::Wall { wall, speed, bound }) => {
+            Err(StepError::WallSpeed { time, wall: wall as usize, speed, bound })
+        }
+        Some(Failure::Meeting { walls }) => {
+            Err(StepError::WallsMeet { time, walls: walls.map(|w| w as usize) })
         }
     }
 }

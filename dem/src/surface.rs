@@ -1,6 +1,8 @@
 //! Surfaces made of patches: triangle walls of this crate, and surfaces that another crate owns and moves
 //! (the deformed faces of a solid). One mechanism serves both.
 
+use crate::Vec3;
+
 /// What of its patch a closest point lies on. Edge and vertex numbers are unique within the surface and shared
 /// by neighbouring patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +64,48 @@ pub trait Surface: Sync {
     /// Whether grains are on the outward side only: their centres may then lie below the surface and are still
     /// pushed outward. Otherwise the normal points from the closest point to the centre.
     fn one_sided(&self) -> bool;
+
+    /// Whether one patch is one-sided; as the whole surface unless it says otherwise.
+    fn one_sided_patch(&self, _patch: u32) -> bool {
+        self.one_sided()
+    }
+
+    /// Whether `patch` may lie within `reach` of `centre`: false is certain, true need not be. A cheap test that
+    /// spares most calls of [`Surface::closest_point`].
+    fn within(&self, _patch: u32, _centre: [f64; 3], _reach: f64) -> bool {
+        true
+    }
+
+    /// Whether [`Surface::within`] is near enough to the truth for lists, and normals inside a patch are exact: the
+    /// distance is then measured along them.
+    fn sharp(&self) -> bool {
+        false
+    }
+
+    /// Rigid wall that a patch belongs to, below [`Surface::groups`]; forces are summed for each.
+    fn group(&self, _patch: u32) -> usize {
+        0
+    }
+
+    /// Number of rigid walls.
+    fn groups(&self) -> usize {
+        1
+    }
+
+    /// Point that moments on the patch's wall refer to [m].
+    fn moment_centre(&self, _patch: u32) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// Angular velocity of the patch's wall [rad/s].
+    fn spin(&self, _patch: u32) -> Vec3 {
+        Vec3::zeros()
+    }
+
+    /// One over the mass of the patch's wall [1/kg]; zero where its motion is prescribed.
+    fn inverse_mass(&self, _patch: u32) -> f64 {
+        0.0
+    }
 
     /// Whether there is nothing to touch.
     fn is_empty(&self) -> bool {

@@ -30,10 +30,13 @@
 //!
 //! The limit falls only with d^(-1/4): a load that presses 16 times as deep halves it, and the fraction of the limit
 //! that is taken (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
+//! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
+//!
 //! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
 //! grows faster than their number. Sides of a clump that are flat, yet not across a principal axis, are not looked for.
 
 use crate::Vec3;
+use crate::bond;
 use crate::contact::Laws;
 use crate::input::ModelInput;
 use crate::model::{Body, Kind};
@@ -54,20 +57,43 @@ pub struct DtLimit {
     pub stiffness: f64,
     /// Effective mass of the body at its outermost contact [kg].
     pub mass: f64,
+    /// The rigid body of this wall sets it, in place of `body`.
+    pub wall: Option<usize>,
+    /// Square of the highest frequency that the body's bonds alone could give it [1/s²].
+    pub bonds: f64,
 }
 
 impl fmt::Display for DtLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(wall) = self.wall {
+            return write!(
+                f,
+                "the rigid body of wall {wall} in contact with material {} (stiffness {:.3e} N/m)",
+                self.partner, self.stiffness
+            );
+        }
         write!(
             f,
             "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
             self.body, self.mass, self.partner, self.stiffness
-        )
+        )?;
+        if self.bonds > 0.0 {
+            write!(f, " and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt())?;
+        }
+        Ok(())
     }
 }
 
 /// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
-pub(crate) fn limit(bodies: &[Body], input: &ModelInput, laws: &Laws, expected: f64, r_min: f64) -> DtLimit {
+pub(crate) fn limit(
+    bodies: &[Body],
+    input: &ModelInput,
+    laws: &Laws,
+    expected: f64,
+    bonds: &[bond::Constants],
+    r_min: f64,
+) -> DtLimit {
+    let bonded = bond::stiffest(bonds, bodies);
     // A rolling spring counts as one more tangential spring on a lever.
     let levers = if laws.rolls() { 2.0 } else { 1.0 };
     let partners = partners(bodies, input);
@@ -77,7 +103,8 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, laws: &Laws, expected: 
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0 };
+    let mut least =
+        DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, bonds: 0.0, wall: None };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -110,10 +137,27 @@ pub(crate) fn limit(bodies: &[Body], input: &ModelInput, laws: &Laws, expected: 
             };
             let zeta = laws.damping_ratio(a, b) * f64::sqrt(0.5 * sides);
             let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
-            let dt = bound / (sides * own).sqrt();
+            let alone = bound / (sides * own).sqrt();
+            let [bond_stiffness, bond_damping] = bonded.get(k).copied().unwrap_or_default();
+            let dt = if bond_stiffness > 0.0 {
+                // Contacts and bonds together: (λ₁ + λ₂) dt² + (8 ζ' √λ₁ + 2 γ) dt = 4.
+                let all = sides * own + bond_stiffness;
+                let damping = 4.0 * zeta * (sides * own).sqrt() + bond_damping;
+                ((damping * damping + 4.0 * all).sqrt() - damping) / all
+            } else {
+                alone
+            };
             if !found || dt < least.dt {
                 found = true;
-                least = DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own };
+                least = DtLimit {
+                    dt,
+                    body: k,
+                    partner,
+                    stiffness,
+                    mass: stiffness / own,
+                    bonds: bond_stiffness,
+                    wall: None,
+                };
             }
         }
     }
@@ -153,6 +197,7 @@ fn partners(bodies: &[Body], input: &ModelInput) -> Vec<usize> {
     bodies.iter().for_each(|b| used[b.material as usize] = true);
     input.planes.iter().for_each(|p| used[p.material] = true);
     input.triangles.iter().for_each(|t| used[t.material] = true);
+    input.walls.iter().for_each(|w| used[w.material] = true);
     input.surface_material.into_iter().for_each(|m| used[m] = true);
     (0..used.len()).filter(|&m| used[m]).collect()
 }

@@ -1,6 +1,8 @@
 //! Scratch of the step: never saved, made anew from a state at any time without changing a bit of what follows.
 
 use crate::Vec3;
+use crate::bond::pass::{BondWork, ListWork};
+use crate::bond::{self, Held};
 use crate::contact::patches::Touch;
 use crate::contact::planes::PlaneNow;
 use crate::error::Partner;
@@ -8,8 +10,9 @@ use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::cells::Cells;
-use crate::state::{Lanes, PatchPair, State, xyz};
+use crate::state::{Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
+use crate::wall::advance::WallSum;
 
 /// A contact between blocks: force on the first partner, torque on the first, torque on the second.
 pub(crate) type Slot = [Lanes; 3];
@@ -44,6 +47,8 @@ pub(crate) struct Gather {
 pub(crate) enum Failure {
     Overlap { body: u32, partner: Partner, overlap: f64, bound: f64 },
     Speed { body: u32, speed: f64, bound: f64 },
+    Wall { wall: u32, speed: f64, bound: f64 },
+    Meeting { walls: [u32; 2] },
 }
 
 /// Contacts of a block with others: their forces, what they dissipated, and the first failure.
@@ -59,6 +64,9 @@ pub(crate) struct CrossWork {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockWork {
     // Constants of the bodies, in block order.
+    /// Whether no motion is fixed and no body is a box.
+    pub free: bool,
+    pub mass_sum: f64,
     pub kind: Vec<Kind>,
     pub mass: Vec<f64>,
     pub inertia: Vec<Vec3>,
@@ -81,7 +89,7 @@ pub(crate) struct BlockWork {
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
     pub planes: Vec<[u32; 2]>,
-    pub triangles: Vec<[u32; 2]>,
+    pub walls: Vec<[u32; 2]>,
     pub surface: Vec<[u32; 2]>,
 
     // The step.
@@ -94,6 +102,10 @@ pub(crate) struct BlockWork {
     pub row: Vec<u32>,
     pub patches: Vec<PatchPair>,
     pub touches: Vec<Touch>,
+    pub live: Vec<PatchContact>,
+    /// What the block's spheres felt from each wall; empty in blocks near none.
+    pub wall_sums: Vec<WallSum>,
+    pub bonds: ListWork,
 }
 
 /// A force applied to a body in this step.
@@ -110,6 +122,9 @@ pub(crate) struct Applied {
 pub struct Work {
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossWork>,
+    pub(crate) bonds: BondWork,
+    /// Pairs that are not for the ordinary contacts.
+    pub(crate) held: Held,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
     pub(crate) cells: Cells,
@@ -118,6 +133,7 @@ pub struct Work {
     /// Whether the candidates exist, and where walls were when they were found.
     pub(crate) listed: bool,
     pub(crate) wall_reference: Vec<Vec3>,
+    pub(crate) wall_places: Vec<(Vec3, nalgebra::UnitQuaternion<f64>)>,
     pub(crate) surface_drift: f64,
     pub(crate) searches: u64,
     pub(crate) refreshes: u64,
@@ -137,6 +153,8 @@ impl Work {
         let mut work = Work {
             blocks: Vec::new(),
             cross: Vec::new(),
+            bonds: BondWork::default(),
+            held: Held::default(),
             applied: Vec::new(),
             surface_contacts: Vec::new(),
             cells: Cells::default(),
@@ -144,6 +162,7 @@ impl Work {
             names: Vec::new(),
             listed: false,
             wall_reference: Vec::new(),
+            wall_places: Vec::new(),
             surface_drift: 0.0,
             searches: 0,
             refreshes: 0,
@@ -170,6 +189,7 @@ impl Work {
             }
         }
         crate::search::near::link(state, self);
+        bond::pass::arrange(model, state, self);
     }
 
     /// Contacts with the external surface in the last step, by block, then sphere, then patch.
@@ -227,6 +247,8 @@ impl BlockWork {
             });
         }
         self.first.push(self.owner.len() as u32);
+        self.free = self.fixed.iter().all(|&f| f == 0) && self.kind.iter().all(|&k| k != Kind::Box);
+        self.mass_sum = self.mass.iter().sum();
         self.sums.clear();
         self.sums.resize(bodies.len(), Sums::default());
     }

@@ -1,28 +1,41 @@
 //! The grains of a scene: materials, shapes, bodies, walls, sleeper.
 
+mod compaction;
 mod groups;
 mod materials;
+mod regions;
+mod sizes;
 mod track;
-mod walls;
+pub mod walls;
 
 use super::seat_load::CyclicLoad;
+use super::tables::Grading;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
+pub use compaction::{CompactionPlan, Press};
 use trackbed_coupling::step::{self, Stability};
+use trackbed_dem::insert::container::Container;
+use trackbed_dem::insert::grow::Growth;
+use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
-    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep,
-    TriangleSurface, Vec3,
+    BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
+    WallInput,
 };
 use trackbed_fem::Face;
 
+/// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
+const SETTLED_SPEED: f64 = 5e-3;
+
 /// The grains, ready to build models of.
+#[derive(Clone)]
 pub struct GrainsPart {
     materials: Vec<Material>,
     contacts: Vec<PairOverride>,
     shapes: Vec<Shape>,
     planes: Vec<Plane>,
-    triangles: Vec<TriangleSurface>,
+    walls: Vec<WallInput>,
+    recorded: Vec<walls::Recorded>,
     surface_material: Option<usize>,
     gravity: Vec3,
     time_step: TimeStep,
@@ -31,10 +44,20 @@ pub struct GrainsPart {
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleeper is the group after the last.
     pub parts: Vec<String>,
+    /// First shape of each group; a stone's number in its library is its shape less that.
+    pub first_shape: Vec<usize>,
+    /// Groups whose sizes follow a sieve curve.
+    pub graded: Vec<GradedGroup>,
+    /// Groups that grow to their size before anything else.
+    pub growths: Vec<GrowthPlan>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
     /// Settling before the run proper.
     pub deposition: Option<DepositionPlan>,
+    /// Compaction of the settled bed.
+    pub compaction: Vec<CompactionPlan>,
+    /// Boxes that are measured, by name.
+    pub measures: Vec<(String, BoxRegion)>,
     /// The sleeper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on it.
@@ -48,10 +71,49 @@ pub struct DepositionPlan {
     pub max_time: f64,
     /// Root-mean-square speed below which the bed counts as settled [m/s].
     pub settled_speed: f64,
+    /// Ratio of unbalanced to contact forces below which it does.
+    pub unbalanced_ratio: Option<f64>,
+    /// Parts that the grains are dropped in.
+    pub layers: u32,
     /// Height above which grains are taken away afterwards [m].
     pub level: Option<f64>,
     friction: Option<f64>,
     local_damping: f64,
+}
+
+impl DepositionPlan {
+    /// Whether a bed of this root-mean-square speed [m/s] counts as settled.
+    pub fn settled(&self, speed: f64, model: &Model, state: &trackbed_dem::State) -> bool {
+        use trackbed_dem::measure::{contacts, unbalanced_ratio};
+        speed < self.settled_speed
+            && self
+                .unbalanced_ratio
+                .is_none_or(|most| unbalanced_ratio(model, &contacts(model, state)) < most)
+    }
+}
+
+/// A group whose sizes follow a sieve curve.
+#[derive(Clone)]
+pub struct GradedGroup {
+    /// Its number.
+    pub part: u32,
+    /// Its name.
+    pub name: String,
+    /// Limits and curve.
+    pub grading: Grading,
+}
+
+/// Grains that grow to their size in a container.
+#[derive(Clone)]
+pub struct GrowthPlan {
+    /// Name of the group.
+    pub group: String,
+    /// Bodies that grow.
+    pub bodies: std::ops::Range<usize>,
+    /// Where.
+    pub container: Container,
+    /// How.
+    pub how: Growth,
 }
 
 /// A sleeper.
@@ -95,8 +157,34 @@ impl GrainsPart {
         let mut input = ModelInput { contacts, damping, ..self.input(self.bodies.clone()) };
         // Walls wait for the run proper, which starts with them in their first place.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
-        input.triangles.iter_mut().for_each(|t| t.velocity = Vec3::zeros());
+        input.walls.iter_mut().for_each(|w| *w = w.at_rest());
         input
+    }
+
+    /// Stiffness, density and the like of the material of a body.
+    pub fn material(&self, body: &BodyInput) -> Material {
+        self.materials[body.material]
+    }
+
+    /// Shapes, at scale 1.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// Radius about its centre of mass that holds a body [m].
+    pub fn reach(&self, body: &BodyInput) -> f64 {
+        body.scale * groups::bounding_radius(&self.shapes[body.shape])
+    }
+
+    /// Puts a plane elsewhere [m].
+    pub fn place_plane(&mut self, plane: usize, point: Vec3) {
+        self.planes[plane].point = point;
+    }
+
+    /// Adds a shape; returns its number.
+    pub fn add_shape(&mut self, shape: Shape) -> usize {
+        self.shapes.push(shape);
+        self.shapes.len() - 1
     }
 
     /// The model of the run proper with the given bodies.
@@ -107,13 +195,15 @@ impl GrainsPart {
             shapes: self.shapes.clone(),
             bodies,
             planes: self.planes.clone(),
-            triangles: self.triangles.clone(),
+            triangles: Vec::new(),
+            walls: self.walls.clone(),
             surface_material: self.surface_material,
             gravity: self.gravity,
             time_step: self.time_step,
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            ..ModelInput::default()
         }
     }
 
@@ -147,9 +237,14 @@ impl GrainsPart {
         &self.planes
     }
 
-    /// Triangle walls, for the pictures.
-    pub fn triangles(&self) -> &[TriangleSurface] {
-        &self.triangles
+    /// Walls other than plain planes, for the pictures.
+    pub fn walls(&self) -> &[WallInput] {
+        &self.walls
+    }
+
+    /// Walls whose force goes to the history.
+    pub fn recorded(&self) -> &[walls::Recorded] {
+        &self.recorded
     }
 
     /// The sleeper as a body with its centre at height `z` [m].
@@ -211,7 +306,8 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         contacts,
         shapes: Vec::new(),
         planes: Vec::new(),
-        triangles: Vec::new(),
+        walls: Vec::new(),
+        recorded: Vec::new(),
         surface_material: scene
             .coupling
             .as_ref()
@@ -222,8 +318,13 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         impact_speed,
         bodies: Vec::new(),
         parts: Vec::new(),
+        first_shape: Vec::new(),
+        graded: Vec::new(),
+        growths: Vec::new(),
         grain_materials: Vec::new(),
         deposition: None,
+        compaction: Vec::new(),
+        measures: Vec::new(),
         sleeper: None,
         load: None,
     };
@@ -248,10 +349,14 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(
             document,
             "deposition.settled_speed",
-            Some(d.settled_speed.si),
+            d.settled_speed.map(|v| v.si),
             |v| v > 0.0,
             "a speed above 0",
         )?;
+        let ratio = d.unbalanced_ratio;
+        check(document, "deposition.unbalanced_ratio", ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
+        let layers = Some(f64::from(d.layers));
+        check(document, "deposition.layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
         check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
         check(
             document,
@@ -262,12 +367,20 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         )?;
         part.deposition = Some(DepositionPlan {
             max_time: d.max_time.si,
-            settled_speed: d.settled_speed.si,
+            // With a ratio of forces alone, speed does not matter.
+            settled_speed: match (d.settled_speed, ratio) {
+                (Some(speed), _) => speed.si,
+                (None, Some(_)) => f64::INFINITY,
+                (None, None) => SETTLED_SPEED,
+            },
+            unbalanced_ratio: ratio,
+            layers: d.layers,
             level: d.level.map(|l| l.si),
             friction: d.friction,
             local_damping: d.local_damping,
         });
     }
+    compaction::add(document, scene, &find, &mut part)?;
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;

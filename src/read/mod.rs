@@ -1,4 +1,4 @@
-//! Readers of meshes made by other programs.
+//! Readers of meshes and surfaces made by other programs.
 //!
 //! Every reader returns the mesh with node numbers mapped to indices in file order, and refuses what it does
 //! not understand with one sentence that names file, line, field, what stands there and what belongs there.
@@ -17,6 +17,9 @@ pub(crate) mod gmsh;
 mod gmsh4;
 mod mesh_file;
 mod number;
+mod obj;
+mod stl;
+pub mod surface;
 mod table;
 mod tokens;
 pub(crate) mod vtk_grid;
@@ -33,6 +36,9 @@ pub use cdb::read_cdb;
 pub use error::ReadError;
 pub use gmsh::read_gmsh;
 pub use mesh_file::{FileMaterial, MeshFile};
+pub use obj::read_obj;
+pub use stl::read_stl;
+pub use surface::{SURFACE_ENDINGS, Surface, read_surface};
 pub use vtk_legacy::read_vtk;
 pub use vtu::read_vtu;
 

@@ -1,6 +1,7 @@
 //! What the writers show, taken from a running system.
 
 use super::system::{GrainsView, SolidView};
+use super::wall_output;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::write::{self, ChainFrame, GrainFrame, SolidFrame, WallFrame};
@@ -60,7 +61,9 @@ fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
 
 /// The grains: one point per sphere.
 pub fn grains(view: GrainsView<'_>) -> GrainFrame {
-    let stress = dem::measure::mean_stress(view.model, view.state);
+    let contacts = dem::measure::contacts(view.model, view.state);
+    let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
+    let neighbours = dem::measure::neighbours(view.model, &contacts);
     let force = dem::measure::contact_forces(view.model, view.state);
     let mut frame = GrainFrame::default();
     for body in 0..view.model.body_count() {
@@ -76,15 +79,24 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
             frame.part.push(view.model.part(body));
             frame.mean_stress.push((stress[body][0] + stress[body][1] + stress[body][2]) / 3.0);
             frame.force.push(force[body].into());
+            frame.coordination.push(neighbours[body]);
         }
     }
     frame
 }
 
-/// Force chains: a line from partner to partner for each contact that carries force.
-pub fn chains(view: GrainsView<'_>) -> ChainFrame {
+/// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
+/// than the mean normal force.
+pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
-    for c in dem::measure::contacts(view.model, view.state) {
+    let contacts = dem::measure::contacts(view.model, view.state);
+    let mean = dem::measure::strong_network(&contacts).mean_force;
+    for c in contacts {
+        let strong = c.normal_force > mean;
+        if strong_only && !strong {
+            continue;
+        }
+        frame.strong.push(u32::from(strong));
         let first = view.state.position(c.a);
         let second = match c.b {
             dem::Partner::Body(b) => view.state.position(b),
@@ -99,6 +111,7 @@ pub fn chains(view: GrainsView<'_>) -> ChainFrame {
             dem::Partner::Plane(_) => 1,
             dem::Partner::Triangle(_) => 2,
             dem::Partner::Patch(_) => 3,
+            dem::Partner::Wall(_) => 4,
         });
     }
     frame
@@ -107,33 +120,17 @@ pub fn chains(view: GrainsView<'_>) -> ChainFrame {
 /// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
 pub fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
     let mut frame = WallFrame::default();
-    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| {
-        let first = frame.points.len() as u32;
-        frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
-        for polygon in polygons {
-            frame.polygons.push(polygon.iter().map(|v| v + first).collect());
-            frame.id.push(id);
-        }
-    };
-    let (centre, half) = extent(view);
+    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
+    let extent = extent(view);
     let mut id = 0;
     for (i, plane) in part.planes().iter().enumerate() {
-        let normal = plane.normal.normalize();
         let point = view.state.plane_point(view.model, i);
-        let middle = centre - normal * (centre - point).dot(&normal);
-        let helper = if normal.x.abs() < 0.9 { dem::Vec3::x() } else { dem::Vec3::y() };
-        let (u, v) = (normal.cross(&helper).normalize(), normal.cross(&normal.cross(&helper)).normalize());
-        let corner = |a: f64, b: f64| middle + (u * a + v * b) * half;
-        add(id, &[corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)], &[&[0, 1, 2, 3]]);
+        let (points, polygons) = wall_output::square(&point, &plane.normal.normalize(), extent);
+        add(id, &points, &polygons.iter().map(Vec::as_slice).collect::<Vec<_>>());
         id += 1;
     }
-    for (i, surface) in part.triangles().iter().enumerate() {
-        let offset = view.state.triangles_offset(i);
-        let points: Vec<dem::Vec3> = surface.vertices.iter().map(|p| p + offset).collect();
-        let polygons: Vec<&[u32]> = surface.triangles.iter().map(|t| t.as_slice()).collect();
-        add(id, &points, &polygons);
-        id += 1;
-    }
+    id = wall_output::polygons(view, part, extent, id, &mut frame);
+    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
     for body in 0..view.model.body_count() {
         if let Shape::Box { half } = view.model.shape(body) {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
@@ -150,6 +147,16 @@ pub fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
         }
     }
     frame
+}
+
+/// Adds polygons of one wall.
+fn push(frame: &mut WallFrame, id: u32, points: &[dem::Vec3], polygons: &[&[u32]]) {
+    let first = frame.points.len() as u32;
+    frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
+    for polygon in polygons {
+        frame.polygons.push(polygon.iter().map(|v| v + first).collect());
+        frame.id.push(id);
+    }
 }
 
 /// Middle of the grains and half the largest side of the box around them [m].

@@ -1,8 +1,9 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
+use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
 use crate::write::WriteError;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::step::Stability;
@@ -54,6 +55,15 @@ pub struct Summary {
     /// Settlement per load cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
+    /// Groups that have grown to their size.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub growth: Vec<GrowthRecord>,
+    /// Stages of compaction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compaction: Vec<CompactionRecord>,
+    /// The grains at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<PackingRecord>,
     /// Remarks that do not stop a run.
     pub warnings: Vec<String>,
     /// Sources of the models used.
@@ -61,7 +71,7 @@ pub struct Summary {
 }
 
 /// One stage of a run.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StageRecord {
     /// Name.
     pub name: String,
@@ -331,6 +341,7 @@ impl Summary {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
             lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
         }
+        lines.extend(packing::report(self));
         for warning in &self.warnings {
             lines.push(format!("note: {warning}"));
         }
@@ -362,6 +373,11 @@ impl Hash {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }
+    }
+
+    /// The hash as a number.
+    pub fn value(self) -> u64 {
+        self.0
     }
 
     /// The hash in hexadecimal.

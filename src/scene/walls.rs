@@ -1,14 +1,18 @@
 //! Walls as written in a scene.
 
-use super::units::{Length, Quantity, Velocity};
+use super::track::Motion;
+use super::units::{Angle, Force, Frequency, Length, Mass, Quantity, Spin, Stress, Time, Velocity};
 use serde::Deserialize;
+use std::path::PathBuf;
 
-/// `[[walls]]`: a plane or a set of triangles.
+/// `[[walls]]`: a plane, a round shape, or triangles.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
     /// Kind of wall.
     pub kind: WallKind,
+    /// Name for the history and for reports; default `wall<number>`, counted from 0.
+    pub name: Option<String>,
     /// Name of its material.
     pub material: String,
     /// A point of a `plane` [m].
@@ -19,8 +23,39 @@ pub struct Wall {
     pub vertices: Option<Vec<[Quantity<Length>; 3]>>,
     /// Vertex numbers of `triangles`, counted from 0.
     pub triangles: Option<Vec<[u32; 3]>>,
+    /// Surface file of a `mesh`.
+    pub file: Option<PathBuf>,
+    /// Factor on the lengths of a `mesh`; default 1.
+    pub scale: Option<f64>,
+    /// Shift of a `mesh`, after scaling [m]; default none.
+    pub translation: Option<[Quantity<Length>; 3]>,
+    /// Middle of the first end of a `cylinder` or `cone`, middle of a `sphere` [m].
+    pub base: Option<[Quantity<Length>; 3]>,
+    /// Direction from the first end to the second; default up (0, 0, 1).
+    pub axis: Option<[f64; 3]>,
+    /// Distance of the ends [m], 0 or more: 0 makes a `cone` a flat ring.
+    pub height: Option<Quantity<Length>>,
+    /// Radius of a `cylinder` or `sphere` [m].
+    pub radius: Option<Quantity<Length>>,
+    /// Radii of the two ends of a `cone` [m].
+    pub radii: Option<[Quantity<Length>; 2]>,
+    /// Whether discs close the two ends; default neither.
+    pub caps: Option<[bool; 2]>,
     /// Constant velocity [m/s]; default at rest.
     pub velocity: Option<[Quantity<Velocity>; 3]>,
+    /// Constant angular velocity [rad/s]; default none.
+    pub angular_velocity: Option<[Quantity<Spin>; 3]>,
+    /// Point that the wall turns about, at the start; it goes along with the velocity [m].
+    pub centre: Option<[Quantity<Length>; 3]>,
+    /// Oscillation on top of the velocity.
+    pub oscillation: Option<Oscillation>,
+    /// Drive by a force.
+    pub servo: Option<Servo>,
+    /// Makes triangles a rigid body.
+    pub body: Option<Body>,
+    /// Write the force of the grains on the wall, its moment and the wall's displacement to `history.csv`.
+    #[serde(default)]
+    pub record: bool,
 }
 
 /// Kind of a wall.
@@ -29,6 +64,67 @@ pub struct Wall {
 pub enum WallKind {
     /// Infinite plane, one-sided.
     Plane,
+    /// Side of a cylinder, touched from inside and outside.
+    Cylinder,
+    /// Side of a frustum of a cone, touched from inside and outside.
+    Cone,
+    /// Sphere, touched from inside and outside.
+    Sphere,
     /// Triangles, two-sided.
     Triangles,
+    /// Triangles from a file, two-sided.
+    Mesh,
+}
+
+/// Sine in time.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Oscillation {
+    /// Amplitude [m].
+    pub amplitude: Quantity<Length>,
+    /// Direction, any length but zero.
+    pub direction: [f64; 3],
+    /// Frequency [Hz].
+    pub frequency: Quantity<Frequency>,
+    /// Phase at the start [rad]; default 0.
+    pub phase: Option<Quantity<Angle>>,
+}
+
+/// Drive that holds a force.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Servo {
+    /// Direction in which the wall presses; default the normal of a plane.
+    pub direction: Option<[f64; 3]>,
+    /// Force to hold [N].
+    pub force: Option<Quantity<Force>>,
+    /// Pressure to hold, in place of a force [Pa].
+    pub pressure: Option<Quantity<Stress>>,
+    /// Area that the pressure acts on [m²].
+    pub area: Option<f64>,
+    /// Factor on the force against time: [[time, factor], …], straight in between; default 1 at all times.
+    pub history: Option<Vec<(Quantity<Time>, f64)>>,
+    /// Greatest speed [m/s].
+    pub max_speed: Quantity<Velocity>,
+    /// Gain, above 0 and at most 1; default 0.5.
+    pub gain: Option<f64>,
+}
+
+/// Rigid body of triangles.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// Mass [kg].
+    pub mass: Quantity<Mass>,
+    /// Centre of mass [m]; default that of the enclosed solid.
+    pub centre: Option<[Quantity<Length>; 3]>,
+    /// Inertia about the centre in world axes, xx, yy, zz, xy, yz, zx [kg m²]; default that of the enclosed solid.
+    pub inertia: Option<[f64; 6]>,
+    /// Velocity at the start [m/s].
+    pub velocity: Option<[Quantity<Velocity>; 3]>,
+    /// Angular velocity at the start [rad/s].
+    pub spin: Option<[Quantity<Spin>; 3]>,
+    /// Motions that keep their starting velocity.
+    #[serde(default)]
+    pub hold: Vec<Motion>,
 }

@@ -2,8 +2,8 @@
 //!
 //! A sphere within reach of several patches touches the surface where its distance to the *union* of them has a
 //! local minimum. A closest point inside a patch is one. A closest point on an edge or a vertex is one only if no
-//! other patch through that point has a closer point; and points that several patches share count once, for the
-//! lowest patch. The test is on points, so it also holds for surfaces whose neighbouring patches do not share
+//! other patch through that point has a closer point; and points that several patches share count once: for a face
+//! before an edge before a vertex, and of these for the lowest patch. The test is on points, so it also holds for surfaces whose neighbouring patches do not share
 //! vertex numbers.
 //!
 //! A contact that moves on to another patch takes its memory along: matched by patch first, else with the nearest
@@ -13,15 +13,19 @@
 //! ten degrees: such a seam stands for a smooth surface (the faces of a solid are only C0, and a load bends every
 //! seam below it hollow), where counting each patch would double the stiffness near the seam and, as the bend comes
 //! and goes, pump energy into the contact. Of such contacts the deepest counts; its overlap is the largest of all
-//! and so continuous, and the force keeps a potential.
+//! and so continuous, and the force keeps a potential. Contacts are taken in falling order of overlap, and one that is
+//! like one taken before is left out, so the result does not depend on the order of the patches.
+//!
+//! The near list holds numbers only; what a contact remembers is kept for those in touch.
 
 use super::pass::motion;
 use super::{ContactGeometry, ContactLaw, History, PairTable};
 use crate::Vec3;
 use crate::error::Partner;
 use crate::ledger::Impulse;
-use crate::state::{Block, Lanes, PatchPair, xyz};
+use crate::state::{Block, Lanes, PatchContact, PatchList, PatchPair, xyz};
 use crate::surface::{Feature, PatchPoint, Surface, SurfaceContact};
+use crate::wall::advance::WallSum;
 use crate::work::{BlockWork, Failure};
 
 /// Points closer than this fraction of the radius are one.
@@ -41,9 +45,9 @@ pub(crate) struct Exchange {
 /// One patch against the sphere at hand.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
-    pub entry: u32,
-    pub closest: PatchPoint,
-    pub geometry: ContactGeometry,
+    patch: u32,
+    closest: PatchPoint,
+    geometry: ContactGeometry,
     /// The centre lies behind a one-sided surface.
     behind: bool,
     pub counts: bool,
@@ -51,66 +55,90 @@ pub(crate) struct Touch {
 
 /// Finds which of the patches `pairs` (all of one sphere at `x`) count. Results are appended to `out`.
 fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], out: &mut Vec<Touch>) {
-    let first = out.len();
-    for (entry, pair) in pairs.iter_mut().enumerate() {
-        let closest = surface.closest_point(pair.patch, (*x).into(), pair.local);
+    for pair in pairs {
+        let centre = [x.x, x.y, x.z];
+        if !surface.within(pair.patch, centre, r) {
+            continue;
+        }
+        let closest = surface.closest_point(pair.patch, centre, pair.local);
         pair.local = closest.local;
         let (point, outward) = (Vec3::from(closest.point), Vec3::from(closest.normal));
         let offset = x - point;
-        let distance = offset.norm();
-        if distance >= r {
+        let along = offset.dot(&outward);
+        let behind = along < 0.0 && surface.one_sided_patch(pair.patch);
+        let straight = closest.feature == Feature::Face && surface.sharp();
+        let distance = if straight { along.abs() } else { offset.norm() };
+        if distance >= r && !(behind && straight) {
             continue;
         }
-        let behind = surface.one_sided() && offset.dot(&outward) < 0.0;
         let (normal, overlap) = match (distance > 0.0, behind) {
             (false, _) => (outward, r),
+            (true, false) if straight => (if along < 0.0 { -outward } else { outward }, r - distance),
+            (true, true) if straight => (outward, r + distance),
             (true, false) => (offset / distance, r - distance),
             (true, true) => (-offset / distance, r + distance),
         };
         let geometry = ContactGeometry { point, normal, overlap, radius: r };
-        out.push(Touch { entry: entry as u32, closest, geometry, behind, counts: true });
+        out.push(Touch { patch: pair.patch, closest, geometry, behind, counts: true });
     }
-    let found = &mut out[first..];
+    if out.len() < 2 {
+        // A single patch: nothing to tell apart but the space beside a one-sided surface.
+        for t in out.iter_mut() {
+            t.counts = !(t.behind && t.closest.feature != Feature::Face);
+        }
+        return;
+    }
     let tolerance = SAME * r;
-    for k in 0..found.len() {
-        let point = found[k].geometry.point;
-        let mut shared = false;
-        let on_rim = found[k].closest.feature != Feature::Face;
-        let mut counts = true;
-        for m in 0..found.len() {
+    for k in 0..out.len() {
+        let point = out[k].geometry.point;
+        let rank = |k: usize, t: &Touch| match t.closest.feature {
+            Feature::Face => (0, k),
+            Feature::Edge(_) => (1, k),
+            Feature::Vertex(_) => (2, k),
+        };
+        let own = rank(k, &out[k]);
+        let on_rim = own.0 > 0;
+        let (mut shared, mut counts) = (false, true);
+        for (m, other) in out.iter().enumerate() {
             if m == k {
                 continue;
             }
-            let other = &found[m];
             if (other.geometry.point - point).norm() <= tolerance {
                 shared = true;
-                // Once for the lowest patch.
-                counts &= !(m < k && other.counts);
-            } else if on_rim {
-                let patch = pairs[other.entry as usize].patch;
-                let nearest = surface.closest_point(patch, point.into(), other.closest.local);
-                if (Vec3::from(nearest.point) - point).norm() <= tolerance {
-                    counts = false;
-                }
+                counts &= own < rank(m, other);
+            } else if on_rim && surface.within(other.patch, point.into(), tolerance) {
+                let nearest = surface.closest_point(other.patch, point.into(), other.closest.local);
+                counts &= (Vec3::from(nearest.point) - point).norm() > tolerance;
             }
         }
         // Behind the outer rim of a one-sided surface is beside it, not below it.
-        found[k].counts = counts && !(on_rim && found[k].behind && !shared);
+        out[k].counts = counts && !(on_rim && out[k].behind && !shared);
     }
-    keep_deepest(found);
+    keep_deepest(out);
 }
 
 /// Of contacts whose normals differ little keeps the deepest, the first of equals.
 fn keep_deepest(found: &mut [Touch]) {
-    for k in 0..found.len() {
-        for m in 0..k {
-            let (first, second) = (&found[m], &found[k]);
-            if first.counts && second.counts && first.geometry.normal.dot(&second.geometry.normal) > SMOOTH {
-                let loser = if second.geometry.overlap > first.geometry.overlap { m } else { k };
-                found[loser].counts = false;
+    let mut last = (f64::INFINITY, 0);
+    loop {
+        let next = (0..found.len())
+            .filter(|&k| found[k].counts && after(last, k, &found[k]))
+            .max_by(|&a, &b| found[a].geometry.overlap.total_cmp(&found[b].geometry.overlap).then(b.cmp(&a)));
+        let Some(k) = next else { return };
+        last = (found[k].geometry.overlap, k);
+        let normal = found[k].geometry.normal;
+        for m in 0..found.len() {
+            if found[m].counts && after(last, m, &found[m]) && normal.dot(&found[m].geometry.normal) > SMOOTH
+            {
+                found[m].counts = false;
             }
         }
     }
+}
+
+/// Whether a touch comes after `last` in falling order of overlap.
+fn after(last: (f64, usize), k: usize, t: &Touch) -> bool {
+    t.geometry.overlap < last.0 || (t.geometry.overlap == last.0 && k > last.1)
 }
 
 /// All contacts of a block with one surface.
@@ -119,100 +147,158 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
     surface: &S,
     material: impl Fn(u32) -> u32,
     partner: impl Fn(u32) -> Partner,
-    list: &mut [PatchPair],
+    list: &mut PatchList,
     block: &Block,
     w: &mut BlockWork,
+    sums: &mut [WallSum],
     external: bool,
     dt: f64,
 ) -> Exchange {
     let mut exchange = Exchange::default();
     let mut touched = std::mem::take(&mut w.touches);
-    for pairs in list.chunk_by_mut(|a, b| a.i == b.i) {
-        let i = pairs[0].i as usize;
+    let mut live = std::mem::take(&mut w.live);
+    live.clear();
+    // Out of `w`, which takes the forces meanwhile.
+    let owners = std::mem::take(&mut w.owner);
+    let owner = |i: u32| if RIGID { owners[i as usize] as usize } else { i as usize };
+    let end = |c: &mut PatchContact| {
+        if c.history.is_fresh() {
+            return 0.0;
+        }
+        laws.get(block.spin[owner(c.i)][3] as u32, material(c.patch)).release(&mut c.history)
+    };
+    let (mut dashpot, mut friction) = (0.0, 0.0);
+    let old = &mut list.live[..];
+    let mut at = 0;
+    for pairs in list.pairs.chunk_by_mut(|a, b| a.i == b.i) {
+        let sphere = pairs[0].i;
+        let i = sphere as usize;
         let p: Lanes = if RIGID { w.spheres[i] } else { block.centre[i] };
         let (x, r) = (xyz(&p), p[3]);
         touched.clear();
         touches(surface, &x, r, pairs, &mut touched);
-        hand_over(&touched, pairs, r);
-
-        let a = if RIGID { w.owner[i] as usize } else { i };
-        let own = block.spin[a][3] as u32;
-        for (entry, pair) in pairs.iter_mut().enumerate() {
-            let on = touched.iter().any(|t| t.counts && t.entry as usize == entry);
-            if !on && !pair.history.is_fresh() {
-                w.ledger.dissipated_friction +=
-                    laws.get(own, material(pair.patch)).release(&mut pair.history);
-            }
+        while at < old.len() && old[at].i < sphere {
+            friction += end(&mut old[at]);
+            at += 1;
         }
+        let from = at;
+        at += old[from..].iter().take_while(|c| c.i == sphere).count();
+        let before = &mut old[from..at];
+        if touched.is_empty() && before.is_empty() {
+            continue;
+        }
+        let first = live.len();
         for t in touched.iter().filter(|t| t.counts) {
-            let pair = &mut pairs[t.entry as usize];
+            live.push(begin(t, sphere, before));
+        }
+        let now = &mut live[first..];
+        if before.iter().any(|c| !c.history.is_fresh()) {
+            hand_over(now, before, r);
+            before.iter_mut().for_each(|c| friction += end(c));
+        }
+
+        let a = owner(sphere);
+        let own = block.spin[a][3] as u32;
+        for (t, contact) in touched.iter().filter(|t| t.counts).zip(now) {
             let g = &t.geometry;
-            // A two-sided wall pushes back from whichever side the centre is on: a flipped normal means it passed.
-            let passed = !pair.history.is_fresh() && pair.normal.dot(&g.normal) < -0.5;
+            let side = g.normal.dot(&Vec3::from(t.closest.normal));
+            // A two-sided wall pushes back from whichever side the centre is on: a flipped normal on the other side of
+            // the patch means it passed.
+            let passed = !contact.history.is_fresh()
+                && contact.normal.dot(&g.normal) < -0.5
+                && contact.side * side <= 0.0;
             let overlap = if passed { 2.0 * r - g.overlap } else { g.overlap };
-            let bound = if surface.one_sided() { 2.0 * r } else { r };
+            let one_sided = surface.one_sided();
+            let bound = if one_sided { 2.0 * r } else { r };
             if (passed || overlap > bound) && w.failure.is_none() {
-                let partner = partner(pair.patch);
+                let partner = partner(t.patch);
                 w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
             }
             let ma = motion(block, a, &g.point);
             let wall = Vec3::from(t.closest.velocity);
-            let mass = 1.0 / block.velocity[a][3];
-            let law = laws.get(own, material(pair.patch));
-            let f = law.respond(mass, g, &(ma.at_point() - wall), &ma.spin(), &mut pair.history, dt);
-            pair.point = g.point;
-            pair.normal = g.normal;
-            pair.velocity = wall;
-            pair.overlap = g.overlap;
-            w.ledger.dissipated_dashpot += f.dashpot;
-            w.ledger.dissipated_friction += f.friction;
-            exchange.work += f.force.dot(&wall) * dt;
-            exchange.impulse.add(&g.point, &(f.force * dt));
-            exchange.impulse.angular += f.moment * dt;
+            let mass = 1.0 / (block.velocity[a][3] + surface.inverse_mass(t.patch));
+            let law = laws.get(own, material(t.patch));
+            let f = law.respond(
+                mass,
+                g,
+                &(ma.at_point() - wall),
+                &(ma.spin() - surface.spin(t.patch)),
+                &mut contact.history,
+                dt,
+            );
+            contact.point = g.point;
+            contact.normal = g.normal;
+            contact.velocity = wall;
+            contact.overlap = g.overlap;
+            contact.side = side;
+            dashpot += f.dashpot;
+            friction += f.friction;
             w.push(a, &f.force, &(ma.arm.cross(&f.force) + f.moment));
             if external {
-                let sphere = i as u32 - w.first[a];
+                exchange.work += f.force.dot(&wall) * dt;
+                exchange.impulse.add(&g.point, &(f.force * dt));
+                exchange.impulse.angular += f.moment * dt;
                 w.contacts.push(SurfaceContact {
-                    sphere,
+                    sphere: sphere - w.first[a],
                     body: block.bodies[a],
-                    patch: pair.patch,
+                    patch: t.patch,
                     local: t.closest.local,
                     point: g.point.into(),
                     force: (-f.force).into(),
                     overlap: g.overlap,
                 });
+            } else {
+                let sum = &mut sums[surface.group(t.patch)];
+                let stiffness = law.stiffness(g.overlap, g.radius);
+                sum.force += f.force;
+                sum.moment +=
+                    (g.point - Vec3::from(surface.moment_centre(t.patch))).cross(&f.force) + f.moment;
+                sum.stiffness += stiffness;
+                sum.damping += (stiffness * mass).sqrt();
             }
         }
     }
+    old[at..].iter_mut().for_each(|c| friction += end(c));
+    w.ledger.dissipated_dashpot += dashpot;
+    w.ledger.dissipated_friction += friction;
+    std::mem::swap(&mut list.live, &mut live);
+    w.live = live;
+    w.owner = owners;
     w.touches = touched;
     exchange
 }
 
+/// A contact for a touch, with the memory that the same sphere has of the same patch.
+fn begin(t: &Touch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
+    let mut contact = PatchContact {
+        i: sphere,
+        patch: t.patch,
+        point: t.geometry.point,
+        normal: t.geometry.normal,
+        velocity: Vec3::zeros(),
+        overlap: t.geometry.overlap,
+        side: t.geometry.normal.dot(&Vec3::from(t.closest.normal)),
+        history: History::NONE,
+    };
+    if let Some(old) = before.iter_mut().find(|c| c.patch == t.patch) {
+        contact.history = std::mem::replace(&mut old.history, History::NONE);
+        (contact.normal, contact.side) = (old.normal, old.side);
+    }
+    contact
+}
+
 /// Contacts that begin take the memory of contacts that end nearby with a similar normal.
-fn hand_over(touched: &[Touch], pairs: &mut [PatchPair], r: f64) {
-    for t in touched.iter().filter(|t| t.counts) {
-        if !pairs[t.entry as usize].history.is_fresh() {
-            continue;
-        }
-        let mut nearest: Option<(f64, usize)> = None;
-        for (m, old) in pairs.iter().enumerate() {
-            let on = touched.iter().any(|u| u.counts && u.entry as usize == m);
-            let distance = (old.point - t.geometry.point).norm();
-            if !on
-                && !old.history.is_fresh()
-                && old.normal.dot(&t.geometry.normal) > SIMILAR
-                && distance < 0.5 * r
-                && nearest.is_none_or(|(best, _)| distance < best)
-            {
-                nearest = Some((distance, m));
-            }
-        }
-        if let Some((_, m)) = nearest {
-            let history = std::mem::replace(&mut pairs[m].history, History::NONE);
-            let normal = pairs[m].normal;
-            let to = &mut pairs[t.entry as usize];
-            to.history = history;
-            to.normal = normal;
+fn hand_over(now: &mut [PatchContact], before: &mut [PatchContact], r: f64) {
+    for contact in now.iter_mut().filter(|c| c.history.is_fresh()) {
+        let nearest = before
+            .iter_mut()
+            .filter(|old| !old.history.is_fresh() && old.normal.dot(&contact.normal) > SIMILAR)
+            .map(|old| ((old.point - contact.point).norm(), old))
+            .filter(|(distance, _)| *distance < 0.5 * r)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, old)) = nearest {
+            contact.history = std::mem::replace(&mut old.history, History::NONE);
+            contact.normal = old.normal;
         }
     }
 }

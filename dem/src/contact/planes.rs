@@ -10,7 +10,7 @@ use crate::lanes::{Four, Kernel, V3};
 use crate::model::Model;
 use crate::shape::cuboid;
 use crate::state::{Block, Lanes, xyz};
-use crate::wall::triangulated::WallMotion;
+use crate::wall::state::WallMotion;
 use crate::work::{BlockWork, Failure};
 
 /// A plane where it is now: unit normal and its product with a point; velocity and material.

@@ -1,4 +1,4 @@
-//! Stone library: shapes at unit scale, as clumps of spheres.
+//! Stone library: shapes at unit scale, as clumps of spheres or as bonded spheres.
 //!
 //! File form (TOML); lengths in metres at unit scale. A library whose stones all have sieve size 1 m is scaled by
 //! the sieve size wanted.
@@ -12,8 +12,12 @@
 //!     [0.1, 0.0, -0.2, 0.3], # x, y, z, radius
 //! ]
 //! ```
+//!
+//! A stone with `bonds = [[0, 1], …]`, pairs of spheres counted from 0, can break; `density_factor` makes up for its
+//! pores.
 
 use crate::shape::clump::{Clump, ShapeError};
+use crate::shape::cluster::{Cluster, ClusterError};
 use serde::{Deserialize, Serialize};
 
 /// A library file as written.
@@ -36,6 +40,13 @@ pub struct Stone {
     pub name: String,
     /// x, y, z of the centre and radius of each sphere [m] in any frame.
     pub spheres: Vec<[f64; 4]>,
+    /// Pairs of bonded spheres, counted from 0, of a stone that can break; none for a rigid clump.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bonds: Vec<[u32; 2]>,
+    /// Density of the spheres over that of the stone's material, above 0; 1 without it. A bonded stone is porous: with
+    /// this factor its spheres have the mass of the solid stone. Rigid clumps do not use it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_factor: Option<f64>,
 }
 
 /// Why a library is of no use.
@@ -56,6 +67,18 @@ pub enum LibraryError {
         /// What is wrong with it.
         source: ShapeError,
     },
+    /// A stone is not a bonded cluster.
+    #[error("stone {index} ('{name}') of library '{library}': {source}")]
+    Cluster {
+        /// Name of the library.
+        library: String,
+        /// Index of the stone, from 0.
+        index: usize,
+        /// Name of the stone.
+        name: String,
+        /// What is wrong with it.
+        source: ClusterError,
+    },
 }
 
 impl StoneLibrary {
@@ -64,19 +87,47 @@ impl StoneLibrary {
     /// # Errors
     /// [`LibraryError`] when there is no stone, or one whose spheres do not make a clump.
     pub fn clumps(&self) -> Result<Vec<Clump>, LibraryError> {
-        if self.stones.is_empty() {
-            return Err(LibraryError::Empty(self.name.clone()));
-        }
-        let build = |(index, stone): (usize, &Stone)| {
-            let spheres: Vec<_> = stone.spheres.iter().map(|&[x, y, z, r]| ([x, y, z], r)).collect();
-            Clump::from_spheres(&spheres).map_err(|source| LibraryError::Stone {
+        self.each(|index, stone| {
+            Clump::from_spheres(&stone.balls()).map_err(|source| LibraryError::Stone {
                 library: self.name.clone(),
                 index,
                 name: stone.name.clone(),
                 source,
             })
-        };
-        self.stones.iter().enumerate().map(build).collect()
+        })
+    }
+
+    /// The stones as bonded clusters, each in the frame of its spheres, in the file's order and size.
+    ///
+    /// # Errors
+    /// [`LibraryError`] when there is no stone, or one whose spheres and bonds do not make a cluster.
+    pub fn clusters(&self) -> Result<Vec<Cluster>, LibraryError> {
+        self.each(|index, stone| {
+            let factor = stone.density_factor.unwrap_or(1.0);
+            Cluster::new(&stone.balls(), &stone.bonds, factor).map_err(|source| LibraryError::Cluster {
+                library: self.name.clone(),
+                index,
+                name: stone.name.clone(),
+                source,
+            })
+        })
+    }
+
+    fn each<T>(
+        &self,
+        build: impl Fn(usize, &Stone) -> Result<T, LibraryError>,
+    ) -> Result<Vec<T>, LibraryError> {
+        if self.stones.is_empty() {
+            return Err(LibraryError::Empty(self.name.clone()));
+        }
+        self.stones.iter().enumerate().map(|(i, s)| build(i, s)).collect()
+    }
+}
+
+impl Stone {
+    /// Centre [m] and radius [m] of each sphere.
+    pub fn balls(&self) -> Vec<([f64; 3], f64)> {
+        self.spheres.iter().map(|&[x, y, z, r]| ([x, y, z], r)).collect()
     }
 }
 
@@ -84,11 +135,15 @@ impl StoneLibrary {
 mod tests {
     use super::*;
 
+    fn plain(name: &str, spheres: &[[f64; 4]]) -> Stone {
+        Stone { name: name.into(), spheres: spheres.to_vec(), bonds: Vec::new(), density_factor: None }
+    }
+
     fn library(stones: &[(&str, &[[f64; 4]])]) -> StoneLibrary {
         StoneLibrary {
             name: "test".into(),
             source: "here".into(),
-            stones: stones.iter().map(|(n, s)| Stone { name: (*n).into(), spheres: s.to_vec() }).collect(),
+            stones: stones.iter().map(|(n, s)| plain(n, s)).collect(),
         }
     }
 
@@ -123,6 +178,19 @@ mod tests {
             );
             assert!((0.3..0.75).contains(&clump.volume));
         }
+    }
+
+    #[test]
+    fn a_bonded_stone_needs_its_bonds() {
+        let row = [[0.0, 0.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.5]];
+        let mut file = library(&[("pair", &row)]);
+        let error = file.clusters().unwrap_err().to_string();
+        assert!(error.contains("stone 0 ('pair')") && error.contains("bonds"), "{error}");
+        file.stones[0].bonds = vec![[0, 1]];
+        file.stones[0].density_factor = Some(2.0);
+        let cluster = &file.clusters().unwrap()[0];
+        assert!((cluster.volume - 2.0 * std::f64::consts::PI / 3.0).abs() < 1e-12);
+        assert_eq!(library(&[]).clusters(), Err(LibraryError::Empty("test".into())));
     }
 
     #[test]

@@ -9,9 +9,10 @@ use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
 /// A stream for one purpose; different purposes of one seed are independent.
-pub(super) struct Random(Pcg64);
+pub struct Random(Pcg64);
 
 impl Random {
+    /// The stream of `purpose` that `seed` starts.
     pub fn new(seed: u64, purpose: u64) -> Random {
         // An odd multiplier keeps (seed, purpose) pairs apart; seed_from_u64 then spreads the bits.
         Random(Pcg64::seed_from_u64(seed ^ purpose.wrapping_mul(0x9e37_79b9_7f4a_7c15)))

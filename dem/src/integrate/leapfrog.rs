@@ -8,60 +8,209 @@
 //!
 //! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
 
-use super::rotation;
+use super::rotation::{self, Turn};
 use crate::Vec3;
+use crate::lanes::{Four, Kernel, V3};
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Rotation, set_xyz, spin_of, xyz};
+use crate::state::{Block, Lanes, Rotation, set_xyz, spin_of, xyz};
 use crate::work::{Applied, BlockWork, Failure};
+use nalgebra::UnitQuaternion;
 
-/// Moves all bodies of a block by one step. `applied` holds the block's applied forces, by place.
-pub(crate) fn advance<const RIGID: bool>(
+/// Moves all bodies of a block by one step: four at a time where all are free, else one by one.
+pub(crate) struct Advance<'a, const RIGID: bool> {
+    pub model: &'a Model,
+    pub block: &'a mut Block,
+    pub w: &'a mut BlockWork,
+    /// The block's applied forces, by place.
+    pub applied: &'a [Applied],
+    pub dt: f64,
+}
+
+impl<const RIGID: bool> Kernel for Advance<'_, RIGID> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Four>(self) {
+        let Advance { model, block, w, mut applied, dt } = self;
+        let bound = 0.5 * model.radii.0 / dt;
+        let n = block.bodies.len();
+        let quick = if w.free && model.damping == 0.0 && applied.is_empty() { n - n % 4 } else { 0 };
+        let mut sums = Sums { moment: V3::<R>::zero(), fastest2: R::zero(), sound: true };
+        for k in (0..quick).step_by(4) {
+            four::<R, RIGID>(model, block, w, k, dt, &mut sums);
+        }
+        let moment = &sums.moment;
+        let mut moment = Vec3::new(moment.x.sum(), moment.y.sum(), moment.z.sum());
+        let mut fastest2 = sums.fastest2.largest();
+        // A maximum does not show a velocity that is not a number.
+        let mut too_fast = None;
+        if !sums.sound || fastest2 > bound * bound {
+            too_fast =
+                (0..quick).map(|k| (k, speed2::<RIGID>(block, w, k))).find(|(_, v)| !(*v <= bound * bound));
+        }
+        for k in quick..n {
+            moment += xyz(&block.centre[k]) * w.mass[k];
+            let own = applied.iter().take_while(|a| a.place as usize == k).count();
+            let (loads, rest) = applied.split_at(own);
+            applied = rest;
+            let v2 = general::<RIGID>(model, block, w, k, loads, dt);
+            if RIGID {
+                let q = block.rotation[k].orientation;
+                let centre = block.centre[k];
+                w.place_spheres(k, &centre, &q);
+            }
+            if v2.is_nan() || v2 > bound * bound {
+                too_fast = too_fast.or(Some((k, v2)));
+            }
+            fastest2 = fastest2.max(v2);
+        }
+        if let (Some((k, v2)), true) = (too_fast, w.failure.is_none()) {
+            w.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
+        }
+        w.fastest = fastest2.sqrt();
+        let impulse = model.gravity * dt;
+        w.ledger.gravity.linear += impulse * w.mass_sum;
+        w.ledger.gravity.angular += moment.cross(&impulse);
+    }
+}
+
+/// What the bodies moved four at a time add up to, by lane.
+struct Sums<R> {
+    /// Mass times position before the step.
+    moment: V3<R>,
+    /// Square of the largest speed.
+    fastest2: R,
+    /// Whether all speeds are numbers.
+    sound: bool,
+}
+
+/// Square of the largest speed of a body's points.
+fn speed2<const RIGID: bool>(block: &Block, w: &BlockWork, k: usize) -> f64 {
+    let v = xyz(&block.velocity[k]).norm();
+    let turn = if RIGID { xyz(&block.spin[k]).norm() * w.reach[k] } else { 0.0 };
+    (v + turn) * (v + turn)
+}
+
+/// Moves the free bodies k to k + 3.
+#[inline(always)]
+fn four<R: Four, const RIGID: bool>(
     model: &Model,
     block: &mut Block,
     w: &mut BlockWork,
-    mut applied: &[Applied],
+    k: usize,
     dt: f64,
+    sums: &mut Sums<R>,
 ) {
-    let bound = 0.5 * model.radii.0 / dt;
-    let plain = model.damping == 0.0;
-    let (mut mass_sum, mut moment, mut fastest2) = (0.0, Vec3::zeros(), 0.0_f64);
-    for k in 0..block.bodies.len() {
-        let x = xyz(&block.centre[k]);
-        let v = xyz(&block.velocity[k]);
-        mass_sum += w.mass[k];
-        moment += x * w.mass[k];
-
-        let own = applied.iter().take_while(|a| a.place as usize == k).count();
-        let free = plain && own == 0 && w.fixed[k] == 0;
-        let speed2 = if free && (!RIGID || w.kind[k] == Kind::Sphere) {
-            let inverse_mass = block.velocity[k][3];
-            let v = v + (xyz(&w.sums[k].force) * inverse_mass + model.gravity) * dt;
-            set_xyz(&mut block.velocity[k], &v);
-            set_xyz(&mut block.centre[k], &(x + v * dt));
-            let spin = xyz(&block.spin[k]) + xyz(&w.sums[k].torque) * (w.inverse_inertia[k] * dt);
-            set_xyz(&mut block.spin[k], &spin);
-            v.norm_squared()
-        } else {
-            let (loads, rest) = applied.split_at(own);
-            applied = rest;
-            general::<RIGID>(model, block, w, k, loads, dt)
-        };
-        if RIGID {
-            let q = block.rotation[k].orientation;
-            let centre = block.centre[k];
-            w.place_spheres(k, &centre, &q);
-        }
-        // Also catches a velocity that is not a number, which no maximum would show.
-        if (speed2.is_nan() || speed2 > bound * bound) && w.failure.is_none() {
-            w.failure = Some(Failure::Speed { body: block.bodies[k], speed: speed2.sqrt(), bound });
-        }
-        fastest2 = fastest2.max(speed2);
+    let step = R::load(&[dt, dt, dt, 0.0]);
+    let gravity = R::load(&[model.gravity.x, model.gravity.y, model.gravity.z, 0.0]);
+    let (mut before, mut after) = ([R::zero(); 4], [R::zero(); 4]);
+    let (centre, velocity) = (&mut block.centre[k..k + 4], &mut block.velocity[k..k + 4]);
+    let (spin, force) = (&mut block.spin[k..k + 4], &w.sums[k..k + 4]);
+    for l in 0..4 {
+        let (x, v) = (R::load(&centre[l]), R::load(&velocity[l]));
+        let kicked = v + (R::load(&force[l].force) * R::splat(velocity[l][3]) + gravity) * step;
+        kicked.store(&mut velocity[l]);
+        (x + kicked * step).store(&mut centre[l]);
+        (before[l], after[l]) = (x, kicked);
     }
-    w.fastest = fastest2.sqrt();
-    let impulse = model.gravity * dt;
-    w.ledger.gravity.linear += impulse * mass_sum;
-    w.ledger.gravity.angular += moment.cross(&impulse);
+    let [x, y, z, r] = R::transpose(before);
+    let [vx, vy, vz, softness] = R::transpose(after);
+    sums.moment = sums.moment + V3::new(x, y, z) * (R::splat(1.0) / softness);
+    let mut speed2 = V3::new(vx, vy, vz).norm2();
+
+    let clumps = if RIGID { w.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
+    if clumps {
+        speed2 = turn_four(block, w, k, dt, speed2);
+    } else {
+        // A sphere's moment of inertia is 2/5 m r².
+        let kick = (R::splat(2.5 * dt) * softness / (r * r)).array();
+        for l in 0..4 {
+            (R::load(&spin[l]) + R::load(&force[l].torque) * R::splat(kick[l])).store(&mut spin[l]);
+        }
+    }
+    sums.sound &= R::all(speed2.le(R::splat(f64::MAX)));
+    sums.fastest2 = sums.fastest2.max(speed2);
+    if RIGID {
+        for l in k..k + 4 {
+            place::<R>(w, l, &block.centre[l], &block.rotation[l].orientation);
+        }
+    }
+}
+
+/// Kicks and turns the free bodies k to k + 3, clumps and perhaps single spheres among them. Returns the squares of the
+/// largest speeds of their points, given those of the centres.
+#[inline(always)]
+fn turn_four<R: Four>(block: &mut Block, w: &BlockWork, k: usize, dt: f64, speed2: R) -> R {
+    let rotation = &mut block.rotation[k..k + 4];
+    let spin = &mut block.spin[k..k + 4];
+    let force = &w.sums[k..k + 4];
+    let inertia = &w.inertia[k..k + 4];
+    let lane = |p: &Vec3, q: &Vec3, s: &Vec3, t: &Vec3| {
+        ([p.x, q.x, s.x, t.x], [p.y, q.y, s.y, t.y], [p.z, q.z, s.z, t.z])
+    };
+    let [a, b, c, d] = [0, 1, 2, 3].map(|l| &rotation[l].momentum);
+    let (mx, my, mz) = lane(a, b, c, d);
+    let (ix, iy, iz) = lane(&inertia[0], &inertia[1], &inertia[2], &inertia[3]);
+    let inertia = V3::new(R::load(&ix), R::load(&iy), R::load(&iz));
+    let reach = R::load(&[w.reach[k], w.reach[k + 1], w.reach[k + 2], w.reach[k + 3]]);
+    let [tx, ty, tz, _] = R::transpose([
+        R::load(&force[0].torque),
+        R::load(&force[1].torque),
+        R::load(&force[2].torque),
+        R::load(&force[3].torque),
+    ]);
+    let [wx, wy, wz, material] =
+        R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
+    let impulse = V3::new(tx, ty, tz) * R::splat(dt);
+    let sphere = !R::zero().lt(reach);
+    let before = V3::new(wx, wy, wz);
+    let momentum = V3::new(R::load(&mx), R::load(&my), R::load(&mz)) + impulse;
+    let [qi, qj, qk, qw] = R::transpose([
+        R::load(&rotation[0].orientation.coords.data.0[0]),
+        R::load(&rotation[1].orientation.coords.data.0[0]),
+        R::load(&rotation[2].orientation.coords.data.0[0]),
+        R::load(&rotation[3].orientation.coords.data.0[0]),
+    ]);
+    let old = Turn { v: V3::new(qi, qj, qk), s: qw };
+    let new = rotation::free(old, momentum, inertia, dt);
+    let local = new.back(momentum);
+    let rate = new.apply(V3::new(local.x / inertia.x, local.y / inertia.y, local.z / inertia.z));
+    // A single sphere keeps its orientation; its momentum is not used.
+    let rate = V3::select(
+        sphere,
+        before + V3::new(impulse.x / inertia.x, impulse.y / inertia.x, impulse.z / inertia.x),
+        rate,
+    );
+    let turn = Turn { v: V3::select(sphere, old.v, new.v), s: R::select(sphere, old.s, new.s) };
+    let spins = R::transpose([rate.x, rate.y, rate.z, material]);
+    let turns = R::transpose([turn.v.x, turn.v.y, turn.v.z, turn.s]);
+    let (mx, my, mz) = (momentum.x.array(), momentum.y.array(), momentum.z.array());
+    for l in 0..4 {
+        spins[l].store(&mut spin[l]);
+        let r = &mut rotation[l];
+        r.momentum = Vec3::new(mx[l], my[l], mz[l]);
+        r.orientation = UnitQuaternion::new_unchecked(turns[l].array().into());
+    }
+    let speed = speed2.sqrt() + rate.norm2().sqrt() * reach;
+    speed * speed
+}
+
+/// Puts the spheres of a body where its centre and orientation say.
+#[inline(always)]
+fn place<R: Four>(w: &mut BlockWork, k: usize, centre: &Lanes, orientation: &UnitQuaternion<f64>) {
+    let turn = orientation.to_rotation_matrix();
+    let m = turn.matrix();
+    let x = R::load(&[m[(0, 0)], m[(1, 0)], m[(2, 0)], 0.0]);
+    let y = R::load(&[m[(0, 1)], m[(1, 1)], m[(2, 1)], 0.0]);
+    let z = R::load(&[m[(0, 2)], m[(1, 2)], m[(2, 2)], 0.0]);
+    let centre = R::load(&[centre[0], centre[1], centre[2], 0.0]);
+    let radius = R::load(&[0.0, 0.0, 0.0, 1.0]);
+    let (from, to) = (w.first[k] as usize, w.first[k + 1] as usize);
+    for (local, sphere) in w.local[from..to].iter().zip(&mut w.spheres[from..to]) {
+        let p = (x * R::splat(local[0]) + y * R::splat(local[1])) + z * R::splat(local[2]);
+        (p + (centre + R::load(local) * radius)).store(sphere);
+    }
 }
 
 /// Any body, with applied forces, local damping and fixed motions. Returns the square of the largest speed of its points.
@@ -160,7 +309,7 @@ fn rotate(
     r.momentum += torque * dt;
     let kicked = spin_of(r, inertia);
     if fixed == 0 {
-        r.orientation = rotation::free(&r.orientation, &r.momentum, inertia, dt);
+        r.orientation = rotation::free_one(&r.orientation, &r.momentum, inertia, dt);
         let spin = spin_of(r, inertia);
         set_xyz(&mut block.spin[k], &spin);
         return (w0 + kicked) * 0.5;
@@ -178,7 +327,7 @@ fn rotate(
 }
 
 /// Spin after the impulse about the fixed axes that gives it the components `target` there.
-fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fixed: u8) -> Vec3 {
+pub(crate) fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fixed: u8) -> Vec3 {
     if fixed == 7 {
         return *target;
     }

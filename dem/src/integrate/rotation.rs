@@ -12,34 +12,74 @@
 //! points, each gaining a factor of about ω dt.
 
 use crate::Vec3;
+use crate::lanes::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Most iterations; reached only when ω dt is of the order of one, where results have no meaning anyway.
 const ITERATIONS: usize = 60;
 
+/// Rotations in lanes: vector and scalar part of unit quaternions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn<R> {
+    pub v: V3<R>,
+    pub s: R,
+}
+
+impl<R: Real> Turn<R> {
+    /// The vector turned.
+    #[inline(always)]
+    pub fn apply(self, x: V3<R>) -> V3<R> {
+        let t = self.v.cross(x) * R::splat(2.0);
+        x + t * self.s + self.v.cross(t)
+    }
+
+    /// The vector turned back.
+    #[inline(always)]
+    pub fn back(self, x: V3<R>) -> V3<R> {
+        let t = x.cross(self.v) * R::splat(2.0);
+        x + t * self.s + t.cross(self.v)
+    }
+}
+
 /// Orientation after free rotation over `dt` with world angular momentum `momentum` and principal moments `inertia`.
-#[inline]
-pub fn free(
+#[inline(always)]
+pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: f64) -> Turn<R> {
+    let start = orientation.back(momentum);
+    let h = R::splat(0.5 * dt);
+    let half = V3::new(h / inertia.x, h / inertia.y, h / inertia.z);
+    // c = ω dt/2; the mid momentum solves Π + c × Π = Π₀.
+    let mut c = V3::new(start.x * half.x, start.y * half.y, start.z * half.z);
+    let one = R::splat(1.0);
+    // Lanes that have converged stay as they are, so that none depends on its neighbours.
+    let mut open = one.equals(one);
+    for _ in 0..ITERATIONS {
+        let c2 = c.norm2();
+        let mid = (start - c.cross(start) + c * c.dot(start)) * (one / (one + c2));
+        let next = V3::new(mid.x * half.x, mid.y * half.y, mid.z * half.z);
+        let change = (next - c).norm2();
+        c = V3::select(open, next, c);
+        open = open & (R::splat(1e-33) * c2).lt(change);
+        if !R::any(open) {
+            break;
+        }
+    }
+    // q ∘ (1, c), normalised.
+    let Turn { v, s } = orientation;
+    let (vector, scalar) = (v + c * s + v.cross(c), s - v.dot(c));
+    let scale = one / (vector.norm2() + scalar * scalar).sqrt();
+    Turn { v: vector * scale, s: scalar * scale }
+}
+
+/// As [`free`], for one body.
+pub fn free_one(
     orientation: &UnitQuaternion<f64>,
     momentum: &Vec3,
     inertia: &Vec3,
     dt: f64,
 ) -> UnitQuaternion<f64> {
-    let start = orientation.inverse_transform_vector(momentum);
-    let half = Vec3::repeat(0.5 * dt).component_div(inertia);
-    // c = ω dt/2; the mid momentum solves Π + c × Π = Π₀.
-    let mut c = start.component_mul(&half);
-    for _ in 0..ITERATIONS {
-        let c2 = c.norm_squared();
-        let mid = (start - c.cross(&start) + c * c.dot(&start)) / (1.0 + c2);
-        let next = mid.component_mul(&half);
-        let change = (next - c).norm_squared();
-        c = next;
-        if change <= 1e-33 * c2 {
-            break;
-        }
-    }
-    normalised(orientation.quaternion() * Quaternion::from_parts(1.0, c))
+    let q = Turn { v: V3::new(orientation.i, orientation.j, orientation.k), s: orientation.w };
+    let Turn { v, s } = free(q, V3::from_vec(momentum), V3::from_vec(inertia), dt);
+    UnitQuaternion::new_unchecked(Quaternion::new(s, v.x, v.y, v.z))
 }
 
 /// Orientation after turning over `dt` with a constant world spin, of the same order.
@@ -73,7 +113,7 @@ mod tests {
         let (mut worst, mut flips) = (0.0_f64, 0);
         let mut side = true;
         for _ in 0..1_000_000 {
-            q = free(&q, &momentum, &inertia, 1e-3);
+            q = free_one(&q, &momentum, &inertia, 1e-3);
             worst = worst.max((energy(&q) / start - 1.0).abs());
             let up = q.inverse_transform_vector(&momentum).y > 0.0;
             flips += usize::from(up != side);
@@ -92,7 +132,7 @@ mod tests {
         let run = |n: usize| {
             let mut q = UnitQuaternion::identity();
             for _ in 0..n {
-                q = free(&q, &momentum, &inertia, 4.0 / n as f64);
+                q = free_one(&q, &momentum, &inertia, 4.0 / n as f64);
             }
             q
         };

@@ -6,7 +6,7 @@ use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, Lanes, PatchPair, State, xyz};
+use crate::state::{Block, Cross, Lanes, PatchContact, State, xyz};
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub struct ContactRecord {
     pub normal: Vec3,
     /// Overlap [m].
     pub overlap: f64,
+    /// Reduced radius of the two spheres, r₁r₂/(r₁ + r₂); of the sphere alone where the partner is flat [m].
+    pub radius: f64,
     /// Normal force, pressure positive [N].
     pub normal_force: f64,
     /// Whole force on a [N].
@@ -83,6 +85,7 @@ impl Snapshot {
 /// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
 pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&Visited<'_>)) {
     let now = Snapshot::new(model, state, back);
+    remnants(state, &now, &mut f);
     for b in 0..now.blocks.len() {
         let block = &now.blocks[b];
         let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History| {
@@ -118,15 +121,59 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history));
         boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history));
         planes(model, state, &now, b, &mut f);
-        for pair in &block.triangles {
-            let material = model.triangles.material(pair.patch);
-            patch(model, &now, b, pair, material, Partner::Triangle(pair.patch), &mut f);
+        for contact in &block.walls.live {
+            let k = model.walls.wall_of(contact.patch);
+            let wall = &model.walls.walls[k];
+            let partner = Partnership {
+                material: wall.material,
+                partner: model.walls.partner(contact.patch),
+                velocity: state.walls[k].velocity_at(&wall.centre, &contact.point),
+                spin: state.walls[k].spin,
+                inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
+            };
+            patch(model, &now, b, contact, &partner, &mut f);
         }
-        for pair in &block.surface {
-            let material = model.surface_material.unwrap_or(0);
-            patch(model, &now, b, pair, material, Partner::Patch(pair.patch), &mut f);
+        for contact in &block.surface.live {
+            let partner = Partnership {
+                material: model.surface_material.unwrap_or(0),
+                partner: Partner::Patch(contact.patch),
+                velocity: contact.velocity,
+                spin: Vec3::zeros(),
+                inverse_mass: 0.0,
+            };
+            patch(model, &now, b, contact, &partner, &mut f);
         }
     }
+}
+
+/// What a sphere in touch with a patch needs to know of the patch.
+struct Partnership {
+    material: u32,
+    partner: Partner,
+    /// Velocity of the patch at the contact point [m/s].
+    velocity: Vec3,
+    /// Spin of what it belongs to [rad/s].
+    spin: Vec3,
+    /// One over the mass that it belongs to [1/kg].
+    inverse_mass: f64,
+}
+
+/// Contacts of pairs whose bond has broken.
+fn remnants(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
+    crate::bond::each_touch(&now.blocks, state, |p, q, r, geometry| {
+        let (i, j) = (r.i as usize, r.j as usize);
+        let (ma, mb) = (pass::motion(p, i, &geometry.point), pass::motion(q, j, &geometry.point));
+        f(&Visited {
+            body: p.bodies[i],
+            partner: Partner::Body(q.bodies[j] as usize),
+            geometry: *geometry,
+            velocity: ma.at_point() - mb.at_point(),
+            mass: 1.0 / (p.velocity[i][3] + q.velocity[j][3]),
+            history: &r.history,
+            spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
+            materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
+        });
+    });
 }
 
 fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
@@ -166,9 +213,8 @@ fn patch(
     model: &Model,
     now: &Snapshot,
     b: usize,
-    pair: &PatchPair,
-    material: u32,
-    partner: Partner,
+    pair: &PatchContact,
+    partner: &Partnership,
     f: &mut impl FnMut(&Visited<'_>),
 ) {
     if pair.history.is_fresh() {
@@ -176,19 +222,19 @@ fn patch(
     }
     let block = &now.blocks[b];
     let a = now.owners[b][pair.i as usize] as usize;
-    let velocity = pass::motion(block, a, &pair.point).at_point() - pair.velocity;
+    let velocity = pass::motion(block, a, &pair.point).at_point() - partner.velocity;
     let overlap = pair.overlap - velocity.dot(&pair.normal) * (model.dt() - now.back);
     if overlap > 0.0 {
         let radius = now.spheres[b][pair.i as usize][3];
         f(&Visited {
             body: block.bodies[a],
-            partner,
+            partner: partner.partner,
             geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
             velocity,
-            mass: 1.0 / block.velocity[a][3],
+            mass: 1.0 / (block.velocity[a][3] + partner.inverse_mass),
             history: &pair.history,
-            spin: xyz(&block.spin[a]),
-            materials: [block.spin[a][3] as u32, material],
+            spin: xyz(&block.spin[a]) - partner.spin,
+            materials: [block.spin[a][3] as u32, partner.material],
         });
     }
 }
@@ -208,6 +254,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             point: c.geometry.point,
             normal: c.geometry.normal,
             overlap: c.geometry.overlap,
+            radius: c.geometry.radius,
             normal_force: normal,
             force,
         });
@@ -228,7 +275,7 @@ pub fn coordination(model: &Model, state: &State) -> f64 {
     if bodies == 0 { 0.0 } else { count as f64 / bodies as f64 }
 }
 
-/// Sum of the contact forces on each body [N]. Shape `[bodies]`.
+/// Sum of the forces of contacts and bonds on each body [N]. Shape `[bodies]`.
 pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
     let mut sum = vec![Vec3::zeros(); model.body_count()];
     for c in contacts(model, state) {
@@ -236,6 +283,10 @@ pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
         if let Partner::Body(b) = c.b {
             sum[b] -= c.force;
         }
+    }
+    for b in crate::bond::records(model, state) {
+        sum[b.a] += b.force;
+        sum[b.b] -= b.force;
     }
     sum
 }

@@ -4,6 +4,7 @@ use super::contacts::visit;
 use crate::ledger::Impulse;
 use crate::model::Model;
 use crate::state::{State, xyz};
+use crate::wall;
 
 /// Energies of all bodies and contacts [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Energies {
     pub elastic_normal: f64,
     /// Tangential springs.
     pub elastic_tangential: f64,
+    /// Bonds: tension, shear, bending, twisting.
+    pub elastic_bonds: f64,
     /// −m g·x, zero at the origin.
     pub gravity: f64,
 }
@@ -28,7 +31,7 @@ impl Energies {
 
     /// Energy in springs.
     pub fn elastic(&self) -> f64 {
-        self.elastic_normal + self.elastic_tangential
+        self.elastic_normal + self.elastic_tangential + self.elastic_bonds
     }
 
     /// All of it. This less [`Ledger::work`](crate::ledger::Ledger::work) plus
@@ -55,6 +58,16 @@ pub fn energies(model: &Model, state: &State) -> Energies {
             e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
         }
     }
+    for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
+        let Some(body) = &wall.body else { continue };
+        let [translation, rotation, gravity] = body.energies(own, &model.gravity, model.dt());
+        let [normal, tangential] = wall::body::stored(model, body, wall.material, own, &state.planes);
+        e.kinetic_translation += translation;
+        e.kinetic_rotation += rotation;
+        e.gravity += gravity;
+        e.elastic_normal += normal;
+        e.elastic_tangential += tangential;
+    }
     visit(model, state, back, |c| {
         // The spring belongs to the last full step: half a step of sliding brings it to the half step.
         let n = &c.geometry.normal;
@@ -74,6 +87,7 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_normal += normal;
         e.elastic_tangential += tangential;
     });
+    e.elastic_bonds = crate::bond::elastic(model, state);
     e
 }
 
@@ -89,6 +103,11 @@ pub fn momentum(model: &Model, state: &State) -> Impulse {
                 Some(r) if b.kind != crate::model::Kind::Sphere => r.momentum,
                 _ => xyz(&block.spin[k]) * b.inertia.x,
             };
+        }
+    }
+    for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
+        if let Some(body) = &wall.body {
+            body.momentum(own, &mut sum);
         }
     }
     sum

@@ -116,6 +116,42 @@ impl Bvh {
         out[first..].sort_unstable();
     }
 
+    /// Visits the boxes' indices that may hold what is nearest to `p`. `visit` looks at one item and returns the
+    /// square of the least distance found so far [m²]; boxes further away than that are left out.
+    pub fn nearest(&self, p: [f64; 3], mut visit: impl FnMut(u32) -> f64) {
+        let apart = |k: usize| -> f64 {
+            let node = &self.nodes[k];
+            (0..3).map(|d| (node.lo[d] - p[d]).max(p[d] - node.hi[d]).max(0.0).powi(2)).sum()
+        };
+        let mut best = f64::INFINITY;
+        let mut stack = [(0_u32, 0.0); 40];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let (k, least) = stack[depth];
+            if least > best {
+                continue;
+            }
+            let node = &self.nodes[k as usize];
+            if node.count == 0 {
+                let (one, two) = (k + 1, node.start);
+                let (to_one, to_two) = (apart(one as usize), apart(two as usize));
+                // The nearer child is looked at first.
+                let pair = if to_one <= to_two {
+                    [(two, to_two), (one, to_one)]
+                } else {
+                    [(one, to_one), (two, to_two)]
+                };
+                stack[depth..depth + 2].copy_from_slice(&pair);
+                depth += 2;
+            } else {
+                for &item in &self.items[node.start as usize..(node.start + node.count) as usize] {
+                    best = visit(item);
+                }
+            }
+        }
+    }
+
     /// Bounds of everything; `None` for an empty tree.
     pub fn bounds(&self) -> Option<Aabb> {
         self.nodes.first().map(|n| (n.lo, n.hi))

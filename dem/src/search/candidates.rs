@@ -3,6 +3,7 @@
 
 use crate::Vec3;
 use crate::model::{Kind, Model};
+use crate::search::patches;
 use crate::shape::cuboid;
 use crate::state::{Block, Lanes, State, xyz};
 use crate::surface::Surface;
@@ -17,7 +18,8 @@ pub(crate) fn spheres<'a>(block: &'a Block, work: &'a BlockWork, rigid: bool) ->
 
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
-    let Work { blocks, points, names, cells, parallel, .. } = &mut *work;
+    work.held.update(model, state);
+    let Work { blocks, points, names, cells, parallel, held, .. } = &mut *work;
     points.clear();
     names.clear();
     for (b, (block, w)) in state.blocks.iter().zip(blocks.iter()).enumerate() {
@@ -27,9 +29,9 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     }
     cells.build(points, model.radii, model.skin);
 
-    let triangles = model.triangles.moved(&state.triangles);
+    let walls = model.walls.placed(&state.walls);
     let boxes = boxes(model, state);
-    let (points, names, cells) = (&*points, &*names, &*cells);
+    let (points, names, cells, held) = (&*points, &*names, &*cells, &*held);
     // First sphere of each block among all points.
     let first: Vec<u32> = blocks
         .iter()
@@ -44,6 +46,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         let [block, _] = names[point as usize];
         (block, owners[point as usize])
     };
+    let number = |(block, place): (u32, u32)| state.blocks[block as usize].bodies[place as usize];
     let still = |(block, place): (u32, u32)| state.blocks[block as usize].velocity[place as usize][3] == 0.0;
 
     let one = |(b, w): (usize, &mut BlockWork)| {
@@ -65,7 +68,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
                 let reach = p[3] + q[3] + model.skin;
                 if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
                     let other = body(j);
-                    if other != me && !(fixed && still(other)) {
+                    if other != me && !(fixed && still(other)) && !held.has(number(me), number(other)) {
                         w.row.push(j);
                     }
                 }
@@ -107,8 +110,8 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         }
         let own = &points[first[b] as usize..first[b] as usize + w.owner.len()];
         let free = |i: u32| block.velocity[w.owner[i as usize] as usize][3] > 0.0;
-        patches(&triangles, own, model.skin, free, &mut w.row, &mut w.triangles);
-        patches(surface, own, model.skin, free, &mut w.row, &mut w.surface);
+        patches::candidates(&walls, own, model.skin, free, &mut w.row, &mut w.walls);
+        patches::candidates(surface, own, model.skin, free, &mut w.row, &mut w.surface);
     };
     if *parallel {
         blocks.par_iter_mut().enumerate().for_each(one);
@@ -122,7 +125,9 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         w.reference.extend((0..8).map(|k| bx.centre + bx.orientation * cuboid::corner(&bx.half, k)));
     }
     work.wall_reference.clear();
-    work.wall_reference.extend(state.planes.iter().chain(&state.triangles).map(|m| m.offset));
+    work.wall_reference.extend(state.planes.iter().map(|m| m.offset));
+    work.wall_places.clear();
+    work.wall_places.extend(state.walls.iter().map(|w| (w.offset, w.orientation)));
     work.surface_drift = 0.0;
     work.listed = true;
     work.searches += 1;
@@ -154,39 +159,4 @@ fn boxes(model: &Model, state: &State) -> Vec<BoxBody> {
         }
     }
     out
-}
-
-/// Patches near each free sphere of a block; none at all is told from one query for the whole block.
-fn patches<S: Surface>(
-    surface: &S,
-    spheres: &[Lanes],
-    skin: f64,
-    free: impl Fn(u32) -> bool,
-    row: &mut Vec<u32>,
-    out: &mut Vec<[u32; 2]>,
-) {
-    out.clear();
-    if surface.is_empty() || spheres.is_empty() {
-        return;
-    }
-    let bounds = |p: &Lanes| {
-        let reach = p[3] + skin;
-        ([p[0] - reach, p[1] - reach, p[2] - reach], [p[0] + reach, p[1] + reach, p[2] + reach])
-    };
-    let all = spheres.iter().map(bounds).fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |a, b| {
-        ([0, 1, 2].map(|d| a.0[d].min(b.0[d])), [0, 1, 2].map(|d| a.1[d].max(b.1[d])))
-    });
-    row.clear();
-    surface.candidates(all.0, all.1, row);
-    if row.is_empty() {
-        return;
-    }
-    for (i, p) in spheres.iter().enumerate() {
-        if free(i as u32) {
-            row.clear();
-            let (lo, hi) = bounds(p);
-            surface.candidates(lo, hi, row);
-            out.extend(row.iter().map(|&patch| [i as u32, patch]));
-        }
-    }
 }

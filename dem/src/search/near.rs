@@ -9,8 +9,9 @@ use crate::contact::History;
 use crate::contact::groups::Groups;
 use crate::model::Model;
 use crate::search::candidates::{self, spheres};
+use crate::search::patches;
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, PatchPair, State, xyz};
+use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Gather, Work};
 use rayon::prelude::*;
@@ -57,14 +58,15 @@ fn candidates_hold(model: &Model, state: &State, work: &Work) -> bool {
         most
     });
     let moved = moved2.fold(0.0, f64::max).sqrt();
-    let walls = state.planes.iter().chain(&state.triangles).zip(&work.wall_reference);
+    let walls = state.planes.iter().zip(&work.wall_reference);
     let wall = walls.map(|(m, x)| (m.offset - x).norm()).fold(work.surface_drift, f64::max);
+    let wall = wall.max(crate::wall::advance::way(model, state, &work.wall_places));
     (2.0 * moved).max(moved + wall) + state.near <= model.skin
 }
 
 fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let State { blocks, cross, planes, triangles, near, .. } = &mut *state;
-    let (near, planes, motion) = (*near, &*planes, &*triangles);
+    let State { blocks, cross, planes, walls: wall_states, near, .. } = &mut *state;
+    let (near, planes, wall_states) = (*near, &*planes, &*wall_states);
     let parallel = work.parallel;
 
     // Contacts between blocks read positions of other blocks, so they come first and only read them.
@@ -88,7 +90,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         merge(&mut cross.boxes, scratch[b].boxed.iter().filter(close).copied());
     };
     let within = |(block, w): (&mut Block, &mut BlockWork)| {
-        let Block { centre, pairs, planes: plane_pairs, triangles, surface: surface_pairs, .. } = block;
+        let Block { centre, pairs, planes: plane_pairs, walls: wall_pairs, surface: surface_pairs, .. } =
+            block;
         let own = if model.rigid { &w.spheres[..] } else { &centre[..] };
         let close = |c: &&[u32; 2]| {
             let (p, q) = (&own[c[0] as usize], &own[c[1] as usize]);
@@ -105,9 +108,9 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
                 })
         };
         merge(plane_pairs, w.planes.iter().filter(close).copied());
-        let walls = model.triangles.moved(motion);
-        make_patches(&walls, own, near, &w.triangles, &mut w.patches, triangles);
-        make_patches(surface, own, near, &w.surface, &mut w.patches, surface_pairs);
+        let walls = model.walls.placed(wall_states);
+        patches::refresh(&walls, own, near, &w.walls, &mut w.patches, &mut wall_pairs.pairs);
+        patches::refresh(surface, own, near, &w.surface, &mut w.patches, &mut surface_pairs.pairs);
     };
     if parallel {
         cross.par_iter_mut().enumerate().for_each(between);
@@ -132,51 +135,6 @@ fn merge<const N: usize>(list: &mut Groups<N>, keys: impl Iterator<Item = [u32; 
         fresh.push(key, &if known { list.history(k) } else { History::NONE });
     }
     list.copy_from(&fresh);
-}
-
-/// As [`merge`], for patches; contacts that go on are kept even if their patch is out of reach by now, so that the
-/// patch the sphere has moved on to can take their memory over.
-fn make_patches<S: Surface>(
-    surface: &S,
-    spheres: &[crate::state::Lanes],
-    near: f64,
-    candidates: &[[u32; 2]],
-    fresh: &mut Vec<PatchPair>,
-    list: &mut Vec<PatchPair>,
-) {
-    fresh.clear();
-    let mut k = 0;
-    for &[i, patch] in candidates {
-        while k < list.len() && (list[k].i, list[k].patch) < (i, patch) {
-            fresh.extend((!list[k].history.is_fresh()).then_some(list[k]));
-            k += 1;
-        }
-        let mut pair = PatchPair {
-            i,
-            patch,
-            local: [0.0; 2],
-            point: crate::Vec3::zeros(),
-            normal: crate::Vec3::zeros(),
-            velocity: crate::Vec3::zeros(),
-            overlap: 0.0,
-            history: History::NONE,
-        };
-        let mut known = false;
-        if k < list.len() && (list[k].i, list[k].patch) == (i, patch) {
-            pair = list[k];
-            known = !pair.history.is_fresh();
-            k += 1;
-        }
-        let p = &spheres[i as usize];
-        let closest = surface.closest_point(patch, [p[0], p[1], p[2]], pair.local);
-        let distance = (crate::Vec3::from(closest.point) - xyz(p)).norm();
-        if known || distance < p[3] + near {
-            pair.local = closest.local;
-            fresh.push(pair);
-        }
-    }
-    fresh.extend(list[k..].iter().filter(|p| !p.history.is_fresh()));
-    std::mem::swap(list, fresh);
 }
 
 /// Gives each contact between blocks its slot and each body the list of slots it gathers, in one fixed order.

@@ -144,14 +144,14 @@ fn check(spheres: &[([f64; 3], f64)]) -> Result<(), ShapeError> {
     reached.iter().position(|r| !r).map_or(Ok(()), |i| Err(ShapeError::Disconnected(i)))
 }
 
-fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) {
+pub(super) fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) {
     let fold =
         |sign: f64, k: usize| spheres.iter().map(|(c, r)| sign * c[k] + r).fold(f64::NEG_INFINITY, f64::max);
     (std::array::from_fn(|k| -fold(-1.0, k)), std::array::from_fn(|k| fold(1.0, k)))
 }
 
 /// Principal moments, rising, and a right-handed matrix whose columns are the axes.
-fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
+pub(crate) fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
     // Below the quadrature's noise a tensor counts as diagonal: a sphere keeps the axes it was given in.
     let noise = 1e-11 * inertia.trace();
     for (i, j) in [(0, 1), (1, 2), (0, 2)] {

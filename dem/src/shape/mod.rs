@@ -1,7 +1,9 @@
 //! Shapes of bodies.
 
 pub mod clump;
+pub mod cluster;
 pub mod cuboid;
+pub mod polyhedron;
 pub mod triangle;
 
 use clump::Clump;

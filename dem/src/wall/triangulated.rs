@@ -1,128 +1,85 @@
-//! Triangle surfaces as walls: touched from both sides, each moving as a whole with its own velocity.
+//! Triangles as patches.
 //!
-//! All surfaces of a model form one [`Surface`]: patches are numbered through, in the order given. The tree is
-//! built once, over the vertices at the start; a query is shifted back by the way that the surface has come.
+//! Triangles that lie in one plane share its bits: seed by seed in falling order of area, neighbours across edges whose
+//! vertices are in the seed's plane to rounding take over the seed's normal. So a floor of many triangles, slivers
+//! among them, has the same height and the same normal everywhere, and a sphere that crosses its seams feels no change.
+//!
+//! Each triangle keeps its plane and its three edges as half planes, from which a lower bound of the distance costs a
+//! few products: most patches of a near list are told apart from those in touch by it.
 
 use crate::Vec3;
 use crate::error::ModelError;
-use crate::input::TriangleSurface;
-use crate::search::bvh::{Aabb, Bvh};
+use crate::search::bvh::Aabb;
 use crate::shape::triangle::{self, Region};
-use crate::surface::{Feature, PatchPoint, Surface};
-use serde::{Deserialize, Serialize};
+use crate::state::Lanes;
 
 /// Smallest height over longest side that a triangle may have: below it its normal has no meaning.
 const FLATTEST: f64 = 1e-9;
+/// Distance from a plane, over the largest coordinate of the surface, that counts as rounding.
+const COPLANAR: f64 = 1e-12;
+/// Slack of the cheap rejection, relative to the square of the reach.
+const SLACK: f64 = 1e-9;
 
-/// Where an open wall is said to be [m]: out of reach of everything.
-const FAR: f64 = 1e30;
-
-/// How far a wall has come, and where it goes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WallMotion {
-    /// Displacement since the start [m].
-    pub offset: Vec3,
-    /// Velocity [m/s].
-    pub velocity: Vec3,
-    /// Whether grains pass through.
-    pub open: bool,
-}
-
+/// A triangle in the frame of its wall.
 #[derive(Clone, Debug)]
-struct Patch {
-    corners: [Vec3; 3],
-    normal: Vec3,
-    edges: [u32; 3],
-    vertices: [u32; 3],
-    surface: u32,
+pub(crate) struct Triangle {
+    /// Unit normal and level of its plane.
+    plane: Lanes,
+    /// Outward normal and level of each edge, within the plane.
+    rims: [Lanes; 3],
+    pub corners: [Vec3; 3],
+    /// Numbers of edges and vertices, unique within the surface.
+    pub edges: [u32; 3],
+    pub vertices: [u32; 3],
 }
 
-/// All triangle surfaces of a model.
-#[derive(Clone, Debug, Default)]
-pub struct TriangleWalls {
-    patches: Vec<Patch>,
-    trees: Vec<Bvh>,
-    /// First patch of each surface, and one past the last.
-    first: Vec<u32>,
-    materials: Vec<u32>,
-    velocities: Vec<Vec3>,
+#[inline(always)]
+fn height(plane: &Lanes, x: &Vec3) -> f64 {
+    plane[0] * x.x + plane[1] * x.y + plane[2] * x.z - plane[3]
 }
 
-impl TriangleWalls {
-    /// Numbers patches, edges and vertices, and builds the trees.
-    ///
-    /// # Errors
-    /// A triangle that names a vertex which does not exist, has a vertex that is not finite, or no area.
-    pub fn new(surfaces: &[TriangleSurface]) -> Result<TriangleWalls, ModelError> {
-        let mut walls = TriangleWalls { first: vec![0], ..TriangleWalls::default() };
-        let (mut edge_base, mut vertex_base) = (0_u32, 0_u32);
-        for (s, surface) in surfaces.iter().enumerate() {
-            let mut keys: Vec<[u32; 2]> = surface.triangles.iter().flat_map(sides).collect();
-            keys.sort_unstable();
-            keys.dedup();
-            let mut boxes: Vec<Aabb> = Vec::with_capacity(surface.triangles.len());
-            for (t, triangle) in surface.triangles.iter().enumerate() {
-                let error =
-                    |problem| ModelError::Wall { wall: format!("triangle {t} of surface {s}"), problem };
-                if triangle.iter().any(|&v| v as usize >= surface.vertices.len()) {
-                    return Err(error("it names a vertex that does not exist"));
-                }
-                let corners = triangle.map(|v| surface.vertices[v as usize]);
-                let [a, b, c] = corners;
-                let area = (b - a).cross(&(c - a));
-                let longest2 = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
-                if !longest2.is_finite() {
-                    return Err(error("it has a vertex that is not finite"));
-                }
-                if area.norm() <= FLATTEST * longest2 {
-                    return Err(error("it has no area"));
-                }
-                let number = |key: [u32; 2]| keys.partition_point(|k| *k < key) as u32 + edge_base;
-                walls.patches.push(Patch {
-                    corners,
-                    normal: area.normalize(),
-                    edges: sides(triangle).map(number),
-                    vertices: triangle.map(|v| v + vertex_base),
-                    surface: s as u32,
-                });
-                boxes.push((a.inf(&b).inf(&c).into(), a.sup(&b).sup(&c).into()));
+impl Triangle {
+    /// Unit normal of its plane.
+    #[inline(always)]
+    pub fn normal(&self) -> Vec3 {
+        Vec3::new(self.plane[0], self.plane[1], self.plane[2])
+    }
+
+    /// Whether the triangle may lie within `reach` of `x`: false is certain.
+    #[inline(always)]
+    pub fn within(&self, x: &Vec3, reach: f64) -> bool {
+        let up = height(&self.plane, x);
+        let out = self.rims.iter().map(|rim| height(rim, x)).fold(0.0, f64::max);
+        up * up + out * out <= reach * reach * (1.0 + SLACK)
+    }
+
+    /// Closest point, and weights of the second and third corner there.
+    #[inline]
+    pub fn closest(&self, x: &Vec3) -> (Vec3, [f64; 2], Region) {
+        let [a, b, c] = &self.corners;
+        let (weights, region) = triangle::closest_point(a, b, c, x);
+        let point = match region {
+            Region::Face => x - self.normal() * height(&self.plane, x),
+            Region::Vertex(k) => self.corners[k],
+            // From the lower vertex, so that both triangles of an edge find the same bits.
+            Region::Edge(k) => {
+                let (first, second) = (k, (k + 1) % 3);
+                let (first, second) = if self.vertices[first] < self.vertices[second] {
+                    (first, second)
+                } else {
+                    (second, first)
+                };
+                let (p, along) = (self.corners[first], self.corners[second] - self.corners[first]);
+                p + along * ((x - p).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
             }
-            edge_base += keys.len() as u32;
-            vertex_base += surface.vertices.len() as u32;
-            walls.trees.push(Bvh::new(&boxes));
-            walls.first.push(walls.patches.len() as u32);
-            walls.materials.push(surface.material as u32);
-            walls.velocities.push(surface.velocity);
-        }
-        Ok(walls)
+        };
+        (point, weights, region)
     }
 
-    /// Motion of each surface at the start.
-    pub fn motion(&self) -> Vec<WallMotion> {
-        self.velocities
-            .iter()
-            .map(|&velocity| WallMotion { offset: Vec3::zeros(), velocity, open: false })
-            .collect()
-    }
-
-    /// Number of triangles.
-    pub fn len(&self) -> usize {
-        self.patches.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.patches.is_empty()
-    }
-
-    /// Material (index) of a patch.
-    pub fn material(&self, patch: u32) -> u32 {
-        self.materials[self.patches[patch as usize].surface as usize]
-    }
-
-    /// The walls where they are now.
-    pub fn moved<'a>(&'a self, motion: &'a [WallMotion]) -> MovedWalls<'a> {
-        MovedWalls { walls: self, motion }
+    /// Bounds.
+    pub fn bounds(&self) -> Aabb {
+        let [a, b, c] = &self.corners;
+        (a.inf(b).inf(c).into(), a.sup(b).sup(c).into())
     }
 }
 
@@ -131,61 +88,117 @@ fn sides(t: &[u32; 3]) -> [[u32; 2]; 3] {
     [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
-/// Triangle walls together with how far they have come.
-#[derive(Clone, Copy, Debug)]
-pub struct MovedWalls<'a> {
-    walls: &'a TriangleWalls,
-    motion: &'a [WallMotion],
+/// For each vertex the lowest one at the same place.
+pub(crate) fn welded(vertices: &[Vec3]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
+    // Adding zero makes −0 and 0 the same.
+    let key = |v: u32| vertices[v as usize].map(|x| x + 0.0);
+    let compare = |a: &u32, b: &u32| {
+        let (p, q) = (key(*a), key(*b));
+        (0..3).map(|d| p[d].total_cmp(&q[d])).find(|o| o.is_ne()).unwrap_or(a.cmp(b))
+    };
+    order.sort_unstable_by(compare);
+    let mut same = vec![0; vertices.len()];
+    let mut lowest = 0;
+    for (k, &v) in order.iter().enumerate() {
+        if k == 0 || key(order[k - 1]) != key(v) {
+            lowest = v;
+        }
+        same[v as usize] = lowest;
+    }
+    same
 }
 
-impl Surface for MovedWalls<'_> {
-    fn candidates(&self, lo: [f64; 3], hi: [f64; 3], out: &mut Vec<u32>) {
-        for (s, tree) in self.walls.trees.iter().enumerate() {
-            if self.motion[s].open {
-                continue;
+/// The patches of a surface; `name` goes before messages.
+///
+/// # Errors
+/// A triangle that names a vertex which does not exist, has a vertex that is not finite, or no area.
+pub(crate) fn triangles(
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    name: &str,
+) -> Result<Vec<Triangle>, ModelError> {
+    let mut normals = Vec::with_capacity(triangles.len());
+    for (t, triangle) in triangles.iter().enumerate() {
+        let error = |problem| ModelError::Wall { wall: format!("triangle {t} of {name}"), problem };
+        if triangle.iter().any(|&v| v as usize >= vertices.len()) {
+            return Err(error("it names a vertex that does not exist"));
+        }
+        let [a, b, c] = triangle.map(|v| vertices[v as usize]);
+        let area = (b - a).cross(&(c - a));
+        let longest2 = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
+        if !longest2.is_finite() {
+            return Err(error("it has a vertex that is not finite"));
+        }
+        if area.norm() <= FLATTEST * longest2 {
+            return Err(error("it has no area"));
+        }
+        normals.push(area);
+    }
+    let same = welded(vertices);
+    let planes = planes(vertices, triangles, &same, &normals);
+    let mut keys: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    let number = |key: [u32; 2]| keys.partition_point(|k| *k < key) as u32;
+    Ok(triangles
+        .iter()
+        .zip(planes)
+        .map(|(t, plane)| {
+            let corners = t.map(|v| vertices[v as usize]);
+            let normal = Vec3::new(plane[0], plane[1], plane[2]);
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let rims = [0, 1, 2].map(|k| {
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                let out = (b - a).cross(&normal).normalize();
+                let out = if out.dot(&(middle - a)) > 0.0 { -out } else { out };
+                [out.x, out.y, out.z, out.dot(&a)]
+            });
+            Triangle { plane, rims, corners, edges: sides(t).map(number), vertices: *t }
+        })
+        .collect())
+}
+
+/// Plane of each triangle, the same bits for neighbours that lie in one plane to rounding.
+fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Vec3]) -> Vec<Lanes> {
+    let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
+    let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
+    for (t, triangle) in welded.iter().enumerate() {
+        edges.extend(sides(triangle).map(|side| (side, t as u32)));
+    }
+    edges.sort_unstable();
+    let size = triangles.iter().flatten().map(|&v| vertices[v as usize].amax()).fold(0.0, f64::max);
+    let mut order: Vec<usize> = (0..triangles.len()).collect();
+    order.sort_by(|&a, &b| normals[b].norm_squared().total_cmp(&normals[a].norm_squared()).then(a.cmp(&b)));
+    let mut planes: Vec<Option<Lanes>> = vec![None; triangles.len()];
+    let mut open = Vec::new();
+    for seed in order {
+        if planes[seed].is_some() {
+            continue;
+        }
+        let n = normals[seed].normalize();
+        let corners = triangles[seed].map(|v| vertices[v as usize]);
+        let level = (corners[0] + corners[1] + corners[2]).dot(&n) / 3.0;
+        let plane = [n.x, n.y, n.z, level];
+        planes[seed] = Some(plane);
+        open.push(seed);
+        while let Some(t) = open.pop() {
+            for side in sides(&welded[t]) {
+                let from = edges.partition_point(|e| e.0 < side);
+                for &(_, next) in edges[from..].iter().take_while(|e| e.0 == side) {
+                    let next = next as usize;
+                    let flat = |v: u32| height(&plane, &vertices[v as usize]).abs() <= COPLANAR * size;
+                    if planes[next].is_none() && triangles[next].iter().all(|&v| flat(v)) {
+                        planes[next] = Some(plane);
+                        open.push(next);
+                    }
+                }
             }
-            let offset = self.motion[s].offset;
-            let first = out.len();
-            tree.query((Vec3::from(lo) - offset).into(), (Vec3::from(hi) - offset).into(), out);
-            out[first..].iter_mut().for_each(|p| *p += self.walls.first[s]);
         }
     }
-
-    #[inline]
-    fn closest_point(&self, patch: u32, centre: [f64; 3], _: [f64; 2]) -> PatchPoint {
-        let patch = &self.walls.patches[patch as usize];
-        let motion = &self.motion[patch.surface as usize];
-        if motion.open {
-            let point = (Vec3::from(centre) + Vec3::repeat(FAR)).into();
-            let (normal, velocity) = (patch.normal.into(), motion.velocity.into());
-            return PatchPoint { point, normal, velocity, local: [0.0; 2], feature: Feature::Face };
-        }
-        let [a, b, c] = &patch.corners;
-        let ([v, w], region) = triangle::closest_point(a, b, c, &(Vec3::from(centre) - motion.offset));
-        let point = a + (b - a) * v + (c - a) * w + motion.offset;
-        let feature = match region {
-            Region::Face => Feature::Face,
-            Region::Edge(k) => Feature::Edge(patch.edges[k]),
-            Region::Vertex(k) => Feature::Vertex(patch.vertices[k]),
-        };
-        PatchPoint {
-            point: point.into(),
-            normal: patch.normal.into(),
-            velocity: motion.velocity.into(),
-            local: [v, w],
-            feature,
-        }
-    }
-
-    fn max_speed(&self) -> f64 {
-        self.motion.iter().map(|m| m.velocity.norm()).fold(0.0, f64::max)
-    }
-
-    fn one_sided(&self) -> bool {
-        false
-    }
-
-    fn is_empty(&self) -> bool {
-        self.walls.is_empty()
-    }
+    planes.into_iter().map(|p| p.unwrap_or([0.0, 0.0, 1.0, 0.0])).collect()
 }
+
+#[cfg(test)]
+#[path = "triangulated_tests.rs"]
+mod tests;

@@ -123,7 +123,7 @@ fn collapse(r0: f64, layers: u32, floor: f64) -> (f64, f64) {
     let Run { model, mut state, mut work } = Run::new(input);
     advance(&model, &mut state, &mut work, 0.5);
     let aspect = height(&model, &state) / r0;
-    state.open_triangles(0, true);
+    state.open_wall(0, true);
     let start = state.time;
     advance(&model, &mut state, &mut work, start + 0.3);
     while speed(&model, &state) > 0.01 && state.time < start + 1.5 {
@@ -202,7 +202,7 @@ fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
     let rates = (1..=diameters.len()).map(|open| {
         let mut state = state.clone();
         let mut work = Work::new(&model, &state);
-        (0..open).for_each(|surface| state.open_triangles(surface, true));
+        (0..open).for_each(|surface| state.open_wall(surface, true));
         let out = |state: &State| -> f64 {
             (0..model.body_count()).filter(|&b| state.position(b).z < -D).map(|b| model.mass(b)).sum()
         };

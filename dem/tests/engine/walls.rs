@@ -58,7 +58,7 @@ fn opened_walls_let_grains_pass() {
     assert!((until(&mut run, 0.1) - 0.01).abs() < 1e-4);
     run.state.open_plane(0, true);
     assert!((until(&mut run, 0.5) + 0.04).abs() < 1e-4);
-    run.state.open_triangles(0, true);
+    run.state.open_wall(0, true);
     assert!(until(&mut run, 0.6) < -0.06);
 }
 

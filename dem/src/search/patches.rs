@@ -1,0 +1,76 @@
+//! Spheres near patches of a surface: candidates within the skin, and of them the near list.
+
+use crate::Vec3;
+use crate::state::{Lanes, PatchPair, xyz};
+use crate::surface::Surface;
+
+/// Patches near each free sphere of a block (or each sphere, where the patch itself is free to move); none at all is told
+/// from one query for the whole block.
+pub(crate) fn candidates<S: Surface>(
+    surface: &S,
+    spheres: &[Lanes],
+    skin: f64,
+    free: impl Fn(u32) -> bool,
+    row: &mut Vec<u32>,
+    out: &mut Vec<[u32; 2]>,
+) {
+    out.clear();
+    if surface.is_empty() || spheres.is_empty() {
+        return;
+    }
+    let bounds = |p: &Lanes| {
+        let reach = p[3] + skin;
+        ([p[0] - reach, p[1] - reach, p[2] - reach], [p[0] + reach, p[1] + reach, p[2] + reach])
+    };
+    let all = spheres.iter().map(bounds).fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |a, b| {
+        ([0, 1, 2].map(|d| a.0[d].min(b.0[d])), [0, 1, 2].map(|d| a.1[d].max(b.1[d])))
+    });
+    row.clear();
+    surface.candidates(all.0, all.1, row);
+    if row.is_empty() {
+        return;
+    }
+    for (i, p) in spheres.iter().enumerate() {
+        let (lo, hi) = bounds(p);
+        row.clear();
+        surface.candidates(lo, hi, row);
+        let near = |patch: u32| {
+            (free(i as u32) || surface.inverse_mass(patch) > 0.0)
+                && surface.within(patch, [p[0], p[1], p[2]], p[3] + skin)
+        };
+        out.extend(row.iter().filter(|&&patch| near(patch)).map(|&patch| [i as u32, patch]));
+    }
+}
+
+/// The near list: candidates within `near` of touch. Both lists are in order of sphere and patch; `list` is replaced,
+/// and keeps the patch coordinates of the pairs that it holds already.
+pub(crate) fn refresh<S: Surface>(
+    surface: &S,
+    spheres: &[Lanes],
+    near: f64,
+    candidates: &[[u32; 2]],
+    fresh: &mut Vec<PatchPair>,
+    list: &mut Vec<PatchPair>,
+) {
+    fresh.clear();
+    let mut k = 0;
+    for &[i, patch] in candidates {
+        while k < list.len() && (list[k].i, list[k].patch) < (i, patch) {
+            k += 1;
+        }
+        let known = list.get(k).filter(|old| (old.i, old.patch) == (i, patch));
+        let mut pair = PatchPair { i, patch, local: known.map_or([0.0; 2], |old| old.local) };
+        let p = &spheres[i as usize];
+        let reach = p[3] + near;
+        let mut close = surface.within(patch, [p[0], p[1], p[2]], reach);
+        if close && !surface.sharp() {
+            let closest = surface.closest_point(patch, [p[0], p[1], p[2]], pair.local);
+            pair.local = closest.local;
+            close = (Vec3::from(closest.point) - xyz(p)).norm() < reach;
+        }
+        if close {
+            fresh.push(pair);
+        }
+    }
+    std::mem::swap(list, fresh);
+}

@@ -1,0 +1,378 @@
+//! Rigid bodies whose surface is triangles: mass, centre and inertia, motion, and contacts of their vertices with planes.
+//!
+//! The body takes part in the contacts of the grains as a wall of finite mass. It moves by the same scheme as clumps
+//! (`integrate/leapfrog.rs`, `integrate/rotation.rs`): kick by the forces of the step, then drift.
+//!
+//! Volume, centre and inertia of the enclosed solid are sums over the tetrahedra between a point and the triangles (e.g.
+//! Tonon, J. Math. Stat. 1, 2005); the triangles are first turned to look the same way by walking across their edges,
+//! because files need not order their vertices.
+//!
+//! Limits: grains touch the triangles; infinite planes are touched by the vertices; other walls and other triangle bodies
+//! are not touched (the step fails when two bodies come within each other's bounds).
+
+use super::input::{RigidBody, WallShape};
+use super::state::{Foot, WallState};
+use super::triangulated::welded;
+use crate::Vec3;
+use crate::contact::{ContactGeometry, ContactLaw, History, PairTable};
+use crate::detect;
+use crate::error::ModelError;
+use crate::ledger::{Impulse, Ledger};
+use crate::model::Model;
+use crate::state::Rotation;
+use crate::wall::state::WallMotion;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+
+/// Constants of a rigid triangle body.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub mass: f64,
+    /// Zero when no translation is free.
+    pub inverse_mass: f64,
+    pub centre: Vec3,
+    /// Principal moments [kg m²], and the principal frame at the start.
+    pub inertia: Vec3,
+    pub axes: UnitQuaternion<f64>,
+    pub velocity: Vec3,
+    pub spin: Vec3,
+    /// Bits 0–2 translation, 3–5 rotation.
+    pub fixed: u8,
+    /// Largest distance of a vertex from the centre, and half the bounds in the starting frame [m].
+    pub reach: f64,
+    pub half: Vec3,
+    /// Vertices that triangles use [m].
+    pub vertices: Vec<Vec3>,
+}
+
+/// Volume, centre and inertia about it per unit density of the solid that a closed surface encloses: [m³], [m],
+/// [m⁵]. `None` when an edge does not join exactly two triangles, or the volume is zero.
+pub fn enclosed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<(f64, Vec3, Matrix3<f64>)> {
+    let same = welded(vertices);
+    let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
+    let along = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut edges: Vec<([u32; 2], usize)> =
+        welded.iter().enumerate().flat_map(|(k, t)| along(t).map(|e| (sorted(e), k))).collect();
+    edges.sort_unstable();
+    if !edges.chunk_by(|a, b| a.0 == b.0).all(|same| same.len() == 2) {
+        return None;
+    }
+    // Turn neighbours to run along their common edge in opposite directions.
+    let mut faces: Vec<Option<[u32; 3]>> = vec![None; welded.len()];
+    let mut open = Vec::new();
+    let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Matrix3::zeros());
+    let origin = *vertices.get(*welded.first()?.first()? as usize)?;
+    for seed in 0..welded.len() {
+        if faces[seed].is_some() {
+            continue;
+        }
+        faces[seed] = Some(welded[seed]);
+        open.push(seed);
+        let (mut v, mut f, mut s) = (0.0, Vec3::zeros(), Matrix3::zeros());
+        while let Some(k) = open.pop() {
+            let face = faces[k].unwrap_or(welded[k]);
+            let [a, b, c] = face.map(|v| vertices[v as usize] - origin);
+            let six = a.dot(&b.cross(&c));
+            let sum = a + b + c;
+            v += six / 6.0;
+            f += sum * (six / 24.0);
+            s += (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose())
+                * (six / 120.0);
+            for edge in along(&face) {
+                let at = edges.partition_point(|e| e.0 < sorted(edge));
+                let other = if edges[at].1 == k { edges[at + 1].1 } else { edges[at].1 };
+                if faces[other].is_none() {
+                    let t = welded[other];
+                    let same_way = along(&t).contains(&edge);
+                    faces[other] = Some(if same_way { [t[0], t[2], t[1]] } else { t });
+                    open.push(other);
+                }
+            }
+        }
+        let sign = if v < 0.0 { -1.0 } else { 1.0 };
+        volume += sign * v;
+        first += f * sign;
+        second += s * sign;
+    }
+    if volume <= 0.0 || !volume.is_finite() {
+        return None;
+    }
+    let centre = first / volume;
+    let about = second - centre * centre.transpose() * volume;
+    Some((volume, centre + origin, Matrix3::identity() * about.trace() - about))
+}
+
+impl Body {
+    /// Resolves a body.
+    ///
+    /// # Errors
+    /// The wall is no triangle surface, encloses nothing and is not given centre and inertia, or the inertia is not that
+    /// of a body.
+    pub fn new(input: &RigidBody, shape: &WallShape, name: &str) -> Result<Body, ModelError> {
+        let error = |problem| ModelError::Wall { wall: name.to_string(), problem };
+        let WallShape::Triangles { vertices, triangles } = shape else {
+            return Err(error("only a triangle surface can be a rigid body"));
+        };
+        let solid = enclosed(vertices, triangles);
+        let missing = "its surface is not closed: give the centre and the inertia of the body";
+        let (centre, tensor) = match (input.centre, input.inertia) {
+            (Some(c), Some([xx, yy, zz, xy, yz, zx])) => {
+                (c, Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz))
+            }
+            (c, given) => {
+                let (volume, own, inertia) = solid.ok_or(error(missing))?;
+                let centre = c.unwrap_or(own);
+                let d = centre - own;
+                let steiner = Matrix3::identity() * d.norm_squared() - d * d.transpose();
+                let own = inertia * (input.mass / volume) + steiner * input.mass;
+                let tensor = given
+                    .map_or(own, |[xx, yy, zz, xy, yz, zx]| Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz));
+                (centre, tensor)
+            }
+        };
+        let (inertia, axes) = principal(&tensor);
+        let sum = inertia.sum();
+        if !(inertia.min() > 0.0 && sum.is_finite() && 2.0 * inertia.max() <= sum * (1.0 + 1e-9)) {
+            return Err(error("its moments of inertia are not those of a body"));
+        }
+        let mut used = vec![false; vertices.len()];
+        triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        let vertices: Vec<Vec3> =
+            vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v)).collect();
+        let half = vertices.iter().fold(Vec3::zeros(), |h, v| h.sup(&(v - centre).abs()));
+        let bits = input.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
+        Ok(Body {
+            mass: input.mass,
+            inverse_mass: if bits & 7 == 7 { 0.0 } else { 1.0 / input.mass },
+            centre,
+            inertia,
+            axes,
+            velocity: input.velocity,
+            spin: input.spin,
+            fixed: bits,
+            reach: vertices.iter().map(|v| (v - centre).norm()).fold(0.0, f64::max),
+            half,
+            vertices,
+        })
+    }
+
+    /// State at time 0, its velocities half a step earlier.
+    pub fn start(&self, state: &mut WallState, gravity: &Vec3, dt: f64) {
+        let kick = Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] });
+        state.velocity = self.velocity - kick * (0.5 * dt);
+        state.spin = self.spin;
+        state.frame = self.axes;
+        let local = self.axes.inverse_transform_vector(&self.spin);
+        state.momentum = self.axes * local.component_mul(&self.inertia);
+    }
+
+    /// Spin that belongs to the angular momentum.
+    fn spin_of(&self, frame: &UnitQuaternion<f64>, momentum: &Vec3) -> Vec3 {
+        frame * frame.inverse_transform_vector(momentum).component_div(&self.inertia)
+    }
+
+    /// Kicks and moves the body by one step under `force` and `torque` about its centre, gravity not included.
+    pub fn advance(
+        &self,
+        state: &mut WallState,
+        force: &Vec3,
+        torque: &Vec3,
+        gravity: &Vec3,
+        dt: f64,
+        ledger: &mut Ledger,
+    ) {
+        let x = self.centre + state.offset;
+        let (v0, w0) = (state.velocity, state.spin);
+        let pull = gravity * self.mass;
+        ledger.gravity.add(&x, &(pull * dt));
+        let whole = force + pull;
+        let mut v1 = v0 + whole * (dt / self.mass);
+        for d in 0..3 {
+            if self.fixed >> d & 1 == 1 {
+                v1[d] = v0[d];
+            }
+        }
+        if self.fixed & 7 != 0 {
+            let hold = (v1 - v0) * self.mass - whole * dt;
+            ledger.constraints.add(&x, &hold);
+            ledger.work_constraints += hold.dot(&((v0 + v1) * 0.5));
+        }
+        state.velocity = v1;
+        state.offset += v1 * dt;
+
+        let before = state.momentum;
+        state.momentum += torque * dt;
+        let kicked = self.spin_of(&state.frame, &state.momentum);
+        if self.fixed >> 3 == 0 {
+            state.frame =
+                crate::integrate::rotation::free_one(&state.frame, &state.momentum, &self.inertia, dt);
+            state.spin = self.spin_of(&state.frame, &state.momentum);
+        } else {
+            let rotation = Rotation { orientation: state.frame, momentum: state.momentum };
+            let kicked = crate::integrate::leapfrog::hold(
+                &rotation,
+                &self.inertia,
+                &kicked,
+                &self.spin,
+                self.fixed >> 3,
+            );
+            state.frame = crate::integrate::rotation::steady(&state.frame, &kicked, dt);
+            let local = state.frame.inverse_transform_vector(&kicked);
+            state.momentum = state.frame * local.component_mul(&self.inertia);
+            state.spin = kicked;
+            ledger.constraints.angular += state.momentum - before - torque * dt;
+            ledger.work_constraints += 0.5 * (state.momentum.dot(&kicked) - before.dot(&w0))
+                - torque.dot(&((w0 + kicked) * 0.5)) * dt;
+        }
+        state.orientation = state.frame * self.axes.inverse();
+        state.turned = true;
+    }
+
+    /// Largest speed of a point of the body [m/s].
+    pub fn speed(&self, state: &WallState) -> f64 {
+        state.velocity.norm() + state.spin.norm() * self.reach
+    }
+
+    /// Kinetic energy of translation and rotation, and energy in gravity, at the last half step [J].
+    pub fn energies(&self, state: &WallState, gravity: &Vec3, dt: f64) -> [f64; 3] {
+        let x = self.centre + state.offset - state.velocity * (0.5 * dt);
+        [
+            0.5 * self.mass * state.velocity.norm_squared(),
+            0.5 * state.spin.dot(&state.momentum),
+            -self.mass * gravity.dot(&x),
+        ]
+    }
+
+    /// Adds momentum and angular momentum about the origin, as [`crate::measure::momentum`] takes them.
+    pub fn momentum(&self, state: &WallState, sum: &mut Impulse) {
+        sum.add(&(self.centre + state.offset), &(state.velocity * self.mass));
+        sum.angular += state.momentum;
+    }
+
+    /// Limit of the time step for a contact of stiffness `k` [N/m] and damping ratio `zeta`: as for a box of the body's
+    /// bounds with grains of radius `r` on its sides (see [`crate::timestep`]).
+    pub fn step_limit(&self, k: f64, tangential: f64, zeta: f64, r: f64) -> f64 {
+        let n = self.half.map(|h| h / r + 1.0);
+        let sides = 4.0 * (n.x * n.y).max(n.y * n.z).max(n.z * n.x);
+        let turn = (0..3)
+            .map(|d| {
+                let (a, b) = (self.half[(d + 1) % 3].powi(2), self.half[(d + 2) % 3].powi(2));
+                (a + b / 3.0).max(a / 3.0 + b)
+            })
+            .fold(0.0, f64::max);
+        let own = k.max(tangential) * (1.0 / self.mass + turn / self.inertia.min());
+        let zeta = zeta * (0.5 * sides).sqrt();
+        ((4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta) / (sides * own).sqrt()
+    }
+}
+
+/// Principal moments and the frame of their axes (columns), right-handed.
+fn principal(tensor: &Matrix3<f64>) -> (Vec3, UnitQuaternion<f64>) {
+    let noise = 1e-13 * tensor.trace().abs();
+    let mut clean = *tensor;
+    for (i, j) in [(0, 1), (1, 2), (0, 2)] {
+        if clean[(i, j)].abs() <= noise {
+            clean[(i, j)] = 0.0;
+            clean[(j, i)] = 0.0;
+        }
+    }
+    let diagonal = clean[(0, 1)] == 0.0 && clean[(1, 2)] == 0.0 && clean[(0, 2)] == 0.0;
+    if diagonal {
+        return (clean.diagonal(), UnitQuaternion::identity());
+    }
+    let eigen = clean.symmetric_eigen();
+    let (x, y) = (eigen.eigenvectors.column(0).into_owned(), eigen.eigenvectors.column(1).into_owned());
+    let axes = Matrix3::from_columns(&[x, y, x.cross(&y)]);
+    (eigen.eigenvalues, UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)))
+}
+
+/// Contacts of a body's vertices with the planes: returns force and torque about the centre on the body, and books what
+/// the planes did.
+pub(crate) fn stand<L: ContactLaw>(
+    model: &Model,
+    laws: &PairTable<L>,
+    planes: &[WallMotion],
+    body: &Body,
+    material: u32,
+    state: &mut WallState,
+    ledger: &mut Ledger,
+) -> (Vec3, Vec3) {
+    let dt = model.dt();
+    let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
+    let mut old = std::mem::take(&mut state.feet);
+    let x = body.centre + state.offset;
+    let mass = if body.inverse_mass > 0.0 { body.mass } else { f64::INFINITY };
+    for (p, (plane, wall)) in model.planes.iter().zip(planes).enumerate() {
+        let origin = plane.point + wall.offset;
+        if wall.open || mass.is_infinite() || (x - origin).dot(&plane.normal) > body.reach {
+            continue;
+        }
+        let law = laws.get(material, plane.material as u32);
+        for (v, vertex) in body.vertices.iter().enumerate() {
+            let at = state.to_world(&body.centre, vertex);
+            let Some(g) = tip(model, &at, &origin, &plane.normal) else { continue };
+            let mut foot = Foot { plane: p as u32, vertex: v as u32, history: History::NONE };
+            if let Some(known) = old.iter_mut().find(|f| (f.plane, f.vertex) == (foot.plane, foot.vertex)) {
+                foot.history = std::mem::replace(&mut known.history, History::NONE);
+            }
+            let relative = state.velocity_at(&body.centre, &g.point) - wall.velocity;
+            let f = law.respond(mass, &g, &relative, &state.spin, &mut foot.history, dt);
+            ledger.dissipated_dashpot += f.dashpot;
+            ledger.dissipated_friction += f.friction;
+            ledger.work_walls += f.force.dot(&wall.velocity) * dt;
+            ledger.walls.add(&g.point, &(f.force * dt));
+            force += f.force;
+            ledger.walls.angular += f.moment * dt;
+            torque += (g.point - x).cross(&f.force) + f.moment;
+            state.feet.push(foot);
+        }
+    }
+    for foot in old.iter_mut().filter(|f| !f.history.is_fresh()) {
+        let law = laws.get(material, model.planes[foot.plane as usize].material as u32);
+        ledger.dissipated_friction += law.release(&mut foot.history);
+    }
+    (force, torque)
+}
+
+/// A vertex against a plane: a point, for laws with curvature one of the radius of the smallest grain.
+fn tip(model: &Model, at: &Vec3, origin: &Vec3, normal: &Vec3) -> Option<ContactGeometry> {
+    let g = detect::sphere_plane(at, 0.0, origin, normal)?;
+    Some(ContactGeometry { radius: model.radii.0, ..g })
+}
+
+/// Energy in the springs between a body's vertices and the planes at the last half step: normal, tangential [J].
+pub(crate) fn stored(
+    model: &Model,
+    body: &Body,
+    material: u32,
+    state: &WallState,
+    planes: &[WallMotion],
+) -> [f64; 2] {
+    let back = 0.5 * model.dt();
+    let mut then = state.clone();
+    then.offset -= state.velocity * back;
+    then.orientation = crate::integrate::rotation::steady(&state.orientation, &state.spin, -back);
+    let mut sum = [0.0; 2];
+    for foot in &state.feet {
+        let (plane, wall) = (&model.planes[foot.plane as usize], &planes[foot.plane as usize]);
+        let at = then.to_world(&body.centre, &body.vertices[foot.vertex as usize]);
+        let origin = plane.point + wall.offset - wall.velocity * back;
+        let Some(ContactGeometry { point, normal, overlap, radius }) =
+            tip(model, &at, &origin, &plane.normal)
+        else {
+            continue;
+        };
+        let velocity = state.velocity_at(&body.centre, &point) - wall.velocity;
+        let slip = velocity - normal * velocity.dot(&normal);
+        let mut history = foot.history;
+        history.spring += slip * back;
+        let (n, t) = model.laws.stored(material, plane.material as u32, overlap, radius, &history);
+        sum[0] += n;
+        sum[1] += t;
+    }
+    sum
+}
+
+#[cfg(test)]
+#[path = "body_tests.rs"]
+mod tests;

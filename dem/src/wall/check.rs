@@ -1,0 +1,97 @@
+//! Checks of walls.
+
+use super::input::{WallInput, WallShape};
+use crate::Vec3;
+use crate::check::in_range;
+use crate::error::ModelError;
+
+fn finite(v: &Vec3) -> bool {
+    v.iter().all(|x| x.is_finite())
+}
+
+/// Ranges of all walls of patches.
+pub(crate) fn walls(input: &[WallInput], materials: usize) -> Result<(), ModelError> {
+    for (index, wall) in input.iter().enumerate() {
+        in_range("wall", index, "material", wall.material, materials)?;
+        if let Some(problem) = shape(&wall.shape).or_else(|| motion(wall)) {
+            return Err(ModelError::Wall { wall: format!("wall {index}"), problem });
+        }
+    }
+    Ok(())
+}
+
+fn shape(shape: &WallShape) -> Option<&'static str> {
+    match shape {
+        WallShape::Triangles { triangles, .. } => triangles.is_empty().then_some("it has no triangles"),
+        WallShape::Plane { point, normal } => (!(finite(point) && finite(normal) && normal.norm() > 0.0))
+            .then_some("its point must be finite and its normal have a length above zero"),
+        WallShape::Frustum { base, axis, height, radii, .. } => {
+            if !(finite(base) && finite(axis) && axis.norm() > 0.0) {
+                Some("its base must be finite and its axis have a length above zero")
+            } else if !(*height >= 0.0
+                && height.is_finite()
+                && radii.iter().all(|r| *r >= 0.0 && r.is_finite()))
+            {
+                Some("its height and radii must be zero or positive, and finite")
+            } else if radii[0].max(radii[1]) == 0.0 || (*height == 0.0 && radii[0] == radii[1]) {
+                Some("it has no area")
+            } else {
+                None
+            }
+        }
+        WallShape::Sphere { centre, radius } => (!(finite(centre) && *radius > 0.0 && radius.is_finite()))
+            .then_some("its radius must be positive"),
+    }
+}
+
+fn motion(wall: &WallInput) -> Option<&'static str> {
+    let m = &wall.motion;
+    if !(finite(&m.velocity) && finite(&m.angular_velocity) && m.centre.is_none_or(|c| finite(&c))) {
+        return Some("its motion must be finite");
+    }
+    if let Some(o) = &m.oscillation
+        && !(finite(&o.amplitude) && o.frequency >= 0.0 && o.frequency.is_finite() && o.phase.is_finite())
+    {
+        return Some("its oscillation must be finite, with a frequency of zero or more");
+    }
+    if let WallShape::Plane { normal, .. } = &wall.shape
+        && m.angular_velocity.cross(normal).norm() > 1e-12 * m.angular_velocity.norm() * normal.norm()
+    {
+        return Some(
+            "an infinite plane can only turn about its normal: take triangles for a floor that tilts",
+        );
+    }
+    let moves = m.velocity != Vec3::zeros() || m.angular_velocity != Vec3::zeros() || m.oscillation.is_some();
+    if let Some(s) = &wall.servo {
+        if !(finite(&s.direction) && s.direction.norm() > 0.0) {
+            return Some("the direction of its drive must have a length above zero");
+        }
+        if !(s.max_speed > 0.0 && s.max_speed.is_finite() && s.gain > 0.0 && s.gain <= 1.0) {
+            return Some("its drive needs a speed above zero and a gain above 0, at most 1");
+        }
+        if s.force.is_empty()
+            || !s.force.iter().flatten().all(|x| x.is_finite())
+            || !s.force.is_sorted_by(|a, b| a[0] < b[0])
+        {
+            return Some("the force of its drive needs finite points with rising times");
+        }
+        if moves || wall.body.is_some() {
+            return Some("a driven wall has no other motion");
+        }
+    }
+    if let Some(b) = &wall.body {
+        if moves {
+            return Some("a rigid body has no prescribed motion");
+        }
+        let good = b.mass > 0.0
+            && b.mass.is_finite()
+            && finite(&b.velocity)
+            && finite(&b.spin)
+            && b.centre.is_none_or(|c| finite(&c))
+            && b.inertia.is_none_or(|i| i.iter().all(|x| x.is_finite()));
+        if !good {
+            return Some("its mass must be positive, and its centre, inertia and velocities finite");
+        }
+    }
+    None
+}

@@ -1,0 +1,158 @@
+//! Closest points of round patches: frusta of cones (cylinders and rings among them), discs, spheres; and of planes.
+//!
+//! A frustum is two patches. Seen from a point at distance ρ from the axis, the *near* patch is the segment of the
+//! generator on the point's own side, the *far* patch that on the opposite side; the closest point of each is that of a
+//! segment in the half plane (ρ, z). The distance to the whole surface has one minimum only, the near one, as long as
+//! the sphere is smaller than the ring it sits in. A larger one, such as a ball resting in a cone, touches the ring all
+//! around; near and far contact together carry it with a potential that is smooth across the axis, where a single
+//! contact would flip from side to side. The far patch is not seen from outside.
+
+use crate::Vec3;
+use crate::search::bvh::Aabb;
+
+/// Half the size of the world, for the bounds of an infinite plane [m].
+const WORLD: f64 = 1e30;
+/// Distance from an axis, over the radius, below which the direction from it has no meaning.
+const ON_AXIS: f64 = 1e-13;
+
+/// What part of a round patch a point lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    Inside,
+    /// First or second rim.
+    Rim(usize),
+    Apex,
+}
+
+/// Closest point, outward unit normal there, and the part it lies on.
+pub(crate) type Closest = (Vec3, Vec3, Part);
+
+/// One round patch in the frame of its wall.
+#[derive(Clone, Debug)]
+pub(crate) enum Round {
+    Plane { point: Vec3, normal: Vec3 },
+    Frustum { base: Vec3, axis: Vec3, height: f64, radii: [f64; 2], far: bool },
+    Disc { centre: Vec3, axis: Vec3, radius: f64 },
+    Sphere { centre: Vec3, radius: f64 },
+}
+
+impl Round {
+    /// The closest point to `x`; `None` where the patch cannot be seen from there.
+    #[inline]
+    pub fn closest(&self, x: &Vec3) -> Option<Closest> {
+        match self {
+            Round::Plane { point, normal } => {
+                Some((x - normal * (x - point).dot(normal), *normal, Part::Inside))
+            }
+            Round::Frustum { base, axis, height, radii, far } => {
+                frustum(&(x - base), axis, *height, radii, *far).map(|(p, n, part)| (p + base, n, part))
+            }
+            Round::Disc { centre, axis, radius } => {
+                let d = x - centre;
+                let along = d.dot(axis);
+                let across = d - axis * along;
+                let rho = across.norm();
+                Some(if rho <= *radius {
+                    (x - axis * along, *axis, Part::Inside)
+                } else {
+                    (centre + across * (radius / rho), *axis, Part::Rim(0))
+                })
+            }
+            Round::Sphere { centre, radius } => {
+                let d = x - centre;
+                let rho = d.norm();
+                let outward = if rho > ON_AXIS * radius { d / rho } else { Vec3::z() };
+                Some((centre + outward * *radius, outward, Part::Inside))
+            }
+        }
+    }
+
+    /// Bounds.
+    pub fn bounds(&self) -> Aabb {
+        let ring = |c: &Vec3, k: &Vec3, r: f64| {
+            let half = k.map(|k| r * (1.0 - k * k).max(0.0).sqrt());
+            (c - half, c + half)
+        };
+        let (lo, hi) = match self {
+            Round::Plane { .. } => (Vec3::repeat(-WORLD), Vec3::repeat(WORLD)),
+            Round::Frustum { base, axis, height, radii, .. } => {
+                let (a, b) = (ring(base, axis, radii[0]), ring(&(base + axis * *height), axis, radii[1]));
+                (a.0.inf(&b.0), a.1.sup(&b.1))
+            }
+            Round::Disc { centre, axis, radius } => ring(centre, axis, *radius),
+            Round::Sphere { centre, radius } => (centre.add_scalar(-radius), centre.add_scalar(*radius)),
+        };
+        (lo.into(), hi.into())
+    }
+
+    /// Whether grains are on the outward side only.
+    pub fn one_sided(&self) -> bool {
+        matches!(self, Round::Plane { .. })
+    }
+
+    /// Whether turning about the axis through `centre` along `spin` leaves the patch where it is.
+    pub fn unmoved_by(&self, centre: &Vec3, spin: &Vec3) -> bool {
+        let along = |axis: &Vec3| spin.cross(axis).norm() <= 1e-12 * spin.norm();
+        match self {
+            Round::Plane { normal, .. } => along(normal),
+            Round::Frustum { base, axis, radii, .. } => {
+                along(axis) && (base - centre).cross(axis).norm() <= 1e-12 * radii[0].max(radii[1])
+            }
+            Round::Disc { centre: c, axis, radius } => {
+                along(axis) && (c - centre).cross(axis).norm() <= 1e-12 * radius
+            }
+            Round::Sphere { centre: c, radius } => {
+                (c - centre).cross(spin).norm() <= 1e-12 * radius * spin.norm()
+            }
+        }
+    }
+}
+
+/// Closest point of a frustum whose base is at the origin.
+#[inline]
+fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> Option<Closest> {
+    let z = x.dot(axis);
+    let across = x - axis * z;
+    let rho = across.norm();
+    let outward = if rho > ON_AXIS * (radii[0] + radii[1]) {
+        across / rho
+    } else {
+        let helper = if axis.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
+        axis.cross(&helper).normalize()
+    };
+    // The generator from (r₀, 0) to (r₁, h) and its outward normal, in the half plane.
+    let run = radii[1] - radii[0];
+    let length2 = run * run + height * height;
+    let length = length2.sqrt();
+    let normal = |side: &Vec3| (side * height - axis * run) / length;
+    let at = |s: f64| {
+        let t = (((s - radii[0]) * run + z * height) / length2).clamp(0.0, 1.0);
+        let end = if t <= 0.0 { Some(0) } else { (t >= 1.0).then_some(1) };
+        let part = match end {
+            None => Part::Inside,
+            Some(k) if radii[k] == 0.0 => Part::Apex,
+            Some(k) => Part::Rim(k),
+        };
+        (radii[0] + t * run, t * height, part)
+    };
+    let point = |side: &Vec3, r: f64, h: f64, part: Part| match part {
+        Part::Inside => side * r + axis * h,
+        Part::Rim(k) => side * radii[k] + axis * if k == 0 { 0.0 } else { height },
+        Part::Apex => axis * h,
+    };
+    let (r, h, part) = at(rho);
+    if !far {
+        return Some((point(&outward, r, h, part), normal(&outward), part));
+    }
+    let outside = part == Part::Inside && (rho - r) * height - (z - h) * run > 0.0;
+    let (r, h, part) = at(-rho);
+    if outside || rho >= r {
+        return None;
+    }
+    let side = -outward;
+    Some((point(&side, r, h, part), normal(&side), part))
+}
+
+#[cfg(test)]
+#[path = "round_tests.rs"]
+mod tests;

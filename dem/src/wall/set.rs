@@ -1,0 +1,401 @@
+//! All walls of a model as one surface of numbered patches, wall by wall in the order given.
+//!
+//! Every wall has a tree over its patches in its own frame. Walls move as rigid wholes, so a query is carried into that
+//! frame and the trees never change (a deforming surface, such as that of a solid, refits its tree instead).
+
+use super::body::Body;
+use super::input::{Motion, WallInput, WallShape};
+use super::round::{Part, Round};
+use super::servo::Servo;
+use super::state::WallState;
+use super::triangulated::{self, Triangle};
+use crate::Vec3;
+use crate::contact::Laws;
+use crate::error::{ModelError, Partner};
+use crate::input::Plane;
+use crate::search::bvh::Bvh;
+use crate::shape::triangle::Region;
+use crate::surface::{Feature, PatchPoint, Surface};
+use crate::timestep::DtLimit;
+use nalgebra::UnitQuaternion;
+
+/// Where a patch that cannot be touched is said to be [m]: out of reach of everything.
+const FAR: f64 = 1e30;
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Triangle(u32),
+    Round(u32),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    wall: u32,
+    kind: Kind,
+}
+
+/// Constants of one wall.
+#[derive(Clone, Debug)]
+pub(crate) struct Wall {
+    tree: Bvh,
+    /// Its first patch.
+    first: u32,
+    pub material: u32,
+    pub motion: Motion,
+    /// Point that moments refer to and that the wall turns about, at the start [m].
+    pub centre: Vec3,
+    pub servo: Option<Servo>,
+    pub body: Option<Body>,
+    /// Largest distance of a point of the wall from its centre [m]; zero where turning does not move the wall's shape.
+    pub reach: f64,
+}
+
+/// All walls of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Walls {
+    entries: Vec<Entry>,
+    triangles: Vec<Triangle>,
+    rounds: Vec<Round>,
+    pub(crate) walls: Vec<Wall>,
+    /// Walls that were given as plain triangle surfaces.
+    plain: usize,
+}
+
+impl Walls {
+    /// Numbers patches, edges and vertices, and builds the trees. The first `plain` walls are named as triangle
+    /// surfaces in messages, the others as walls.
+    ///
+    /// # Errors
+    /// A shape without area or with numbers that are out of range, a body without volume.
+    pub fn new(input: &[WallInput], plain: usize) -> Result<Walls, ModelError> {
+        let mut walls = Walls { plain, ..Walls::default() };
+        for (index, wall) in input.iter().enumerate() {
+            walls.add(index, wall)?;
+        }
+        Ok(walls)
+    }
+
+    fn add(&mut self, index: usize, wall: &WallInput) -> Result<(), ModelError> {
+        let name = self.name(index);
+        let first = self.entries.len();
+        match &wall.shape {
+            WallShape::Triangles { vertices, triangles } => {
+                for t in triangulated::triangles(vertices, triangles, &name)? {
+                    self.entries.push(Entry {
+                        wall: index as u32,
+                        kind: Kind::Triangle(self.triangles.len() as u32),
+                    });
+                    self.triangles.push(t);
+                }
+            }
+            shape => {
+                for round in rounds(shape) {
+                    self.entries
+                        .push(Entry { wall: index as u32, kind: Kind::Round(self.rounds.len() as u32) });
+                    self.rounds.push(round);
+                }
+            }
+        }
+        let boxes: Vec<_> = self.entries[first..]
+            .iter()
+            .map(|e| match e.kind {
+                Kind::Triangle(t) => self.triangles[t as usize].bounds(),
+                Kind::Round(r) => self.rounds[r as usize].bounds(),
+            })
+            .collect();
+        let body = wall.body.as_ref().map(|b| Body::new(b, &wall.shape, &name)).transpose()?;
+        let centre = match &body {
+            Some(b) => b.centre,
+            None => wall.motion.centre.unwrap_or_else(|| wall.shape.own_centre()),
+        };
+        let far = |(lo, hi): &([f64; 3], [f64; 3])| {
+            (0..8)
+                .map(|k| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { hi[d] } else { lo[d] }))
+                .map(|corner| (corner - centre).norm())
+                .fold(0.0, f64::max)
+        };
+        let spin = &wall.motion.angular_velocity;
+        let unmoved = body.is_none()
+            && self.entries[first..].iter().all(|e| match e.kind {
+                Kind::Triangle(_) => spin.norm() == 0.0,
+                Kind::Round(r) => self.rounds[r as usize].unmoved_by(&centre, spin),
+            });
+        let reach = match &body {
+            Some(b) => b.reach,
+            None if unmoved => 0.0,
+            None => boxes.iter().map(far).fold(0.0, f64::max),
+        };
+        self.walls.push(Wall {
+            tree: Bvh::new(&boxes),
+            first: first as u32,
+            material: wall.material as u32,
+            motion: wall.motion,
+            centre,
+            servo: wall.servo.clone().map(|s| Servo { direction: s.direction.normalize(), ..s }),
+            body,
+            reach,
+        });
+        Ok(())
+    }
+
+    /// Lowers the limit of the time step where a rigid body of triangles needs it; `radii` are those of the smallest
+    /// and the largest sphere [m], `expected` the overlap expected over the radius.
+    pub(crate) fn limit_step(
+        &self,
+        limit: &mut DtLimit,
+        bodies: &[crate::model::Body],
+        planes: &[Plane],
+        laws: &Laws,
+        expected: f64,
+        radii: (f64, f64),
+    ) {
+        let partners = || bodies.iter().map(|b| b.material).chain(planes.iter().map(|p| p.material as u32));
+        for (k, wall) in self.walls.iter().enumerate() {
+            let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
+            let mut tried = None;
+            for partner in partners() {
+                let stiffness = laws.stiffness(wall.material, partner, expected * radii.1, radii.1);
+                if tried == Some(partner) || !stiffness.is_finite() {
+                    continue;
+                }
+                tried = Some(partner);
+                let ratio =
+                    laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
+                let zeta = laws.damping_ratio(wall.material, partner);
+                let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
+                if dt < limit.dt {
+                    let (partner, mass) = (partner as usize, body.mass);
+                    *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds: 0.0, wall: Some(k) };
+                }
+            }
+        }
+    }
+
+    /// Name of a wall in messages.
+    pub(crate) fn name(&self, wall: usize) -> String {
+        match wall.checked_sub(self.plain) {
+            None => format!("surface {wall}"),
+            Some(k) => format!("wall {k}"),
+        }
+    }
+
+    /// Place and motion of each wall at the start, for steps of `dt`.
+    pub(crate) fn start(&self, gravity: &Vec3, dt: f64) -> Vec<WallState> {
+        self.walls
+            .iter()
+            .map(|w| {
+                let swing = w.motion.oscillation.map_or(Vec3::zeros(), |o| (o.at(0.0) - o.at(-dt)) / dt);
+                let mut state = WallState {
+                    offset: Vec3::zeros(),
+                    steady: Vec3::zeros(),
+                    orientation: UnitQuaternion::identity(),
+                    turned: false,
+                    velocity: w.motion.velocity + swing,
+                    drive: w.motion.velocity,
+                    spin: w.motion.angular_velocity,
+                    open: false,
+                    force: Vec3::zeros(),
+                    moment: Vec3::zeros(),
+                    frame: UnitQuaternion::identity(),
+                    momentum: Vec3::zeros(),
+                    feet: Vec::new(),
+                };
+                if let Some(body) = &w.body {
+                    body.start(&mut state, gravity, dt);
+                }
+                state
+            })
+            .collect()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Wall of a patch.
+    #[inline]
+    pub(crate) fn wall_of(&self, patch: u32) -> usize {
+        self.entries[patch as usize].wall as usize
+    }
+
+    /// Material (index) of a patch.
+    #[inline]
+    pub fn material(&self, patch: u32) -> u32 {
+        self.walls[self.wall_of(patch)].material
+    }
+
+    /// A patch as the partner of a contact.
+    pub(crate) fn partner(&self, patch: u32) -> Partner {
+        match self.entries[patch as usize].kind {
+            Kind::Triangle(t) => Partner::Triangle(t),
+            Kind::Round(_) => Partner::Wall(self.wall_of(patch) as u32),
+        }
+    }
+
+    /// The walls where they are now.
+    pub(crate) fn placed<'a>(&'a self, states: &'a [WallState]) -> PlacedWalls<'a> {
+        PlacedWalls { walls: self, states }
+    }
+}
+
+/// The patches of a shape without triangles.
+fn rounds(shape: &WallShape) -> Vec<Round> {
+    match shape {
+        WallShape::Triangles { .. } => Vec::new(),
+        WallShape::Plane { point, normal } => {
+            vec![Round::Plane { point: *point, normal: normal.normalize() }]
+        }
+        WallShape::Frustum { base, axis, height, radii, caps } => {
+            let axis = axis.normalize();
+            let side = |far| Round::Frustum { base: *base, axis, height: *height, radii: *radii, far };
+            let mut out = vec![side(false), side(true)];
+            for (k, end) in [*base, base + axis * *height].into_iter().enumerate() {
+                if caps[k] && radii[k] > 0.0 {
+                    let axis = if k == 0 { -axis } else { axis };
+                    out.push(Round::Disc { centre: end, axis, radius: radii[k] });
+                }
+            }
+            out
+        }
+        WallShape::Sphere { centre, radius } => vec![Round::Sphere { centre: *centre, radius: *radius }],
+    }
+}
+
+/// Walls together with where they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedWalls<'a> {
+    walls: &'a Walls,
+    states: &'a [WallState],
+}
+
+impl PlacedWalls<'_> {
+    #[inline(always)]
+    fn parts(&self, patch: u32) -> (Kind, &Wall, &WallState) {
+        let Entry { wall, kind } = self.walls.entries[patch as usize];
+        (kind, &self.walls.walls[wall as usize], &self.states[wall as usize])
+    }
+}
+
+impl Surface for PlacedWalls<'_> {
+    fn candidates(&self, lo: [f64; 3], hi: [f64; 3], out: &mut Vec<u32>) {
+        let (middle, half) =
+            ((Vec3::from(lo) + Vec3::from(hi)) * 0.5, (Vec3::from(hi) - Vec3::from(lo)) * 0.5);
+        for (wall, state) in self.walls.walls.iter().zip(self.states) {
+            if state.open {
+                continue;
+            }
+            let (lo, hi) = if state.turned {
+                let turn = state.orientation.inverse().to_rotation_matrix().matrix().abs();
+                let (c, h) = (state.to_local(&wall.centre, &middle), turn * half);
+                (c - h, c + h)
+            } else {
+                (Vec3::from(lo) - state.offset, Vec3::from(hi) - state.offset)
+            };
+            let first = out.len();
+            wall.tree.query(lo.into(), hi.into(), out);
+            out[first..].iter_mut().for_each(|p| *p += wall.first);
+        }
+    }
+
+    #[inline]
+    fn closest_point(&self, patch: u32, centre: [f64; 3], _: [f64; 2]) -> PatchPoint {
+        let (kind, wall, state) = self.parts(patch);
+        let x = state.to_local(&wall.centre, &Vec3::from(centre));
+        let (point, normal, feature, local) = match kind {
+            Kind::Triangle(t) => {
+                let t = &self.walls.triangles[t as usize];
+                let (point, weights, region) = t.closest(&x);
+                let feature = match region {
+                    Region::Face => Feature::Face,
+                    Region::Edge(k) => Feature::Edge(t.edges[k]),
+                    Region::Vertex(k) => Feature::Vertex(t.vertices[k]),
+                };
+                (point, t.normal(), feature, weights)
+            }
+            Kind::Round(r) => match self.walls.rounds[r as usize].closest(&x) {
+                Some((point, normal, part)) => {
+                    let feature = match part {
+                        Part::Inside => Feature::Face,
+                        Part::Rim(k) => Feature::Edge(k as u32),
+                        Part::Apex => Feature::Vertex(0),
+                    };
+                    (point, normal, feature, [0.0; 2])
+                }
+                None => (Vec3::repeat(FAR), Vec3::z(), Feature::Face, [0.0; 2]),
+            },
+        };
+        let point = if state.open { Vec3::repeat(FAR) } else { state.to_world(&wall.centre, &point) };
+        PatchPoint {
+            point: point.into(),
+            normal: state.turn(&normal).into(),
+            velocity: state.velocity_at(&wall.centre, &point).into(),
+            local,
+            feature,
+        }
+    }
+
+    #[inline(always)]
+    fn within(&self, patch: u32, centre: [f64; 3], reach: f64) -> bool {
+        let (kind, wall, state) = self.parts(patch);
+        let x = state.to_local(&wall.centre, &Vec3::from(centre));
+        !state.open
+            && match kind {
+                Kind::Triangle(t) => self.walls.triangles[t as usize].within(&x, reach),
+                Kind::Round(r) => {
+                    let round = &self.walls.rounds[r as usize];
+                    round.closest(&x).is_some_and(|(point, normal, _)| {
+                        let away = x - point;
+                        (round.one_sided() && away.dot(&normal) < 0.0)
+                            || away.norm_squared() <= reach * reach * (1.0 + 1e-9)
+                    })
+                }
+            }
+    }
+
+    fn max_speed(&self) -> f64 {
+        let speed = |(w, s): (&Wall, &WallState)| s.velocity.norm() + s.spin.norm() * w.reach;
+        self.walls.walls.iter().zip(self.states).map(speed).fold(0.0, f64::max)
+    }
+
+    fn one_sided(&self) -> bool {
+        false
+    }
+
+    fn one_sided_patch(&self, patch: u32) -> bool {
+        match self.walls.entries[patch as usize].kind {
+            Kind::Triangle(_) => false,
+            Kind::Round(r) => self.walls.rounds[r as usize].one_sided(),
+        }
+    }
+
+    fn sharp(&self) -> bool {
+        true
+    }
+
+    fn group(&self, patch: u32) -> usize {
+        self.walls.wall_of(patch)
+    }
+
+    fn groups(&self) -> usize {
+        self.states.len()
+    }
+
+    fn moment_centre(&self, patch: u32) -> [f64; 3] {
+        let (_, wall, state) = self.parts(patch);
+        (wall.centre + state.offset).into()
+    }
+
+    fn spin(&self, patch: u32) -> Vec3 {
+        self.states[self.walls.wall_of(patch)].spin
+    }
+
+    fn inverse_mass(&self, patch: u32) -> f64 {
+        let (_, wall, _) = self.parts(patch);
+        wall.body.as_ref().map_or(0.0, |b| b.inverse_mass)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.walls.is_empty()
+    }
+}

@@ -1,0 +1,243 @@
+//! Rigid bodies of triangles.
+
+use crate::scene::{Run, plane, sphere, stone, weightless};
+use trackbed_dem::{
+    BodyInput, Material, Model, ModelError, ModelInput, RigidBody, StepError, TimeStep, Vec3, WallInput,
+    WallShape, measure,
+};
+
+/// A box with its centre at `centre`, its sides split into triangles.
+fn cuboid(centre: Vec3, half: Vec3, mass: f64) -> WallInput {
+    let vertices = (0..8)
+        .map(|k| centre + Vec3::from_fn(|d, _| if k >> d & 1 == 1 { half[d] } else { -half[d] }))
+        .collect();
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    let body = RigidBody {
+        mass,
+        centre: None,
+        inertia: None,
+        velocity: Vec3::zeros(),
+        spin: Vec3::zeros(),
+        fixed: [false; 6],
+    };
+    WallInput { body: Some(body), ..WallInput::fixed(WallShape::Triangles { vertices, triangles }, 0) }
+}
+
+fn with(material: Material) -> ModelInput {
+    ModelInput { gravity: Vec3::new(0.0, 0.0, -9.81), ..weightless(material) }
+}
+
+fn body_of(wall: &mut WallInput) -> &mut RigidBody {
+    wall.body.as_mut().expect("a body")
+}
+
+/// Free flight of a tumbling box: kinetic energy and angular momentum stay, the centre flies a parabola.
+#[test]
+fn free_flight() {
+    let mut input = with(stone());
+    input.time_step = TimeStep::Fixed(1e-4);
+    let mut wall = cuboid(Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.3, 0.2, 0.1), 50.0);
+    body_of(&mut wall).spin = Vec3::new(0.1, 7.0, 0.2);
+    body_of(&mut wall).velocity = Vec3::new(1.0, 0.0, 2.0);
+    input.walls.push(wall);
+    let mut run = Run::new(input);
+    let start = measure::momentum(&run.model, &run.state);
+    let kinetic = |run: &Run| measure::energies(&run.model, &run.state).kinetic_rotation;
+    let (first, mut worst) = (kinetic(&run), 0.0_f64);
+    // m/12 (b² + c²) …, about the second axis.
+    let exact = 0.5 * 50.0 / 3.0 * ((0.04 + 0.01) * 0.01 + (0.09 + 0.01) * 49.0 + (0.09 + 0.04) * 0.04);
+    assert!((first / exact - 1.0).abs() < 1e-12, "{first} {exact}");
+    for _ in 0..20_000 {
+        run.step();
+        worst = worst.max((kinetic(&run) / first - 1.0).abs());
+    }
+    let t = run.state.time;
+    let end = measure::momentum(&run.model, &run.state);
+    let impulse = run.state.ledger.impulse();
+    eprintln!("rotation energy drift {worst:e} over {t} s");
+    assert!(worst < 1e-12);
+    assert!((end.linear - start.linear - impulse.linear).norm() < 1e-9 * 50.0);
+    assert!((end.angular - start.angular - impulse.angular).norm() < 1e-9 * 50.0);
+    let fall = Vec3::new(1.0, 0.0, 2.0) * t - Vec3::z() * 4.905 * t * t;
+    assert!((run.state.wall_offset(0) - fall).norm() < 1e-9 * fall.norm());
+    // The intermediate axis tumbles.
+    let up = run.state.wall_orientation(0) * Vec3::y();
+    assert!(t > 1.0 && (up - Vec3::y()).norm() > 1e-3, "{t} {up}");
+}
+
+/// A cube of triangles laid on four held spheres carries its weight onto them, whatever its diagonals; with a fifth
+/// grain on top it carries both.
+#[test]
+fn cube_at_rest_on_spheres() {
+    let mut input = with(Material { restitution: 0.2, tangential_damping_ratio: 0.5, ..stone() });
+    for (x, y) in [(-0.03, -0.03), (0.03, -0.03), (0.03, 0.03), (-0.03, 0.03)] {
+        input.bodies.push(BodyInput { fixed: [true; 6], ..sphere(Vec3::new(x, y, 0.0), Vec3::zeros()) });
+    }
+    let mass = 2.0;
+    input.walls.push(cuboid(Vec3::new(0.002, 0.001, 0.06), Vec3::repeat(0.05), mass));
+    // It must not roll, or it would never come to rest on the slightly tilted top.
+    let fixed = [true, true, false, true, true, true];
+    input.bodies.push(BodyInput { fixed, ..sphere(Vec3::new(0.0, 0.0, 0.1201), Vec3::zeros()) });
+    let mut run = Run::new(input);
+    while run.state.time < 2.0 {
+        run.step();
+    }
+    let (weight, load) = (mass * 9.81, run.model.mass(4) * 9.81);
+    let below: Vec3 = (0..4).map(|b| run.work.contact_force(&run.state, b)).sum();
+    eprintln!(
+        "below {:e}, on top {:e}",
+        below.z / -(weight + load) - 1.0,
+        run.work.contact_force(&run.state, 4).z / load - 1.0
+    );
+    assert!((below + Vec3::z() * (weight + load)).norm() < 1e-8 * weight, "{below} {weight}");
+    assert!((run.work.contact_force(&run.state, 4).z / load - 1.0).abs() < 1e-8);
+    assert_eq!(run.state.wall_contact_count(), 5);
+    // Moments about the centre of mass vanish at rest.
+    let (force, moment) = run.state.wall_force(0);
+    assert!(
+        (force - Vec3::z() * weight).norm() < 1e-8 * weight && moment.norm() < 1e-8 * weight * 0.05,
+        "{moment}"
+    );
+}
+
+/// A box falls on a plane: it comes to rest on four vertices that carry a quarter of the weight each, and energy and
+/// momentum balance on the way.
+#[test]
+fn box_stands_on_its_vertices() {
+    let mut input = with(Material { restitution: 0.3, ..stone() });
+    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    let mut wall = cuboid(Vec3::new(0.0, 0.0, 0.06), Vec3::new(0.06, 0.05, 0.04), 1.5);
+    body_of(&mut wall).spin = Vec3::new(2.0, -1.0, 0.5);
+    input.walls.push(wall);
+    let mut run = Run::new(input);
+    let total = |run: &Run| {
+        measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
+            - run.state.ledger.work()
+    };
+    let (start, before) = (total(&run), measure::momentum(&run.model, &run.state));
+    let mut worst = 0.0_f64;
+    while run.state.time < 2.5 {
+        run.step();
+        worst = worst.max((total(&run) - start).abs());
+    }
+    let lost = run.state.ledger.dissipated();
+    eprintln!("energy error {worst:e} of {lost:e} J");
+    assert!(worst < 0.02 * lost, "{worst:e} {lost:e}");
+    let after = measure::momentum(&run.model, &run.state);
+    let impulse = run.state.ledger.impulse();
+    assert!((after.linear - before.linear - impulse.linear).norm() < 1e-10);
+    assert!((after.angular - before.angular - impulse.angular).norm() < 1e-10);
+    let rise = run.state.wall_offset(0).z + 0.06 - 0.04 + 1.5 * 9.81 / (4.0 * 1e5);
+    assert!(rise.abs() < 1e-9, "{rise:e}");
+    assert!(after.linear.norm() < 1e-6 && after.angular.norm() < 1e-6, "{after:?}");
+}
+
+/// A grain hits a free box: momentum is shared, and nothing comes from outside.
+#[test]
+fn collision_conserves_momentum() {
+    let mut input = weightless(Material { restitution: 1.0, friction: 0.6, ..stone() });
+    input.walls.push(cuboid(Vec3::new(0.1, 0.0, 0.0), Vec3::new(0.03, 0.05, 0.04), 0.05));
+    let ball = sphere(Vec3::new(0.05, 0.02, 0.01), Vec3::new(1.0, 0.1, 0.0));
+    input.bodies.push(BodyInput { spin: Vec3::new(0.0, 0.0, 30.0), ..ball });
+    let mut run = Run::new(input);
+    let (start, energy) =
+        (measure::momentum(&run.model, &run.state), measure::energies(&run.model, &run.state).total());
+    while run.state.time < 0.1 {
+        run.step();
+    }
+    let end = measure::momentum(&run.model, &run.state);
+    assert!((end.linear - start.linear).norm() < 1e-15 && (end.angular - start.angular).norm() < 1e-15);
+    assert!(run.state.velocity(0).x < 0.8 && run.state.wall_velocity(0).0.x > 0.1, "they must have met");
+    let left = measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
+    assert!((left / energy - 1.0).abs() < 1e-3, "{left} {energy}");
+    assert_eq!(run.state.ledger.work(), 0.0);
+}
+
+/// Fixed motions keep their speed and what holds them is booked.
+#[test]
+fn held_body_stays() {
+    let mut input = with(stone());
+    let mut wall = cuboid(Vec3::new(0.0, 0.0, 0.05), Vec3::repeat(0.03), 1.0);
+    *body_of(&mut wall) = RigidBody {
+        fixed: [true, true, false, true, true, true],
+        spin: Vec3::z(),
+        ..body_of(&mut wall).clone()
+    };
+    input.walls.push(wall);
+    input.bodies.push(BodyInput { fixed: [true; 6], ..sphere(Vec3::new(0.012, 0.0, 0.0), Vec3::zeros()) });
+    let mut run = Run::new(input);
+    let before = measure::momentum(&run.model, &run.state);
+    while run.state.time < 0.5 {
+        run.step();
+    }
+    let (v, w) = run.state.wall_velocity(0);
+    assert!(v.xy().norm() == 0.0 && (w - Vec3::z()).norm() < 1e-12, "{v} {w}");
+    let after = measure::momentum(&run.model, &run.state);
+    let impulse = run.state.ledger.impulse();
+    assert!((after.linear - before.linear - impulse.linear).norm() < 1e-10);
+    assert!((after.angular - before.angular - impulse.angular).norm() < 1e-10);
+}
+
+#[test]
+fn refusals() {
+    let with_wall = |wall: WallInput| {
+        let mut input = with(stone());
+        input.walls.push(wall);
+        Model::new(input).map(|_| ())
+    };
+    let fails = |wall: WallInput, words: &str| match with_wall(wall) {
+        Err(ModelError::Wall { problem, .. }) => assert!(problem.contains(words), "{problem}"),
+        other => panic!("{other:?}"),
+    };
+    let good = || cuboid(Vec3::zeros(), Vec3::repeat(0.1), 1.0);
+    with_wall(good()).unwrap();
+    let mut open = good();
+    if let WallShape::Triangles { triangles, .. } = &mut open.shape {
+        triangles.pop();
+    }
+    fails(open, "not closed");
+    let mut light = good();
+    body_of(&mut light).mass = 0.0;
+    fails(light, "mass must be positive");
+    let mut odd = good();
+    (body_of(&mut odd).centre, body_of(&mut odd).inertia) =
+        (Some(Vec3::zeros()), Some([1.0, 1.0, 3.0, 0.0, 0.0, 0.0]));
+    fails(odd, "not those of a body");
+    fails(
+        WallInput { shape: WallShape::Sphere { centre: Vec3::zeros(), radius: 1.0 }, ..good() },
+        "only a triangle",
+    );
+    let mut moved = good();
+    moved.motion.velocity = Vec3::x();
+    fails(moved, "no prescribed motion");
+
+    let mut input = with(stone());
+    input.walls.push(good());
+    let mut second = cuboid(Vec3::new(0.0, 0.05, 0.3), Vec3::repeat(0.09), 1.0);
+    body_of(&mut second).velocity = -Vec3::z();
+    input.walls.push(second);
+    let mut run = Run::new(input);
+    let error = loop {
+        let surface = trackbed_dem::surface::NoSurface;
+        if let Err(e) = trackbed_dem::step(&run.model, &mut run.state, &mut run.work, &surface, &[]) {
+            break e;
+        }
+        assert!(run.state.time < 1.0);
+    };
+    assert!(matches!(error, StepError::WallsMeet { walls: [0, 1], .. }), "{error}");
+    // Their facing sides were 0.11 m apart and close at 1 m/s, gravity pulling both.
+    assert!((run.state.time - 0.11).abs() < 1e-3, "{}", run.state.time);
+}
+
+/// A light body needs a shorter step than its grains, and the message names it.
+#[test]
+fn a_light_body_sets_the_step() {
+    let mut input = with(stone());
+    input.bodies.push(sphere(Vec3::zeros(), Vec3::zeros()));
+    let alone = Model::new(input.clone()).unwrap().dt();
+    input.walls.push(cuboid(Vec3::new(0.0, 0.0, 0.5), Vec3::repeat(0.05), 1e-3));
+    let model = Model::new(input).unwrap();
+    assert!(model.dt() < alone);
+    assert!(model.dt_limit().to_string().starts_with("the rigid body of wall 0"), "{}", model.dt_limit());
+}

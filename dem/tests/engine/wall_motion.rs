@@ -1,0 +1,149 @@
+//! Walls that swing, turn and are driven.
+
+use crate::scene::{Random, Run, clump, plane, sphere, stone, weightless};
+use trackbed_dem::{
+    BodyInput, Material, ModelInput, Motion, Oscillation, Servo, Shape, TimeStep, Vec3, WallInput, WallShape,
+    measure,
+};
+
+/// Grains in a box that is open at the top, `width` wide.
+pub fn heap(count: usize, width: f64, material: Material) -> ModelInput {
+    let mut random = Random::new(9);
+    let mut input = ModelInput {
+        gravity: Vec3::new(0.0, 0.0, -9.81),
+        time_step: TimeStep::Auto { fraction: 0.3 },
+        ..weightless(material)
+    };
+    let n = (width / 0.022) as usize;
+    for k in 0..count {
+        let cell = Vec3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64);
+        let position = (cell + Vec3::repeat(0.55)) * (width / n as f64) + random.vector() * 5e-4;
+        input.bodies.push(BodyInput { scale: 0.9 + 0.1 * random.unit(), ..sphere(position, Vec3::zeros()) });
+    }
+    for d in [Vec3::x(), Vec3::y()] {
+        input.planes.extend([plane(Vec3::zeros(), d), plane(d * width, -d)]);
+    }
+    input
+}
+
+/// A square of two triangles at height `z`.
+pub fn square(width: f64, z: f64) -> WallShape {
+    let (a, b) = (-0.1 * width, 1.1 * width);
+    WallShape::Triangles {
+        vertices: [[a, a], [b, a], [b, b], [a, b]].map(|[x, y]| Vec3::new(x, y, z)).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    }
+}
+
+/// A shaking table, a paddle that turns and a drum that moves on stir a heap: the wall is where its law says, energy
+/// and momentum balance, and the energy error falls as dt².
+#[test]
+fn stirred_heap_balances() {
+    let run = |fraction: f64| {
+        let mut input = heap(60, 0.09, Material { restitution: 0.7, ..stone() });
+        input.shapes.push(Shape::Clump(clump()));
+        input.bodies.push(BodyInput {
+            shape: 1,
+            position: Vec3::new(0.04, 0.05, 0.15),
+            ..BodyInput::default()
+        });
+        input.time_step = TimeStep::Auto { fraction };
+        let swing = Oscillation { amplitude: Vec3::new(0.0, 3e-4, 1e-3), frequency: 25.0, phase: 0.4 };
+        let table = Motion { oscillation: Some(swing), ..Motion::default() };
+        input.walls.push(WallInput { motion: table, ..WallInput::fixed(square(0.09, 0.0), 0) });
+        let paddle = WallShape::Triangles {
+            vertices: vec![
+                Vec3::new(0.02, 0.045, 0.02),
+                Vec3::new(0.07, 0.045, 0.02),
+                Vec3::new(0.07, 0.045, 0.06),
+                Vec3::new(0.02, 0.045, 0.06),
+            ],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        };
+        let turning = Motion {
+            velocity: Vec3::new(0.01, 0.0, 0.02),
+            angular_velocity: Vec3::new(0.3, 0.2, 4.0),
+            centre: Some(Vec3::new(0.045, 0.045, 0.04)),
+            oscillation: None,
+        };
+        input.walls.push(WallInput { motion: turning, ..WallInput::fixed(paddle, 0) });
+        let mut run = Run::new(input);
+        let total = |run: &Run| {
+            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
+                - run.state.ledger.work()
+        };
+        let (start, before) = (total(&run), measure::momentum(&run.model, &run.state));
+        let mut worst = 0.0_f64;
+        while run.state.time < 0.5 {
+            run.step();
+            worst = worst.max((total(&run) - start).abs());
+        }
+        let t = run.state.time;
+        let place = swing.at(t);
+        assert!((run.state.wall_offset(0) - place).norm() < 1e-15, "{}", run.state.wall_offset(0));
+        assert!((run.state.wall_offset(1) - turning.velocity * t).norm() < 1e-12);
+        let tip = run.state.wall_point(&run.model, 1, &Vec3::new(0.07, 0.045, 0.06));
+        let turn = nalgebra::UnitQuaternion::from_scaled_axis(turning.angular_velocity * t);
+        let exact = turn * Vec3::new(0.025, 0.0, 0.02) + Vec3::new(0.045, 0.045, 0.04) + turning.velocity * t;
+        assert!((tip - exact).norm() < 1e-12, "{tip} {exact}");
+        let change = measure::momentum(&run.model, &run.state);
+        let impulse = run.state.ledger.impulse();
+        assert!((change.linear - before.linear - impulse.linear).norm() < 1e-12);
+        assert!((change.angular - before.angular - impulse.angular).norm() < 1e-12);
+        let work = run.state.ledger.work_walls;
+        assert!(work > 1e-3, "the walls must do work: {work}");
+        (worst, work + run.state.ledger.dissipated())
+    };
+    let ((coarse, turnover), (fine, _)) = (run(0.4), run(0.1));
+    eprintln!("energy error {coarse:e} and {fine:e} J of {turnover:e} J");
+    assert!(coarse < 2e-2 * turnover && fine < 0.25 * coarse, "{coarse:e} {fine:e} {turnover:e}");
+}
+
+/// A driven lid presses a small packing with 1 kPa, then 2 kPa: within 1 % from 0.1 s after each change on, and the work of
+/// the drive is in the account.
+#[test]
+fn servo_holds_its_pressure() {
+    let width = 0.09;
+    let area = width * width;
+    for triangles in [false, true] {
+        let mut input = heap(48, width, Material { restitution: 0.3, ..stone() });
+        input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        let shape = if triangles {
+            square(width, 0.09)
+        } else {
+            WallShape::Plane { point: Vec3::new(0.0, 0.0, 0.09), normal: -Vec3::z() }
+        };
+        let force = vec![[0.0, 1e3 * area], [0.5, 1e3 * area], [0.52, 2e3 * area]];
+        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 0.5 };
+        input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(shape, 0) });
+        let mut run = Run::new(input);
+        let total = |run: &Run| {
+            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
+                - run.state.ledger.work()
+        };
+        let start = total(&run);
+        let mut worst = 0.0_f64;
+        while run.state.time < 1.0 {
+            run.step();
+            let t = run.state.time;
+            if std::env::var("TRACE").is_ok() && run.state.steps % 400 == 0 {
+                eprintln!(
+                    "{t:.4} {:.1} {:.5}",
+                    run.state.wall_force(0).0.z / area,
+                    run.state.wall_offset(0).z
+                );
+            }
+            let target = if t < 0.5 { 1e3 } else { 2e3 };
+            if (t > 0.4 && t < 0.5) || t > 0.7 {
+                let pressure = run.state.wall_force(0).0.z / area;
+                worst = worst.max((pressure / target - 1.0).abs());
+            }
+        }
+        eprintln!("largest deviation of the pressure {:.4} %", 100.0 * worst);
+        assert!(worst < 0.01, "{worst}");
+        let ledger = &run.state.ledger;
+        assert!(ledger.work_servo > 1e-3 && ledger.work_walls == 0.0, "{ledger:?}");
+        let error = (total(&run) - start).abs();
+        assert!(error < 0.02 * ledger.work_servo, "{error:e} of {:e}", ledger.work_servo);
+    }
+}

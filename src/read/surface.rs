@@ -1,0 +1,116 @@
+//! Surfaces of triangles from files of other programs.
+//!
+//! Besides STL and OBJ ([`super::stl`], [`super::obj`]) the plain list that solvers of the field exchange: a line with
+//! the number of vertices and of triangles, the vertices (`x y z`), then the triangles (three vertex numbers, counted
+//! from 1; from 0 where a 0 occurs). Comments, separators and number forms are those of the other lists
+//! (`table`). Triangles may be wound either way, and the surface may be closed or open.
+
+use std::path::Path;
+
+use super::error::ReadError;
+use super::table::Table;
+use super::{obj, stl};
+
+pub use trackbed_dem::shape::polyhedron::Surface;
+
+/// Endings of surface files that can be read.
+pub const SURFACE_ENDINGS: [&str; 6] = ["stl", "obj", "dat", "txt", "tri", "srf"];
+
+/// Vertices of an STL file nearer than this times the diagonal of its box are one, where equal ones alone leave it open.
+const STL_TOLERANCE: f64 = 1e-6;
+
+/// Reads a surface, told by the ending of its name: `.stl` (text or binary), `.obj`, and the plain list `.dat`, `.txt`,
+/// `.tri`, `.srf`. Lengths are taken as metres.
+///
+/// Equal vertices are merged, since STL repeats each for every triangle; where an STL file then still is open, vertices
+/// within 1e-6 of its size are merged too.
+///
+/// # Errors
+/// Another ending, and what the reader of the form refuses.
+pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    match ending.as_str() {
+        "stl" => stl::read_stl(path).map(|soup| mended(&soup)),
+        "obj" => obj::read_obj(path),
+        "dat" | "txt" | "tri" | "srf" => read_plain(path),
+        _ => {
+            let found = if ending.is_empty() { "no ending".to_string() } else { format!("\".{ending}\"") };
+            let expected = ".stl, .obj, or .dat, .txt, .tri or .srf with a list of vertices and triangles";
+            Err(ReadError::whole(path, "ending of the file name", found, expected))
+        }
+    }
+}
+
+/// Merges the vertices of separate triangles.
+fn mended(soup: &Surface) -> Surface {
+    let open = |s: &Surface| s.topology().map_or(0, |t| t.open_edges);
+    let exact = soup.merged(0.0);
+    if open(&exact) == 0 {
+        return exact;
+    }
+    let loose = exact.merged(STL_TOLERANCE * exact.diagonal());
+    if open(&loose) < open(&exact) { loose } else { exact }
+}
+
+/// Reads the plain list.
+///
+/// # Errors
+/// Counts that do not fit the rows, rows of another width, coordinates that are no finite numbers, and triangles that
+/// name a vertex that does not exist.
+pub fn read_plain(file: &Path) -> Result<Surface, ReadError> {
+    let table = Table::read(file, "surface")?;
+    let Some(head) = table.rows.first() else {
+        return Err(ReadError::whole(
+            file,
+            "numbers of vertices and triangles",
+            "no rows of numbers",
+            "two counts",
+        ));
+    };
+    let width = |row: usize, key: &str, count: usize, expected: &str| {
+        let r = &table.rows[row];
+        if r.width() == count {
+            return Ok(r);
+        }
+        Err(ReadError::at(file, r.line, key, format!("{} columns", r.width()), expected))
+    };
+    width(0, "numbers of vertices and triangles", 2, "two counts")?;
+    let vertices = table.whole(head, 0, "number of vertices")? as usize;
+    let triangles = table.whole(head, 1, "number of triangles")? as usize;
+    let rows = table.rows.len() - 1;
+    if rows != vertices + triangles {
+        let expected = format!("{vertices} vertices and {triangles} triangles, as line {} says", head.line);
+        return Err(ReadError::whole(file, "rows", rows.to_string(), expected));
+    }
+    let mut surface = Surface::default();
+    for i in 1..=vertices {
+        let row = width(i, "vertex", 3, "x y z")?;
+        let mut point = [0.0; 3];
+        for (k, name) in ["x", "y", "z"].iter().enumerate() {
+            point[k] = table.real(row, k, &format!("coordinate {name}"))?;
+        }
+        surface.vertices.push(point);
+    }
+    let mut numbers = Vec::with_capacity(triangles);
+    for i in 1..=triangles {
+        let row = width(vertices + i, "triangle", 3, "three vertex numbers")?;
+        let mut corners = [0; 3];
+        for (k, corner) in corners.iter_mut().enumerate() {
+            *corner = table.whole(row, k, "vertex of a triangle")?;
+        }
+        numbers.push((row.line, corners));
+    }
+    let base = u32::from(!numbers.iter().any(|(_, t)| t.contains(&0)));
+    for (line, corners) in numbers {
+        if let Some(bad) = corners.iter().find(|v| **v as usize >= vertices + base as usize) {
+            let expected = format!("{base} to {}", vertices + base as usize - 1);
+            return Err(ReadError::at(file, line, "vertex of a triangle", bad.to_string(), expected));
+        }
+        surface.triangles.push(corners.map(|v| v - base));
+    }
+    Ok(surface)
+}
+
+#[cfg(test)]
+#[path = "surface_tests.rs"]
+mod tests;

@@ -1,0 +1,128 @@
+//! Walls in the history and in the pictures.
+
+use super::system::GrainsView;
+use crate::model::grains::GrainsPart;
+use crate::write::WallFrame;
+use crate::write::csv::Column;
+use trackbed_dem::{Vec3, WallShape};
+
+/// Corners around a ring in a picture.
+const AROUND: u32 = 48;
+
+/// Columns of the recorded walls: force of the grains on the wall, its moment about the wall's centre, and the
+/// displacement of that centre.
+pub fn columns(part: &GrainsPart) -> Vec<Column> {
+    let mut columns = Vec::new();
+    for wall in part.recorded() {
+        for (quantity, unit) in [("force", "N"), ("moment", "N m"), ("displacement", "m")] {
+            for d in ["x", "y", "z"] {
+                columns.push(Column::new(format!("{}_{quantity}_{d}", wall.name), unit));
+            }
+        }
+    }
+    columns
+}
+
+/// Values of the [`columns`].
+pub fn values(part: &GrainsPart, view: GrainsView<'_>, row: &mut Vec<f64>) {
+    for recorded in part.recorded() {
+        let (force, moment) = view.state.wall_force(recorded.wall);
+        for v in [force, moment, view.state.wall_offset(recorded.wall)] {
+            row.extend(v.iter());
+        }
+    }
+}
+
+/// Adds the walls of patches where they are now, numbered from `id` on; `extent` is the middle of the grains and half
+/// the side of the square that stands for a plane. Returns the next number.
+pub fn polygons(
+    view: GrainsView<'_>,
+    part: &GrainsPart,
+    extent: (Vec3, f64),
+    mut id: u32,
+    frame: &mut WallFrame,
+) -> u32 {
+    for (k, wall) in part.walls().iter().enumerate() {
+        let first = frame.points.len() as u32;
+        let (points, polygons) = picture(&wall.shape, |x| view.state.wall_point(view.model, k, &x), extent);
+        frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
+        for polygon in polygons {
+            frame.polygons.push(polygon.iter().map(|v| v + first).collect());
+            frame.id.push(id);
+        }
+        id += 1;
+    }
+    id
+}
+
+/// Points and polygons of a shape that is carried along by `place`.
+fn picture(
+    shape: &WallShape,
+    place: impl Fn(Vec3) -> Vec3,
+    extent: (Vec3, f64),
+) -> (Vec<Vec3>, Vec<Vec<u32>>) {
+    match shape {
+        WallShape::Triangles { vertices, triangles } => {
+            (vertices.iter().map(|v| place(*v)).collect(), triangles.iter().map(|t| t.to_vec()).collect())
+        }
+        WallShape::Plane { point, normal } => square(&place(*point), &normal.normalize(), extent),
+        WallShape::Frustum { base, axis, height, radii, caps } => {
+            let k = axis.normalize();
+            let (u, v) = across(&k);
+            let ring = |end: usize| {
+                let (middle, r) = (base + k * (*height * end as f64), radii[end]);
+                (0..AROUND).map(move |i| {
+                    let (sin, cos) = (f64::from(i) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
+                    middle + (u * cos + v * sin) * r
+                })
+            };
+            let points = ring(0).chain(ring(1)).map(place).collect();
+            let mut polygons: Vec<Vec<u32>> = (0..AROUND)
+                .map(|i| {
+                    let j = (i + 1) % AROUND;
+                    vec![i, j, j + AROUND, i + AROUND]
+                })
+                .collect();
+            for end in (0..2).filter(|&end| caps[end]) {
+                polygons.push((0..AROUND).map(|i| i + end as u32 * AROUND).collect());
+            }
+            (points, polygons)
+        }
+        WallShape::Sphere { centre, radius } => {
+            // Rings of latitude without the poles, whose caps are polygons of their own.
+            let rings = AROUND / 2 - 1;
+            let mut points = Vec::new();
+            for j in 1..=rings {
+                let (sin, cos) = (f64::from(j) / f64::from(rings + 1) * std::f64::consts::PI).sin_cos();
+                for i in 0..AROUND {
+                    let (s, c) = (f64::from(i) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
+                    points.push(place(centre + Vec3::new(c * sin, s * sin, cos) * *radius));
+                }
+            }
+            let mut polygons: Vec<Vec<u32>> =
+                vec![(0..AROUND).collect(), (0..AROUND).map(|i| (rings - 1) * AROUND + i).collect()];
+            for j in 1..rings {
+                for i in 0..AROUND {
+                    let (a, b) = ((j - 1) * AROUND + i, (j - 1) * AROUND + (i + 1) % AROUND);
+                    polygons.push(vec![a, b, b + AROUND, a + AROUND]);
+                }
+            }
+            (points, polygons)
+        }
+    }
+}
+
+/// Two unit vectors that stand across `k` and on each other.
+fn across(k: &Vec3) -> (Vec3, Vec3) {
+    let helper = if k.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
+    let u = k.cross(&helper).normalize();
+    (u, k.cross(&u))
+}
+
+/// A square of a plane next to the grains.
+pub fn square(point: &Vec3, normal: &Vec3, (centre, half): (Vec3, f64)) -> (Vec<Vec3>, Vec<Vec<u32>>) {
+    let middle = centre - normal * (centre - point).dot(normal);
+    let (u, v) = across(normal);
+    let corner = |a: f64, b: f64| middle + (u * a + v * b) * half;
+    (vec![corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)], vec![vec![0, 1, 2, 3]])
+}
