@@ -9,6 +9,7 @@ mod suite {
     mod cli;
     mod determinism;
     mod fem_cases;
+    mod grain_limits;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
