@@ -58,7 +58,7 @@ pub struct GrainsPart {
     /// Groups of prescribed motion.
     pub moving: Vec<Moving>,
     /// Groups whose mean place and force are recorded.
-    pub recorded: Vec<u32>,
+    pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
     /// Settling before the run proper.
@@ -360,7 +360,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         growths: Vec::new(),
         bonds: bonds::kinds(document, scene)?,
         moving: Vec::new(),
-        recorded: Vec::new(),
+        recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
         deposition: None,
         compaction: Vec::new(),

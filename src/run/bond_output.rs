@@ -26,7 +26,7 @@ pub fn columns(part: &GrainsPart) -> Vec<Column> {
             columns.push(Column::new(name, unit));
         }
     }
-    for &group in &part.recorded {
+    for &group in &part.recorded_groups {
         let name = &part.parts[group as usize];
         for (quantity, unit) in [("", "m"), ("_force", "N")] {
             for d in ["x", "y", "z"] {
@@ -46,7 +46,7 @@ pub fn values(part: &GrainsPart, view: GrainsView<'_>, stored: &Stored, spent: &
         row.extend([state.bond_count() as f64, tension as f64, shear as f64, fragments as f64]);
         row.extend([stored.bonds, spent.bonds, spent.breaks]);
     }
-    for &group in &part.recorded {
+    for &group in &part.recorded_groups {
         let of = |body: usize| model.part(body) == group;
         let (mut sum, mut count) = (dem::Vec3::zeros(), 0.0_f64);
         for body in (0..model.body_count()).filter(|&b| of(b)) {

@@ -170,6 +170,7 @@ fn spheres(centres: impl Iterator<Item = dem::Vec3>) -> dem::ModelInput {
         tangential_damping_ratio: 0.1,
         friction: 0.5,
         restitution: 0.5,
+        ..dem::Material::default()
     };
     dem::ModelInput {
         materials: vec![material],

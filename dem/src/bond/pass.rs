@@ -107,7 +107,7 @@ fn link(state: &State, work: &mut BondWork) {
 
 impl BondSlot {
     pub fn new(force: Vec3, torque_a: Vec3, torque_b: Vec3) -> BondSlot {
-        let lanes = |v: Vec3| [v.x, v.y, v.z, 0.0];
+        let lanes = |v: Vec3| Lanes([v.x, v.y, v.z, 0.0]);
         BondSlot { force: lanes(force), torque_a: lanes(torque_a), torque_b: lanes(torque_b) }
     }
 }
@@ -307,8 +307,11 @@ impl Kernel for Cross<'_> {
             power = power + p;
             let live = (self.count - 4 * number).min(4);
             for l in 0..live {
-                self.slots[4 * number + l] =
-                    BondSlot { force: f[l].array(), torque_a: ta[l].array(), torque_b: tb[l].array() };
+                self.slots[4 * number + l] = BondSlot {
+                    force: Lanes(f[l].array()),
+                    torque_a: Lanes(ta[l].array()),
+                    torque_b: Lanes(tb[l].array()),
+                };
             }
             if holds != 15 {
                 self.found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));

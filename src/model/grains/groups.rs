@@ -76,7 +76,7 @@ fn prescribed(
         part.moving.push(Moving { part: number, velocity: Vec3::from(vector(motion)) });
     }
     if group.record.unwrap_or(group.motion.is_some()) {
-        part.recorded.push(number);
+        part.recorded_groups.push(number);
     }
     Ok(())
 }
