@@ -3,9 +3,11 @@
 mod balance;
 mod determinism;
 mod friction;
+mod hertz;
 mod impact;
 mod order;
 mod refusals;
+mod rolling;
 mod scene;
 mod seams;
 mod walls;
