@@ -442,6 +442,24 @@ pub(crate) enum Simd {
 }
 
 impl Simd {
+    /// All that this processor has.
+    #[cfg(test)]
+    pub fn all() -> Vec<Simd> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let mut all = vec![Simd::Portable];
+            if Simd::best() != Simd::Portable {
+                all.push(Simd::Avx2);
+            }
+            if Simd::best() == Simd::Avx512 {
+                all.push(Simd::Avx512);
+            }
+            all
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        vec![Simd::Portable]
+    }
+
     /// The fastest that this processor has.
     pub fn best() -> Simd {
         #[cfg(target_arch = "x86_64")]

@@ -3,11 +3,16 @@
 mod balance;
 mod determinism;
 mod friction;
+mod hertz;
 mod impact;
 mod mesh_cases;
 mod order;
 mod refusals;
+<<<<<<< HEAD
 mod round_walls;
+=======
+mod rolling;
+>>>>>>> w-k
 mod scene;
 mod seams;
 mod triangle_bodies;
