@@ -187,10 +187,17 @@ fn walls_of_all_kinds() {
 fn skin_changes_nothing_at_walls() {
     let run_with = |skin: f64, kind: usize| {
         let mut input = ModelInput { skin: Some(skin), ..mill(5) };
-        input.walls = input.walls.into_iter().enumerate().filter(|(k, _)| *k == kind || kind == 4).map(|w| w.1).collect();
+        input.walls = input
+            .walls
+            .into_iter()
+            .enumerate()
+            .filter(|(k, _)| *k == kind || kind == 4)
+            .map(|w| w.1)
+            .collect();
         let mut run = Run::new(input);
         run.steps(4000);
-        let places: Vec<_> = (0..run.model.body_count()).map(|b| run.state.position(b).map(f64::to_bits)).collect();
+        let places: Vec<_> =
+            (0..run.model.body_count()).map(|b| run.state.position(b).map(f64::to_bits)).collect();
         (places, bits(&run))
     };
     let mut seen = Vec::new();

@@ -8,11 +8,8 @@ mod impact;
 mod mesh_cases;
 mod order;
 mod refusals;
-<<<<<<< HEAD
-mod round_walls;
-=======
 mod rolling;
->>>>>>> w-k
+mod round_walls;
 mod scene;
 mod seams;
 mod triangle_bodies;
