@@ -88,8 +88,8 @@ fn touches<S: Surface>(
         let straight = sharp && closest.feature == Feature::Face;
         let distance = if straight { along.abs() } else { offset.norm() };
         if distance >= r && !(behind && straight) {
-            // As much as the bound is sure of; the next step looks again if that is nothing.
-            pair.spare = gone + (distance * (1.0 - 1e-9) - r).max(0.0);
+            // Found as far only now: the bound told less. The next step looks again.
+            pair.spare = gone;
             continue;
         }
         pair.spare = -1.0;
