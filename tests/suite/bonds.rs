@@ -71,7 +71,10 @@ fn breaks(folder: &Folder) -> Table {
 fn a_row_is_pulled_apart() {
     let folder = Folder::new("row");
     let (summary, history) = ran(&folder, &row(CEMENT, "6 ms"));
-    assert_eq!((summary["bonds"]["made"].as_u64(), summary["bonds"]["fragments"].as_u64()), (Some(4), Some(2)));
+    assert_eq!(
+        (summary["bonds"]["made"].as_u64(), summary["bonds"]["fragments"].as_u64()),
+        (Some(4), Some(2))
+    );
     assert_eq!(summary["bonds"]["broken_by_tension"], 1);
     let strength = 2e5 * std::f64::consts::PI * 1e-4;
     let pull = history.column("head_force_z").iter().fold(0.0_f64, |m, f| m.max(-f));
@@ -99,7 +102,8 @@ fn a_row_is_pulled_apart() {
 #[test]
 fn regions_lists_and_groups() {
     let folder = Folder::new("rules");
-    let weak = format!("{CEMENT}[[bond.region]]\nlow = [-1, -1, 0.045]\nhigh = [1, 1, 0.055]\nstrength = 0.5\n");
+    let weak =
+        format!("{CEMENT}[[bond.region]]\nlow = [-1, -1, 0.045]\nhigh = [1, 1, 0.055]\nstrength = 0.5\n");
     let (_, history) = ran(&folder, &row(&weak, "4 ms"));
     assert!((breaks(&folder).column("z")[0] - 0.05).abs() < 1e-4);
     let pull = history.column("head_force_z").iter().fold(0.0_f64, |m, f| m.max(-f));
@@ -108,7 +112,10 @@ fn regions_lists_and_groups() {
     folder.write("pairs.csv", "a,b\n0,1\n3, 4\n");
     let listed = CEMENT.replace("gap = \"1 mm\"", "pairs = \"pairs.csv\"");
     let (summary, _) = ran(&folder, &row(&listed, "0.2 ms"));
-    assert_eq!((summary["bonds"]["made"].as_u64(), summary["bonds"]["fragments"].as_u64()), (Some(2), Some(3)));
+    assert_eq!(
+        (summary["bonds"]["made"].as_u64(), summary["bonds"]["fragments"].as_u64()),
+        (Some(2), Some(3))
+    );
 
     let between = CEMENT.replace("gap", "between = [\"middle\", \"head\"]\ngap");
     let (summary, _) = ran(&folder, &row(&between, "0.2 ms"));
@@ -144,8 +151,14 @@ fn strengths_spread_by_seed() {
 fn kinds_of_bonds() {
     let folder = Folder::new("kinds");
     for (kind, strength) in [
-        ("[bond.contact_point]\nnormal_stiffness = \"15.7 MN/m\"\nshear_stiffness = \"5 MN/m\"\ntension_limit = 40\n", 40.0),
-        ("[bond.direct]\nstiffness = [1.57e7, 6e6, 390, 310]\nstrength = [50, 100, 0.1, 0.1]\ncriterion = \"sum\"\n", 50.0),
+        (
+            "[bond.contact_point]\nnormal_stiffness = \"15.7 MN/m\"\nshear_stiffness = \"5 MN/m\"\ntension_limit = 40\n",
+            40.0,
+        ),
+        (
+            "[bond.direct]\nstiffness = [1.57e7, 6e6, 390, 310]\nstrength = [50, 100, 0.1, 0.1]\ncriterion = \"sum\"\n",
+            50.0,
+        ),
         (
             "[bond.parallel]\nradius_factor = 0.5\nnormal_stiffness = 2e11\nshear_stiffness = 1e11\ntensile_strength = \"0.4 MPa\"\n\
              shear_strength = \"1 MPa\"\nfriction_angle = \"30 deg\"\nmoment_factor = 0.5\n",
@@ -230,7 +243,8 @@ fn breaking_is_resumed() {
     let steps = json(&whole.join("summary.json"))["stages"][0]["grain_steps"].as_u64().unwrap();
     for (k, share) in [0.9, 0.05].into_iter().enumerate() {
         let interrupt = Interrupt::after((share * steps as f64) as u64);
-        let stopped = trackbed::run::run(&scene, &Options { interrupt, resume: k > 0, ..options(&broken, 2) });
+        let stopped =
+            trackbed::run::run(&scene, &Options { interrupt, resume: k > 0, ..options(&broken, 2) });
         assert!(stopped.is_err());
     }
     trackbed::run::run(&scene, &Options { resume: true, ..options(&broken, 1) }).unwrap();

@@ -2,7 +2,8 @@
 
 use super::*;
 
-const CEMENT: &str = "[[bond]]\nname = \"cement\"\ngap = \"5 mm\"\n[bond.parallel]\nyoung = \"1 MPa\"\n\n[[walls]]";
+const CEMENT: &str =
+    "[[bond]]\nname = \"cement\"\ngap = \"5 mm\"\n[bond.parallel]\nyoung = \"1 MPa\"\n\n[[walls]]";
 
 /// The pair of spheres with a bond between them.
 fn bonded() -> Good {
