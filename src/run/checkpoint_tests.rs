@@ -192,6 +192,8 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
         )
     };
     let mut input = spheres((0..288).map(place));
+    input.time_step = dem::TimeStep::Auto { fraction: 0.5 };
+    input.bodies.iter_mut().for_each(|b| b.velocity.z = -1.0);
     input.planes.push(dem::Plane {
         point: dem::Vec3::zeros(),
         normal: dem::Vec3::z(),
@@ -220,7 +222,7 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
                 work = dem::Work::new(&model, &state);
             }
         }
-        assert!(state.ledger.dissipated() > 0.0 && dem::measure::coordination(&model, &state) > 1.0);
+        assert!(state.ledger.dissipated() > 0.0 && dem::measure::coordination(&model, &state) > 0.1);
         postcard::to_stdvec(&state).unwrap()
     };
     assert!(run(&[]) == run(&[1, 331, 700, 1234, 4999, 5000, 5001, 5390]));
