@@ -9,6 +9,7 @@
 //! `timestep 2e-6`; take its loop time times its share of the processor.
 
 #[path = "common/grains.rs"]
+#[allow(dead_code)] // It serves other benchmarks too.
 mod grains;
 #[path = "common/remarks.rs"]
 mod remarks;

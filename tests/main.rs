@@ -3,6 +3,7 @@
 
 mod suite {
     mod bad_input;
+    mod bonds;
     mod checkpoint;
     mod checkpoint_kill;
     mod cli;
@@ -20,4 +21,5 @@ mod suite {
     mod stones;
     mod summary;
     pub mod support;
+    mod walls;
 }

@@ -254,6 +254,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
     Stored {
         grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
         contact_springs: grains.elastic_normal + grains.elastic_tangential,
+        bonds: grains.elastic_bonds,
         grains_gravity: grains.gravity,
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
@@ -283,6 +284,8 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
         wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
+        bonds: ledger.dissipated_bonds,
+        breaks: ledger.released_by_breaks,
         local_damping: ledger.dissipated_local_damping,
         surface_on_grains: ledger.work_surface,
         ..Spent::default()

@@ -436,6 +436,9 @@ pub(crate) enum Simd {
     Portable,
     #[cfg(target_arch = "x86_64")]
     Avx2,
+    /// The same four lanes with twice as many registers, and masks apart from them.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
 }
 
 impl Simd {
@@ -443,7 +446,8 @@ impl Simd {
     pub fn best() -> Simd {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") {
-            return Simd::Avx2;
+            let more = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
+            return if more { Simd::Avx512 } else { Simd::Avx2 };
         }
         Simd::Portable
     }
@@ -457,12 +461,21 @@ pub(crate) fn run<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `Simd::best` found the feature.
         Simd::Avx2 => unsafe { with_avx2(kernel) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        Simd::Avx512 => unsafe { with_avx512(kernel) },
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn with_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Avx2>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512vl")]
+fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 

@@ -17,8 +17,26 @@ use crate::wall::state::{WallMotion, WallState};
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
-/// Four numbers loaded as one.
-pub(crate) type Lanes = [f64; 4];
+/// Four numbers loaded as one; aligned, so that none lies across two lines of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+#[repr(C, align(32))]
+pub(crate) struct Lanes(pub [f64; 4]);
+
+impl std::ops::Deref for Lanes {
+    type Target = [f64; 4];
+    #[inline(always)]
+    fn deref(&self) -> &[f64; 4] {
+        &self.0
+    }
+}
+
+impl std::ops::DerefMut for Lanes {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64; 4] {
+        &mut self.0
+    }
+}
 
 /// Orientation and angular momentum of a body that is not a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,6 +62,9 @@ pub(crate) struct PatchPair {
     pub i: u32,
     pub patch: u32,
     pub local: [f64; 2],
+    /// Way that sphere and patch can come together before they may touch, counted from when the near list was made
+    /// [m]; negative in touch.
+    pub spare: f64,
 }
 
 /// A sphere in touch with a patch, and what is remembered of the last step.
@@ -188,9 +209,9 @@ impl State {
             for &body in &members {
                 let b = &model.bodies[body as usize];
                 let c = b.position;
-                block.centre.push([c.x, c.y, c.z, b.radius]);
-                block.velocity.push([0.0, 0.0, 0.0, b.inverse_mass]);
-                block.spin.push([0.0, 0.0, 0.0, f64::from(b.material)]);
+                block.centre.push(Lanes([c.x, c.y, c.z, b.radius]));
+                block.velocity.push(Lanes([0.0, 0.0, 0.0, b.inverse_mass]));
+                block.spin.push(Lanes([0.0, 0.0, 0.0, f64::from(b.material)]));
                 if model.rigid {
                     block.rotation.push(Rotation { orientation: b.orientation, momentum: Vec3::zeros() });
                 }

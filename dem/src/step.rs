@@ -98,7 +98,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     surface: &S,
 ) {
     let dt = model.dt();
-    let State { blocks, cross, planes: motions, walls: wall_states, bonds, .. } = state;
+    let State { blocks, cross, planes: motions, walls: wall_states, bonds, drift, wall_drift, .. } = state;
     let Work {
         blocks: works, cross: slots, applied, parallel, planes: plane_list, simd, bonds: bonded, ..
     } = work;
@@ -124,6 +124,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     // All else concerns one block at a time.
     let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
+    let gone = *drift + *wall_drift;
     let surface_material = model.surface_material.unwrap_or(0);
     let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
         w.ledger = Ledger::default();
@@ -162,6 +163,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
                 w,
                 &mut sums,
                 false,
+                gone,
                 dt,
             );
             w.wall_sums = sums;
@@ -179,6 +181,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
                 w,
                 &mut [],
                 true,
+                gone,
                 dt,
             );
             w.ledger.work_surface += done.work;

@@ -70,13 +70,13 @@ pub trait Surface: Sync {
         self.one_sided()
     }
 
-    /// Whether `patch` may lie within `reach` of `centre`: false is certain, true need not be. A cheap test that
-    /// spares most calls of [`Surface::closest_point`].
-    fn within(&self, _patch: u32, _centre: [f64; 3], _reach: f64) -> bool {
-        true
+    /// A lower bound of the distance from `centre` to `patch` [m], finite, found without a search: it spares most calls
+    /// of [`Surface::closest_point`]. Zero tells nothing.
+    fn clearance(&self, _patch: u32, _centre: [f64; 3]) -> f64 {
+        0.0
     }
 
-    /// Whether [`Surface::within`] is near enough to the truth for lists, and normals inside a patch are exact: the
+    /// Whether [`Surface::clearance`] is near enough to the truth for lists, and normals inside a patch are exact: the
     /// distance is then measured along them.
     fn sharp(&self) -> bool {
         false

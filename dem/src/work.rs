@@ -182,7 +182,7 @@ impl Work {
         for (w, block) in self.blocks.iter_mut().zip(&state.blocks) {
             w.arrange(model, &block.bodies);
             if model.rigid {
-                w.spheres.resize(w.local.len(), [0.0; 4]);
+                w.spheres.resize(w.local.len(), Lanes::default());
                 for k in 0..block.bodies.len() {
                     w.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);
                 }
@@ -242,7 +242,7 @@ impl BlockWork {
             for_members(&model.shapes[b.shape], b.scale, |c, r| {
                 self.owner.push(k as u32);
                 if model.rigid {
-                    self.local.push([c.x, c.y, c.z, r]);
+                    self.local.push(Lanes([c.x, c.y, c.z, r]));
                 }
             });
         }
@@ -276,7 +276,7 @@ impl BlockWork {
         for s in self.first[k] as usize..self.first[k + 1] as usize {
             let local = &self.local[s];
             let p = x + turn * xyz(local);
-            self.spheres[s] = [p.x, p.y, p.z, local[3]];
+            self.spheres[s] = Lanes([p.x, p.y, p.z, local[3]]);
         }
     }
 }

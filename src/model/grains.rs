@@ -1,5 +1,7 @@
 //! The grains of a scene: materials, shapes, bodies, walls, sleeper.
 
+mod bonded;
+mod bonds;
 mod compaction;
 mod groups;
 mod materials;
@@ -12,6 +14,7 @@ use super::seat_load::CyclicLoad;
 use super::tables::Grading;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
+pub use bonds::{BondPart, check_joined};
 pub use compaction::{CompactionPlan, Press};
 use trackbed_coupling::step::{self, Stability};
 use trackbed_dem::insert::container::Container;
@@ -20,7 +23,7 @@ use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
-    WallInput,
+    WallInput, WallShape,
 };
 use trackbed_fem::Face;
 
@@ -50,6 +53,12 @@ pub struct GrainsPart {
     pub graded: Vec<GradedGroup>,
     /// Groups that grow to their size before anything else.
     pub growths: Vec<GrowthPlan>,
+    /// Bonds between grains.
+    pub bonds: BondPart,
+    /// Groups of prescribed motion.
+    pub moving: Vec<Moving>,
+    /// Groups whose mean place and force are recorded.
+    pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
     /// Settling before the run proper.
@@ -62,6 +71,15 @@ pub struct GrainsPart {
     pub sleeper: Option<SleeperPlan>,
     /// The load on it.
     pub load: Option<CyclicLoad>,
+}
+
+/// A group of prescribed motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving {
+    /// Its number.
+    pub part: u32,
+    /// Velocity [m/s].
+    pub velocity: Vec3,
 }
 
 /// Settling before the run proper.
@@ -155,9 +173,16 @@ impl GrainsPart {
         }
         let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
         let mut input = ModelInput { contacts, damping, ..self.input(self.bodies.clone()) };
-        // Walls wait for the run proper, which starts with them in their first place.
+        // Walls wait for the run proper, which starts with them in their first place; driven walls and rigid bodies come
+        // in only then.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
+        input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
         input.walls.iter_mut().for_each(|w| *w = w.at_rest());
+        for moving in &self.moving {
+            let grip = input.bodies.iter_mut().filter(|b| b.part == moving.part);
+            grip.for_each(|b| b.velocity = Vec3::zeros());
+        }
+        self.bonds.add_stones_to(&mut input);
         input
     }
 
@@ -188,8 +213,13 @@ impl GrainsPart {
     }
 
     /// The model of the run proper with the given bodies.
-    pub fn input(&self, bodies: Vec<BodyInput>) -> ModelInput {
-        ModelInput {
+    pub fn input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
+        for moving in &self.moving {
+            for body in bodies.iter_mut().filter(|b| b.part == moving.part) {
+                (body.velocity, body.fixed) = (moving.velocity, [true; 6]);
+            }
+        }
+        let mut input = ModelInput {
             materials: self.materials.clone(),
             contacts: self.contacts.clone(),
             shapes: self.shapes.clone(),
@@ -204,7 +234,14 @@ impl GrainsPart {
             skin: None,
             damping: None,
             ..ModelInput::default()
-        }
+        };
+        self.bonds.add_to(&mut input);
+        input
+    }
+
+    /// Density of a material [kg/m³].
+    fn density(&self, material: usize) -> f64 {
+        self.materials[material].density
     }
 
     /// Stability of the exchange with a solid in windows of `window` [s], for the stiffest contact and the heaviest
@@ -321,6 +358,9 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         first_shape: Vec::new(),
         graded: Vec::new(),
         growths: Vec::new(),
+        bonds: bonds::kinds(document, scene)?,
+        moving: Vec::new(),
+        recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
         deposition: None,
         compaction: Vec::new(),
@@ -342,7 +382,14 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     }
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
+        let before = part.walls.len();
         walls::add(document, i, wall, material, &mut part)?;
+        let new = part.walls.get(before).map(|w| &w.shape);
+        if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
+            let expected =
+                "a plane without `record` and motions other than `velocity`: a sleeper touches no other";
+            return Err(document.error(&format!("walls.{i}"), "a plane that is more", expected).into());
+        }
     }
     if let Some(d) = &scene.deposition {
         check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
@@ -381,6 +428,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         });
     }
     compaction::add(document, scene, &find, &mut part)?;
+    bonds::rules(document, scene, &mut part)?;
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;
@@ -401,7 +449,10 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
             document.error("material", found, "`stiffness` for one of their materials, or for the pair")
         }
         ModelError::Wall { wall, problem } => {
-            document.error("walls", format!("{wall}: {problem}"), "walls with an area")
+            document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
+        }
+        ModelError::Bond { .. } | ModelError::BondKind { .. } => {
+            document.error("bond", error.to_string(), "bonds that can be made")
         }
         other => document.error("grains", other.to_string(), "grains and walls that make a model"),
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 use trackbed_dem::insert::gradation::Gradation;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
+use trackbed_dem::shape::cluster::Cluster;
 
 fn fault(
     file: &Path,
@@ -240,6 +241,34 @@ pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
     library
         .clumps()
         .map_err(|e| document.error("stones", e.to_string(), "connected spheres with positive radii"))
+}
+
+/// The stones of a library file as bonded clusters.
+///
+/// # Errors
+/// The file is missing or no library, or a stone is no cluster.
+pub fn clusters(file: &Path) -> Result<Vec<Cluster>, SceneError> {
+    let document = Document::open(file)?;
+    let library: StoneLibrary = document.read()?;
+    library
+        .clusters()
+        .map_err(|e| document.error("stones", e.to_string(), "spheres that bonds hold in one piece"))
+}
+
+/// Rows `a, b` of bonded pairs, numbers of grains from 0 to `count` − 1; a first row that is not numbers is a heading.
+///
+/// # Errors
+/// The file is missing, or a row is not two different numbers of grains.
+pub fn pairs(file: &Path, count: usize) -> Result<Vec<[usize; 2]>, ReadError> {
+    let row = |(line, v): (usize, [f64; 2])| {
+        let good = |x: f64| x.fract() == 0.0 && (0.0..count as f64).contains(&x);
+        if v.iter().all(|x| good(*x)) && v[0] != v[1] {
+            return Ok(v.map(|x| x as usize));
+        }
+        let expected = format!("two different numbers of grains, 0 to {}", count.max(1) - 1);
+        Err(fault(file, Some(line), "pair", format!("{}, {}", v[0], v[1]), expected))
+    };
+    numbers(file, ["a", "b"])?.into_iter().map(row).collect()
 }
 
 #[cfg(test)]

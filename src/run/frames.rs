@@ -59,12 +59,16 @@ fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|f| if f == f64::NEG_INFINITY { NO_YIELD_SURFACE } else { f }).collect()
 }
 
+/// Kind of a chain that is a bond; its normal force is negative where it pulls.
+const BOND: u32 = 4;
+
 /// The grains: one point per sphere.
 pub fn grains(view: GrainsView<'_>) -> GrainFrame {
     let contacts = dem::measure::contacts(view.model, view.state);
     let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
     let neighbours = dem::measure::neighbours(view.model, &contacts);
     let force = dem::measure::contact_forces(view.model, view.state);
+    let fragments = dem::bond::fragments(view.model, view.state).of;
     let mut frame = GrainFrame::default();
     for body in 0..view.model.body_count() {
         let q = view.state.orientation(view.model, body);
@@ -80,6 +84,7 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
             frame.mean_stress.push((stress[body][0] + stress[body][1] + stress[body][2]) / 3.0);
             frame.force.push(force[body].into());
             frame.coordination.push(neighbours[body]);
+            frame.fragment.push(fragments[body]);
         }
     }
     frame
@@ -113,6 +118,15 @@ pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
             dem::Partner::Patch(_) => 3,
             dem::Partner::Wall(_) => 4,
         });
+    }
+    if !strong_only {
+        for b in dem::bond::records(view.model, view.state) {
+            frame.ends.push([view.state.position(b.a).into(), view.state.position(b.b).into()]);
+            frame.normal_force.push(-b.tension);
+            frame.tangential_force.push(b.shear.norm());
+            frame.kind.push(BOND);
+            frame.strong.push(0);
+        }
     }
     frame
 }

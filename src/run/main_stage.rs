@@ -1,6 +1,7 @@
 //! The run proper: steps, records, accounts.
 
 use super::Stage;
+use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
 use super::cycles::Cycle;
 use super::record::{Recorder, Sleeper};
@@ -168,6 +169,12 @@ impl Stage<'_> {
         {
             recorder.row(time, system, at(time))?;
             recorder.frame(time, system)?;
+        }
+        if let (Some(part), Some(view)) = (grains, system.grains())
+            && !part.bonds.is_empty()
+        {
+            bond_output::write_breaks(self.dir, view.state)?;
+            summary.bonds = Some(bond_output::summary(view));
         }
         let (grain_steps, solid_steps) = system.steps_per_window();
         let seconds = progress.finish(&format!("{:.3} s simulated", done as f64 * window));

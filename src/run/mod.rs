@@ -1,6 +1,7 @@
 //! The run: fill, settle, place the sleeper, load, write.
 
 mod bed;
+mod bond_output;
 mod checkpoint;
 mod compact;
 mod cycles;
@@ -27,7 +28,7 @@ pub use memory::{Prediction, parse_size, size};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
-use crate::model::grains::refused;
+use crate::model::grains::{GrainsPart, check_joined, refused};
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
@@ -251,6 +252,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
+    files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
     files
 }
 
@@ -295,7 +297,7 @@ impl Stage<'_> {
                 let (grains, deposited) = self.deposit(grains, None, resumed.as_mut(), summary)?;
                 let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, None)?;
-                let model = self.grain_model(grains.input(bodies), summary)?;
+                let model = self.grain_model(grains, bodies, summary)?;
                 let mut system = match &mut resumed {
                     Some(loaded) => GrainsSystem::resume(model, loaded)?,
                     None => GrainsSystem::new(model)?,
@@ -310,7 +312,7 @@ impl Stage<'_> {
                 let (grains, deposited) = self.deposit(grains, Some(&surface), resumed.as_mut(), summary)?;
                 let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
-                let model = self.grain_model(grains.input(bodies), summary)?;
+                let model = self.grain_model(grains, bodies, summary)?;
                 let mut system = self.couple(solid, model, plan, surface, resumed.as_mut(), summary)?;
                 let stability = grains.stability(
                     &system.model.grains,
@@ -363,7 +365,17 @@ impl Stage<'_> {
         self.loaded.borrow_mut().take_if(|loaded| loaded.moment.stage == stage)
     }
 
-    fn grain_model(&self, input: dem::ModelInput, summary: &mut Summary) -> Result<dem::Model, Failure> {
+    fn grain_model(
+        &self,
+        grains: &GrainsPart,
+        bodies: Vec<dem::BodyInput>,
+        summary: &mut Summary,
+    ) -> Result<dem::Model, Failure> {
+        let input = grains.input(bodies);
+        check_joined(self.document, &grains.bonds, &input.bonds)?;
+        if !grains.bonds.is_empty() {
+            summary.sources.extend(BOND_SOURCES);
+        }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
@@ -470,6 +482,9 @@ fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     }
     sources
 }
+
+const BOND_SOURCES: [&str; 1] =
+    ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];
 
 const GRAIN_SOURCES: [&str; 3] = [
     "contact: linear spring-dashpot with Coulomb friction, Cundall & Strack, Geotechnique 29(1), 1979",

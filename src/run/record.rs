@@ -1,6 +1,7 @@
 //! What a run leaves while it goes: `history.csv`, `cycles.csv`, frames for ParaView and Tecplot, and at the end the
 //! settlement curve.
 
+use super::bond_output;
 use super::checkpoint::{Body, Loaded};
 use super::cycles::{Cycle, CycleRecorder};
 use super::frames;
@@ -179,6 +180,9 @@ impl<'a> Recorder<'a> {
             spent.interface(),
             error,
         ]);
+        if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
+            bond_output::values(part, view, now, spent, &mut row);
+        }
         if let Some(part) = &self.job.solid
             && !part.named_supports.is_empty()
             && let Some(reactions) = system.reactions()
@@ -338,6 +342,9 @@ fn columns<S: System>(job: &Job, system: &S, sleeper: Option<Sleeper>) -> Vec<Co
     for name in ENERGY_COLUMNS {
         columns.push(Column::new(name, "J"));
     }
+    if system.grains().is_some() {
+        columns.extend(job.grains.iter().flat_map(bond_output::columns));
+    }
     if let Some(part) = &job.solid
         && system.reactions().is_some()
     {
@@ -382,7 +389,8 @@ fn cycle_columns() -> Vec<Column> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 13] = [
+const FILES: [&str; 14] = [
+    "breaks.csv",
     "summary.json",
     "log.txt",
     "history.csv",

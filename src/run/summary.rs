@@ -37,6 +37,9 @@ pub struct Summary {
     /// Momentum account of the grains in the run proper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum: Option<MomentumRecord>,
+    /// Bonds between grains.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bonds: Option<BondSummary>,
     /// Force and moment across the interface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingRecord>,
@@ -136,6 +139,23 @@ pub struct MomentumRecord {
     pub linear: f64,
     /// Largest deviation of angular momentum about the origin over the sum of |angular impulses|.
     pub angular: f64,
+}
+
+/// Bonds between grains at the end.
+#[derive(Debug, Serialize)]
+pub struct BondSummary {
+    /// Bonds at the start of the run proper.
+    pub made: usize,
+    /// Broken by tension and bending.
+    pub broken_by_tension: u64,
+    /// Broken by shear and twisting.
+    pub broken_by_shear: u64,
+    /// Energy set free by breaks [J].
+    pub energy_of_breaks: f64,
+    /// Pieces, unbonded bodies among them.
+    pub fragments: usize,
+    /// Bodies of the largest piece.
+    pub largest_fragment: u32,
 }
 
 /// Interface audit.
@@ -329,6 +349,18 @@ impl Summary {
             lines.push(format!(
                 "momentum error {:.1e}, angular {:.1e} (relative to the impulses)",
                 m.linear, m.angular
+            ));
+        }
+        if let Some(b) = &self.bonds {
+            lines.push(format!(
+                "bonds: {} of {} broken ({} by tension, {} by shear), {:.3e} J set free; {} fragments, the largest of {} bodies",
+                b.broken_by_tension + b.broken_by_shear,
+                b.made,
+                b.broken_by_tension,
+                b.broken_by_shear,
+                b.energy_of_breaks,
+                b.fragments,
+                b.largest_fragment
             ));
         }
         if let Some(c) = &self.coupling {

@@ -244,6 +244,7 @@ impl System for GrainsSystem {
         Stored {
             grains_kinetic: e.kinetic_translation + e.kinetic_rotation,
             contact_springs: e.elastic_normal + e.elastic_tangential,
+            bonds: e.elastic_bonds,
             grains_gravity: e.gravity,
             ..Stored::default()
         }

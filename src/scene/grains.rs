@@ -41,6 +41,12 @@ pub struct Grains {
     /// Seed of the random sizes, places and orientations; default 1.
     #[serde(default = "one")]
     pub seed: u64,
+    /// Name of the `[[bond]]` that holds `bonded` stones together.
+    pub bond: Option<String>,
+    /// Velocity that the grains keep whatever the forces, without turning: a grip [m/s]. They stand while others settle.
+    pub motion: Option<[Quantity<Velocity>; 3]>,
+    /// Whether the mean place of the grains and the force on them go to `history.csv`; default: with `motion`.
+    pub record: Option<bool>,
     /// Initial velocity [m/s].
     pub velocity: Option<[Quantity<Velocity>; 3]>,
     /// Initial angular velocity [rad/s].
@@ -59,6 +65,8 @@ pub enum GrainShape {
     Sphere,
     /// Rigid clumps from a stone library.
     Clump,
+    /// Stones of bonded spheres from a stone library, which can break.
+    Bonded,
 }
 
 /// A row set of a gradation table.

@@ -4,6 +4,7 @@
 //! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
+pub mod bonds;
 pub mod compaction;
 pub mod deposition;
 mod document;
@@ -43,6 +44,9 @@ pub struct Scene {
     /// Groups of grains.
     #[serde(default)]
     pub grains: Vec<grains::Grains>,
+    /// Bonds between grains.
+    #[serde(default)]
+    pub bond: Vec<bonds::BondTable>,
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,

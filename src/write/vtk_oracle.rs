@@ -76,6 +76,7 @@ fn grains(count: usize) -> GrainFrame {
         mean_stress: vec![-2.0e3; count],
         force: (0..count).map(vector).collect(),
         coordination: vec![6; count],
+        fragment: vec![1; count],
     }
 }
 

@@ -35,6 +35,8 @@ pub struct GrainFrame {
     pub force: Vec<[f64; 3]>,
     /// Number of partners that press on the body.
     pub coordination: Vec<u32>,
+    /// Number of the fragment: the bodies that bonds hold together.
+    pub fragment: Vec<u32>,
 }
 
 /// The contacts at one moment. Every field has the shape `[contacts]`.
@@ -79,6 +81,7 @@ pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
     fields.scalar("mean_stress", &frame.mean_stress)?;
     fields.vector("force", frame.force.as_flattened())?;
     fields.ids("coordination", &frame.coordination)?;
+    fields.ids("fragment", &frame.fragment)?;
     let point = fields.finish();
     let piece = PolyDataPiece {
         points: vtk::points(file, &frame.position)?,
@@ -177,6 +180,7 @@ mod tests {
             mean_stress: vec![-3.0; count],
             force: (0..count).map(v).collect(),
             coordination: vec![6; count],
+            fragment: vec![1; count],
         }
     }
 

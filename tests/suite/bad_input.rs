@@ -8,10 +8,12 @@
 use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder, snapshot, trackbed};
 use std::fs;
 
+mod bonds;
 mod grains;
 mod lists;
 mod scene;
 mod solid;
+mod walls;
 
 const SCENE: &str = "scene.toml";
 const NODES: &str = "NODECOORD.DAT";

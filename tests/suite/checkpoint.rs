@@ -187,8 +187,8 @@ fn spheres_on_a_plastic_block() {
     let folder = scene_folder("coupled_plastic", COUPLED);
     let set = [
         "solid.material.0.model=mohr_coulomb",
-        "solid.material.0.cohesion=10000",
-        "solid.material.0.friction=0.4",
+        "solid.material.0.cohesion=2000",
+        "solid.material.0.friction=0.6",
         "solid.material.0.dilation=0.1",
     ];
     broken(&folder.join("scene.toml"), &set, &[0.0, 0.4, 0.8, 1.0], &["cycles.csv"]);
@@ -199,7 +199,8 @@ fn plastic_solid_at_rest() {
     let folder = Folder::new("plastic");
     let scene = folder.write("scene.toml", PLASTIC);
     // Few iterations allowed, so that steps are halved and their length is something to remember.
-    let set = ["solid.newton.max_iterations=6", "time.solid_step=0.05", "output.tables=true"];
+    let set =
+        ["solid.newton.max_iterations=6", "time.solid_step=0.05", "output.tables=true", "solid.gravity=true"];
     broken(&scene, &set, &[0.0, 0.3, 0.5, 0.8, 1.0], &["history.csv", "gauss.csv", "frames/solid_00002.vtu"]);
 }
 
@@ -208,8 +209,14 @@ fn solids_in_motion() {
     let folder = Folder::new("motion");
     let scene = folder
         .write("scene.toml", &PLASTIC.replace("[solid.quasi_static]", "[solid.dynamics]\nhht_alpha = -0.1"));
-    let set = ["time.solid_step=0.01", "time.end=0.3", "solid.support.1.history.duration=0.3"];
-    broken(&scene, &set, &[0.0, 0.3, 0.5, 1.0], &["history.csv"]);
+    let set = [
+        "time.solid_step=0.01",
+        "time.end=0.3",
+        "solid.support.1.history.duration=0.3",
+        "solid.gravity=true",
+    ];
+    let plastic = [&set[..], &["solid.newton.max_iterations=4"]].concat();
+    broken(&scene, &plastic, &[0.0, 0.3, 0.5, 1.0], &["history.csv"]);
     let elastic = [&set[..], &["solid.material.1.model=elastic"]].concat();
     let text = fs::read_to_string(&scene).unwrap();
     let cut = text.find("cohesion").unwrap()..text.find("[[solid.support]]").unwrap();

@@ -132,7 +132,7 @@ fn growth_meets_the_porosity() {
 fn shipped(name: &str, edits: &[(&str, &str)]) -> (Folder, serde_json::Value) {
     let text = fs::read_to_string(repository().join("inputs/grains").join(name)).unwrap();
     let folder = scene_folder("shipped", &text);
-    for file in ["track/cyclic/stones.toml", "data/gradations.csv"] {
+    for file in ["grains/stones.toml", "data/gradations.csv"] {
         let name = Path::new(file).file_name().unwrap().to_str().unwrap();
         folder.write(name, &fs::read_to_string(repository().join("inputs").join(file)).unwrap());
     }
@@ -151,7 +151,6 @@ fn gradation_of_the_shipped_bed() {
     let (folder, summary) = shipped(
         "gradation.toml",
         &[
-            ("../track/cyclic/stones.toml", "stones.toml"),
             ("../data/gradations.csv", "gradations.csv"),
             ("count = 1800", "count = 250"),
             ("high = [0.5, 0.5]", "high = [0.25, 0.25]"),

@@ -105,10 +105,6 @@ pub(crate) fn carry<R: Real>(
     let c = swing + normal * twist + normal.cross(swing) * twist;
     let c2 = c.norm2();
     let s = R::splat(2.0) * (one - c2 * (one - c2));
-    let rotate = |y: V3<R>| {
-        let z = c.cross(y);
-        y + (z + c.cross(z)) * s
-    };
     let swing2 = swing.norm2();
     let middle = (normal - swing.cross(normal)) * (one - half * swing2 * (one - R::splat(0.75) * swing2));
 
@@ -116,10 +112,17 @@ pub(crate) fn carry<R: Real>(
     let roll = a.w * arm_a + b.w * arm_b;
     // Half of each increment before the turn and half after it.
     let slip = (swing * length - roll * (half * dt * stretch)).cross(middle);
-    memory.shear = rotate(memory.shear + slip) + slip;
+    memory.shear = rotate(c, s, memory.shear + slip) + slip;
     let turn = (a.w - b.w) * (half * dt);
-    memory.turn = rotate(memory.turn + turn) + turn;
+    memory.turn = rotate(c, s, memory.turn + turn) + turn;
     Frame { normal, length, rate: along * inverse, roll, arm_a, arm_b }
+}
+
+/// y turned by the Rodrigues vector c, s = 2/(1 + c²).
+#[inline(always)]
+fn rotate<R: Real>(c: V3<R>, s: R, y: V3<R>) -> V3<R> {
+    let z = c.cross(y);
+    y + (z + c.cross(z)) * s
 }
 
 /// Splits a rotation into the part along n and the part across.

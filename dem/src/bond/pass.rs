@@ -107,7 +107,7 @@ fn link(state: &State, work: &mut BondWork) {
 
 impl BondSlot {
     pub fn new(force: Vec3, torque_a: Vec3, torque_b: Vec3) -> BondSlot {
-        let lanes = |v: Vec3| [v.x, v.y, v.z, 0.0];
+        let lanes = |v: Vec3| Lanes([v.x, v.y, v.z, 0.0]);
         BondSlot { force: lanes(force), torque_a: lanes(torque_a), torque_b: lanes(torque_b) }
     }
 }
@@ -151,13 +151,11 @@ fn group<R: Four>(
     g: &mut Group,
     dt: R,
 ) -> ([R; 4], [R; 4], [R; 4], u32, R) {
-    let k: [R; COUNT] = std::array::from_fn(|n| R::load(&constants[n]));
-    let load = |v: &[Lanes; 3]| V3::new(R::load(&v[0]), R::load(&v[1]), R::load(&v[2]));
-    let store = |v: V3<R>, to: &mut [Lanes; 3]| {
-        v.x.store(&mut to[0]);
-        v.y.store(&mut to[1]);
-        v.z.store(&mut to[2]);
-    };
+    // No closures here: what is not inlined into the kernel's entry becomes a call per operation.
+    let mut k = [R::zero(); COUNT];
+    for (k, constant) in k.iter_mut().zip(constants) {
+        *k = R::load(constant);
+    }
     let mut memory = Memory { shear: load(&g.shear), turn: load(&g.turn) };
     let frame = carry(k[kernel::OFFSET], a, b, &mut memory, dt);
     store(memory.shear, &mut g.shear);
@@ -165,11 +163,48 @@ fn group<R: Four>(
     let r = respond(&k, a, b, &frame, &memory);
     // A share that is not a number counts as holding: the bodies then fail the check of their speed.
     let holds = !R::splat(1.0).le(r.share);
-    let rows = |v: V3<R>| {
-        let v = v.only(holds);
-        R::transpose([v.x, v.y, v.z, R::zero()])
-    };
-    (rows(r.force), rows(r.torque_a), rows(r.torque_b), R::bits(holds), r.power.only(holds))
+    (
+        rows(r.force.only(holds)),
+        rows(r.torque_a.only(holds)),
+        rows(r.torque_b.only(holds)),
+        R::bits(holds),
+        r.power.only(holds),
+    )
+}
+
+#[inline(always)]
+fn load<R: Four>(v: &[Lanes; 3]) -> V3<R> {
+    V3::new(R::load(&v[0]), R::load(&v[1]), R::load(&v[2]))
+}
+
+#[inline(always)]
+fn store<R: Four>(v: V3<R>, to: &mut [Lanes; 3]) {
+    v.x.store(&mut to[0]);
+    v.y.store(&mut to[1]);
+    v.z.store(&mut to[2]);
+}
+
+/// A record per lane.
+#[inline(always)]
+fn rows<R: Four>(v: V3<R>) -> [R; 4] {
+    R::transpose([v.x, v.y, v.z, R::zero()])
+}
+
+/// The records of four bodies.
+#[inline(always)]
+fn pick<R: Four>(records: &[Lanes], at: &[u32; 4]) -> [R; 4] {
+    [
+        R::load(&records[at[0] as usize]),
+        R::load(&records[at[1] as usize]),
+        R::load(&records[at[2] as usize]),
+        R::load(&records[at[3] as usize]),
+    ]
+}
+
+/// Four bodies of one block.
+#[inline(always)]
+fn four<R: Four>(centre: &[Lanes], velocity: &[Lanes], spin: &[Lanes], at: &[u32; 4]) -> Motion<R> {
+    Motion { x: vectors(pick(centre, at)), v: vectors(pick(velocity, at)), w: vectors(pick(spin, at)) }
 }
 
 /// Three numbers of each record.
@@ -202,13 +237,8 @@ impl Kernel for Interior<'_> {
         let dt = R::splat(self.dt);
         let mut power = R::zero();
         for (number, (g, constants)) in self.groups.iter_mut().zip(self.constants).enumerate() {
-            let of = |at: &[u32; 4]| Motion {
-                x: vectors(at.map(|k| R::load(&centre[k as usize]))),
-                v: vectors(at.map(|k| R::load(&velocity[k as usize]))),
-                w: vectors(at.map(|k| R::load(&spin[k as usize]))),
-            };
             let (i, j) = (g.i, g.j);
-            let (a, b) = (of(&i), of(&j));
+            let (a, b) = (four(centre, velocity, spin, &i), four(centre, velocity, spin, &j));
             let (f, ta, tb, holds, p) = group(&a, &b, constants, g, dt);
             power = power + p;
             let live = (self.count - 4 * number).min(4);
@@ -248,24 +278,40 @@ impl Kernel for Cross<'_> {
         let dt = R::splat(self.dt);
         let mut power = R::zero();
         for (number, (g, constants)) in self.groups.iter_mut().zip(self.constants).enumerate() {
-            let a = Motion {
-                x: vectors(g.i.map(|k| R::load(&self.own.centre[k as usize]))),
-                v: vectors(g.i.map(|k| R::load(&self.own.velocity[k as usize]))),
-                w: vectors(g.i.map(|k| R::load(&self.own.spin[k as usize]))),
-            };
-            let other: [(&Block, usize); 4] =
-                std::array::from_fn(|l| (&self.blocks[g.block[l] as usize], g.j[l] as usize));
+            let a = four(&self.own.centre, &self.own.velocity, &self.own.spin, &g.i);
+            let (p, q) = (&self.blocks[g.block[0] as usize], &self.blocks[g.block[1] as usize]);
+            let (r, s) = (&self.blocks[g.block[2] as usize], &self.blocks[g.block[3] as usize]);
+            let [i, j, k, l] = g.j;
+            let (i, j, k, l) = (i as usize, j as usize, k as usize, l as usize);
             let b = Motion {
-                x: vectors(other.map(|(block, k)| R::load(&block.centre[k]))),
-                v: vectors(other.map(|(block, k)| R::load(&block.velocity[k]))),
-                w: vectors(other.map(|(block, k)| R::load(&block.spin[k]))),
+                x: vectors([
+                    R::load(&p.centre[i]),
+                    R::load(&q.centre[j]),
+                    R::load(&r.centre[k]),
+                    R::load(&s.centre[l]),
+                ]),
+                v: vectors([
+                    R::load(&p.velocity[i]),
+                    R::load(&q.velocity[j]),
+                    R::load(&r.velocity[k]),
+                    R::load(&s.velocity[l]),
+                ]),
+                w: vectors([
+                    R::load(&p.spin[i]),
+                    R::load(&q.spin[j]),
+                    R::load(&r.spin[k]),
+                    R::load(&s.spin[l]),
+                ]),
             };
             let (f, ta, tb, holds, p) = group(&a, &b, constants, g, dt);
             power = power + p;
             let live = (self.count - 4 * number).min(4);
             for l in 0..live {
-                self.slots[4 * number + l] =
-                    BondSlot { force: f[l].array(), torque_a: ta[l].array(), torque_b: tb[l].array() };
+                self.slots[4 * number + l] = BondSlot {
+                    force: Lanes(f[l].array()),
+                    torque_a: Lanes(ta[l].array()),
+                    torque_b: Lanes(tb[l].array()),
+                };
             }
             if holds != 15 {
                 self.found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));

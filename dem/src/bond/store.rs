@@ -95,7 +95,7 @@ impl BondList {
             let at = self.count as usize;
             if at.is_multiple_of(4) {
                 // A lane without a bond repeats a real pair, so that its arithmetic is harmless; its constants are zero.
-                let zero = [[0.0; 4]; 3];
+                let zero = [Lanes::default(); 3];
                 self.groups.push(Group {
                     number: [NONE; 4],
                     i: [e.i; 4],
@@ -122,7 +122,7 @@ impl BondList {
     pub fn constants(&self, model: &Model, out: &mut Vec<[Lanes; COUNT]>) {
         out.clear();
         out.extend(self.groups.iter().map(|g| {
-            let mut k = [[0.0; 4]; COUNT];
+            let mut k = [Lanes::default(); COUNT];
             for (l, &number) in g.number.iter().enumerate().filter(|(_, n)| **n != NONE) {
                 for (to, value) in k.iter_mut().zip(&model.bonds[number as usize].values) {
                     to[l] = *value;
@@ -231,6 +231,11 @@ impl State {
     /// Bonds broken so far, by tension and by shear.
     pub fn broken_bonds(&self) -> (u64, u64) {
         (self.bonds.broken[0], self.bonds.broken[1])
+    }
+
+    /// All breaks that nobody has taken, in the order of time.
+    pub fn breaks(&self) -> &[Break] {
+        &self.bonds.breaks
     }
 
     /// Breaks since the last call, in the order of time.

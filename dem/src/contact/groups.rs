@@ -16,7 +16,8 @@ pub(crate) struct Group<const N: usize> {
 }
 
 impl<const N: usize> Group<N> {
-    const EMPTY: Group<N> = Group { names: [[0; 4]; N], spring: [[0.0; 4]; 3], rate: [FRESH; 4] };
+    const EMPTY: Group<N> =
+        Group { names: [[0; 4]; N], spring: [Lanes([0.0; 4]); 3], rate: Lanes([FRESH; 4]) };
 }
 
 /// A list of contacts.
@@ -56,7 +57,7 @@ impl<const N: usize> Groups<N> {
         if lane == 0 {
             self.groups.push(Group::EMPTY);
             if self.turning {
-                self.turns.push([[0.0; 4]; 4]);
+                self.turns.push([Lanes::default(); 4]);
             }
         }
         for (names, n) in self.groups[g].names.iter_mut().zip(name) {

@@ -367,7 +367,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         let mut taken = Taken::<R>::new();
         let mut failure = None;
         let len = pairs.len();
-        let mut no_turn = [[0.0; 4]; 4];
+        let mut no_turn = [Lanes::default(); 4];
         for (g, group) in pairs.groups.iter_mut().enumerate() {
             let turn = if ROLL { &mut pairs.turns[g] } else { &mut no_turn };
             let names = group.names;
@@ -424,7 +424,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
         let len = pairs.len();
         let law = Mix::new(laws);
         let mut taken = Taken::<R>::new();
-        let mut no_turn = [[0.0; 4]; 4];
+        let mut no_turn = [Lanes::default(); 4];
         for (g, group) in pairs.groups.iter_mut().enumerate() {
             let turn = if ROLL { &mut pairs.turns[g] } else { &mut no_turn };
             let names = group.names;
@@ -447,7 +447,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
             let there = present::<R>(count);
             let slots = &mut out.slots[4 * g..4 * g + count];
             match contacts::<L, R, RIGID, ROLL, 3>(&law, &a, &b, group, turn, there, &mut taken, dt) {
-                None => slots.fill([[0.0; 4]; 3]),
+                None => slots.fill([Lanes::default(); 3]),
                 Some(o) => {
                     for (l, slot) in slots.iter_mut().enumerate() {
                         o.force[l].store(&mut slot[0]);
@@ -494,7 +494,7 @@ pub(crate) fn boxes<L: ContactLaw>(
                 out.friction += law.release(&mut history);
                 lists.boxes.set_history(k, &history);
             }
-            *slot = [[0.0; 4]; 3];
+            *slot = [Lanes::default(); 3];
             continue;
         };
         let (ma, mb) = (motion(mine, a, &g.point), motion(other, j, &g.point));
@@ -504,7 +504,7 @@ pub(crate) fn boxes<L: ContactLaw>(
         lists.boxes.set_history(k, &history);
         out.dashpot += f.dashpot;
         out.friction += f.friction;
-        let lanes = |v: Vec3| [v.x, v.y, v.z, 0.0];
+        let lanes = |v: Vec3| Lanes([v.x, v.y, v.z, 0.0]);
         *slot = [
             lanes(f.force),
             lanes(ma.arm.cross(&f.force) + f.moment),

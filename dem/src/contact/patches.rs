@@ -53,12 +53,31 @@ pub(crate) struct Touch {
     pub counts: bool,
 }
 
-/// Finds which of the patches `pairs` (all of one sphere at `x`) count. Results are appended to `out`.
-fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], out: &mut Vec<Touch>) {
+/// Finds which of the patches `pairs` (all of one sphere at `x`) count; `gone` is the bound on the way that anything
+/// has come towards anything since the near list was made. Results are appended to `out`.
+#[inline]
+fn touches<S: Surface>(
+    surface: &S,
+    x: &Vec3,
+    r: f64,
+    gone: f64,
+    pairs: &mut [PatchPair],
+    out: &mut Vec<Touch>,
+) {
+    let sharp = surface.sharp();
+    let centre = [x.x, x.y, x.z];
     for pair in pairs {
-        let centre = [x.x, x.y, x.z];
-        if !surface.within(pair.patch, centre, r) {
-            continue;
+        if sharp {
+            if pair.spare > gone {
+                continue;
+            }
+            if pair.spare >= 0.0 {
+                let clearance = surface.clearance(pair.patch, centre);
+                if clearance > r {
+                    pair.spare = gone + clearance - r;
+                    continue;
+                }
+            }
         }
         let closest = surface.closest_point(pair.patch, centre, pair.local);
         pair.local = closest.local;
@@ -66,11 +85,14 @@ fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], o
         let offset = x - point;
         let along = offset.dot(&outward);
         let behind = along < 0.0 && surface.one_sided_patch(pair.patch);
-        let straight = closest.feature == Feature::Face && surface.sharp();
+        let straight = sharp && closest.feature == Feature::Face;
         let distance = if straight { along.abs() } else { offset.norm() };
         if distance >= r && !(behind && straight) {
+            // As much as the bound is sure of; the next step looks again if that is nothing.
+            pair.spare = gone + (distance * (1.0 - 1e-9) - r).max(0.0);
             continue;
         }
+        pair.spare = -1.0;
         let (normal, overlap) = match (distance > 0.0, behind) {
             (false, _) => (outward, r),
             (true, false) if straight => (if along < 0.0 { -outward } else { outward }, r - distance),
@@ -106,7 +128,7 @@ fn touches<S: Surface>(surface: &S, x: &Vec3, r: f64, pairs: &mut [PatchPair], o
             if (other.geometry.point - point).norm() <= tolerance {
                 shared = true;
                 counts &= own < rank(m, other);
-            } else if on_rim && surface.within(other.patch, point.into(), tolerance) {
+            } else if on_rim && surface.clearance(other.patch, point.into()) <= tolerance {
                 let nearest = surface.closest_point(other.patch, point.into(), other.closest.local);
                 counts &= (Vec3::from(nearest.point) - point).norm() > tolerance;
             }
@@ -152,6 +174,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
     w: &mut BlockWork,
     sums: &mut [WallSum],
     external: bool,
+    gone: f64,
     dt: f64,
 ) -> Exchange {
     let mut exchange = Exchange::default();
@@ -176,7 +199,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         let p: Lanes = if RIGID { w.spheres[i] } else { block.centre[i] };
         let (x, r) = (xyz(&p), p[3]);
         touched.clear();
-        touches(surface, &x, r, pairs, &mut touched);
+        touches(surface, &x, r, gone, pairs, &mut touched);
         while at < old.len() && old[at].i < sphere {
             friction += end(&mut old[at]);
             at += 1;

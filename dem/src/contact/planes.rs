@@ -26,8 +26,8 @@ pub(crate) fn now(model: &Model, motions: &[WallMotion], out: &mut Vec<PlaneNow>
     out.extend(model.planes.iter().zip(motions).map(|(p, m)| {
         let (n, v) = (&p.normal, &m.velocity);
         PlaneNow {
-            face: [n.x, n.y, n.z, (p.point + m.offset).dot(n)],
-            motion: [v.x, v.y, v.z, p.material as f64],
+            face: Lanes([n.x, n.y, n.z, (p.point + m.offset).dot(n)]),
+            motion: Lanes([v.x, v.y, v.z, p.material as f64]),
         }
     }));
 }
@@ -52,7 +52,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
         let len = pairs.len();
         let mut taken = Taken::<R>::new();
         let (mut work, mut linear, mut angular) = (R::zero(), V3::<R>::zero(), V3::<R>::zero());
-        let mut no_turn = [[0.0; 4]; 4];
+        let mut no_turn = [Lanes::default(); 4];
         let spheres = if RIGID { &w.spheres[..] } else { &block.centre[..] };
         for (g, group) in pairs.groups.iter_mut().enumerate() {
             let turn = if ROLL { &mut pairs.turns[g] } else { &mut no_turn };

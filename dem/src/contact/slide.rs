@@ -30,9 +30,9 @@ pub(crate) fn plane<R: Real>(
     let along = spring.dot(normal);
     let flat = *spring - normal * along;
     let (along2, flat2) = (along * along, flat.norm2());
-    // The projection shortens by half the square of the turn. Below a microradian per step that adds up to less
-    // than 5e-7 of the whole angle turned, and the root and the division are spared.
-    let turned = along2.gt(R::splat(1e-12) * flat2);
+    // The projection shortens by half the square of the turn. Below ten microradians per step that adds up to less
+    // than 5e-6 of the whole angle turned, and the root and the division are spared.
+    let turned = along2.gt(R::splat(1e-10) * flat2);
     let mut before = flat;
     if R::any(turned & on) {
         let stretch = (R::splat(1.0) + along2 / flat2).sqrt();

@@ -62,7 +62,7 @@ impl Snapshot {
             let (mut own, mut owner) = (Vec::new(), Vec::new());
             for (k, &body) in block.bodies.iter().enumerate() {
                 let x = xyz(&block.centre[k]) - xyz(&block.velocity[k]) * back;
-                block.centre[k] = [x.x, x.y, x.z, block.centre[k][3]];
+                block.centre[k] = Lanes([x.x, x.y, x.z, block.centre[k][3]]);
                 let mut turn = nalgebra::UnitQuaternion::identity();
                 if let Some(r) = block.rotation.get_mut(k) {
                     let spin = xyz(&block.spin[k]);
@@ -71,7 +71,7 @@ impl Snapshot {
                 }
                 for (c, r) in model.members(body as usize) {
                     let p = x + turn * c;
-                    own.push([p.x, p.y, p.z, r]);
+                    own.push(Lanes([p.x, p.y, p.z, r]));
                     owner.push(k as u32);
                 }
             }

@@ -152,11 +152,11 @@ mod tests {
         let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         for (small, spread) in [(0.05, 0.01), (0.004, 0.1)] {
             let mut points: Vec<Lanes> =
-                (0..600).map(|_| [unit(), unit(), unit(), small + spread * unit().powi(4)]).collect();
+                (0..600).map(|_| Lanes([unit(), unit(), unit(), small + spread * unit().powi(4)])).collect();
             points.extend([
-                [1e6, 0.5, -3e5, small],
-                [1e6 + small, 0.5, -3e5, small],
-                [-1e9, 0.0, 0.0, small],
+                Lanes([1e6, 0.5, -3e5, small]),
+                Lanes([1e6 + small, 0.5, -3e5, small]),
+                Lanes([-1e9, 0.0, 0.0, small]),
             ]);
             let r = points.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p[3]), h.max(p[3])));
             let mut cells = Cells::default();

@@ -36,7 +36,7 @@ pub(crate) fn candidates<S: Surface>(
         surface.candidates(lo, hi, row);
         let near = |patch: u32| {
             (free(i as u32) || surface.inverse_mass(patch) > 0.0)
-                && surface.within(patch, [p[0], p[1], p[2]], p[3] + skin)
+                && surface.clearance(patch, [p[0], p[1], p[2]]) <= p[3] + skin
         };
         out.extend(row.iter().filter(|&&patch| near(patch)).map(|&patch| [i as u32, patch]));
     }
@@ -59,10 +59,12 @@ pub(crate) fn refresh<S: Surface>(
             k += 1;
         }
         let known = list.get(k).filter(|old| (old.i, old.patch) == (i, patch));
-        let mut pair = PatchPair { i, patch, local: known.map_or([0.0; 2], |old| old.local) };
         let p = &spheres[i as usize];
         let reach = p[3] + near;
-        let mut close = surface.within(patch, [p[0], p[1], p[2]], reach);
+        let clearance = surface.clearance(patch, [p[0], p[1], p[2]]);
+        let local = known.map_or([0.0; 2], |old| old.local);
+        let mut pair = PatchPair { i, patch, local, spare: clearance - p[3] };
+        let mut close = clearance <= reach;
         if close && !surface.sharp() {
             let closest = surface.closest_point(patch, [p[0], p[1], p[2]], pair.local);
             pair.local = closest.local;

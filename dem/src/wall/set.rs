@@ -21,6 +21,8 @@ use nalgebra::UnitQuaternion;
 
 /// Where a patch that cannot be touched is said to be [m]: out of reach of everything.
 const FAR: f64 = 1e30;
+/// Relative slack of lower bounds.
+pub(super) const SLACK: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
@@ -302,16 +304,16 @@ impl Surface for PlacedWalls<'_> {
     fn closest_point(&self, patch: u32, centre: [f64; 3], _: [f64; 2]) -> PatchPoint {
         let (kind, wall, state) = self.parts(patch);
         let x = state.to_local(&wall.centre, &Vec3::from(centre));
-        let (point, normal, feature, local) = match kind {
+        let (point, normal, feature) = match kind {
             Kind::Triangle(t) => {
                 let t = &self.walls.triangles[t as usize];
-                let (point, weights, region) = t.closest(&x);
+                let (point, region) = t.closest(&x);
                 let feature = match region {
                     Region::Face => Feature::Face,
                     Region::Edge(k) => Feature::Edge(t.edges[k]),
                     Region::Vertex(k) => Feature::Vertex(t.vertices[k]),
                 };
-                (point, t.normal(), feature, weights)
+                (point, t.normal(), feature)
             }
             Kind::Round(r) => match self.walls.rounds[r as usize].closest(&x) {
                 Some((point, normal, part)) => {
@@ -320,9 +322,9 @@ impl Surface for PlacedWalls<'_> {
                         Part::Rim(k) => Feature::Edge(k as u32),
                         Part::Apex => Feature::Vertex(0),
                     };
-                    (point, normal, feature, [0.0; 2])
+                    (point, normal, feature)
                 }
-                None => (Vec3::repeat(FAR), Vec3::z(), Feature::Face, [0.0; 2]),
+                None => (Vec3::repeat(FAR), Vec3::z(), Feature::Face),
             },
         };
         let point = if state.open { Vec3::repeat(FAR) } else { state.to_world(&wall.centre, &point) };
@@ -330,27 +332,27 @@ impl Surface for PlacedWalls<'_> {
             point: point.into(),
             normal: state.turn(&normal).into(),
             velocity: state.velocity_at(&wall.centre, &point).into(),
-            local,
+            local: [0.0; 2],
             feature,
         }
     }
 
     #[inline(always)]
-    fn within(&self, patch: u32, centre: [f64; 3], reach: f64) -> bool {
+    fn clearance(&self, patch: u32, centre: [f64; 3]) -> f64 {
         let (kind, wall, state) = self.parts(patch);
+        if state.open {
+            return FAR;
+        }
         let x = state.to_local(&wall.centre, &Vec3::from(centre));
-        !state.open
-            && match kind {
-                Kind::Triangle(t) => self.walls.triangles[t as usize].within(&x, reach),
-                Kind::Round(r) => {
-                    let round = &self.walls.rounds[r as usize];
-                    round.closest(&x).is_some_and(|(point, normal, _)| {
-                        let away = x - point;
-                        (round.one_sided() && away.dot(&normal) < 0.0)
-                            || away.norm_squared() <= reach * reach * (1.0 + 1e-9)
-                    })
-                }
+        match kind {
+            Kind::Triangle(t) => self.walls.triangles[t as usize].clearance(&x),
+            Kind::Round(r) => {
+                let round = &self.walls.rounds[r as usize];
+                let Some((point, normal, _)) = round.closest(&x) else { return 0.0 };
+                let away = x - point;
+                if round.one_sided() && away.dot(&normal) < 0.0 { 0.0 } else { away.norm() * (1.0 - SLACK) }
             }
+        }
     }
 
     fn max_speed(&self) -> f64 {

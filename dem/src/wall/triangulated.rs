@@ -11,22 +11,20 @@ use crate::Vec3;
 use crate::error::ModelError;
 use crate::search::bvh::Aabb;
 use crate::shape::triangle::{self, Region};
-use crate::state::Lanes;
+use crate::wall::set::SLACK;
 
 /// Smallest height over longest side that a triangle may have: below it its normal has no meaning.
 const FLATTEST: f64 = 1e-9;
 /// Distance from a plane, over the largest coordinate of the surface, that counts as rounding.
 const COPLANAR: f64 = 1e-12;
-/// Slack of the cheap rejection, relative to the square of the reach.
-const SLACK: f64 = 1e-9;
 
 /// A triangle in the frame of its wall.
 #[derive(Clone, Debug)]
 pub(crate) struct Triangle {
     /// Unit normal and level of its plane.
-    plane: Lanes,
+    plane: [f64; 4],
     /// Outward normal and level of each edge, within the plane.
-    rims: [Lanes; 3],
+    rims: [[f64; 4]; 3],
     pub corners: [Vec3; 3],
     /// Numbers of edges and vertices, unique within the surface.
     pub edges: [u32; 3],
@@ -34,7 +32,7 @@ pub(crate) struct Triangle {
 }
 
 #[inline(always)]
-fn height(plane: &Lanes, x: &Vec3) -> f64 {
+fn height(plane: &[f64; 4], x: &Vec3) -> f64 {
     plane[0] * x.x + plane[1] * x.y + plane[2] * x.z - plane[3]
 }
 
@@ -45,21 +43,25 @@ impl Triangle {
         Vec3::new(self.plane[0], self.plane[1], self.plane[2])
     }
 
-    /// Whether the triangle may lie within `reach` of `x`: false is certain.
+    /// A lower bound of the distance to `x`: from its height above the plane and outside the edges.
     #[inline(always)]
-    pub fn within(&self, x: &Vec3, reach: f64) -> bool {
+    pub fn clearance(&self, x: &Vec3) -> f64 {
         let up = height(&self.plane, x);
         let out = self.rims.iter().map(|rim| height(rim, x)).fold(0.0, f64::max);
-        up * up + out * out <= reach * reach * (1.0 + SLACK)
+        (up * up + out * out).sqrt() * (1.0 - SLACK)
     }
 
-    /// Closest point, and weights of the second and third corner there.
+    /// Closest point, and where on the triangle it lies.
     #[inline]
-    pub fn closest(&self, x: &Vec3) -> (Vec3, [f64; 2], Region) {
+    pub fn closest(&self, x: &Vec3) -> (Vec3, Region) {
+        let face = || x - self.normal() * height(&self.plane, x);
+        if self.rims.iter().all(|rim| height(rim, x) <= 0.0) {
+            return (face(), Region::Face);
+        }
         let [a, b, c] = &self.corners;
-        let (weights, region) = triangle::closest_point(a, b, c, x);
+        let (_, region) = triangle::closest_point(a, b, c, x);
         let point = match region {
-            Region::Face => x - self.normal() * height(&self.plane, x),
+            Region::Face => face(),
             Region::Vertex(k) => self.corners[k],
             // From the lower vertex, so that both triangles of an edge find the same bits.
             Region::Edge(k) => {
@@ -73,7 +75,7 @@ impl Triangle {
                 p + along * ((x - p).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
             }
         };
-        (point, weights, region)
+        (point, region)
     }
 
     /// Bounds.
@@ -160,7 +162,7 @@ pub(crate) fn triangles(
 }
 
 /// Plane of each triangle, the same bits for neighbours that lie in one plane to rounding.
-fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Vec3]) -> Vec<Lanes> {
+fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Vec3]) -> Vec<[f64; 4]> {
     let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
     let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
     for (t, triangle) in welded.iter().enumerate() {
@@ -170,7 +172,7 @@ fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Ve
     let size = triangles.iter().flatten().map(|&v| vertices[v as usize].amax()).fold(0.0, f64::max);
     let mut order: Vec<usize> = (0..triangles.len()).collect();
     order.sort_by(|&a, &b| normals[b].norm_squared().total_cmp(&normals[a].norm_squared()).then(a.cmp(&b)));
-    let mut planes: Vec<Option<Lanes>> = vec![None; triangles.len()];
+    let mut planes: Vec<Option<[f64; 4]>> = vec![None; triangles.len()];
     let mut open = Vec::new();
     for seed in order {
         if planes[seed].is_some() {

@@ -43,9 +43,9 @@ fn rejection_is_safe_and_sharp() {
         let Ok(patches) = triangles(&vertices, &[[0, 1, 2]], "one") else { continue };
         let x = Vec3::new(unit(), unit(), unit()) * 2.0;
         let distance = (patches[0].closest(&x).0 - x).norm();
-        assert!(patches[0].within(&x, distance * (1.0 + 1e-9)));
+        assert!(patches[0].clearance(&x) <= distance);
         far += 1;
-        missed += usize::from(patches[0].within(&x, 0.8 * distance));
+        missed += usize::from(patches[0].clearance(&x) < 0.8 * distance);
     }
     assert!(missed * 10 < far, "{missed} of {far}");
 }

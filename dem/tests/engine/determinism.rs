@@ -1,7 +1,10 @@
 //! The same bits whatever the threads, the skin, or a restart.
 
-use crate::scene::{Run, pile};
-use trackbed_dem::{ModelInput, State, Work};
+use crate::scene::{Run, pile, sphere, stone, weightless};
+use trackbed_dem::{
+    BodyInput, ModelInput, Motion, Oscillation, RigidBody, Servo, State, TimeStep, Vec3, WallInput,
+    WallShape, Work,
+};
 
 /// Everything that a user can see of a state, as bits.
 fn bits(run: &Run) -> Vec<u64> {
@@ -14,6 +17,12 @@ fn bits(run: &Run) -> Vec<u64> {
     let l = &run.state.ledger;
     out.extend([l.dissipated_dashpot, l.dissipated_friction, l.work_walls].map(f64::to_bits));
     out.extend(l.walls.angular.iter().map(|x| x.to_bits()));
+    out.push(l.work_servo.to_bits());
+    for wall in 0..run.model.wall_count() {
+        let (force, moment) = run.state.wall_force(wall);
+        let v = [force, moment, run.state.wall_offset(wall)];
+        out.extend(v.iter().flat_map(|v| v.iter()).map(|x| x.to_bits()));
+    }
     out
 }
 
@@ -85,4 +94,101 @@ fn sorting_keeps_contacts() {
         }
     }
     assert!(worst < 0.05, "tangential energy jumps by {worst}");
+}
+
+/// A turning mill of `n`³ grains with a swinging floor of triangles, a driven lid and a free block of triangles in it.
+fn mill(n: usize) -> ModelInput {
+    let width = 0.021 * n as f64;
+    let mut input = ModelInput {
+        gravity: Vec3::new(0.0, 0.0, -9.81),
+        time_step: TimeStep::Auto { fraction: 0.3 },
+        ..weightless(stone())
+    };
+    for k in 0..n * n * n {
+        let cell = Vec3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64);
+        let position = (cell + Vec3::repeat(0.5)) * 0.021;
+        let velocity = Vec3::new((k as f64 * 1.7).sin(), (k as f64 * 2.9).cos(), -1.0);
+        input.bodies.push(BodyInput { spin: velocity * 10.0, ..sphere(position, velocity) });
+    }
+    let middle = Vec3::new(0.5 * width, 0.5 * width, 0.0);
+    let frustum = |height: f64, radii: [f64; 2]| WallShape::Frustum {
+        base: middle - Vec3::z() * 0.1 * height,
+        axis: Vec3::z(),
+        height,
+        radii,
+        caps: [true, false],
+    };
+    let turning = Motion { angular_velocity: Vec3::z() * 5.0, ..Motion::default() };
+    let drum = frustum(2.0 * width, [0.75 * width, 0.8 * width]);
+    input.walls.push(WallInput { motion: turning, ..WallInput::fixed(drum, 0) });
+    let (m, a) = (12, 1.6 * width);
+    let at = |k: u32| a * (f64::from(k) / f64::from(m) - 0.5);
+    let vertices = (0..=m).flat_map(|j| (0..=m).map(move |i| (i, j)));
+    let floor = WallShape::Triangles {
+        vertices: vertices
+            .map(|(i, j)| middle + Vec3::new(at(i), at(j), -0.004 * f64::from((i * j) % 2)))
+            .collect(),
+        triangles: (0..m)
+            .flat_map(|j| (0..m).map(move |i| j * (m + 1) + i))
+            .flat_map(|a| [[a, a + 1, a + m + 2], [a, a + m + 2, a + m + 1]])
+            .collect(),
+    };
+    let swing = Oscillation { amplitude: Vec3::new(1e-3, 0.0, 1e-3), frequency: 40.0, phase: 0.0 };
+    let shaking = Motion { oscillation: Some(swing), angular_velocity: Vec3::y() * 0.1, ..Motion::default() };
+    input.walls.push(WallInput { motion: shaking, ..WallInput::fixed(floor, 0) });
+    let lid = WallShape::Plane { point: Vec3::z() * (width + 0.13), normal: -Vec3::z() };
+    let servo = Servo { direction: -Vec3::z(), force: vec![[0.0, 50.0]], max_speed: 0.5, gain: 0.5 };
+    input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(lid, 0) });
+    let corner = |k: usize| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { 0.05 } else { -0.05 });
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let block = WallShape::Triangles {
+        vertices: (0..8).map(|k| middle + Vec3::z() * (width + 0.06) + corner(k)).collect(),
+        triangles: quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect(),
+    };
+    let body = RigidBody {
+        mass: 2.0,
+        centre: None,
+        inertia: None,
+        velocity: Vec3::zeros(),
+        spin: Vec3::new(1.0, 2.0, 0.5),
+        fixed: [false; 6],
+    };
+    input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block, 0) });
+    input
+}
+
+/// Walls of all kinds: the same bits for 1, 2, 3 and 7 threads, and for new scratch half way.
+#[test]
+fn walls_of_all_kinds() {
+    let run_in = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| {
+            let mut run = Run::new(mill(14));
+            assert!(run.model.sphere_count() > 2500);
+            run.steps(1200);
+            if threads == 2 {
+                run.work = Work::new(&run.model, &run.state);
+            }
+            run.steps(800);
+            for wall in [0, 1, 3] {
+                assert!(run.state.wall_force(wall).0.norm() > 1.0, "wall {wall} must be touched");
+            }
+            bits(&run)
+        })
+    };
+    let one = run_in(1);
+    for threads in [2, 3, 7] {
+        assert!(one == run_in(threads), "{threads} threads differ from one");
+    }
+}
+
+/// Nor do the skin and the time of a search show in contacts with walls.
+#[test]
+fn skin_changes_nothing_at_walls() {
+    let run_with = |skin: f64| {
+        let mut run = Run::new(ModelInput { skin: Some(skin), ..mill(5) });
+        run.steps(4000);
+        bits(&run)
+    };
+    assert!(run_with(0.0005) == run_with(0.005), "the skin shows");
 }

@@ -149,3 +149,66 @@ fn both_sides_push() {
         assert!((force - Vec3::new(0.0, 0.0, side * 100.0)).norm() < 1e-6, "{force}");
     }
 }
+
+/// A fine, irregular floor on a slope: a ball slides, then rolls, with its tangential spring loaded, over several
+/// hundred seams; at every step its force is the plane's to 1e-10 of itself.
+#[test]
+fn force_on_a_slope_equals_that_of_a_plane_at_every_step() {
+    let mut random = Random::new(77);
+    let (nx, ny, pitch) = (90, 8, 0.0021);
+    let tilt = nalgebra::UnitQuaternion::from_euler_angles(0.03, 0.25, 0.4);
+    let mut flat = Vec::new();
+    for j in 0..=ny {
+        for i in 0..=nx {
+            let mut shift = || (random.unit() - 0.5) * 0.7 * pitch;
+            flat.push(Vec3::new(
+                (f64::from(i) - 3.0) * pitch + shift(),
+                (f64::from(j) - 0.5 * f64::from(ny)) * pitch + shift(),
+                0.0,
+            ));
+        }
+    }
+    let vertices: Vec<[f64; 3]> = flat.iter().map(|v| (tilt * v).into()).collect();
+    let at = |i: i32, j: i32| (j * (nx + 1) + i) as u32;
+    let mut triangles = Vec::new();
+    for j in 0..ny {
+        for i in 0..nx {
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            triangles.extend(if random.unit() < 0.5 {
+                [[a, b, c], [c, a, d]]
+            } else {
+                [[b, a, d], [d, b, c]]
+            });
+        }
+    }
+    let normal = tilt * Vec3::z();
+    let body = sphere(normal * 0.00999, tilt * Vec3::new(0.6, 0.01, 0.0));
+    let prepare = |mut input: ModelInput, exact: bool| {
+        input.materials[0] =
+            Material { stiffness: 1e4, friction: 0.4, tangential_damping_ratio: 0.2, ..stone() };
+        input.gravity = Vec3::new(0.0, 0.0, -9.81);
+        if exact {
+            input.triangles.clear();
+            input.planes.push(plane(Vec3::zeros(), normal));
+        }
+        Run::new(input)
+    };
+    let mut plane_run = prepare(on_triangles(&vertices, &triangles, body.clone()), true);
+    let mut mesh_run = prepare(on_triangles(&vertices, &triangles, body), false);
+    let (mut worst, mut touching, mut seams) = (0.0_f64, 0, 0);
+    while plane_run.state.time < 0.2 {
+        plane_run.step();
+        mesh_run.step();
+        let force = plane_run.work.contact_force(&plane_run.state, 0);
+        let other = mesh_run.work.contact_force(&mesh_run.state, 0);
+        if force.norm() > 0.0 || other.norm() > 0.0 {
+            touching += 1;
+            worst = worst.max((other - force).norm() / force.norm());
+        }
+        seams += usize::from(mesh_run.state.wall_contact_count() > 1);
+    }
+    let way = (mesh_run.state.position(0) - normal * 0.01).norm();
+    eprintln!("largest relative difference {worst:e} in {touching} steps with contact, over {way:.3} m");
+    assert!(worst < 1e-10 && touching > 1000 && way > 0.1, "{worst:e} {touching} {way}");
+    assert_eq!(seams, 0, "never more than one contact");
+}

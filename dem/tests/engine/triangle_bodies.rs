@@ -90,7 +90,7 @@ fn cube_at_rest_on_spheres() {
         below.z / -(weight + load) - 1.0,
         run.work.contact_force(&run.state, 4).z / load - 1.0
     );
-    assert!((below + Vec3::z() * (weight + load)).norm() < 1e-8 * weight, "{below} {weight}");
+    assert!((below.z + weight + load).abs() < 1e-8 * weight, "{below} {weight}");
     assert!((run.work.contact_force(&run.state, 4).z / load - 1.0).abs() < 1e-8);
     assert_eq!(run.state.wall_contact_count(), 5);
     // Moments about the centre of mass vanish at rest.
@@ -105,7 +105,7 @@ fn cube_at_rest_on_spheres() {
 /// momentum balance on the way.
 #[test]
 fn box_stands_on_its_vertices() {
-    let mut input = with(Material { restitution: 0.3, ..stone() });
+    let mut input = with(Material { restitution: 0.3, tangential_damping_ratio: 0.5, ..stone() });
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     let mut wall = cuboid(Vec3::new(0.0, 0.0, 0.06), Vec3::new(0.06, 0.05, 0.04), 1.5);
     body_of(&mut wall).spin = Vec3::new(2.0, -1.0, 0.5);

@@ -1,6 +1,6 @@
 //! Stones that can break: each sphere of a bonded stone is a body, and the bonds of the library join them.
 
-use super::{GrainsPart, groups};
+use super::GrainsPart;
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::grains::Grains;
@@ -57,7 +57,11 @@ pub(super) fn expand(
 }
 
 /// The stones of a group's library as clusters.
-pub(super) fn clusters(document: &Document, index: usize, group: &Grains) -> Result<Vec<Cluster>, SceneError> {
+pub(super) fn clusters(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+) -> Result<Vec<Cluster>, SceneError> {
     let file = group.library.as_ref().ok_or_else(|| {
         let key = format!("grains.{index}.library");
         document.error(&key, "nothing", "the library of the bonded stones")
@@ -75,6 +79,5 @@ pub(super) fn stand_ins(
 ) -> Result<Vec<f64>, SceneError> {
     let clusters = clusters(document, index, group)?;
     part.shapes.extend(clusters.iter().map(|c| Shape::Sphere { radius: c.bounding_radius() }));
-    let _ = groups::bounding_radius;
     Ok(clusters.iter().map(|c| 1.0 / c.sieve_size()).collect())
 }

@@ -8,8 +8,8 @@ use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
 use std::collections::HashSet;
 use trackbed_dem::bond::{
-    Bond, BondDamping, BondInput, ContactPoint, Criterion, DirectBond, ParallelBond, ParallelStiffness, ShearStrength,
-    Spread, factors, within_gap,
+    Bond, BondDamping, BondInput, ContactPoint, Criterion, DirectBond, ParallelBond, ParallelStiffness,
+    ShearStrength, Spread, factors, within_gap,
 };
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, ModelInput, Vec3};
@@ -97,8 +97,7 @@ impl BondPart {
         for (kind, rule) in self.rules.iter().enumerate() {
             let accept = |a: usize, b: usize| {
                 let parts = [bodies[a].part, bodies[b].part];
-                let match_groups =
-                    rule.between.is_none_or(|[p, q]| parts == [p, q] || parts == [q, p]);
+                let match_groups = rule.between.is_none_or(|[p, q]| parts == [p, q] || parts == [q, p]);
                 sphere(a) && sphere(b) && match_groups
             };
             let pairs: Vec<[usize; 2]> = match &rule.source {
@@ -150,6 +149,17 @@ pub(super) fn kinds(document: &Document, scene: &Scene) -> Result<BondPart, Fail
 
 /// Resolves which grains are joined, when all of them are there.
 pub(super) fn rules(document: &Document, scene: &Scene, part: &mut GrainsPart) -> Result<(), Failure> {
+    if part.bonds.has_stones() {
+        let settling = part.deposition.as_ref();
+        for (key, present) in [
+            ("deposition.level", settling.is_some_and(|d| d.level.is_some())),
+            ("deposition.layers", settling.is_some_and(|d| d.layers > 1)),
+        ] {
+            if present {
+                return Err(document.error(key, "a value", "no such key beside bonded stones").into());
+            }
+        }
+    }
     for (i, table) in scene.bond.iter().enumerate() {
         let rule = rule(document, i, table, part)?;
         part.bonds.rules.push(rule);
@@ -231,8 +241,7 @@ fn kind(document: &Document, i: usize, table: &BondTable) -> Result<Bond, SceneE
 
 fn parallel(document: &Document, table: &str, p: &Parallel) -> Result<ParallelBond, SceneError> {
     let key = |k: &str| format!("{table}.{k}");
-    let positive =
-        |k: &str, x: Option<f64>| check(document, &key(k), x, |x| x > 0.0, "above 0");
+    let positive = |k: &str, x: Option<f64>| check(document, &key(k), x, |x| x > 0.0, "above 0");
     positive("radius_factor", p.radius_factor)?;
     positive("young", p.young.map(|x| x.si))?;
     positive("stiffness_ratio", p.stiffness_ratio)?;
@@ -288,7 +297,8 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
         let found = part.parts.iter().position(|p| p == name);
         found.map(|p| p as u32).ok_or_else(|| document.error(&key("between"), format!("\"{name}\""), known()))
     };
-    let between = table.between.as_ref().map(|[a, b]| Ok::<_, SceneError>([find(a)?, find(b)?])).transpose()?;
+    let between =
+        table.between.as_ref().map(|[a, b]| Ok::<_, SceneError>([find(a)?, find(b)?])).transpose()?;
     let named = part.bonds.stones.iter().any(|(_, kind)| *kind == i);
     let source = match (&table.gap, &table.pairs) {
         (Some(gap), None) => {
@@ -301,7 +311,9 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
                 return Err(document.error(&key("pairs"), "a file", expected).into());
             }
             if between.is_some() {
-                return Err(document.error(&key("between"), "two groups", "no such key beside `pairs`").into());
+                return Err(document
+                    .error(&key("between"), "two groups", "no such key beside `pairs`")
+                    .into());
             }
             Source::Pairs(tables::pairs(&document.resolve(file), part.bodies.len())?)
         }
@@ -325,11 +337,23 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
         None => Spread::Constant,
         Some(s) => match (s.kind, s.deviation, s.modulus) {
             (SpreadKind::Normal, Some(deviation), None) => {
-                check(document, &key("spread.deviation"), Some(deviation), |d| d > 0.0 && d <= 10.0, "above 0, at most 10")?;
+                check(
+                    document,
+                    &key("spread.deviation"),
+                    Some(deviation),
+                    |d| d > 0.0 && d <= 10.0,
+                    "above 0, at most 10",
+                )?;
                 Spread::Normal { deviation }
             }
             (SpreadKind::Weibull, None, Some(modulus)) => {
-                check(document, &key("spread.modulus"), Some(modulus), |m| m > 0.05 && m <= 1e3, "above 0.05, at most 1000")?;
+                check(
+                    document,
+                    &key("spread.modulus"),
+                    Some(modulus),
+                    |m| m > 0.05 && m <= 1e3,
+                    "above 0.05, at most 1000",
+                )?;
                 Spread::Weibull { modulus }
             }
             _ => {

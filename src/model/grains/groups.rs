@@ -1,7 +1,7 @@
 //! `[[grains]]` resolved: grains by hand or from a packing, stacked in a box, on a lattice, or in a container.
 
 use super::sizes::SizeSource;
-use super::{GradedGroup, GrainsPart, check, regions};
+use super::{GradedGroup, GrainsPart, Moving, bonded, check, regions};
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::grains::{FillBox, GrainShape, Grains};
@@ -39,6 +39,7 @@ pub(super) fn add(
         ..BodyInput::default()
     };
     refuse_idle_keys(document, index, group)?;
+    prescribed(document, index, group, part)?;
     part.first_shape.push(part.shapes.len());
     if let Some(fill) = &group.fill {
         return filled(document, index, group, fill, &model, part);
@@ -48,9 +49,36 @@ pub(super) fn add(
         return Ok(regions::lattice(document, index, fill, &model, part)?);
     }
     if let Some(region) = &group.region {
+        if group.shape == GrainShape::Bonded {
+            let key = format!("grains.{index}.shape");
+            return Err(document.error(&key, "\"bonded\"", "`fill`, which bonded stones need").into());
+        }
         return regions::scattered(document, index, group, region, &model, part);
     }
     given(document, index, group, &model, part)
+}
+
+/// Grips and groups that are recorded.
+fn prescribed(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    part: &mut GrainsPart,
+) -> Result<(), SceneError> {
+    let number = part.parts.len() as u32 - 1;
+    if let Some(motion) = &group.motion {
+        for (k, present) in [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())] {
+            if present {
+                let key = format!("grains.{index}.{k}");
+                return Err(document.error(&key, "a value", "no such key beside `motion`"));
+            }
+        }
+        part.moving.push(Moving { part: number, velocity: Vec3::from(vector(motion)) });
+    }
+    if group.record.unwrap_or(group.motion.is_some()) {
+        part.recorded_groups.push(number);
+    }
+    Ok(())
 }
 
 /// Refuses keys that the source of the grains has no use for.
@@ -65,6 +93,7 @@ fn refuse_idle_keys(document: &Document, index: usize, group: &Grains) -> Result
         ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of clumps"),
         ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
         ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),
+        ("bond", group.bond.is_some(), group.shape == GrainShape::Bonded, "`shape = \"bonded\"`"),
     ] {
         if present && !used {
             let key = format!("grains.{index}.{k}");
@@ -83,6 +112,10 @@ fn given(
     part: &mut GrainsPart,
 ) -> Result<(), Failure> {
     let key = |k: &str| format!("grains.{index}.{k}");
+    if group.shape == GrainShape::Bonded {
+        let expected = "`fill`, which bonded stones need";
+        return Err(document.error(&key("shape"), "\"bonded\"", expected).into());
+    }
     if group.shape == GrainShape::Clump {
         let Some(file) = &group.packing else {
             let expected = "`fill`, `region` or `packing`, which clumps need";
@@ -149,13 +182,13 @@ fn filled(
         .count
         .ok_or_else(|| document.error(&key("count"), "nothing", "the number of grains to fill in"))?;
     check(document, &key("count"), Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
-    let first = part.shapes.len();
+    let (first, first_body) = (part.shapes.len(), part.bodies.len());
     let unit_scale = shapes(document, index, group, part)?;
     let source = SizeSource::of(document, index, group)?;
     let sizes = source.sample(count, group.seed);
-    let shape = |i: usize| first + i % unit_scale.len();
-    let scale: Vec<f64> =
-        sizes.iter().enumerate().map(|(i, s)| s * unit_scale[i % unit_scale.len()]).collect();
+    let dealt = deal(&sizes, unit_scale.len());
+    let shape = |i: usize| first + dealt[i];
+    let scale: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| s * unit_scale[*d]).collect();
     let radii: Vec<f64> =
         scale.iter().enumerate().map(|(i, s)| s * bounding_radius(&part.shapes[shape(i)])).collect();
 
@@ -171,8 +204,13 @@ fn filled(
         orientation: place.orientation,
         ..model.clone()
     }));
-    if let SizeSource::Graded(grading) = source {
+    if let SizeSource::Graded(grading) = source
+        && group.shape != GrainShape::Bonded
+    {
         part.graded.push(GradedGroup { part: model.part, name: group.name.clone(), grading });
+    }
+    if group.shape == GrainShape::Bonded {
+        bonded::expand(document, index, group, first_body, first, part)?;
     }
     Ok(())
 }
@@ -193,12 +231,23 @@ pub(super) fn shapes(
             Ok(clumps.iter().map(|c| 1.0 / c.sieve_size()).collect())
         }
         (GrainShape::Clump, None) => Err(document.error(&key, "nothing", "the stone library of the clumps")),
+        (GrainShape::Bonded, _) => bonded::stand_ins(document, index, group, part),
         (GrainShape::Sphere, Some(_)) => Err(document.error(&key, "a file", "no such key for spheres")),
         (GrainShape::Sphere, None) => {
             part.shapes.push(Shape::Sphere { radius: 0.5 });
             Ok(vec![1.0])
         }
     }
+}
+
+/// Deals `shapes` shapes out to grains in the order of their sizes, so that every shape has the sizes of all: mass per
+/// size³ differs between shapes, and would else make the sieve curve err.
+pub(super) fn deal(sizes: &[f64], shapes: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..sizes.len()).collect();
+    order.sort_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
+    let mut dealt = vec![0; sizes.len()];
+    order.into_iter().enumerate().for_each(|(rank, i)| dealt[i] = rank % shapes);
+    dealt
 }
 
 /// Height above which a box is free of the grains that earlier groups have put there [m].

@@ -1,6 +1,6 @@
 //! Containers: grains scattered in them or made ready to grow, and spheres on lattices.
 
-use super::groups::{bounding_radius, shapes};
+use super::groups::{bounding_radius, deal, shapes};
 use super::sizes::SizeSource;
 use super::{GradedGroup, GrainsPart, GrowthPlan, check};
 use crate::failure::Failure;
@@ -87,14 +87,13 @@ pub(super) fn scattered(
     let volume = container.volume();
     let first = part.shapes.len();
     let unit_scale = shapes(document, index, group, part)?;
-    let shape = |i: usize| first + i % unit_scale.len();
-    // Volume and reach of a grain of sieve size 1 m.
-    let unit_volume =
-        |i: usize| unit_scale[i % unit_scale.len()].powi(3) * shape_volume(&part.shapes[shape(i)]);
-    let reach = |i: usize| unit_scale[i % unit_scale.len()] * bounding_radius(&part.shapes[shape(i)]);
+    // Volume and reach of a grain of sieve size 1 m, by shape.
+    let unit = |k: usize| &part.shapes[first + k];
+    let unit_volume: Vec<f64> =
+        unit_scale.iter().enumerate().map(|(k, s)| s.powi(3) * shape_volume(unit(k))).collect();
+    let reach: Vec<f64> = unit_scale.iter().enumerate().map(|(k, s)| s * bounding_radius(unit(k))).collect();
     let source = SizeSource::of(document, index, group)?;
-    let mean_volume =
-        source.mean_cube() * (0..unit_scale.len()).map(unit_volume).sum::<f64>() / unit_scale.len() as f64;
+    let mean_volume = source.mean_cube() * unit_volume.iter().sum::<f64>() / unit_volume.len() as f64;
 
     let growth = group.growth.as_ref().map(|g| growth(document, index, g)).transpose()?;
     check(document, &key("concentration"), group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
@@ -124,22 +123,23 @@ pub(super) fn scattered(
         return Err(document.error(&key("count"), format!("{count} grains"), "1 to 10000000").into());
     }
     let mut sizes = source.sample(count as usize, group.seed);
+    let dealt = deal(&sizes, unit_scale.len());
     let (mut start, mut factor) = (1.0, 1.0);
     if let Some((porosity, _)) = &growth {
-        let solid: f64 = sizes.iter().enumerate().map(|(i, s)| unit_volume(i) * s.powi(3)).sum();
+        let solid: f64 = sizes.iter().zip(&dealt).map(|(s, d)| unit_volume[*d] * s.powi(3)).sum();
         factor = ((1.0 - porosity) * volume / solid).cbrt();
         sizes.iter_mut().for_each(|s| *s *= factor);
-        let bounding: f64 = sizes.iter().enumerate().map(|(i, s)| (reach(i) * s).powi(3)).sum();
+        let bounding: f64 = sizes.iter().zip(&dealt).map(|(s, d)| (reach[*d] * s).powi(3)).sum();
         start = (SEEDLINGS * volume / (4.0 / 3.0 * std::f64::consts::PI * bounding)).cbrt().min(0.7);
     }
-    let radii: Vec<f64> = sizes.iter().enumerate().map(|(i, s)| start * s * reach(i)).collect();
+    let radii: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| start * s * reach[*d]).collect();
     let places = scatter::scatter(&container, &radii, group.seed)
         .map_err(|e| document.error(&key("region"), e.to_string(), "a container with room for the grains"))?;
     let turns = scatter::orientations(places.len(), group.seed);
     let begin = part.bodies.len();
     let body = |(i, position): (usize, Vec3)| BodyInput {
-        shape: shape(i),
-        scale: sizes[i] * unit_scale[i % unit_scale.len()],
+        shape: first + dealt[i],
+        scale: sizes[i] * unit_scale[dealt[i]],
         position,
         orientation: turns[i],
         ..model.clone()

@@ -1,0 +1,216 @@
+//! Scenes with walls of all kinds, through the program.
+
+use super::support::{Folder, Table, json, repository, run};
+use std::fs;
+
+fn scene(name: &str) -> std::path::PathBuf {
+    repository().join("inputs/grains").join(format!("{name}.toml"))
+}
+
+fn good_energy(dir: &std::path::Path, bound: f64) {
+    let summary = json(&dir.join("summary.json"));
+    let error = summary["energy"]["relative_error"].as_f64().unwrap();
+    let momentum = summary["momentum"]["linear"].as_f64().unwrap();
+    println!("{}: energy error {error:.1e}, momentum error {momentum:.1e}", dir.display());
+    assert!(error < bound && momentum < 1e-11, "{error:e} {momentum:e}");
+}
+
+/// The grains stay in the bin until the shutter goes, then fall on the scale: what it carries at the end is what was
+/// put on it, and less than all.
+#[test]
+fn hopper_discharges() {
+    let out = Folder::new("hopper");
+    let set = [
+        "grains.0.count=250",
+        "deposition.max_time=0.25",
+        "time.end=0.25",
+        "output.frames=2",
+        "walls.0.radii=[0.03,0.1]",
+        "walls.1.radii=[0.03,0.0]",
+    ];
+    run(&scene("hopper"), out.path(), &set).good();
+    good_energy(out.path(), 0.02);
+    let history = Table::read(&out.join("history.csv"));
+    // Force on the scale points down.
+    let scale = history.column("scale_force_z");
+    let time = history.column("time");
+    let early = time.iter().zip(&scale).filter(|(t, _)| **t < 0.12).all(|(_, f)| *f == 0.0);
+    assert!(early, "nothing reaches the scale within the time of a fall of 0.15 m less a bead");
+    assert!(scale.iter().any(|f| *f < -1e-3), "beads must have reached it");
+    let hopper = history.column("hopper_force_z");
+    assert!(hopper[0] < -0.05, "the cone carries the bed at the start: {}", hopper[0]);
+    let frame = fs::read_to_string(out.join("frames/walls_00002.vtp")).unwrap();
+    assert!(frame.contains("Polys"));
+}
+
+/// The moment on the drum holds the bed on its slope: it is against the turning, and its work is that of the walls.
+#[test]
+fn drum_lifts_its_bed() {
+    let out = Folder::new("drum");
+    let set = ["grains.0.count=220", "deposition.max_time=0.2", "time.end=0.6", "output.frames=1"];
+    run(&scene("drum"), out.path(), &set).good();
+    good_energy(out.path(), 0.02);
+    let history = Table::read(&out.join("history.csv"));
+    let moment = history.column("drum_moment_y");
+    let late = &moment[moment.len() / 2..];
+    let mean = late.iter().sum::<f64>() / late.len() as f64;
+    assert!(mean < -1e-3, "{mean}");
+    let work = *history.column("work").last().unwrap();
+    let all: f64 = moment.iter().sum::<f64>() / moment.len() as f64;
+    assert!((work / (-all * 2.0 * 0.6) - 1.0).abs() < 0.2, "{work} against {all} N m times 1.2 rad");
+}
+
+/// The plate of the oedometer carries what it is told, within one per cent where the target rests.
+#[test]
+fn oedometer_follows_its_programme() {
+    let out = Folder::new("servo");
+    let set = [
+        "grains.0.count=400",
+        "walls.2.point=[0.0,0.0,0.05]",
+        "walls.2.servo.history=[[0.0,1.0],[0.25,1.0],[0.27,0.5]]",
+        "deposition.max_time=0.2",
+        "deposition.level=0.044",
+        "time.end=0.5",
+        "output.frames=1",
+    ];
+    run(&scene("servo"), out.path(), &set).good();
+    good_energy(out.path(), 0.05);
+    let history = Table::read(&out.join("history.csv"));
+    let (time, force) = (history.column("time"), history.column("plate_force_z"));
+    let target = 0.5 * 2e4 * 0.00785398;
+    for (t, f) in time.iter().zip(&force).filter(|(t, _)| **t > 0.35) {
+        assert!((f / target - 1.0).abs() < 0.01, "{t}: {f} against {target}");
+    }
+    let (bottom, mould) = (history.column("bottom_force_z"), history.column("mould_force_z"));
+    let last = force.len() - 1;
+    let carried = -bottom[last] - mould[last];
+    let grains = carried - target;
+    assert!(
+        grains > 0.0 && grains < 0.1 * target,
+        "bottom and mould carry plate and grains: {carried} {target}"
+    );
+    assert!(history.column("plate_displacement_z")[last] < -1e-4);
+}
+
+/// The block comes down on the bed, which carries its weight in the end.
+#[test]
+fn block_comes_to_rest() {
+    let out = Folder::new("block");
+    let set = [
+        "grains.0.count=180",
+        "deposition.max_time=0.25",
+        "deposition.level=0.1",
+        "time.end=0.8",
+        "output.frames=2",
+    ];
+    run(&scene("block"), out.path(), &set).good();
+    good_energy(out.path(), 0.02);
+    let history = Table::read(&out.join("history.csv"));
+    let (force, fall) = (history.column("block_force_z"), history.column("block_displacement_z"));
+    let late = &force[4 * force.len() / 5..];
+    let mean = late.iter().sum::<f64>() / late.len() as f64;
+    assert!((mean / (1.2 * 9.81) - 1.0).abs() < 0.05, "{mean}");
+    assert!(fall[0] == 0.0 && *fall.last().unwrap() < -0.01, "{fall:?}");
+}
+
+/// A surface file as a wall: a square plate from STL, scaled and shifted, carries a ball at the height it is put.
+#[test]
+fn mesh_from_a_file() {
+    let folder = Folder::new("mesh_wall");
+    let facet = |a: &str, b: &str, c: &str| {
+        format!("facet normal 0 0 1\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n")
+    };
+    let (a, b, c, d) = ("-100 -100 0", "100 -100 0", "100 100 0", "-100 100 0");
+    folder.write("plate.stl", &format!("solid plate\n{}{}endsolid plate\n", facet(a, b, c), facet(a, c, d)));
+    folder.write("plate.obj", "v -100 -100 0\nv 100 -100 0\nv 100 100 0\nv -100 100 0\nf 1 2 3 4\n");
+    folder.write("plate.dat", "4 2\n-100 -100 0\n100 -100 0\n100 100 0\n-100 100 0\n1 2 3\n1 3 4\n");
+    for ending in ["stl", "obj", "dat"] {
+        let text = format!(
+            r#"
+[[material]]
+name = "stone"
+density = 2600
+stiffness = 1e5
+friction = 0.5
+restitution = 0.2
+[[grains]]
+name = "ball"
+shape = "sphere"
+material = "stone"
+spheres = [[0.02, 0.01, 0.0601, 0.01]]
+[[walls]]
+name = "plate"
+kind = "mesh"
+material = "stone"
+file = "plate.{ending}"
+scale = 0.001
+translation = [0.0, 0.0, 0.05]
+record = true
+[time]
+end = 0.2
+[output]
+frames = 1
+"#
+        );
+        let file = folder.write("scene.toml", &text);
+        let out = folder.join(ending);
+        run(&file, &out, &[]).good();
+        let weight = 2600.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6 * 9.81;
+        let force = *Table::read(&out.join("history.csv")).column("plate_force_z").last().unwrap();
+        assert!((force / -weight - 1.0).abs() < 1e-6, "{ending}: {force} {weight}");
+    }
+}
+
+/// A turntable with a recorded moment, a shaking plane and a spherical bowl: all keys reach the engine.
+#[test]
+fn keys_of_motion_reach_the_engine() {
+    let folder = Folder::new("wall_keys");
+    let text = r#"
+[[material]]
+name = "stone"
+density = 2600
+stiffness = 1e5
+friction = 0.5
+restitution = 0.2
+[[grains]]
+name = "ball"
+shape = "sphere"
+material = "stone"
+spheres = [[0.1, 0.0, 0.0101, 0.01], [1.0, 0.0, -0.0899, 0.01]]
+[[walls]]
+name = "table"
+kind = "cone"
+material = "stone"
+base = [0.0, 0.0, 0.0]
+height = 0.0
+radii = [0.3, 0.0]
+angular_velocity = [0.0, 0.0, 1.0]
+oscillation = { amplitude = "0.1 mm", direction = [0, 0, 2], frequency = "20 Hz", phase = "90 deg" }
+record = true
+[[walls]]
+name = "bowl"
+kind = "sphere"
+material = "stone"
+base = [1.0, 0.0, 0.0]
+radius = 0.1
+velocity = [0.0, "10 mm/s", 0.0]
+record = true
+[time]
+end = 0.1
+[output]
+frames = 1
+history_interval = "5 ms"
+"#;
+    let file = folder.write("scene.toml", text);
+    let out = folder.join("out");
+    run(&file, &out, &[]).good();
+    let history = Table::read(&out.join("history.csv"));
+    let time = history.column("time");
+    let (table, bowl) = (history.column("table_displacement_z"), history.column("bowl_displacement_y"));
+    for ((t, z), y) in time.iter().zip(&table).zip(&bowl) {
+        let swing = 1e-4 * ((std::f64::consts::TAU * 20.0 * t).cos() - 1.0);
+        assert!((z - swing).abs() < 1e-10 && (y - 0.01 * t).abs() < 1e-10, "{t}: {z} {swing} {y}");
+    }
+    assert!(history.column("table_moment_z").iter().any(|m| *m < -1e-4), "the ball is dragged along");
+    assert!(history.column("bowl_force_z").iter().any(|f| *f < -0.05));
+}
