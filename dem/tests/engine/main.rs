@@ -16,6 +16,7 @@ mod physics_clumps;
 mod physics_flow;
 mod physics_packing;
 mod physics_settling;
+mod physics_spheres;
 mod refusals;
 mod rolling;
 mod round_walls;
