@@ -171,7 +171,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             exchange.impulse.angular += f.moment * dt;
             w.push(a, &f.force, &(ma.arm.cross(&f.force) + f.moment));
             if external {
-                let sphere = i as u32 - w.first[a];
+                let sphere = if RIGID { i as u32 - w.first[a] } else { 0 };
                 w.contacts.push(SurfaceContact {
                     sphere,
                     body: block.bodies[a],
