@@ -2,7 +2,7 @@
 
 use crate::grains;
 use trackbed_dem::surface::NoSurface;
-use trackbed_dem::{Model, ModelInput, Plane, Shape, State, TimeStep, TriangleSurface, Vec3, Work};
+use trackbed_dem::{BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, Vec3, Work};
 
 /// A bed in a box with a floor, open at the top.
 pub struct Bed {
@@ -12,14 +12,56 @@ pub struct Bed {
 }
 
 impl Bed {
-    /// 10,000 spheres.
+    /// 10,000 spheres with linear contact.
     pub fn spheres() -> Bed {
-        let input = ModelInput {
-            shapes: vec![Shape::Sphere { radius: 1.0 }],
-            bodies: grains::spheres("s1_10k.csv"),
-            ..ModelInput::default()
+        Bed::tiled(1, grains::stone())
+    }
+
+    /// The bed of 10,000 spheres `n` × `n` times side by side, of one material.
+    #[allow(dead_code)] // Not every benchmark uses every bed.
+    pub fn tiled(n: usize, material: Material) -> Bed {
+        let tile = grains::spheres("s1_10k.csv");
+        let moved = |k: usize| {
+            let shift = Vec3::new((k % n) as f64, (k / n) as f64, 0.0) * WIDTH;
+            tile.iter().map(move |b| BodyInput { position: b.position + shift, ..b.clone() })
         };
-        Bed::at_rest(input, 0.42, 300)
+        let bodies = (0..n * n).flat_map(moved).collect();
+        Bed::at_rest(of_spheres(bodies), WIDTH * n as f64, 300, material)
+    }
+
+    /// A cube of about `count` spheres cut from the bed, without walls but for a floor of the same material: it
+    /// crumbles slowly, and costs per sphere what the whole does.
+    #[allow(dead_code)]
+    pub fn cut(count: usize) -> Bed {
+        let tile = grains::spheres("s1_10k.csv");
+        let side = WIDTH * (count as f64 / tile.len() as f64).cbrt();
+        let inside = |b: &BodyInput| b.position.iter().all(|&x| x < side);
+        Bed::at_rest(of_spheres(tile.into_iter().filter(inside).collect()), side, 300, grains::stone())
+    }
+
+    /// Spheres 20 times smaller in the pores between those of a cube cut from the bed: about 80 of them per large one.
+    #[allow(dead_code)]
+    pub fn two_sizes() -> Bed {
+        let side = 0.12;
+        let mut bodies: Vec<_> = grains::spheres("s1_10k.csv")
+            .into_iter()
+            .filter(|b| b.position.iter().all(|&x| x < side))
+            .collect();
+        let large = bodies.clone();
+        let r = 0.0005;
+        // Simple cubic, just touching: like a packed bed it has close to six neighbours.
+        let n = (side / (2.0 * r)) as usize;
+        for k in 0..n * n * n {
+            let place = [k % n, k / n % n, k / n / n].map(|c| (c as f64 + 0.5) * (2.0 * r - 1e-8));
+            let position = Vec3::from(place);
+            if large.iter().all(|b| (b.position - position).norm() > b.scale + r) {
+                bodies.push(BodyInput { position, scale: r, ..BodyInput::default() });
+            }
+        }
+        // The step of the small ones.
+        let mut input = of_spheres(bodies);
+        input.time_step = TimeStep::Auto { fraction: 0.2 };
+        Bed::at_rest(input, side, 300, grains::stone())
     }
 
     /// The same spheres on a floor of 2 × 71 × 71 triangles.
@@ -36,13 +78,16 @@ impl Bed {
     /// 1,000 clumps of ten spheres.
     pub fn clumps() -> Bed {
         let (shape, bodies) = grains::clumps();
-        Bed::at_rest(ModelInput { shapes: vec![shape], bodies, ..ModelInput::default() }, 0.4, 500)
+        let input = ModelInput { shapes: vec![shape], bodies, ..ModelInput::default() };
+        Bed::at_rest(input, 0.4, 500, grains::stone())
     }
 
     /// `steps` build the contacts' memory up, which the tables do not hold.
-    fn at_rest(mut input: ModelInput, width: f64, steps: u32) -> Bed {
-        input.materials = vec![grains::stone()];
-        input.time_step = TimeStep::Fixed(2e-5);
+    fn at_rest(mut input: ModelInput, width: f64, steps: u32, material: Material) -> Bed {
+        input.materials = vec![material];
+        if input.time_step == ModelInput::default().time_step {
+            input.time_step = TimeStep::Fixed(2e-5);
+        }
         input.planes = grains::walls(width);
         if input.triangles.is_empty() {
             let floor =
@@ -65,15 +110,9 @@ impl Bed {
     }
 }
 
-/// A level floor over x, y in [0, width]: squares, `count` to a side, halved.
-fn floor(width: f64, count: u32) -> TriangleSurface {
-    let at = |k: u32| width * f64::from(k) / f64::from(count);
-    let vertices = (0..=count).flat_map(|j| (0..=count).map(move |i| Vec3::new(at(i), at(j), 0.0))).collect();
-    let square = |i: u32, j: u32| {
-        let a = j * (count + 1) + i;
-        let (b, c, d) = (a + 1, a + count + 2, a + count + 1);
-        [[a, b, c], [a, c, d]]
-    };
-    let triangles = (0..count).flat_map(|j| (0..count).flat_map(move |i| square(i, j))).collect();
-    TriangleSurface { vertices, triangles, material: 0, velocity: Vec3::zeros() }
+/// Width of the bed of 10,000 spheres [m].
+const WIDTH: f64 = 0.42;
+
+fn of_spheres(bodies: Vec<BodyInput>) -> ModelInput {
+    ModelInput { shapes: vec![Shape::Sphere { radius: 1.0 }], bodies, ..ModelInput::default() }
 }
