@@ -2,7 +2,9 @@
 
 use crate::grains;
 use trackbed_dem::surface::NoSurface;
-use trackbed_dem::{BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, Vec3, Work};
+use trackbed_dem::{
+    BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, TriangleSurface, Vec3, Work,
+};
 
 /// A bed in a box with a floor, open at the top.
 pub struct Bed {
@@ -65,14 +67,11 @@ impl Bed {
     }
 
     /// The same spheres on a floor of 2 × 71 × 71 triangles.
+    #[allow(dead_code)]
     pub fn triangles() -> Bed {
-        let input = ModelInput {
-            shapes: vec![Shape::Sphere { radius: 1.0 }],
-            bodies: grains::spheres("s1_10k.csv"),
-            triangles: vec![floor(0.42, 71)],
-            ..ModelInput::default()
-        };
-        Bed::at_rest(input, 0.42, 300)
+        let input =
+            ModelInput { triangles: vec![floor(WIDTH, 71)], ..of_spheres(grains::spheres("s1_10k.csv")) };
+        Bed::at_rest(input, WIDTH, 300, grains::stone())
     }
 
     /// 1,000 clumps of ten spheres.
@@ -115,4 +114,17 @@ const WIDTH: f64 = 0.42;
 
 fn of_spheres(bodies: Vec<BodyInput>) -> ModelInput {
     ModelInput { shapes: vec![Shape::Sphere { radius: 1.0 }], bodies, ..ModelInput::default() }
+}
+
+/// A level floor over x, y in [0, width]: squares, `count` to a side, halved.
+fn floor(width: f64, count: u32) -> TriangleSurface {
+    let at = |k: u32| width * f64::from(k) / f64::from(count);
+    let vertices = (0..=count).flat_map(|j| (0..=count).map(move |i| Vec3::new(at(i), at(j), 0.0))).collect();
+    let square = |i: u32, j: u32| {
+        let a = j * (count + 1) + i;
+        let (b, c, d) = (a + 1, a + count + 2, a + count + 1);
+        [[a, b, c], [a, c, d]]
+    };
+    let triangles = (0..count).flat_map(|j| (0..count).flat_map(move |i| square(i, j))).collect();
+    TriangleSurface { vertices, triangles, material: 0, velocity: Vec3::zeros() }
 }
