@@ -19,35 +19,39 @@ impl Bed {
         Bed::tiled(1, grains::stone())
     }
 
-    /// The bed of 10,000 spheres `n` × `n` times side by side, of one material.
+    /// The bed of 10,000 spheres `n` × `n` times side by side, of one material; every other one is a mirror image, so
+    /// that spheres at the seams have what the wall was to them.
     #[allow(dead_code)] // Not every benchmark uses every bed.
     pub fn tiled(n: usize, material: Material) -> Bed {
         let tile = grains::spheres("s1_10k.csv");
+        let place = |x: f64, k: usize| k as f64 * WIDTH + if k % 2 == 1 { WIDTH - x } else { x };
         let moved = |k: usize| {
-            let shift = Vec3::new((k % n) as f64, (k / n) as f64, 0.0) * WIDTH;
-            tile.iter().map(move |b| BodyInput { position: b.position + shift, ..b.clone() })
+            tile.iter().map(move |b| {
+                let position =
+                    Vec3::new(place(b.position.x, k % n), place(b.position.y, k / n), b.position.z);
+                BodyInput { position, ..b.clone() }
+            })
         };
         let bodies = (0..n * n).flat_map(moved).collect();
         Bed::at_rest(of_spheres(bodies), WIDTH * n as f64, 300, material)
     }
 
-    /// A cube of about `count` spheres cut from the bed, without walls but for a floor of the same material: it
-    /// crumbles slowly, and costs per sphere what the whole does.
+    /// A cube of about `count` spheres cut from the bed, settled anew.
     #[allow(dead_code)]
     pub fn cut(count: usize) -> Bed {
         let tile = grains::spheres("s1_10k.csv");
         let side = WIDTH * (count as f64 / tile.len() as f64).cbrt();
-        let inside = |b: &BodyInput| b.position.iter().all(|&x| x < side);
-        Bed::at_rest(of_spheres(tile.into_iter().filter(inside).collect()), side, 300, grains::stone())
+        let inside = |b: &BodyInput| b.position.iter().all(|&x| x + b.scale < side);
+        Bed::at_rest(of_spheres(tile.into_iter().filter(inside).collect()), side, 20_000, grains::stone())
     }
 
     /// Spheres 20 times smaller in the pores between those of a cube cut from the bed: about 80 of them per large one.
     #[allow(dead_code)]
     pub fn two_sizes() -> Bed {
-        let side = 0.12;
+        let side = 0.06;
         let mut bodies: Vec<_> = grains::spheres("s1_10k.csv")
             .into_iter()
-            .filter(|b| b.position.iter().all(|&x| x < side))
+            .filter(|b| b.position.iter().all(|&x| x + b.scale < side))
             .collect();
         let large = bodies.clone();
         let r = 0.0005;

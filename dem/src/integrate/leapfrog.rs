@@ -46,8 +46,9 @@ impl<const RIGID: bool> Kernel for Advance<'_, RIGID> {
         // A maximum does not show a velocity that is not a number.
         let mut too_fast = None;
         if !sums.sound || fastest2 > bound * bound {
-            too_fast =
-                (0..quick).map(|k| (k, speed2::<RIGID>(block, w, k))).find(|(_, v)| !(*v <= bound * bound));
+            too_fast = (0..quick)
+                .map(|k| (k, speed2::<RIGID>(block, w, k)))
+                .find(|(_, v)| v.is_nan() || *v > bound * bound);
         }
         for k in quick..n {
             moment += xyz(&block.centre[k]) * model.body(block.bodies[k] as usize).mass;
