@@ -31,7 +31,7 @@ fn restitution() -> f64 {
     trackbed_dem::contact::restitution::restitution(zeta)
 }
 
-fn compare(material: Material, lammps: &[Row]) {
+fn compare(material: Material, lammps: &[Row], rotation_tolerance: f64) {
     let mut input = ModelInput {
         materials: vec![material],
         shapes: vec![Shape::Sphere { radius: 1.0 }],
@@ -64,7 +64,7 @@ fn compare(material: Material, lammps: &[Row]) {
         );
         let off = |ours: f64, theirs: f64| (ours / theirs - 1.0).abs();
         assert!(off(energies.kinetic_translation, translation) < TOLERANCE, "{step}: {energies:?}");
-        assert!(off(energies.kinetic_rotation, rotation) < TOLERANCE, "{step}: {energies:?}");
+        assert!(off(energies.kinetic_rotation, rotation) < rotation_tolerance, "{step}: {energies:?}");
         assert!(off(pairs, contacts) < 0.01, "{step}: {pairs}");
     }
 }
@@ -75,12 +75,17 @@ const TOLERANCE: f64 = 0.02;
 /// The bed starts without tangential springs, slides a little, and comes to rest again.
 #[test]
 fn linear_bed_moves_as_in_lammps() {
-    compare(Material { tangential_ratio: 2.0 / 7.0, restitution: restitution(), ..stone() }, &HOOKE);
+    compare(
+        Material { tangential_ratio: 2.0 / 7.0, restitution: restitution(), ..stone() },
+        &HOOKE,
+        TOLERANCE,
+    );
 }
 
-/// Another law than the one it was settled with: the bed springs apart.
+/// Another law than the one it was settled with: the bed springs apart. Ours keeps the tangential force while the overlap
+/// grows, LAMMPS' `mindlin` the spring's length, which shows in the rotation (3 %).
 #[test]
 fn hertzian_bed_moves_as_in_lammps() {
     let material = Material { young: Some(5e7), poisson: 0.25, restitution: restitution(), ..stone() };
-    compare(Material { stiffness: f64::INFINITY, ..material }, &HERTZ);
+    compare(Material { stiffness: f64::INFINITY, ..material }, &HERTZ, 0.05);
 }
