@@ -149,8 +149,8 @@ fn shipped(name: &str, edits: &[(&str, &str)]) -> (Folder, serde_json::Value) {
     (folder, summary)
 }
 
-/// Stones drawn to EN 13450 A, of which levelling takes some away: still within 2 % passing of the curve; the table has
-/// the limits of the standard.
+/// Stones drawn to EN 13450 A: within 1 % passing of the curve at the sieves, and within the share of the largest stone
+/// (2.5 % of the mass of 250) at every size; the table has the limits of the standard.
 #[test]
 fn gradation_of_the_shipped_bed() {
     let (folder, summary) = shipped(
@@ -167,7 +167,7 @@ fn gradation_of_the_shipped_bed() {
     );
     let graded = &summary["packing"]["gradations"][0];
     assert_eq!(graded["stones"], 250);
-    assert!(graded["largest_deviation"].as_f64().unwrap() < 0.02, "{graded}");
+    assert!(graded["largest_deviation"].as_f64().unwrap() < 0.025, "{graded}");
     for (a, b) in numbers(&graded["achieved"]).iter().zip(numbers(&graded["target"])) {
         assert!((a - b).abs() < 0.01, "{graded}");
     }

@@ -145,7 +145,7 @@ impl Walls {
     pub(crate) fn limit_step(
         &self,
         limit: &mut DtLimit,
-        bodies: &[crate::model::Body],
+        bodies: &crate::bodies::Bodies,
         planes: &[Plane],
         laws: &Laws,
         expected: f64,
