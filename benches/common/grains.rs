@@ -24,6 +24,12 @@ pub fn stone() -> Material {
     }
 }
 
+/// The grains of the peers' Hertz scene: E = 5e7 Pa, ν = 0.25.
+#[allow(dead_code)] // Not every benchmark uses every material.
+pub fn elastic() -> Material {
+    Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..stone() }
+}
+
 /// Four walls around x, y in [0, width].
 pub fn walls(width: f64) -> Vec<Plane> {
     let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };

@@ -122,6 +122,7 @@ pub(crate) trait Four: Real {
 
     /// The four numbers of a record as four lanes of each number: element k holds number k of the records `at`.
     #[inline(always)]
+    #[cfg_attr(not(test), allow(dead_code))]
     fn gather(records: &[[f64; 4]], at: &[u32; 4]) -> [Self; 4] {
         let [a, b, c, d] = *at;
         Self::transpose([

@@ -93,7 +93,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
 ) {
     let dt = model.dt();
     let State { blocks, cross, planes: motions, walls: wall_states, drift, wall_drift, .. } = state;
-    let Work { blocks: works, cross: slots, applied, parallel, planes: plane_list, simd, .. } = work;
+    let Work { blocks: works, cross: slots, applied, parallel, planes, simd, buffers, keep_forces, .. } =
+        work;
+    let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
 
     // Contacts between blocks: they read any block, and write slots.
@@ -122,8 +124,14 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.ledger = Ledger::default();
         w.failure = None;
         w.contacts.clear();
-        w.sums.fill(Sums::default());
-        pass::gather(w, slots);
+        w.sums = buffers.take();
+        w.sums.clear();
+        w.sums.resize(block.bodies.len(), Sums::default());
+        if RIGID || ROLL {
+            pass::gather::<true>(w, slots);
+        } else {
+            pass::gather::<false>(w, slots);
+        }
         let (mut pairs, mut plane_pairs) =
             (std::mem::take(&mut block.pairs), std::mem::take(&mut block.planes));
         if !pairs.is_empty() {
@@ -179,7 +187,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         }
         let from = applied.partition_point(|a| (a.block as usize) < b);
         let to = applied.partition_point(|a| a.block as usize <= b);
-        lanes::run(simd, Advance::<RIGID> { model, block, w, applied: &applied[from..to], dt });
+        lanes::run(simd, Advance::<RIGID> { model, block, w: &mut *w, applied: &applied[from..to], dt });
+        if !*keep_forces {
+            buffers.give_back(std::mem::take(&mut w.sums));
+        }
     };
     if *parallel {
         blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().for_each(within);

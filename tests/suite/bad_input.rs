@@ -12,6 +12,7 @@ mod grains;
 mod lists;
 mod scene;
 mod solid;
+mod walls;
 
 const SCENE: &str = "scene.toml";
 const NODES: &str = "NODECOORD.DAT";

@@ -1,0 +1,126 @@
+//! Broken input: walls.
+
+use super::*;
+
+/// The plane of the good scene.
+const PLANE: &str = "kind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]";
+
+#[test]
+fn cylinder_without_radius() {
+    grains_scene()
+        .scene(PLANE, "kind = \"cylinder\"\nbase = [0, 0, 0]\nheight = 1")
+        .refused("scene.toml:16: walls.0.radius: found nothing, expected the radius");
+}
+
+#[test]
+fn cone_without_area() {
+    grains_scene()
+        .scene(PLANE, "kind = \"cone\"\nbase = [0, 0, 0]\nheight = 0\nradii = [0.2, 0.2]")
+        .refused("scene.toml:20: walls.0.radii: found [0.2, 0.2], expected radii that give the cone an area");
+}
+
+#[test]
+fn radius_of_a_plane() {
+    grains_scene()
+        .scene(PLANE, &format!("{PLANE}\nradius = 0.1"))
+        .refused("scene.toml:20: walls.0.radius: found a value, expected no such key for this kind of wall");
+}
+
+#[test]
+fn plane_that_tilts() {
+    grains_scene().scene(PLANE, &format!("{PLANE}\nangular_velocity = [1, 0, 0]")).refused(
+        "scene.toml:20: walls.0.angular_velocity: found (1, 0, 0) rad/s, expected an angular velocity along the plane's \
+         normal, or triangles for a floor that tilts",
+    );
+}
+
+#[test]
+fn centre_without_turning() {
+    grains_scene().scene(PLANE, &format!("{PLANE}\ncentre = [0, 0, 0]")).refused(
+        "scene.toml:20: walls.0.centre: found a value, expected no such key without `angular_velocity`",
+    );
+}
+
+#[test]
+fn servo_without_area() {
+    grains_scene()
+        .scene(PLANE, &format!("{PLANE}\nservo = {{ pressure = \"1 kPa\", max_speed = 1 }}"))
+        .refused(
+            "scene.toml:20: walls.0.servo.area: found nothing, expected the area that the pressure acts on",
+        );
+}
+
+#[test]
+fn servo_that_also_moves() {
+    grains_scene()
+        .scene(PLANE, &format!("{PLANE}\nservo = {{ force = 1, max_speed = 1 }}\nvelocity = [0, 0, 1]"))
+        .refused("scene.toml:21: walls.0.velocity: found a value, expected no such key beside `servo`");
+}
+
+#[test]
+fn servo_with_too_much_gain() {
+    grains_scene()
+        .scene(PLANE, &format!("{PLANE}\nservo = {{ force = 1, max_speed = 1, gain = 2 }}"))
+        .refused("scene.toml:20: walls.0.servo.gain: found 2, expected above 0, at most 1");
+}
+
+#[test]
+fn body_of_a_plane() {
+    grains_scene().scene(PLANE, &format!("{PLANE}\nbody = {{ mass = 1 }}")).refused(
+        "scene.toml:20: walls.0.body: found a value, expected no such key for this kind of wall: only triangles make a \
+         body",
+    );
+}
+
+#[test]
+fn body_with_a_hole() {
+    grains_scene()
+        .scene(
+            PLANE,
+            "kind = \"triangles\"\nvertices = [[0, 0, -1], [1, 0, -1], [0, 1, -1]]\ntriangles = [[0, 1, 2]]\nbody = { \
+             mass = 1 }",
+        )
+        .refused(
+            "scene.toml:16: walls: found wall 0: its surface is not closed: give the centre and the inertia of the body, \
+             expected walls that can be built",
+        );
+}
+
+#[test]
+fn oscillation_without_frequency() {
+    grains_scene()
+        .scene(
+            PLANE,
+            &format!("{PLANE}\noscillation = {{ amplitude = 0.001, direction = [0, 0, 1], frequency = 0 }}"),
+        )
+        .refused("scene.toml:20: walls.0.oscillation.frequency: found 0, expected above 0");
+}
+
+#[test]
+fn mesh_that_is_not_there() {
+    grains_scene().scene(PLANE, "kind = \"mesh\"\nfile = \"hull.ply\"").refused(
+        "hull.ply: ending of the file name: found \".ply\", expected .stl, .obj, or .dat, .txt, .tri or .srf with a list of \
+         vertices and triangles",
+    );
+}
+
+#[test]
+fn recorded_names_twice() {
+    grains_scene()
+        .scene(
+            "material = \"stone\"\n\n[time]",
+            "material = \"stone\"\nrecord = true\nname = \"a\"\n\n[[walls]]\nkind = \"sphere\"\nbase = [0, 0, 0]\nradius = \
+             9\nmaterial = \"stone\"\nname = \"a\"\nrecord = true\n\n[time]",
+        )
+        .refused("scene.toml:29: walls.1.name: found \"a\", expected a name of its own");
+}
+
+#[test]
+fn sleeper_on_a_recorded_plane() {
+    coupled()
+        .append(SCENE, "[[walls]]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"stone\"\nrecord = true")
+        .refused(
+            "scene.toml:55: walls.0: found a plane that is more, expected a plane without `record` and motions other than \
+             `velocity`: a sleeper touches no other",
+        );
+}
