@@ -106,7 +106,7 @@ fn servo_holds_its_pressure() {
     let width = 0.09;
     let area = width * width;
     for triangles in [false, true] {
-        let mut input = heap(48, width, Material { restitution: 0.3, friction: 0.2, ..stone() });
+        let mut input = heap(48, width, Material { restitution: 0.3, ..stone() });
         input.planes.push(plane(Vec3::zeros(), Vec3::z()));
         let shape = if triangles {
             square(width, 0.09)
@@ -114,7 +114,7 @@ fn servo_holds_its_pressure() {
             WallShape::Plane { point: Vec3::new(0.0, 0.0, 0.09), normal: -Vec3::z() }
         };
         let force = vec![[0.0, 5e3 * area], [0.5, 5e3 * area], [0.55, 1e3 * area]];
-        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 1.0 };
+        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 0.5 };
         input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(shape, 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {
