@@ -28,6 +28,12 @@ pub enum Command {
         #[command(subcommand)]
         command: MeshCommand,
     },
+    /// Make stones of spheres from surfaces or at random, for a stone library; measure libraries and surfaces.
+    Stone {
+        /// What to do with stones.
+        #[command(subcommand)]
+        command: StoneCommand,
+    },
 }
 
 /// Arguments of `run`.
@@ -47,6 +53,9 @@ pub struct RunArgs {
     /// Refuse a solid that needs more memory than this, such as 8GB; default: what the machine has free.
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
+    /// Go on from the last checkpoint in the folder of the results. Scene and overrides must be the same, threads need not.
+    #[arg(long)]
+    pub resume: bool,
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,
@@ -119,4 +128,82 @@ pub struct MeshArgs {
     /// File ending in .cdb, .msh, .inp, .vtu or .vtk, folder with NODECOORD.DAT, ELEMENTNUM.DAT and DOF.DAT, or scene file
     /// (.toml) whose solid is meant.
     pub input: PathBuf,
+}
+
+/// The commands of `stone`.
+#[derive(Debug, Subcommand)]
+pub enum StoneCommand {
+    /// Make stones of closed surfaces.
+    Make {
+        /// Surfaces: .stl, .obj, or lists of vertices and triangles (.dat, .txt, .tri, .srf); one stone each.
+        #[arg(required = true)]
+        surfaces: Vec<PathBuf>,
+        /// How.
+        #[command(flatten)]
+        stones: StoneArgs,
+    },
+    /// Make random stones: convex, with given elongation, flatness and angularity.
+    Random {
+        /// Number of stones.
+        #[arg(long)]
+        count: usize,
+        /// Intermediate over longest extent (b/a), a number or a range low:high.
+        #[arg(long, default_value = "0.6:0.95")]
+        elongation: String,
+        /// Shortest over intermediate extent (c/b), a number or a range low:high.
+        #[arg(long, default_value = "0.6:0.95")]
+        flatness: String,
+        /// From 0, blunt, to 1, sharp; a number or a range low:high.
+        #[arg(long, default_value = "0.5:0.9")]
+        angularity: String,
+        /// Folder for the surfaces themselves, as binary STL.
+        #[arg(long)]
+        surfaces: Option<PathBuf>,
+        /// How.
+        #[command(flatten)]
+        stones: StoneArgs,
+    },
+    /// Numbers of the stones of a library (.toml) or of a surface.
+    Info {
+        /// Library or surface.
+        input: PathBuf,
+    },
+}
+
+/// What stones are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StoneKind {
+    /// Overlapping spheres, rigid.
+    Clump,
+    /// Separate spheres with bonds, breakable.
+    Bonded,
+}
+
+/// How stones are made, and where they go.
+#[derive(Debug, Args)]
+pub struct StoneArgs {
+    /// Spheres of each stone: 1 to 200 for clumps, 1 to 2000 for bonded stones.
+    #[arg(long)]
+    pub spheres: usize,
+    /// Rigid clumps or breakable stones.
+    #[arg(long = "as", value_name = "KIND", default_value = "clump")]
+    pub kind: StoneKind,
+    /// Library to write (.toml); without it only the measures are printed.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Replace files that exist.
+    #[arg(long)]
+    pub force: bool,
+    /// Clumps: how far spheres may stand out over the surface, as a share of the largest inscribed radius; default 0.1.
+    #[arg(long)]
+    pub overhang: Option<f64>,
+    /// Starts everything random; default 1.
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Bonded stones: radii differ by this share up and down; default 0.2.
+    #[arg(long)]
+    pub spread: Option<f64>,
+    /// Bonded stones: largest gap of bonded spheres, as a share of their mean radius; default 0.2.
+    #[arg(long)]
+    pub gap: Option<f64>,
 }

@@ -3,6 +3,7 @@
 mod check;
 mod mesh;
 mod modal;
+mod stone;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
@@ -25,15 +26,28 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Mesh { command: MeshCommand::Convert { mesh, output, format } } => {
             mesh::convert(&mesh, &output, format)
         }
+        Command::Stone { command } => stone::stone(&command),
     }
 }
 
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let memory = memory(args.memory.as_deref())?;
-    let options =
-        run::Options { out: args.out, threads: args.threads, set: args.set, memory, quiet: args.quiet };
-    let summary = run::run(&args.scene, &options)?;
-    if args.quiet { Ok(()) } else { print(&summary.report()) }
+    let options = run::Options {
+        out: args.out,
+        threads: args.threads,
+        set: args.set,
+        memory,
+        resume: args.resume,
+        interrupt: run::Interrupt::on_signals()?,
+        quiet: args.quiet,
+    };
+    match run::run(&args.scene, &options)? {
+        run::Outcome::Done(_) if args.quiet => Ok(()),
+        run::Outcome::Done(summary) => print(&summary.report()),
+        run::Outcome::WasDone(dir) => {
+            print(&format!("{}: the run is finished, there is nothing to go on with\n", dir.display()))
+        }
+    }
 }
 
 /// The size that `--memory` names [bytes].

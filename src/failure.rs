@@ -10,6 +10,8 @@ pub enum Failure {
     Input(String),
     /// Numerical failure: exit code 3. What, where and when.
     Numerical(String),
+    /// Stopped by the user after a checkpoint was written: exit code 130. Where the run stands and how to go on.
+    Interrupted(String),
     /// Anything else, such as a full disk: exit code 1.
     Other(String),
 }
@@ -20,6 +22,7 @@ impl Failure {
         match self {
             Failure::Input(_) => 2,
             Failure::Numerical(_) => 3,
+            Failure::Interrupted(_) => 130,
             Failure::Other(_) => 1,
         }
     }
@@ -46,7 +49,10 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Failure::Input(text) | Failure::Numerical(text) | Failure::Other(text) => f.write_str(text),
+            Failure::Input(text)
+            | Failure::Numerical(text)
+            | Failure::Interrupted(text)
+            | Failure::Other(text) => f.write_str(text),
         }
     }
 }

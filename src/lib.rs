@@ -12,4 +12,5 @@ mod progress;
 pub mod read;
 pub mod run;
 pub mod scene;
+pub mod stone_tools;
 pub mod write;

@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Progress of one stage of a run.
 pub struct Progress {
@@ -10,6 +10,8 @@ pub struct Progress {
     stage: &'static str,
     total: f64,
     begun: Instant,
+    /// Seconds that the stage took before the program was started anew.
+    before: f64,
     quiet: bool,
 }
 
@@ -32,7 +34,21 @@ impl Progress {
         .progress_chars("=> ");
         bar.set_style(style);
         bar.set_prefix(stage);
-        Progress { bar, stage, total, begun: Instant::now(), quiet }
+        Progress { bar, stage, total, begun: Instant::now(), before: 0.0, quiet }
+    }
+
+    /// The same for a stage that an earlier start of the program brought to `done` in `seconds`.
+    #[must_use]
+    pub fn resumed(mut self, done: f64, seconds: f64) -> Progress {
+        self.before = seconds;
+        self.bar.set_elapsed(Duration::from_secs_f64(seconds.max(0.0)));
+        self.at(done);
+        self
+    }
+
+    /// Seconds that the stage has taken so far.
+    pub fn seconds(&self) -> f64 {
+        self.before + self.begun.elapsed().as_secs_f64()
     }
 
     /// Reports how far the stage is, in the unit of `total`.
@@ -47,7 +63,7 @@ impl Progress {
 
     /// Ends the stage with a line that stays, and returns the seconds it took.
     pub fn finish(self, text: &str) -> f64 {
-        let seconds = self.begun.elapsed().as_secs_f64();
+        let seconds = self.seconds();
         self.bar.finish_and_clear();
         if !self.quiet {
             eprintln!("{:>12}  {text} ({seconds:.1} s)", self.stage);

@@ -3,16 +3,22 @@
 
 mod suite {
     mod bad_input;
+    mod bonds;
+    mod checkpoint;
+    mod checkpoint_kill;
     mod cli;
     mod determinism;
     mod fem_cases;
+    mod grain_limits;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
+    mod packings;
     mod scenes;
     mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
+    mod stones;
     mod summary;
     pub mod support;
     mod walls;

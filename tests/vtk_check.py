@@ -39,10 +39,10 @@ KINDS = {
     "mesh": ([("node_id", 1), ("constraint", 1)], [("material", 1), ("element_id", 1)]),
     "grains": (
         [("radius", 1), ("velocity", 3), ("spin", 3), ("orientation", 4), ("id", 1), ("part", 1)]
-        + [("mean_stress", 1), ("force", 3)],
+        + [("mean_stress", 1), ("force", 3), ("coordination", 1), ("fragment", 1)],
         [],
     ),
-    "chains": ([], [("normal_force", 1), ("tangential_force", 1), ("magnitude", 1), ("kind", 1)]),
+    "chains": ([], [("normal_force", 1), ("tangential_force", 1), ("magnitude", 1), ("kind", 1), ("strong", 1)]),
     "walls": ([], [("id", 1)]),
 }
 

@@ -71,14 +71,11 @@ impl Bed {
     }
 
     /// The same spheres on a floor of 2 × 71 × 71 triangles.
+    #[allow(dead_code)]
     pub fn triangles() -> Bed {
-        let input = ModelInput {
-            shapes: vec![Shape::Sphere { radius: 1.0 }],
-            bodies: grains::spheres("s1_10k.csv"),
-            triangles: vec![floor(0.42, 71)],
-            ..ModelInput::default()
-        };
-        Bed::at_rest(input, 0.42, 300)
+        let input =
+            ModelInput { triangles: vec![floor(WIDTH, 71)], ..of_spheres(grains::spheres("s1_10k.csv")) };
+        Bed::at_rest(input, WIDTH, 300, grains::stone())
     }
 
     /// 1,000 clumps of ten spheres.
@@ -116,6 +113,13 @@ impl Bed {
     }
 }
 
+/// Width of the bed of 10,000 spheres [m].
+const WIDTH: f64 = 0.42;
+
+fn of_spheres(bodies: Vec<BodyInput>) -> ModelInput {
+    ModelInput { shapes: vec![Shape::Sphere { radius: 1.0 }], bodies, ..ModelInput::default() }
+}
+
 /// A level floor over x, y in [0, width]: squares, `count` to a side, halved.
 fn floor(width: f64, count: u32) -> TriangleSurface {
     let at = |k: u32| width * f64::from(k) / f64::from(count);
@@ -127,11 +131,4 @@ fn floor(width: f64, count: u32) -> TriangleSurface {
     };
     let triangles = (0..count).flat_map(|j| (0..count).flat_map(move |i| square(i, j))).collect();
     TriangleSurface { vertices, triangles, material: 0, velocity: Vec3::zeros() }
-}
-
-/// Width of the bed of 10,000 spheres [m].
-const WIDTH: f64 = 0.42;
-
-fn of_spheres(bodies: Vec<BodyInput>) -> ModelInput {
-    ModelInput { shapes: vec![Shape::Sphere { radius: 1.0 }], bodies, ..ModelInput::default() }
 }

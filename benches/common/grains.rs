@@ -5,8 +5,19 @@ use trackbed_dem::{Material, Plane, Vec3};
 
 /// The numbers of a table, without its comments and its line of names.
 pub fn table(name: &str) -> Vec<Vec<f64>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data").join(name);
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data").join(name))
+}
+
+/// The numbers of a table of the user's, plain or compressed (`.gz`).
+pub fn read(path: &Path) -> Vec<Vec<f64>> {
+    let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut text = String::new();
+    if path.extension().is_some_and(|e| e == "gz") {
+        let mut decoder = flate2::read::GzDecoder::new(bytes.as_slice());
+        std::io::Read::read_to_string(&mut decoder, &mut text).expect("a compressed table");
+    } else {
+        text = String::from_utf8(bytes).expect("a table of text");
+    }
     let row = |line: &str| line.split(',').map(|v| v.parse().ok()).collect::<Option<Vec<f64>>>();
     text.lines().filter(|l| !l.starts_with('#')).skip(1).map(|l| row(l).expect("a row of numbers")).collect()
 }
@@ -44,6 +55,11 @@ pub fn walls(width: f64) -> Vec<Plane> {
 
 /// The bed of 1,000 clumps of ten spheres in a box 0.4 m wide: its shape and bodies.
 pub fn clumps() -> (trackbed_dem::Shape, Vec<trackbed_dem::BodyInput>) {
+    clumps_at(&table("s2_1k.csv"))
+}
+
+/// Clumps of ten spheres, one for each row of centre and quaternion.
+pub fn clumps_at(rows: &[Vec<f64>]) -> (trackbed_dem::Shape, Vec<trackbed_dem::BodyInput>) {
     let spheres: Vec<_> = table("s2_clump.csv").iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
     let clump = trackbed_dem::shape::clump::Clump::from_spheres(&spheres).expect("the spheres make a clump");
     let body = |row: &Vec<f64>| trackbed_dem::BodyInput {
@@ -53,7 +69,7 @@ pub fn clumps() -> (trackbed_dem::Shape, Vec<trackbed_dem::BodyInput>) {
         )),
         ..Default::default()
     };
-    (trackbed_dem::Shape::Clump(clump), table("s2_1k.csv").iter().map(body).collect())
+    (trackbed_dem::Shape::Clump(clump), rows.iter().map(body).collect())
 }
 
 /// A body of the unit sphere for each row x, y, z, r of a table.

@@ -18,6 +18,9 @@ pub struct Stored {
     pub grains_kinetic: f64,
     /// Normal and tangential contact springs.
     pub contact_springs: f64,
+    /// Bonds between grains.
+    #[serde(default)]
+    pub bonds: f64,
     /// Potential of gravity on the grains.
     pub grains_gravity: f64,
     /// Kinetic energy of the solid.
@@ -33,6 +36,7 @@ impl Stored {
     pub fn total(&self) -> f64 {
         self.grains_kinetic
             + self.contact_springs
+            + self.bonds
             + self.grains_gravity
             + self.solid_kinetic
             + self.solid_strain
@@ -53,6 +57,12 @@ pub struct Spent {
     pub dashpot: f64,
     /// Dissipated by friction.
     pub friction: f64,
+    /// Dissipated by the dashpots of bonds.
+    #[serde(default)]
+    pub bonds: f64,
+    /// Set free by breaking bonds.
+    #[serde(default)]
+    pub breaks: f64,
     /// Dissipated by local damping of the grains.
     pub local_damping: f64,
     /// Dissipated by Rayleigh damping of the solid.
@@ -79,7 +89,7 @@ impl Spent {
 
     /// Energy dissipated [J].
     pub fn dissipated(&self) -> f64 {
-        let grains = self.dashpot + self.friction + self.local_damping;
+        let grains = self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping;
         grains + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 

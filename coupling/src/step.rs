@@ -20,7 +20,7 @@ use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
-use trackbed_fem::nonlinear::{NewtonOptions, PlasticWindowSolver, Statistics};
+use trackbed_fem::nonlinear::{Memory, NewtonOptions, PlasticWindowSolver, Statistics};
 use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::StepAudit;
 use trackbed_fem::window::WindowSolver;
@@ -159,6 +159,25 @@ impl Work {
         }
     }
 
+    /// What the solver of a plastic solid remembers beside the state, for a checkpoint.
+    pub fn memory(&self) -> Option<Memory> {
+        match &self.solver {
+            SolidSolver::Elastic(_) => None,
+            SolidSolver::Plastic(solver) => Some(solver.memory()),
+        }
+    }
+
+    /// Goes on with the memory of scratch that was made for the same model.
+    ///
+    /// # Errors
+    /// A matrix cannot be factored.
+    pub fn recall(&mut self, model: &Model<'_>, memory: Option<&Memory>) -> Result<(), SolveError> {
+        match (&mut self.solver, memory) {
+            (SolidSolver::Plastic(solver), Some(memory)) => solver.recall(model.solid, memory),
+            _ => Ok(()),
+        }
+    }
+
     /// Largest pressure on one face in the last window: normal force over area, mean over the window [Pa].
     pub fn peak_face_pressure(&self, window: f64) -> f64 {
         self.transfer.peak_face_pressure(&self.surface, window)
@@ -235,6 +254,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
     Stored {
         grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
         contact_springs: grains.elastic_normal + grains.elastic_tangential,
+        bonds: grains.elastic_bonds,
         grains_gravity: grains.gravity,
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
@@ -264,6 +284,8 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
         wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
+        bonds: ledger.dissipated_bonds,
+        breaks: ledger.released_by_breaks,
         local_damping: ledger.dissipated_local_damping,
         surface_on_grains: ledger.work_surface,
         ..Spent::default()

@@ -93,6 +93,26 @@ pub enum ModelError {
         /// What sets the limit.
         cause: String,
     },
+    /// A constant of a kind of bond is out of range.
+    #[error("bond kind {kind}: {quantity} is {value}; it must {requirement}")]
+    BondKind {
+        /// Index of the kind.
+        kind: usize,
+        /// Name of the constant.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+    /// A bond cannot be made.
+    #[error("bond {index}: {problem}")]
+    Bond {
+        /// Index of the bond.
+        index: usize,
+        /// What is wrong.
+        problem: String,
+    },
     /// A setting of the run is out of range.
     #[error("{quantity} is {value}; it must {requirement}")]
     Setting {

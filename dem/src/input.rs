@@ -1,6 +1,7 @@
 //! What a model is made of, as given by its user. [`crate::model::Model`] is the checked and resolved form.
 
 use crate::Vec3;
+use crate::bond::{Bond, BondInput};
 use crate::material::{Material, PairOverride};
 use crate::shape::Shape;
 use crate::wall::WallInput;
@@ -8,7 +9,7 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
 /// One body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyInput {
     /// Shape (index).
     pub shape: usize,
@@ -140,6 +141,10 @@ pub struct ModelInput {
     pub skin: Option<f64>,
     /// Local damping, for deposition only.
     pub damping: Option<LocalDamping>,
+    /// Kinds of bonds.
+    pub bond_kinds: Vec<Bond>,
+    /// Bonds between spheres, unstrained at the start.
+    pub bonds: Vec<BondInput>,
 }
 
 impl Default for ModelInput {
@@ -159,6 +164,8 @@ impl Default for ModelInput {
             impact_speed: None,
             skin: None,
             damping: None,
+            bond_kinds: Vec::new(),
+            bonds: Vec::new(),
         }
     }
 }

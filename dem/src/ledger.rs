@@ -40,6 +40,12 @@ pub struct Ledger {
     pub dissipated_dashpot: f64,
     /// Energy lost in sliding [J].
     pub dissipated_friction: f64,
+    /// Energy lost in the dashpots of bonds [J].
+    #[serde(default)]
+    pub dissipated_bonds: f64,
+    /// Energy set free by breaking bonds [J].
+    #[serde(default)]
+    pub released_by_breaks: f64,
     /// Energy taken by local damping [J].
     pub dissipated_local_damping: f64,
     /// Work of applied forces [J].
@@ -69,7 +75,11 @@ pub struct Ledger {
 impl Ledger {
     /// All energy lost [J].
     pub fn dissipated(&self) -> f64 {
-        self.dissipated_dashpot + self.dissipated_friction + self.dissipated_local_damping
+        self.dissipated_dashpot
+            + self.dissipated_friction
+            + self.dissipated_local_damping
+            + self.dissipated_bonds
+            + self.released_by_breaks
     }
 
     /// All work received from outside, gravity excepted (it has a potential) [J].
@@ -92,6 +102,8 @@ impl AddAssign<&Ledger> for Ledger {
         self.dissipated_dashpot += other.dissipated_dashpot;
         self.dissipated_friction += other.dissipated_friction;
         self.dissipated_local_damping += other.dissipated_local_damping;
+        self.dissipated_bonds += other.dissipated_bonds;
+        self.released_by_breaks += other.released_by_breaks;
         self.work_applied += other.work_applied;
         self.work_walls += other.work_walls;
         self.work_servo += other.work_servo;

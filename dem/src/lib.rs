@@ -4,6 +4,7 @@
 //! scratch; [`step::step`] advances the state. SI units throughout.
 
 mod bodies;
+pub mod bond;
 mod check;
 pub mod contact;
 pub mod detect;

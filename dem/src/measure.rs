@@ -1,14 +1,26 @@
-//! What can be read off a state: energies, momentum, contacts, stress. None of it changes the state.
+//! What can be read off a state: energies, momentum, contacts, stress, porosity, fabric. None of it changes the state.
 //!
 //! Energies and momentum are those of the last half step, t − dt/2, where the velocities of the leapfrog live:
 //! bodies are moved back by half a step for it, springs likewise. So energy plus ledger closes to second order in
 //! dt at every step, and momentum plus ledger to rounding. Contacts are those of the present positions, with the
 //! forces that the next step will find.
 
+mod clip;
 mod contacts;
+mod coordination;
 mod energy;
+mod porosity;
+mod region;
+mod sieve;
 mod stress;
 
+pub use clip::sphere_box_volume;
 pub use contacts::{ContactRecord, contact_forces, contacts, coordination};
+pub use coordination::{
+    Coordination, StrongNetwork, coordination_of, fabric, neighbours, strong_network, unbalanced_ratio,
+};
 pub use energy::{Energies, energies, momentum};
-pub use stress::mean_stress;
+pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
+pub use region::BoxRegion;
+pub use sieve::{size_of, stones};
+pub use stress::{mean_stress, mean_stress_of, region_stress};

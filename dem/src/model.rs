@@ -34,6 +34,8 @@ pub struct Model {
     pub(crate) rigid: bool,
     /// Bodies per block.
     pub(crate) block: usize,
+    /// Bonds, resolved.
+    pub(crate) bonds: Vec<crate::bond::Constants>,
     dt: f64,
     limit: DtLimit,
 }
@@ -69,9 +71,10 @@ impl Model {
         let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
+        let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
-        let mut limit = timestep::limit(&bodies, &input, &laws, expected, radii.0);
-        walls.join(&mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
+        walls.limit_step(&mut limit, &bodies, &input.planes, &laws, expected, radii);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
             TimeStep::Fixed(dt) if dt > limit.dt => {
@@ -98,6 +101,7 @@ impl Model {
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
             skin: input.skin.unwrap_or(0.2 * mean),
+            bonds,
             radii,
             dt,
             limit,
@@ -131,6 +135,16 @@ impl Model {
         self.bodies.len()
     }
 
+    /// Number of bonds at the start.
+    pub fn bond_count(&self) -> usize {
+        self.bonds.len()
+    }
+
+    /// The two bodies of a bond.
+    pub fn bond_ends(&self, bond: usize) -> [usize; 2] {
+        self.bonds[bond].ends.map(|b| b as usize)
+    }
+
     /// Number of spheres: single ones and members of clumps.
     pub fn sphere_count(&self) -> usize {
         (0..self.bodies.len()).map(|b| self.member_count(b) as usize).sum()
@@ -159,6 +173,11 @@ impl Model {
     /// Shape of a body (unscaled).
     pub fn shape(&self, body: usize) -> &Shape {
         &self.shapes[self.body(body).shape]
+    }
+
+    /// Number of a body's shape in the input.
+    pub fn shape_number(&self, body: usize) -> usize {
+        self.body(body).shape
     }
 
     /// Factor on the lengths of the body's shape.

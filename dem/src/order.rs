@@ -7,6 +7,7 @@
 //! run; it depends on the positions alone.
 
 use crate::Vec3;
+use crate::bond;
 use crate::contact::History;
 use crate::model::{Kind, Model};
 use crate::state::{Block, Cross, PatchContact, PatchPair, State};
@@ -59,6 +60,8 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
 pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     let turning = model.laws.rolls();
     let members: Vec<u32> = (0..positions.len()).map(|b| model.member_count(b)).collect();
+    let lists: Vec<_> = state.blocks.iter_mut().map(|b| std::mem::take(&mut b.bonds)).collect();
+    let bonds = bond::store::take(lists.into_iter(), state);
     let old = std::mem::take(&mut state.blocks);
     let cross = std::mem::take(&mut state.cross);
     let old_places = state.places.clone();
@@ -88,6 +91,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     }
     state.cross.resize_with(state.blocks.len(), || Cross::new(turning));
     state.number(model);
+    bond::store::put(model, state, bonds);
 
     // First sphere of each body within its new block.
     let mut first = vec![0_u32; positions.len()];

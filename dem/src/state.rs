@@ -7,6 +7,7 @@
 //! beside the pairs of the near list, which is therefore part of the state.
 
 use crate::Vec3;
+use crate::bond::{self, BondList, BondState};
 use crate::contact::History;
 use crate::contact::groups::Groups;
 use crate::ledger::Ledger;
@@ -113,6 +114,8 @@ pub(crate) struct Block {
     pub planes: Groups<2>,
     pub walls: PatchList,
     pub surface: PatchList,
+    /// Bonds between two of these bodies.
+    pub bonds: BondList,
 }
 
 impl Block {
@@ -143,6 +146,7 @@ pub struct State {
     pub(crate) blocks: Vec<Block>,
     /// Contacts between blocks, by the block of their first sphere.
     pub(crate) cross: Vec<Cross>,
+    pub(crate) bonds: BondState,
     pub(crate) planes: Vec<WallMotion>,
     pub(crate) walls: Vec<WallState>,
     /// Reach of the near list beyond touch [m], how much of it motion has used up, and the steps it has lasted.
@@ -186,6 +190,7 @@ impl State {
             places: Vec::new(),
             blocks: Vec::new(),
             cross: Vec::new(),
+            bonds: BondState::default(),
             planes: model
                 .planes
                 .iter()
@@ -219,6 +224,7 @@ impl State {
         }
         state.cross.resize_with(state.blocks.len(), || Cross::new(model.laws.rolls()));
         state.number(model);
+        bond::store::start(model, &mut state);
         for (k, b) in model.bodies.iter().enumerate() {
             let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
             let velocity = model.bodies.velocity(k) - kick * (0.5 * model.dt());

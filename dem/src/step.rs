@@ -1,5 +1,6 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::bond;
 use crate::contact::pass::{Between, Interior};
 use crate::contact::planes::{self, Planes};
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
@@ -48,6 +49,9 @@ pub fn step<S: Surface>(
     }
     place_loads(model, state, work, applied)?;
     near::update(model, state, work, surface);
+    if !model.bonds.is_empty() {
+        bond::pass::cross(model, state, work);
+    }
     planes::now(model, &state.planes, &mut work.planes);
     with_law!(&model.laws, laws => match (model.rigid, laws.rolls()) {
         (false, false) => contacts_and_motion::<_, S, false, false>(model, laws, state, work, surface),
@@ -81,6 +85,8 @@ pub fn find_contacts<S: Surface>(
     }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    // The probe may have broken bonds.
+    bond::pass::arrange(model, state, work);
     Ok(())
 }
 
@@ -92,9 +98,19 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     surface: &S,
 ) {
     let dt = model.dt();
-    let State { blocks, cross, planes: motions, walls: wall_states, drift, wall_drift, .. } = state;
-    let Work { blocks: works, cross: slots, applied, parallel, planes, simd, buffers, keep_forces, .. } =
-        work;
+    let State { blocks, cross, planes: motions, walls: wall_states, bonds, drift, wall_drift, .. } = state;
+    let Work {
+        blocks: works,
+        cross: slots,
+        applied,
+        parallel,
+        planes,
+        simd,
+        buffers,
+        keep_forces,
+        bonds: bonded,
+        ..
+    } = work;
     let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
 
@@ -116,7 +132,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     }
 
     // All else concerns one block at a time.
-    let (slots, applied) = (&*slots, &**applied);
+    let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
     let gone = *drift + *wall_drift;
     let surface_material = model.surface_material.unwrap_or(0);
@@ -131,6 +147,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
             pass::gather::<true>(w, slots);
         } else {
             pass::gather::<false>(w, slots);
+        }
+        if !model.bonds.is_empty() {
+            bond::pass::within(model, b, block, w, bonded, bonds.fresh);
         }
         let (mut pairs, mut plane_pairs) =
             (std::mem::take(&mut block.pairs), std::mem::take(&mut block.planes));
@@ -243,6 +262,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
     let (wall_speed, wall_failure) = advance::walls(model, state, work, &mut sum);
     failure = failure.or(wall_failure);
     state.ledger += &sum;
+    if !model.bonds.is_empty() {
+        failure = failure.or(bond::pass::settle(model, state, work));
+    }
     let time = state.time;
     let mut wall_speed = wall_speed.max(surface_speed);
     for wall in &mut state.planes {

@@ -11,7 +11,8 @@
 //! z³ + (Ω² + 3b/2 − 2) z² + (1 − 2b) z + b/2, b = 2ζ'Ω, is −1.)
 //!
 //! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
-//! it with more than one member), and for a box twice as many as neighbours of the smallest bounding radius find
+//! it with more than one member) or twice as many as touch a plane at once where that is more (needles and plates
+//! made of many), and for a box twice as many as neighbours of the smallest bounding radius find
 //! room on its largest side, two contacts each. Contacts on a clump may all lie far out, so its r² is the largest;
 //! those on the side of a box are spread over it, so its r² is the mean over the side.
 //! A rolling or twisting spring turns the body as the tangential spring does, with a lever no longer than the sphere's
@@ -29,14 +30,18 @@
 //!
 //! The limit falls only with d^(-1/4): a load that presses 16 times as deep halves it, and the fraction of the limit
 //! that is taken (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
-//! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side
-//! because its mass grows faster than their number.
+//! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
+//!
+//! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
+//! grows faster than their number. Sides of a clump that are flat, yet not across a principal axis, are not looked for.
 
 use crate::Vec3;
+use crate::bond;
 use crate::contact::Laws;
 use crate::input::ModelInput;
 use crate::model::{Bodies, Body, Kind};
 use crate::shape::Shape;
+use crate::shape::clump::Clump;
 use std::fmt;
 
 /// The limit and its cause.
@@ -54,6 +59,8 @@ pub struct DtLimit {
     pub mass: f64,
     /// The rigid body of this wall sets it, in place of `body`.
     pub wall: Option<usize>,
+    /// Square of the highest frequency that the body's bonds alone could give it [1/s²].
+    pub bonds: f64,
 }
 
 impl fmt::Display for DtLimit {
@@ -69,12 +76,24 @@ impl fmt::Display for DtLimit {
             f,
             "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
             self.body, self.mass, self.partner, self.stiffness
-        )
+        )?;
+        if self.bonds > 0.0 {
+            write!(f, " and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt())?;
+        }
+        Ok(())
     }
 }
 
 /// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
-pub(crate) fn limit(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: f64, r_min: f64) -> DtLimit {
+pub(crate) fn limit(
+    bodies: &Bodies,
+    input: &ModelInput,
+    laws: &Laws,
+    expected: f64,
+    bonds: &[bond::Constants],
+    r_min: f64,
+) -> DtLimit {
+    let bonded = bond::stiffest(bonds, bodies, &input.bodies);
     // A rolling spring counts as one more tangential spring on a lever.
     let levers = if laws.rolls() { 2.0 } else { 1.0 };
     let partners = partners(bodies, input);
@@ -84,7 +103,8 @@ pub(crate) fn limit(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: 
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least = DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, wall: None };
+    let mut least =
+        DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, bonds: 0.0, wall: None };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -94,7 +114,7 @@ pub(crate) fn limit(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: 
         let softness = compliance(&body, shape);
         let sides = match shape {
             Shape::Sphere { .. } => 12.0,
-            Shape::Clump(_) => 24.0,
+            Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
             Shape::Box { half } => {
                 let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
                 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
@@ -117,10 +137,27 @@ pub(crate) fn limit(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: 
             };
             let zeta = laws.damping_ratio(a, b) * f64::sqrt(0.5 * sides);
             let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
-            let dt = bound / (sides * own).sqrt();
+            let alone = bound / (sides * own).sqrt();
+            let [bond_stiffness, bond_damping] = bonded.get(k).copied().unwrap_or_default();
+            let dt = if bond_stiffness > 0.0 {
+                // Contacts and bonds together: (λ₁ + λ₂) dt² + (8 ζ' √λ₁ + 2 γ) dt = 4.
+                let all = sides * own + bond_stiffness;
+                let damping = 4.0 * zeta * (sides * own).sqrt() + bond_damping;
+                ((damping * damping + 4.0 * all).sqrt() - damping) / all
+            } else {
+                alone
+            };
             if !found || dt < least.dt {
                 found = true;
-                least = DtLimit { dt, body: k, partner, stiffness, mass: stiffness / own, wall: None };
+                least = DtLimit {
+                    dt,
+                    body: k,
+                    partner,
+                    stiffness,
+                    mass: stiffness / own,
+                    bonds: bond_stiffness,
+                    wall: None,
+                };
             }
         }
     }
@@ -163,6 +200,17 @@ fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     input.walls.iter().for_each(|w| used[w.material] = true);
     input.surface_material.into_iter().for_each(|m| used[m] = true);
     (0..used.len()).filter(|&m| used[m]).collect()
+}
+
+/// Number of members that a plane across a principal axis touches at once (to a tenth of the largest radius).
+fn flat(clump: &Clump) -> usize {
+    let slack = 0.1 * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max);
+    let touching = |axis: usize, sign: f64| {
+        let reach = |s: &([f64; 3], f64)| sign * s.0[axis] + s.1;
+        let furthest = clump.spheres.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+        clump.spheres.iter().filter(|s| reach(s) >= furthest - slack).count()
+    };
+    (0..3).map(|axis| touching(axis, 1.0).max(touching(axis, -1.0))).max().unwrap_or(0)
 }
 
 /// 1/m + max over the principal axes of (distance of contacts from the axis)²/I [1/kg].

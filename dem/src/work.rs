@@ -1,6 +1,8 @@
 //! Scratch of the step: never saved, made anew from a state at any time without changing a bit of what follows.
 
 use crate::Vec3;
+use crate::bond::pass::{BondWork, ListWork};
+use crate::bond::{self, Held};
 use crate::contact::patches::Touch;
 use crate::contact::planes::PlaneNow;
 use crate::error::Partner;
@@ -172,6 +174,7 @@ pub(crate) struct BlockWork {
     pub live: Vec<PatchContact>,
     /// What the block's spheres felt from each wall; empty in blocks near none.
     pub wall_sums: Vec<WallSum>,
+    pub bonds: ListWork,
 }
 
 /// A force applied to a body in this step.
@@ -188,6 +191,9 @@ pub(crate) struct Applied {
 pub struct Work {
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossWork>,
+    pub(crate) bonds: BondWork,
+    /// Pairs that are not for the ordinary contacts.
+    pub(crate) held: Held,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
     pub(crate) buffers: Buffers,
@@ -216,6 +222,8 @@ impl Work {
         let mut work = Work {
             blocks: Vec::new(),
             cross: Vec::new(),
+            bonds: BondWork::default(),
+            held: Held::default(),
             applied: Vec::new(),
             surface_contacts: Vec::new(),
             buffers: Buffers::default(),
@@ -250,6 +258,7 @@ impl Work {
             }
         }
         crate::search::near::link(state, self);
+        bond::pass::arrange(model, state, self);
     }
 
     /// Contacts with the external surface in the last step, by block, then sphere, then patch.

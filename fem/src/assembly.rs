@@ -18,6 +18,7 @@ use crate::material::elastic::Elastic;
 use crate::mesh::Mesh;
 use crate::supports::{CONSTRAINED, Supports};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Elements computed before they are added; fixed, so that nothing depends on the number of threads.
 const CHUNK: usize = 128;
@@ -46,7 +47,7 @@ struct Lumped {
 }
 
 /// The factors of an equation matrix `stiffness K + mass M + dashpots D`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Combination {
     /// Factor of the stiffness, springs included.
     pub stiffness: f64,

@@ -1,4 +1,4 @@
-//! The state of the solid: what a checkpoint holds.
+//! The state of the solid: what a checkpoint holds. No field may be left out of it, since binary formats go by position.
 
 use crate::material::PointState;
 use crate::model::Model;
@@ -18,7 +18,7 @@ pub struct State {
     /// Stress and history of the Gauss points, element by element in the order of
     /// [`stiffness_points`](crate::element::stiffness_points), see [`Model::point_start`]. Empty for a linear model
     /// without initial stress. Shape `[points]`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub points: Vec<PointState>,
 }
 

@@ -1,14 +1,25 @@
 //! The grains of a scene: materials, shapes, bodies, walls, sleeper.
 
+mod bonded;
+mod bonds;
+mod compaction;
 mod groups;
 mod materials;
+mod regions;
+mod sizes;
 mod track;
 pub mod walls;
 
 use super::seat_load::CyclicLoad;
+use super::tables::Grading;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
+pub use bonds::{BondPart, check_joined};
+pub use compaction::{CompactionPlan, Press};
 use trackbed_coupling::step::{self, Stability};
+use trackbed_dem::insert::container::Container;
+use trackbed_dem::insert::grow::Growth;
+use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
@@ -16,7 +27,11 @@ use trackbed_dem::{
 };
 use trackbed_fem::Face;
 
+/// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
+const SETTLED_SPEED: f64 = 5e-3;
+
 /// The grains, ready to build models of.
+#[derive(Clone)]
 pub struct GrainsPart {
     materials: Vec<Material>,
     contacts: Vec<PairOverride>,
@@ -32,14 +47,39 @@ pub struct GrainsPart {
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleeper is the group after the last.
     pub parts: Vec<String>,
+    /// First shape of each group; a stone's number in its library is its shape less that.
+    pub first_shape: Vec<usize>,
+    /// Groups whose sizes follow a sieve curve.
+    pub graded: Vec<GradedGroup>,
+    /// Groups that grow to their size before anything else.
+    pub growths: Vec<GrowthPlan>,
+    /// Bonds between grains.
+    pub bonds: BondPart,
+    /// Groups of prescribed motion.
+    pub moving: Vec<Moving>,
+    /// Groups whose mean place and force are recorded.
+    pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
     /// Settling before the run proper.
     pub deposition: Option<DepositionPlan>,
+    /// Compaction of the settled bed.
+    pub compaction: Vec<CompactionPlan>,
+    /// Boxes that are measured, by name.
+    pub measures: Vec<(String, BoxRegion)>,
     /// The sleeper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on it.
     pub load: Option<CyclicLoad>,
+}
+
+/// A group of prescribed motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving {
+    /// Its number.
+    pub part: u32,
+    /// Velocity [m/s].
+    pub velocity: Vec3,
 }
 
 /// Settling before the run proper.
@@ -49,10 +89,49 @@ pub struct DepositionPlan {
     pub max_time: f64,
     /// Root-mean-square speed below which the bed counts as settled [m/s].
     pub settled_speed: f64,
+    /// Ratio of unbalanced to contact forces below which it does.
+    pub unbalanced_ratio: Option<f64>,
+    /// Parts that the grains are dropped in.
+    pub layers: u32,
     /// Height above which grains are taken away afterwards [m].
     pub level: Option<f64>,
     friction: Option<f64>,
     local_damping: f64,
+}
+
+impl DepositionPlan {
+    /// Whether a bed of this root-mean-square speed [m/s] counts as settled.
+    pub fn settled(&self, speed: f64, model: &Model, state: &trackbed_dem::State) -> bool {
+        use trackbed_dem::measure::{contacts, unbalanced_ratio};
+        speed < self.settled_speed
+            && self
+                .unbalanced_ratio
+                .is_none_or(|most| unbalanced_ratio(model, &contacts(model, state)) < most)
+    }
+}
+
+/// A group whose sizes follow a sieve curve.
+#[derive(Clone)]
+pub struct GradedGroup {
+    /// Its number.
+    pub part: u32,
+    /// Its name.
+    pub name: String,
+    /// Limits and curve.
+    pub grading: Grading,
+}
+
+/// Grains that grow to their size in a container.
+#[derive(Clone)]
+pub struct GrowthPlan {
+    /// Name of the group.
+    pub group: String,
+    /// Bodies that grow.
+    pub bodies: std::ops::Range<usize>,
+    /// Where.
+    pub container: Container,
+    /// How.
+    pub how: Growth,
 }
 
 /// A sleeper.
@@ -99,12 +178,48 @@ impl GrainsPart {
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
         input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
         input.walls.iter_mut().for_each(|w| *w = w.at_rest());
+        for moving in &self.moving {
+            let grip = input.bodies.iter_mut().filter(|b| b.part == moving.part);
+            grip.for_each(|b| b.velocity = Vec3::zeros());
+        }
+        self.bonds.add_stones_to(&mut input);
         input
     }
 
+    /// Stiffness, density and the like of the material of a body.
+    pub fn material(&self, body: &BodyInput) -> Material {
+        self.materials[body.material]
+    }
+
+    /// Shapes, at scale 1.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// Radius about its centre of mass that holds a body [m].
+    pub fn reach(&self, body: &BodyInput) -> f64 {
+        body.scale * groups::bounding_radius(&self.shapes[body.shape])
+    }
+
+    /// Puts a plane elsewhere [m].
+    pub fn place_plane(&mut self, plane: usize, point: Vec3) {
+        self.planes[plane].point = point;
+    }
+
+    /// Adds a shape; returns its number.
+    pub fn add_shape(&mut self, shape: Shape) -> usize {
+        self.shapes.push(shape);
+        self.shapes.len() - 1
+    }
+
     /// The model of the run proper with the given bodies.
-    pub fn input(&self, bodies: Vec<BodyInput>) -> ModelInput {
-        ModelInput {
+    pub fn input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
+        for moving in &self.moving {
+            for body in bodies.iter_mut().filter(|b| b.part == moving.part) {
+                (body.velocity, body.fixed) = (moving.velocity, [true; 6]);
+            }
+        }
+        let mut input = ModelInput {
             materials: self.materials.clone(),
             contacts: self.contacts.clone(),
             shapes: self.shapes.clone(),
@@ -118,7 +233,15 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
-        }
+            ..ModelInput::default()
+        };
+        self.bonds.add_to(&mut input);
+        input
+    }
+
+    /// Density of a material [kg/m³].
+    fn density(&self, material: usize) -> f64 {
+        self.materials[material].density
     }
 
     /// Stability of the exchange with a solid in windows of `window` [s], for the stiffest contact and the heaviest
@@ -232,8 +355,16 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         impact_speed,
         bodies: Vec::new(),
         parts: Vec::new(),
+        first_shape: Vec::new(),
+        graded: Vec::new(),
+        growths: Vec::new(),
+        bonds: bonds::kinds(document, scene)?,
+        moving: Vec::new(),
+        recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
         deposition: None,
+        compaction: Vec::new(),
+        measures: Vec::new(),
         sleeper: None,
         load: None,
     };
@@ -265,10 +396,14 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(
             document,
             "deposition.settled_speed",
-            Some(d.settled_speed.si),
+            d.settled_speed.map(|v| v.si),
             |v| v > 0.0,
             "a speed above 0",
         )?;
+        let ratio = d.unbalanced_ratio;
+        check(document, "deposition.unbalanced_ratio", ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
+        let layers = Some(f64::from(d.layers));
+        check(document, "deposition.layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
         check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
         check(
             document,
@@ -279,12 +414,21 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         )?;
         part.deposition = Some(DepositionPlan {
             max_time: d.max_time.si,
-            settled_speed: d.settled_speed.si,
+            // With a ratio of forces alone, speed does not matter.
+            settled_speed: match (d.settled_speed, ratio) {
+                (Some(speed), _) => speed.si,
+                (None, Some(_)) => f64::INFINITY,
+                (None, None) => SETTLED_SPEED,
+            },
+            unbalanced_ratio: ratio,
+            layers: d.layers,
             level: d.level.map(|l| l.si),
             friction: d.friction,
             local_damping: d.local_damping,
         });
     }
+    compaction::add(document, scene, &find, &mut part)?;
+    bonds::rules(document, scene, &mut part)?;
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;
@@ -306,6 +450,9 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         }
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
+        }
+        ModelError::Bond { .. } | ModelError::BondKind { .. } => {
+            document.error("bond", error.to_string(), "bonds that can be made")
         }
         other => document.error("grains", other.to_string(), "grains and walls that make a model"),
     }

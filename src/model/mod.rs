@@ -8,9 +8,13 @@ mod tables;
 
 use crate::failure::Failure;
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Chains, Document, Scene, SceneError};
+use std::time::Duration;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
+
+/// Time by the clock between two checkpoints, unless the scene says otherwise [s].
+const CHECKPOINT: f64 = 600.0;
 
 /// A resolved scene.
 pub struct Job {
@@ -39,12 +43,18 @@ pub struct OutputPlan {
     pub frames: u32,
     /// Time between rows of the history [s].
     pub history_interval: f64,
+    /// Time by the clock between two checkpoints.
+    pub checkpoint: Duration,
     /// VTK files.
     pub vtk: bool,
     /// Tecplot files of the solid.
     pub tecplot: bool,
     /// Nodes and Gauss points of the last state as CSV.
     pub tables: bool,
+    /// Grains of the last state as CSV.
+    pub packing: bool,
+    /// Frames show the contacts above the mean force only.
+    pub strong_chains: bool,
 }
 
 /// The exchange, resolved.
@@ -86,6 +96,8 @@ impl Job {
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
                 ("deposition", scene.deposition.is_some()),
+                ("compaction", !scene.compaction.is_empty()),
+                ("measure", !scene.measure.is_empty()),
                 ("track", scene.track.is_some()),
             ] {
                 if present {
@@ -171,12 +183,23 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
             return Err(without("tables", "[solid]"));
         }
     }
+    if scene.grains.is_empty() {
+        if o.packing.is_some() {
+            return Err(without("packing", "[[grains]]"));
+        }
+        if o.chains.is_some() {
+            return Err(without("chains", "[[grains]]"));
+        }
+    }
     if end == 0.0 {
         if o.frames.is_some() {
             return Err(without("frames", "time: a static solid has one frame"));
         }
         if o.history_interval.is_some() {
             return Err(without("history_interval", "time: a static solid has no history"));
+        }
+        if o.checkpoint.is_some() {
+            return Err(without("checkpoint", "time: a static solid is solved in one go"));
         }
     }
     let frames = o.frames.unwrap_or(20);
@@ -191,12 +214,19 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
             "a time above 0",
         ));
     }
+    let checkpoint = o.checkpoint.map_or(CHECKPOINT, |c| c.si);
+    let Some(checkpoint) = Duration::try_from_secs_f64(checkpoint).ok().filter(|c| !c.is_zero()) else {
+        return Err(document.error("output.checkpoint", format!("{checkpoint} s"), "a time above 0"));
+    };
     Ok(OutputPlan {
         frames,
+        checkpoint,
         history_interval,
         vtk: o.vtk.unwrap_or(true),
         tecplot: scene.solid.is_some() && o.tecplot.unwrap_or(true),
         tables: o.tables.unwrap_or(false),
+        packing: o.packing.unwrap_or(false),
+        strong_chains: o.chains == Some(Chains::Strong),
     })
 }
 

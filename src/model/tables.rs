@@ -6,6 +6,7 @@ use std::path::Path;
 use trackbed_dem::insert::gradation::Gradation;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
+use trackbed_dem::shape::cluster::Cluster;
 
 fn fault(
     file: &Path,
@@ -37,37 +38,85 @@ fn rows(content: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
         .map(|(i, l)| (i, l.split(',').map(|f| f.trim().trim_matches('"')).collect()))
 }
 
-/// Spheres `x, y, z, r` [m] of a packing; a first row that is not numbers is a heading.
-///
-/// # Errors
-/// The file is missing, a row has too few columns, or a value is no finite number.
-pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
+/// Rows of numbers under a heading that may be missing; each row starts with the columns named.
+fn numbers<const N: usize>(file: &Path, columns: [&str; N]) -> Result<Vec<(usize, [f64; N])>, ReadError> {
     let content = text(file, "packing")?;
-    let mut spheres = Vec::new();
+    let mut table = Vec::new();
     for (n, (line, fields)) in rows(&content).enumerate() {
         if n == 0 && fields[0].parse::<f64>().is_err() {
             continue;
         }
-        if fields.len() < 4 {
-            return Err(fault(file, Some(line), "row", format!("{} columns", fields.len()), "x, y, z, r"));
+        if fields.len() < N {
+            let found = format!("{} columns", fields.len());
+            return Err(fault(file, Some(line), "row", found, columns.join(", ")));
         }
-        let mut value = [0.0; 4];
-        for (k, name) in ["x", "y", "z", "r"].into_iter().enumerate() {
+        let mut value = [0.0; N];
+        for (k, name) in columns.into_iter().enumerate() {
             value[k] = fields[k]
                 .parse()
                 .ok()
                 .filter(|v: &f64| v.is_finite())
                 .ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", fields[k]), "a number"))?;
         }
-        if value[3] <= 0.0 {
-            return Err(fault(file, Some(line), "r", value[3].to_string(), "a radius above 0"));
+        table.push((line, value));
+    }
+    if table.is_empty() {
+        return Err(fault(file, None, "packing", "no row", "at least one grain"));
+    }
+    Ok(table)
+}
+
+/// Spheres `x, y, z, r` [m] of a packing; a first row that is not numbers is a heading.
+///
+/// # Errors
+/// The file is missing, a row has too few columns, or a value is no finite number.
+pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
+    let row = |(line, [x, y, z, r]): (usize, [f64; 4])| {
+        if r > 0.0 {
+            return Ok(([x, y, z], r));
         }
-        spheres.push(([value[0], value[1], value[2]], value[3]));
-    }
-    if spheres.is_empty() {
-        return Err(fault(file, None, "packing", "no row", "at least one sphere"));
-    }
-    Ok(spheres)
+        Err(fault(file, Some(line), "r", r.to_string(), "a radius above 0"))
+    };
+    numbers(file, ["x", "y", "z", "r"])?.into_iter().map(row).collect()
+}
+
+/// A clump of a packing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedStone {
+    /// Centre of mass [m].
+    pub position: [f64; 3],
+    /// Turns the stone's principal frame into the world's: w, x, y, z.
+    pub orientation: [f64; 4],
+    /// Factor on the lengths of the stone in its library.
+    pub scale: f64,
+    /// Number of the stone in its library, from 0.
+    pub stone: usize,
+}
+
+/// Clumps `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a packing made of `stones` stones; a first row that is not
+/// numbers is a heading.
+///
+/// # Errors
+/// The file is missing, a row has too few columns, a value is no finite number, or out of range.
+pub fn clump_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, ReadError> {
+    let columns = ["x", "y", "z", "qw", "qx", "qy", "qz", "scale", "stone"];
+    let row = |(line, v): (usize, [f64; 9])| {
+        let orientation = [v[3], v[4], v[5], v[6]];
+        let norm = orientation.iter().map(|q| q * q).sum::<f64>();
+        if (norm - 1.0).abs() > 1e-6 {
+            let found = format!("a norm of {}", norm.sqrt());
+            return Err(fault(file, Some(line), "qw, qx, qy, qz", found, "a unit quaternion"));
+        }
+        if v[7] <= 0.0 {
+            return Err(fault(file, Some(line), "scale", v[7].to_string(), "a factor above 0"));
+        }
+        if v[8].fract() != 0.0 || !(0.0..stones as f64).contains(&v[8]) {
+            let expected = format!("the number of a stone of the library, 0 to {}", stones.max(1) - 1);
+            return Err(fault(file, Some(line), "stone", v[8].to_string(), expected));
+        }
+        Ok(PlacedStone { position: [v[0], v[1], v[2]], orientation, scale: v[7], stone: v[8] as usize })
+    };
+    numbers(file, columns)?.into_iter().map(row).collect()
 }
 
 /// Rows `time, factor` [s, -] of a history; a first row that is not numbers is a heading.
@@ -108,11 +157,28 @@ pub fn history(file: &Path) -> Result<Vec<(f64, f64)>, ReadError> {
     Ok(points)
 }
 
-/// The middle of the limits of one grade of a sieve table.
+/// Sieve limits and the curve in their middle.
+#[derive(Clone, Debug)]
+pub struct Grading {
+    /// The curve that stones are drawn to.
+    pub curve: Gradation,
+    /// Rows of the table, by rising sieve: size [m], least and largest mass fraction passing [-].
+    pub limits: Vec<[f64; 3]>,
+}
+
+impl Grading {
+    /// The same for stones `s` times as large.
+    pub fn scaled(&self, s: f64) -> Grading {
+        let limits = self.limits.iter().map(|[size, low, high]| [size * s, *low, *high]).collect();
+        Grading { curve: self.curve.scaled(s), limits }
+    }
+}
+
+/// The limits of one grade of a sieve table and the curve in their middle.
 ///
 /// # Errors
 /// The file is missing, has no such grade, or its limits make no curve.
-pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Gradation, ReadError> {
+pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, ReadError> {
     let content = text(file, "gradation")?;
     let mut columns: Option<[usize; 5]> = None;
     let mut table: Vec<[f64; 3]> = Vec::new();
@@ -155,12 +221,14 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Gradation, 
         ));
     }
     table.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let limits = table.clone();
     // Sieves that everything passes carry no information beyond the first of them.
     let full = table.iter().position(|r| r[1] + r[2] >= 2.0).unwrap_or(table.len() - 1);
     table.truncate(full + 1);
     let column = |k: usize| table.iter().map(|r| r[k]).collect::<Vec<_>>();
-    Gradation::from_limits(&column(0), &column(1), &column(2), None)
-        .map_err(|e| fault(file, None, "gradation", e.to_string(), "limits that make a curve"))
+    let curve = Gradation::from_limits(&column(0), &column(1), &column(2), None)
+        .map_err(|e| fault(file, None, "gradation", e.to_string(), "limits that make a curve"))?;
+    Ok(Grading { curve, limits })
 }
 
 /// The stones of a library file.
@@ -173,6 +241,34 @@ pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
     library
         .clumps()
         .map_err(|e| document.error("stones", e.to_string(), "connected spheres with positive radii"))
+}
+
+/// The stones of a library file as bonded clusters.
+///
+/// # Errors
+/// The file is missing or no library, or a stone is no cluster.
+pub fn clusters(file: &Path) -> Result<Vec<Cluster>, SceneError> {
+    let document = Document::open(file)?;
+    let library: StoneLibrary = document.read()?;
+    library
+        .clusters()
+        .map_err(|e| document.error("stones", e.to_string(), "spheres that bonds hold in one piece"))
+}
+
+/// Rows `a, b` of bonded pairs, numbers of grains from 0 to `count` − 1; a first row that is not numbers is a heading.
+///
+/// # Errors
+/// The file is missing, or a row is not two different numbers of grains.
+pub fn pairs(file: &Path, count: usize) -> Result<Vec<[usize; 2]>, ReadError> {
+    let row = |(line, v): (usize, [f64; 2])| {
+        let good = |x: f64| x.fract() == 0.0 && (0.0..count as f64).contains(&x);
+        if v.iter().all(|x| good(*x)) && v[0] != v[1] {
+            return Ok(v.map(|x| x as usize));
+        }
+        let expected = format!("two different numbers of grains, 0 to {}", count.max(1) - 1);
+        Err(fault(file, Some(line), "pair", format!("{}, {}", v[0], v[1]), expected))
+    };
+    numbers(file, ["a", "b"])?.into_iter().map(row).collect()
 }
 
 #[cfg(test)]
@@ -191,7 +287,10 @@ mod tests {
             "sieves.csv",
             "# note\nstandard,grade,sieve_mm,passing_lo_pct,passing_hi_pct\nX,A,63,100,100\nX,A,50,70,90\nX,B,50,0,1\nX,A,31.5,0,0\n",
         );
-        let curve = gradation(&path, "X", "A").unwrap();
+        let grading = gradation(&path, "X", "A").unwrap();
+        assert_eq!(grading.limits.len(), 3);
+        assert!(grading.limits[1].iter().zip([0.05, 0.7, 0.9]).all(|(x, y)| (x - y).abs() < 1e-12));
+        let curve = grading.curve;
         assert_eq!(curve.sizes().len(), 3);
         assert!((curve.passing_at(0.05) - 0.8).abs() < 1e-12);
         let error = gradation(&path, "X", "C").unwrap_err();

@@ -1,9 +1,10 @@
 //! Results per load cycle: settlement, resilience, stiffness, dissipation, formation pressure.
 
 use crate::model::seat_load::CyclicLoad;
+use serde::{Deserialize, Serialize};
 
 /// What one cycle did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// Cycle number, from 1.
     pub number: u32,
@@ -20,6 +21,7 @@ pub struct Cycle {
 }
 
 /// Follows the sleeper through the cycles.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CycleRecorder {
     begin: f64,
     period: f64,

@@ -59,10 +59,16 @@ fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|f| if f == f64::NEG_INFINITY { NO_YIELD_SURFACE } else { f }).collect()
 }
 
+/// Kind of a chain that is a bond; its normal force is negative where it pulls.
+const BOND: u32 = 4;
+
 /// The grains: one point per sphere.
 pub fn grains(view: GrainsView<'_>) -> GrainFrame {
-    let stress = dem::measure::mean_stress(view.model, view.state);
+    let contacts = dem::measure::contacts(view.model, view.state);
+    let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
+    let neighbours = dem::measure::neighbours(view.model, &contacts);
     let force = dem::measure::contact_forces(view.model, view.state);
+    let fragments = dem::bond::fragments(view.model, view.state).of;
     let mut frame = GrainFrame::default();
     for body in 0..view.model.body_count() {
         let q = view.state.orientation(view.model, body);
@@ -77,15 +83,25 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
             frame.part.push(view.model.part(body));
             frame.mean_stress.push((stress[body][0] + stress[body][1] + stress[body][2]) / 3.0);
             frame.force.push(force[body].into());
+            frame.coordination.push(neighbours[body]);
+            frame.fragment.push(fragments[body]);
         }
     }
     frame
 }
 
-/// Force chains: a line from partner to partner for each contact that carries force.
-pub fn chains(view: GrainsView<'_>) -> ChainFrame {
+/// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
+/// than the mean normal force.
+pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
-    for c in dem::measure::contacts(view.model, view.state) {
+    let contacts = dem::measure::contacts(view.model, view.state);
+    let mean = dem::measure::strong_network(&contacts).mean_force;
+    for c in contacts {
+        let strong = c.normal_force > mean;
+        if strong_only && !strong {
+            continue;
+        }
+        frame.strong.push(u32::from(strong));
         let first = view.state.position(c.a);
         let second = match c.b {
             dem::Partner::Body(b) => view.state.position(b),
@@ -102,6 +118,15 @@ pub fn chains(view: GrainsView<'_>) -> ChainFrame {
             dem::Partner::Patch(_) => 3,
             dem::Partner::Wall(_) => 4,
         });
+    }
+    if !strong_only {
+        for b in dem::bond::records(view.model, view.state) {
+            frame.ends.push([view.state.position(b.a).into(), view.state.position(b.b).into()]);
+            frame.normal_force.push(-b.tension);
+            frame.tangential_force.push(b.shear.norm());
+            frame.kind.push(BOND);
+            frame.strong.push(0);
+        }
     }
     frame
 }

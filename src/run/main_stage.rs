@@ -1,6 +1,8 @@
 //! The run proper: steps, records, accounts.
 
 use super::Stage;
+use super::bond_output;
+use super::checkpoint::{Loaded, Moment};
 use super::cycles::Cycle;
 use super::record::{Recorder, Sleeper};
 use super::summary::{EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
@@ -8,7 +10,30 @@ use super::system::System;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::progress::Progress;
+use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
+
+/// Stage of a checkpoint from within the run proper.
+pub(super) const RUN: &str = "run";
+
+/// How the grains of a run were when it began.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Start {
+    coordination: f64,
+    linear: dem::Vec3,
+    angular: dem::Vec3,
+}
+
+/// Where a run is.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Place {
+    /// Windows done.
+    done: u64,
+    /// Frame that comes next, not counting the one of the start.
+    next_frame: u64,
+    /// Seconds by the clock.
+    seconds: f64,
+}
 
 impl Stage<'_> {
     /// The run proper of a scene with grains, with its accounts.
@@ -16,16 +41,24 @@ impl Stage<'_> {
         &self,
         system: &mut S,
         grains: &GrainsPart,
+        mut resumed: Option<Loaded>,
         summary: &mut Summary,
     ) -> Result<(), Failure> {
         let momentum = |s: &S| {
             let g = s.grains().expect("a system with grains");
             dem::measure::momentum(g.model, g.state)
         };
-        let view = system.grains().expect("a system with grains");
-        summary.model.coordination = Some(dem::measure::coordination(view.model, view.state));
-        let before = momentum(system);
-        self.main_stage(system, Some(grains), summary)?;
+        let start = match &mut resumed {
+            Some(loaded) => loaded.take()?,
+            None => {
+                let view = system.grains().expect("a system with grains");
+                let coordination = dem::measure::coordination(view.model, view.state);
+                let dem::ledger::Impulse { linear, angular } = momentum(system);
+                Start { coordination, linear, angular }
+            }
+        };
+        summary.model.coordination = Some(start.coordination);
+        self.main_stage(system, Some((grains, start)), resumed, summary)?;
         let after = momentum(system);
         let ledger = &system.grains().expect("a system with grains").state.ledger;
         let impulse = ledger.impulse();
@@ -36,20 +69,22 @@ impl Stage<'_> {
         }
         let relative = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { error };
         summary.momentum = Some(MomentumRecord {
-            linear: relative((after.linear - before.linear - impulse.linear).norm(), linear),
-            angular: relative((after.angular - before.angular - impulse.angular).norm(), angular),
+            linear: relative((after.linear - start.linear - impulse.linear).norm(), linear),
+            angular: relative((after.angular - start.angular - impulse.angular).norm(), angular),
         });
         Ok(())
     }
 
-    /// Advances a system to the end of the run, recording.
+    /// Advances a system to the end of the run, recording; from where the checkpoint `resumed` has it, if there is one.
     pub(super) fn main_stage<S: System>(
         &self,
         system: &mut S,
-        grains: Option<&GrainsPart>,
+        grains: Option<(&GrainsPart, Start)>,
+        resumed: Option<Loaded>,
         summary: &mut Summary,
     ) -> Result<(), Failure> {
         let job = self.job;
+        let (grains, start) = grains.unzip();
         let window = system.window();
         let windows = ((job.end / window).ceil() as u64).max(1);
         let frames = u64::from(job.output.frames).min(windows);
@@ -71,13 +106,24 @@ impl Stage<'_> {
         };
         let at = |t: f64| sleeper.map(|_| Sleeper { body, load: load.map_or(0.0, |l| l.force(t)) });
 
-        let mut recorder = Recorder::start(job, self.dir, system, at(0.0))?;
-        recorder.row(0.0, system, at(0.0))?;
-        recorder.frame(0.0, system)?;
-        let progress = Progress::start("running", windows as f64, self.quiet);
-        let mut next_frame = 1;
-        let mut done = 0;
-        let outcome = (1..=windows).try_for_each(|k| -> Result<(), Failure> {
+        let (mut recorder, from) = match resumed {
+            Some(mut loaded) => {
+                let from: Place = loaded.take()?;
+                (Recorder::resume(job, self.dir, system, at(0.0), &mut loaded)?, from)
+            }
+            None => {
+                let mut recorder = Recorder::start(job, self.dir, system, at(0.0))?;
+                recorder.row(0.0, system, at(0.0))?;
+                recorder.frame(0.0, system)?;
+                (recorder, Place { done: 0, next_frame: 1, seconds: 0.0 })
+            }
+        };
+        let progress =
+            Progress::start("running", windows as f64, self.quiet).resumed(from.done as f64, from.seconds);
+        let mut next_frame = from.next_frame;
+        let mut done = from.done;
+        self.keeper.begin();
+        let outcome = (from.done + 1..=windows).try_for_each(|k| -> Result<(), Failure> {
             let time = k as f64 * window;
             system.advance(&apply)?;
             if let Some(cycle) = recorder.follow(time, system, at(time))? {
@@ -96,8 +142,26 @@ impl Stage<'_> {
             }
             progress.at(k as f64);
             done = k;
-            Ok(())
+            if k == windows {
+                return Ok(());
+            }
+            self.keeper.step(
+                || Moment { stage: RUN.into(), step: k, time },
+                |body| {
+                    // In the order in which a resumed run needs them.
+                    if let Some(settled) = &*self.settled.borrow() {
+                        body.put(settled)?;
+                    }
+                    system.save(body)?;
+                    if let Some(start) = &start {
+                        body.put(start)?;
+                    }
+                    body.put(&Place { done, next_frame, seconds: progress.seconds() })?;
+                    recorder.save(body)
+                },
+            )
         });
+        self.keeper.end();
         // A step that found no equilibrium leaves the last one: it is what the user wants to see.
         if matches!(outcome, Err(Failure::Numerical(_)))
             && system.keeps_its_state()
@@ -105,6 +169,12 @@ impl Stage<'_> {
         {
             recorder.row(time, system, at(time))?;
             recorder.frame(time, system)?;
+        }
+        if let (Some(part), Some(view)) = (grains, system.grains())
+            && !part.bonds.is_empty()
+        {
+            bond_output::write_breaks(self.dir, view.state)?;
+            summary.bonds = Some(bond_output::summary(view));
         }
         let (grain_steps, solid_steps) = system.steps_per_window();
         let seconds = progress.finish(&format!("{:.3} s simulated", done as f64 * window));
@@ -125,7 +195,7 @@ impl Stage<'_> {
             error: balance.error(),
             work,
             relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
-            largest_error: recorder.largest_error,
+            largest_error: recorder.largest_error(),
         });
         recorder.plot_settlement()?;
         outcome

@@ -1,11 +1,18 @@
 //! The run: fill, settle, place the sleeper, load, write.
 
+mod bed;
+mod bond_output;
+mod checkpoint;
+mod compact;
 mod cycles;
 mod failure_factor;
 mod frames;
 mod initial;
+mod keeper;
 mod main_stage;
 mod memory;
+mod packed;
+mod packing;
 mod plastic;
 mod record;
 mod settle;
@@ -16,16 +23,21 @@ mod system;
 mod wall_output;
 
 pub use cycles::{Cycle, CycleRecorder};
+pub use keeper::Interrupt;
 pub use memory::{Prediction, parse_size, size};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
-use crate::model::grains::refused;
+use crate::model::grains::{GrainsPart, check_joined, refused};
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
-use std::cell::Cell;
+use checkpoint::{Loaded, Origin, Slots};
+use keeper::Keeper;
+use main_stage::RUN;
+use settle::Settled;
+use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use summary::{CouplingRecord, Hash, NewtonRecord};
 use system::{CoupledSystem, GrainsSystem, System};
@@ -45,33 +57,62 @@ pub struct Options {
     pub set: Vec<String>,
     /// Most memory that a solid may need [bytes]; default what the machine has free.
     pub memory: Option<u64>,
+    /// Go on from the last checkpoint in the folder of the results.
+    pub resume: bool,
+    /// Request to stop with a checkpoint.
+    pub interrupt: Interrupt,
     /// Print nothing.
     pub quiet: bool,
+}
+
+/// What became of a run.
+#[derive(Debug)]
+pub enum Outcome {
+    /// It is done.
+    Done(Box<Summary>),
+    /// It was to be resumed, but was done already; the folder of its results.
+    WasDone(PathBuf),
 }
 
 /// Runs a scene and writes its results.
 ///
 /// # Errors
-/// Bad input, before anything is written; or a numerical failure, with what was written until then left in place.
-pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
+/// Bad input, before anything is written; a numerical failure or an interrupt, with what was written until then left in
+/// place.
+pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let mut document = Document::open(scene)?;
     for assignment in &options.set {
         document.set(assignment)?;
     }
     let parsed: Scene = document.read()?;
     let pool = thread_pool(options.threads)?;
+    let dir = options.out.clone().unwrap_or_else(|| default_folder(scene));
+    let origin = origin(&document, &parsed);
+    let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
+    let mut slots = Slots::new(&dir, origin);
+    let mut loaded = None;
+    if options.resume {
+        if was_done(&dir, &scene_hash)? {
+            return Ok(Outcome::WasDone(dir));
+        }
+        let (checkpoint, remark) = slots.load(&document)?;
+        if let Some(remark) = remark {
+            eprintln!("note: {remark}");
+        }
+        loaded = Some(checkpoint);
+    }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
-        let dir = options.out.clone().unwrap_or_else(|| default_folder(scene));
         let mut summary = Summary {
             status: "running".into(),
             title: job.title.clone(),
             version: env!("CARGO_PKG_VERSION").into(),
-            scene_hash: hash(&document, &parsed),
-            overrides: document.overrides().iter().map(|(k, v)| format!("{k}={v}")).collect(),
+            scene_hash,
+            overrides,
             threads: rayon::current_num_threads(),
             ..Summary::default()
         };
+        let command = resume_command(scene, &dir, &options.set);
         let stage = Stage {
             document: &document,
             job: &job,
@@ -79,6 +120,10 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
             quiet: options.quiet,
             memory: options.memory,
             prepared: Cell::new(false),
+            keeper: Keeper::new(slots, options.interrupt.clone(), job.output.checkpoint, command),
+            goes_on: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),
+            loaded: RefCell::new(loaded),
+            settled: RefCell::new(None),
         };
         let result = stage.run(&mut summary);
         summary.peak_memory = peak_memory();
@@ -86,17 +131,59 @@ pub fn run(scene: &Path, options: &Options) -> Result<Summary, Failure> {
             Ok(()) => summary.status = "done".into(),
             // Bad input leaves nothing behind, not even a summary.
             Err(Failure::Input(_)) => {}
+            Err(Failure::Interrupted(_)) => summary.status = "interrupted".into(),
             Err(failure) => summary.status = format!("failed: {failure}"),
         }
         if matches!(result, Err(Failure::Input(_))) {
-            return result.map(|()| summary);
+            return result.map(|()| Outcome::Done(Box::new(summary)));
         }
         // A failure before the first file, such as one while settling, has no folder yet, or one with the results of
         // an earlier run. What stopped the run comes before what stopped its summary.
         let cleared = if stage.prepared.get() { Ok(()) } else { stage.prepare() };
         let written = cleared.and_then(|()| summary.write(&dir)).and_then(|()| summary.write_log(&dir));
-        result.and(written).map(|()| summary)
+        let result = match (result, stage.keeper.kept()) {
+            (Err(Failure::Numerical(text)), Some(kept)) => {
+                Err(Failure::Numerical(format!("{text}; the last checkpoint is kept in {kept}")))
+            }
+            (result, _) => result,
+        };
+        result.and(written)?;
+        // A run that is done has nothing to go on from; until here the last checkpoint stands.
+        stage.keeper.clear()?;
+        Ok(Outcome::Done(Box::new(summary)))
     })
+}
+
+/// Whether the results in `dir` are those of a finished run of the same scene, without any checkpoint of a later one.
+///
+/// # Errors
+/// Bad input: they are of another scene.
+fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
+    let text = std::fs::read_to_string(dir.join("summary.json")).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    if summary["status"] != "done" || dir.join(checkpoint::FOLDER).exists() {
+        return Ok(false);
+    }
+    if summary["scene_hash"] != scene_hash {
+        let dir = dir.display();
+        return Err(Failure::Input(format!("--resume: {dir} holds the finished run of another scene")));
+    }
+    Ok(true)
+}
+
+/// The command that continues a run.
+fn resume_command(scene: &Path, dir: &Path, set: &[String]) -> String {
+    let quoted = |text: String| match text.chars().all(|c| c.is_alphanumeric() || "/._-=+".contains(c)) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    };
+    let mut command = format!(
+        "trackbed run {} --resume --out {}",
+        quoted(scene.display().to_string()),
+        quoted(dir.display().to_string())
+    );
+    set.iter().for_each(|s| command += &format!(" --set {}", quoted(s.clone())));
+    command
 }
 
 /// The pool that a run works in: as many threads as asked for, with stacks deep enough for recursive elimination.
@@ -122,14 +209,34 @@ pub(crate) fn default_folder(scene: &Path) -> PathBuf {
     Path::new("results").join(name)
 }
 
-/// Hash of the scene, its overrides and the files it names.
-fn hash(document: &Document, scene: &Scene) -> String {
+/// What the results of a run depend on: scene, overrides, and the files that the scene names.
+fn origin(document: &Document, scene: &Scene) -> Origin {
     let mut hash = Hash::default();
     hash.add(document.text().as_bytes());
     for (key, value) in document.overrides() {
         hash.add(key.as_bytes());
         hash.add(value.as_bytes());
     }
+    let mut files = Vec::new();
+    for file in files_of(scene) {
+        // One that is missing or has gone changes the hash, which is what it is for.
+        let content = std::fs::read(document.resolve(file)).unwrap_or_default();
+        hash.add(&content);
+        let mut own = Hash::default();
+        own.add(&content);
+        files.push((file.to_path_buf(), own.hex()));
+    }
+    Origin {
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene_hash: hash.hex(),
+        scene: document.text().into(),
+        overrides: document.overrides().iter().map(|(k, v)| format!("{k}={v}")).collect(),
+        files,
+    }
+}
+
+/// The files that a scene names.
+fn files_of(scene: &Scene) -> Vec<&Path> {
     let mut files: Vec<&Path> = Vec::new();
     if let Some(s) = &scene.solid {
         files.extend(
@@ -142,13 +249,11 @@ fn hash(document: &Document, scene: &Scene) -> String {
         files.extend(g.library.as_deref());
         files.extend(g.packing.as_deref());
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
+        files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
-    for file in files {
-        // Every one of them was read before; one that has gone since changes the hash, which is what it is for.
-        hash.add(&std::fs::read(document.resolve(file)).unwrap_or_default());
-    }
-    hash.hex()
+    files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
+    files
 }
 
 /// One run in progress.
@@ -160,6 +265,13 @@ struct Stage<'a> {
     memory: Option<u64>,
     /// Whether the folder is cleared of earlier results and holds those of this run.
     prepared: Cell<bool>,
+    keeper: Keeper,
+    /// Whether the run proper goes on from a checkpoint, so that the files in the folder are its own.
+    goes_on: bool,
+    /// The checkpoint that the run goes on from, until its stage takes it.
+    loaded: RefCell<Option<Loaded>>,
+    /// The bed that has settled, for the checkpoints of the run proper.
+    settled: RefCell<Option<Settled>>,
 }
 
 impl Stage<'_> {
@@ -181,19 +293,27 @@ impl Stage<'_> {
         match (&self.job.solid, &self.job.grains, &self.job.coupling) {
             (Some(solid), None, _) => self.solid_alone(solid, summary),
             (None, Some(grains), _) => {
-                let deposited = self.deposit(grains, None, summary)?;
+                let mut resumed = self.resumed(RUN);
+                let (grains, deposited) = self.deposit(grains, None, resumed.as_mut(), summary)?;
+                let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, None)?;
-                let model = self.grain_model(grains.input(bodies), summary)?;
-                let mut system = GrainsSystem::new(model)?;
+                let model = self.grain_model(grains, bodies, summary)?;
+                let mut system = match &mut resumed {
+                    Some(loaded) => GrainsSystem::resume(model, loaded)?,
+                    None => GrainsSystem::new(model)?,
+                };
                 self.prepare()?;
-                self.grain_stage(&mut system, grains, summary)
+                self.grain_stage(&mut system, grains, resumed, summary)?;
+                self.record_packing(&system, grains, summary)
             }
             (Some(solid), Some(grains), Some(plan)) => {
                 let surface = SolidSurface::new(solid.model.mesh(), plan.faces.clone());
-                let deposited = self.deposit(grains, Some(&surface), summary)?;
+                let mut resumed = self.resumed(RUN);
+                let (grains, deposited) = self.deposit(grains, Some(&surface), resumed.as_mut(), summary)?;
+                let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
-                let model = self.grain_model(grains.input(bodies), summary)?;
-                let mut system = self.couple(solid, model, plan, surface, summary)?;
+                let model = self.grain_model(grains, bodies, summary)?;
+                let mut system = self.couple(solid, model, plan, surface, resumed.as_mut(), summary)?;
                 let stability = grains.stability(
                     &system.model.grains,
                     system.model.window(),
@@ -208,7 +328,8 @@ impl Stage<'_> {
                     ));
                 }
                 self.prepare()?;
-                self.grain_stage(&mut system, grains, summary)?;
+                self.grain_stage(&mut system, grains, resumed, summary)?;
+                self.record_packing(&system, grains, summary)?;
                 if self.job.output.tables {
                     let moved = &system.state.solid;
                     let reactions = fem::energy::reactions(&solid.model, moved, system.work.load());
@@ -229,12 +350,32 @@ impl Stage<'_> {
     }
 
     fn prepare(&self) -> Result<(), Failure> {
-        record::prepare(self.dir, &self.job.output)?;
+        if self.goes_on {
+            record::take_up(self.dir, &self.job.output)?;
+        } else {
+            self.keeper.clear_others()?;
+            record::prepare(self.dir, &self.job.output)?;
+        }
         self.prepared.set(true);
         Ok(())
     }
 
-    fn grain_model(&self, input: dem::ModelInput, summary: &mut Summary) -> Result<dem::Model, Failure> {
+    /// The checkpoint that the run goes on from, if it is of the stage `stage`.
+    fn resumed(&self, stage: &str) -> Option<Loaded> {
+        self.loaded.borrow_mut().take_if(|loaded| loaded.moment.stage == stage)
+    }
+
+    fn grain_model(
+        &self,
+        grains: &GrainsPart,
+        bodies: Vec<dem::BodyInput>,
+        summary: &mut Summary,
+    ) -> Result<dem::Model, Failure> {
+        let input = grains.input(bodies);
+        check_joined(self.document, &grains.bonds, &input.bonds)?;
+        if !grains.bonds.is_empty() {
+            summary.sources.extend(BOND_SOURCES);
+        }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
@@ -252,40 +393,59 @@ impl Stage<'_> {
         grains: dem::Model,
         plan: &CouplingPart,
         mut surface: SolidSurface,
+        resumed: Option<&mut Loaded>,
         summary: &mut Summary,
     ) -> Result<CoupledSystem<'b>, Failure> {
         let progress = Progress::start("equilibrium", 1.0, self.quiet);
         let dead_load = solid.model.gravity_load();
-        let mut load = dead_load.clone();
-        solid.add_loads(0.0, &mut load);
-        let (contacts, resting) = coupling::step::resting_load(&grains, &mut surface, solid.model.mesh())
-            .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
-        for (l, c) in load.iter_mut().zip(&contacts) {
-            *l += c;
-        }
-        let state = if solid.is_linear() {
-            let rest = fem::statics::solve(&solid.model, &load).map_err(|e| solid.failure(&e))?;
-            let mut state = fem::state::State::new(&solid.model);
-            state.u.copy_from_slice(&rest.u);
-            state
-        } else {
-            initial::under_load(solid, &dead_load, &load)?
+        let (reference, memory, state) = match resumed {
+            Some(loaded) => loaded.take()?,
+            None => {
+                let (state, resting) = equilibrium(solid, &grains, &mut surface, &dead_load)?;
+                (state.u.clone(), None, coupling::step::State::new(state, resting))
+            }
         };
         let model = coupling::step::Model {
             solid: &solid.model,
             dead_load,
-            reference: state.u.clone(),
+            reference,
             substeps: plan.substeps,
             theta: plan.theta,
             newton: solid.newton,
             grains,
         };
-        let state = coupling::step::State::new(state, resting);
-        let work = coupling::step::Work::new(&model, &state, surface).map_err(|e| solid.failure(&e))?;
+        let work = coupling::step::Work::new(&model, &state, surface)
+            .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
+            .map_err(|e| solid.failure(&e))?;
         summary.model.solid_step = Some(model.window());
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
         Ok(CoupledSystem { model, state, work, loads: &solid.loads })
     }
+}
+
+/// The solid in equilibrium with its weight, its loads and the grains that lie on it, and the grains with their contacts.
+fn equilibrium(
+    solid: &SolidPart,
+    grains: &dem::Model,
+    surface: &mut SolidSurface,
+    dead_load: &[f64],
+) -> Result<(fem::State, dem::State), Failure> {
+    let mut load = dead_load.to_vec();
+    solid.add_loads(0.0, &mut load);
+    let (contacts, resting) = coupling::step::resting_load(grains, surface, solid.model.mesh())
+        .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+    for (l, c) in load.iter_mut().zip(&contacts) {
+        *l += c;
+    }
+    let state = if solid.is_linear() {
+        let rest = fem::statics::solve(&solid.model, &load).map_err(|e| solid.failure(&e))?;
+        let mut state = fem::state::State::new(&solid.model);
+        state.u.copy_from_slice(&rest.u);
+        state
+    } else {
+        initial::under_load(solid, dead_load, &load)?
+    };
+    Ok((state, resting))
 }
 
 /// Sources of the methods that a solid uses.
@@ -322,6 +482,9 @@ fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     }
     sources
 }
+
+const BOND_SOURCES: [&str; 1] =
+    ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];
 
 const GRAIN_SOURCES: [&str; 3] = [
     "contact: linear spring-dashpot with Coulomb friction, Cundall & Strack, Geotechnique 29(1), 1979",

@@ -1,8 +1,10 @@
 //! A plastic solid that runs alone: in quasi-static steps, or through time.
 
+use super::checkpoint::{Body, Loaded};
 use super::system::{Applied, SolidView, System};
 use crate::failure::Failure;
 use crate::model::solid::{QuasiStaticPlan, SolidPart, TimeMethod};
+use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_fem as fem;
 use trackbed_fem::State;
@@ -80,8 +82,7 @@ impl<'a> QuasiStaticSystem<'a> {
             .advance(model, &mut state, 0.0, &mut course, |_, _| {})
             .map_err(|e| part.failure(&e).in_stage("before time 0, while weight and loads are brought on"))?;
         state.time = 0.0;
-        let control = StepControl { initial: step, min: step * plan.smallest_step, max: step, ..control };
-        let solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
+        let solver = quasi_static(part, plan, step)?;
         let reactions = begin.reactions().to_vec();
         let mut load = vec![0.0; model.dof_count()];
         course.load(0.0, &mut load);
@@ -99,10 +100,39 @@ impl<'a> QuasiStaticSystem<'a> {
         })
     }
 
+    /// The solid as a checkpoint has it.
+    ///
+    /// # Errors
+    /// The body is not held; a checkpoint of something else.
+    pub fn resume(
+        part: &'a SolidPart,
+        plan: &QuasiStaticPlan,
+        step: f64,
+        loaded: &mut Loaded,
+    ) -> Result<Self, Failure> {
+        let mut solver = quasi_static(part, plan, step)?;
+        let memory = loaded.take()?;
+        solver.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
+        let (state, carried, steps, load, reactions, spent) = loaded.take()?;
+        let gravity = part.model.gravity_load();
+        Ok(QuasiStaticSystem { part, state, solver, carried, step, steps, load, reactions, spent, gravity })
+    }
+
     /// Counts of the iteration.
     pub fn statistics(&self) -> Statistics {
         self.solver.statistics()
     }
+}
+
+/// The solver of the run proper.
+fn quasi_static(part: &SolidPart, plan: &QuasiStaticPlan, step: f64) -> Result<QuasiStatic, Failure> {
+    let control = StepControl {
+        initial: step,
+        min: step * plan.smallest_step,
+        max: step,
+        target_iterations: plan.target_iterations,
+    };
+    QuasiStatic::new(&part.model, part.newton, control).map_err(|e| part.failure(&e))
 }
 
 impl System for QuasiStaticSystem<'_> {
@@ -141,6 +171,11 @@ impl System for QuasiStaticSystem<'_> {
             (self.load, self.reactions) = (load, reactions);
         }
         outcome
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&self.solver.memory())?;
+        body.put(&(&self.state, self.carried, self.steps, &self.load, &self.reactions, &self.spent))
     }
 
     fn stored(&self) -> Stored {
@@ -192,13 +227,7 @@ impl<'a> PlasticDynamics<'a> {
         let model = &part.model;
         let gravity = model.gravity_load();
         let (mut state, _) = super::initial::state(part, &gravity)?;
-        let control =
-            StepControl { initial: step, min: step * SMALLEST_PART, max: step, target_iterations: 40 };
-        let solver = match method {
-            TimeMethod::Newmark(m) => Dynamics::newmark(model, m, part.newton, control),
-            TimeMethod::Hht(alpha) => Dynamics::hht(model, alpha, part.newton, control),
-        }
-        .map_err(|e| part.failure(&e))?;
+        let solver = dynamics_solver(part, method, step)?;
         let mut load = vec![0.0; model.dof_count()];
         let mut course = Course { part, gravity: &gravity, carried: 1.0 };
         course.load(0.0, &mut load);
@@ -206,10 +235,38 @@ impl<'a> PlasticDynamics<'a> {
         Ok(PlasticDynamics { part, state, solver, load, step, steps: 0, spent: Spent::default(), gravity })
     }
 
+    /// The solid as a checkpoint has it.
+    ///
+    /// # Errors
+    /// A matrix cannot be factored; a checkpoint of something else.
+    pub fn resume(
+        part: &'a SolidPart,
+        method: TimeMethod,
+        step: f64,
+        loaded: &mut Loaded,
+    ) -> Result<Self, Failure> {
+        let mut solver = dynamics_solver(part, method, step)?;
+        let memory = loaded.take()?;
+        solver.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
+        let (state, steps, load, spent) = loaded.take()?;
+        let gravity = part.model.gravity_load();
+        Ok(PlasticDynamics { part, state, solver, load, step, steps, spent, gravity })
+    }
+
     /// Counts of the iteration.
     pub fn statistics(&self) -> Statistics {
         self.solver.statistics()
     }
+}
+
+/// The solver of a plastic solid in motion.
+fn dynamics_solver(part: &SolidPart, method: TimeMethod, step: f64) -> Result<Dynamics, Failure> {
+    let control = StepControl { initial: step, min: step * SMALLEST_PART, max: step, target_iterations: 40 };
+    match method {
+        TimeMethod::Newmark(m) => Dynamics::newmark(&part.model, m, part.newton, control),
+        TimeMethod::Hht(alpha) => Dynamics::hht(&part.model, alpha, part.newton, control),
+    }
+    .map_err(|e| part.failure(&e))
 }
 
 impl System for PlasticDynamics<'_> {
@@ -244,6 +301,11 @@ impl System for PlasticDynamics<'_> {
         self.load.fill(0.0);
         course.load(reached, &mut self.load);
         outcome
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&self.solver.memory())?;
+        body.put(&(&self.state, self.steps, &self.load, &self.spent))
     }
 
     fn stored(&self) -> Stored {

@@ -1,6 +1,8 @@
 //! What a run leaves while it goes: `history.csv`, `cycles.csv`, frames for ParaView and Tecplot, and at the end the
 //! settlement curve.
 
+use super::bond_output;
+use super::checkpoint::{Body, Loaded};
 use super::cycles::{Cycle, CycleRecorder};
 use super::frames;
 use super::system::System;
@@ -8,9 +10,10 @@ use super::wall_output;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::write;
-use crate::write::csv::{Column, History};
-use std::fs;
+use crate::write::csv::{Column, History, Mark};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 use trackbed_coupling::ledger::Balance;
 
 /// The files of one run.
@@ -18,16 +21,31 @@ pub struct Recorder<'a> {
     job: &'a Job,
     dir: PathBuf,
     series: write::pvd::Series,
-    frame: usize,
     history: History,
     cycles_file: Option<History>,
+    course: Course,
+}
+
+/// What a recorder has learnt by now: with the marks of its files all that a checkpoint needs of it.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Course {
+    /// Number of the next frame.
+    frame: usize,
     cycles: Option<CycleRecorder>,
     balance: Balance,
     /// Largest |energy error| at any row [J].
-    pub largest_error: f64,
+    largest_error: f64,
     /// Settlement of the sleeper since the run began against time, for the plot.
     settlement: Vec<[f64; 2]>,
     first_height: Option<f64>,
+}
+
+/// How far the files of a recorder have come.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Marks {
+    history: Mark,
+    cycles: Option<Mark>,
+    series: usize,
 }
 
 /// Place, load and tilt of the sleeper at one moment.
@@ -50,54 +68,79 @@ impl<'a> Recorder<'a> {
         system: &S,
         sleeper: Option<Sleeper>,
     ) -> Result<Self, Failure> {
-        let mut columns = vec![Column::new("time", "s")];
-        let vector = |columns: &mut Vec<Column>, name: &str, unit: &str| {
-            for d in ["x", "y", "z"] {
-                columns.push(Column::new(format!("{name}_{d}"), unit));
-            }
-        };
-        if sleeper.is_some() {
-            columns.push(Column::new("load", "N"));
-            vector(&mut columns, "sleeper", "m");
-            columns.push(Column::new("sleeper_tilt", "rad"));
-        }
-        if system.grains().is_some() && system.solid().is_some() {
-            vector(&mut columns, "contact_force_on_solid", "N");
-            columns.push(Column::new("peak_formation_pressure", "Pa"));
-        }
-        for name in ENERGY_COLUMNS {
-            columns.push(Column::new(name, "J"));
-        }
-        if let Some(part) = &job.solid
-            && system.reactions().is_some()
-        {
-            for (name, _) in &part.named_supports {
-                vector(&mut columns, &format!("{name}_reaction"), "N");
-            }
-        }
-        for (name, _) in &job.probes {
-            vector(&mut columns, &format!("{name}_u"), "m");
-            vector(&mut columns, &format!("{name}_v"), "m/s");
-        }
-        columns.extend(job.grains.iter().flat_map(wall_output::columns));
-        let history = History::create(&dir.join("history.csv"), columns)?;
+        let history = History::create(&dir.join("history.csv"), columns(job, system, sleeper))?;
         let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
         let cycles_file =
             load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns())).transpose()?;
         let stored = system.stored();
-        Ok(Recorder {
-            job,
-            dir: dir.to_path_buf(),
-            series: write::pvd::Series::new(&dir.join("results.pvd")),
-            frame: 0,
-            history,
-            cycles_file,
+        let course = Course {
             cycles: load.map(CycleRecorder::new),
             balance: Balance { start: stored, now: stored, spent: system.spent() },
-            largest_error: 0.0,
-            settlement: Vec::new(),
-            first_height: None,
-        })
+            ..Course::default()
+        };
+        let series = write::pvd::Series::new(&dir.join("results.pvd"));
+        Ok(Recorder { job, dir: dir.to_path_buf(), series, history, cycles_file, course })
+    }
+
+    /// Takes up the files of a run in `dir` where a checkpoint has them; what was written later is taken away.
+    ///
+    /// # Errors
+    /// Files that are not those of the run that the checkpoint is of; the folder cannot be written.
+    pub fn resume<S: System>(
+        job: &'a Job,
+        dir: &Path,
+        system: &S,
+        sleeper: Option<Sleeper>,
+        loaded: &mut Loaded,
+    ) -> Result<Self, Failure> {
+        let unfit = |e: write::WriteError| Failure::Input(format!("--resume: {e}"));
+        let marks: Marks = loaded.take()?;
+        let course: Course = loaded.take()?;
+        let file = dir.join("history.csv");
+        let history = History::resume(&file, columns(job, system, sleeper), marks.history).map_err(unfit)?;
+        let cycles_file = marks
+            .cycles
+            .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_columns(), mark))
+            .transpose()
+            .map_err(unfit)?;
+        let series = write::pvd::Series::resume(&dir.join("results.pvd"), marks.series).map_err(unfit)?;
+        let recorder = Recorder { job, dir: dir.to_path_buf(), series, history, cycles_file, course };
+        recorder.remove_later_frames()?;
+        if job.output.vtk {
+            recorder.series.write()?;
+        }
+        Ok(recorder)
+    }
+
+    /// Puts into a checkpoint what [`Recorder::resume`] goes on from. The rows written are on the disk then.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        let mark = |history: &History| history.mark().map_err(io::Error::other);
+        body.put(&Marks {
+            history: mark(&self.history)?,
+            cycles: self.cycles_file.as_ref().map(mark).transpose()?,
+            series: self.series.entries(),
+        })?;
+        body.put(&self.course)
+    }
+
+    /// Removes the frames from the next one on.
+    fn remove_later_frames(&self) -> Result<(), Failure> {
+        let fail = |e: io::Error| Failure::Other(format!("{}: {e}", self.dir.display()));
+        for folder in ["frames", "tecplot"].map(|sub| self.dir.join(sub)).iter().filter(|f| f.is_dir()) {
+            for entry in fs::read_dir(folder).map_err(fail)? {
+                let path = entry.map_err(fail)?.path();
+                let number = path.file_stem().and_then(|s| s.to_str()).and_then(|s| s.rsplit_once('_'));
+                let later =
+                    number.and_then(|(_, n)| n.parse::<usize>().ok()).is_some_and(|n| n >= self.course.frame);
+                if is_frame(&path) && later {
+                    fs::remove_file(&path).map_err(fail)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Adds a row to the history.
@@ -110,18 +153,19 @@ impl<'a> Recorder<'a> {
             let x = g.state.position(s.body);
             let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
             row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
-            let first = *self.first_height.get_or_insert(x.z);
-            self.settlement.push([time, 1e3 * (first - x.z)]);
+            let first = *self.course.first_height.get_or_insert(x.z);
+            self.course.settlement.push([time, 1e3 * (first - x.z)]);
         }
         if system.grains().is_some() && system.solid().is_some() {
             row.extend(system.contact_force());
             row.push(system.peak_pressure());
         }
-        self.balance.now = system.stored();
-        self.balance.spent = system.spent();
-        let (now, spent) = (&self.balance.now, &self.balance.spent);
-        let error = self.balance.error();
-        self.largest_error = self.largest_error.max(error.abs());
+        let course = &mut self.course;
+        course.balance.now = system.stored();
+        course.balance.spent = system.spent();
+        let (now, spent) = (&course.balance.now, &course.balance.spent);
+        let error = course.balance.error();
+        course.largest_error = course.largest_error.max(error.abs());
         row.extend([
             now.grains_kinetic,
             now.contact_springs,
@@ -136,6 +180,9 @@ impl<'a> Recorder<'a> {
             spent.interface(),
             error,
         ]);
+        if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
+            bond_output::values(part, view, now, spent, &mut row);
+        }
         if let Some(part) = &self.job.solid
             && !part.named_supports.is_empty()
             && let Some(reactions) = system.reactions()
@@ -165,7 +212,7 @@ impl<'a> Recorder<'a> {
         system: &S,
         sleeper: Option<Sleeper>,
     ) -> Result<Option<Cycle>, Failure> {
-        let (Some(cycles), Some(s), Some(g)) = (&mut self.cycles, sleeper, system.grains()) else {
+        let (Some(cycles), Some(s), Some(g)) = (&mut self.course.cycles, sleeper, system.grains()) else {
             return Ok(None);
         };
         let height = g.state.position(s.body).z;
@@ -189,7 +236,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// A field is not finite, or the disk refuses.
     pub fn frame<S: System>(&mut self, time: f64, system: &S) -> Result<(), Failure> {
-        let k = self.frame;
+        let k = self.course.frame;
         let vtk = self.job.output.vtk;
         if let Some(solid) = system.solid() {
             let name = format!("frames/solid_{k:05}.vtu");
@@ -202,7 +249,10 @@ impl<'a> Recorder<'a> {
         if let (Some(view), Some(part), true) = (system.grains(), &self.job.grains, vtk) {
             let name = |kind: &str| format!("frames/{kind}_{k:05}.vtp");
             write::vtp::write_grains(&self.dir.join(name("grains")), &frames::grains(view))?;
-            write::vtp::write_chains(&self.dir.join(name("chains")), &frames::chains(view))?;
+            write::vtp::write_chains(
+                &self.dir.join(name("chains")),
+                &frames::chains(view, self.job.output.strong_chains),
+            )?;
             self.series.push(time, 1, "grains", &name("grains"));
             self.series.push(time, 2, "force chains", &name("chains"));
             let walls = frames::walls(view, part);
@@ -214,18 +264,23 @@ impl<'a> Recorder<'a> {
         if vtk {
             self.series.write()?;
         }
-        self.frame += 1;
+        self.course.frame += 1;
         Ok(())
     }
 
     /// Energy account as of the last row.
     pub fn balance(&self) -> &Balance {
-        &self.balance
+        &self.course.balance
+    }
+
+    /// Largest |energy error| at any row [J].
+    pub fn largest_error(&self) -> f64 {
+        self.course.largest_error
     }
 
     /// Finished load cycles.
     pub fn cycles(&self) -> &[Cycle] {
-        self.cycles.as_ref().map_or(&[], |c| &c.done)
+        self.course.cycles.as_ref().map_or(&[], |c| &c.done)
     }
 
     /// Draws the settlement curves.
@@ -234,12 +289,15 @@ impl<'a> Recorder<'a> {
     /// The disk refuses.
     pub fn plot_settlement(&self) -> Result<(), Failure> {
         let cycles = self.cycles();
-        if !self.settlement.is_empty() {
+        if !self.course.settlement.is_empty() {
             write::svg::LinePlot {
                 title: format!("{}: lowering of the sleeper", self.job.title),
                 x_label: "time [s]".into(),
                 y_label: "lowering [mm]".into(),
-                series: vec![write::svg::Series { name: "sleeper".into(), points: self.settlement.clone() }],
+                series: vec![write::svg::Series {
+                    name: "sleeper".into(),
+                    points: self.course.settlement.clone(),
+                }],
             }
             .write(&self.dir.join("sleeper.svg"))?;
         }
@@ -262,6 +320,44 @@ impl<'a> Recorder<'a> {
         }
         Ok(())
     }
+}
+
+/// Columns of the history.
+fn columns<S: System>(job: &Job, system: &S, sleeper: Option<Sleeper>) -> Vec<Column> {
+    let mut columns = vec![Column::new("time", "s")];
+    let vector = |columns: &mut Vec<Column>, name: &str, unit: &str| {
+        for d in ["x", "y", "z"] {
+            columns.push(Column::new(format!("{name}_{d}"), unit));
+        }
+    };
+    if sleeper.is_some() {
+        columns.push(Column::new("load", "N"));
+        vector(&mut columns, "sleeper", "m");
+        columns.push(Column::new("sleeper_tilt", "rad"));
+    }
+    if system.grains().is_some() && system.solid().is_some() {
+        vector(&mut columns, "contact_force_on_solid", "N");
+        columns.push(Column::new("peak_formation_pressure", "Pa"));
+    }
+    for name in ENERGY_COLUMNS {
+        columns.push(Column::new(name, "J"));
+    }
+    if system.grains().is_some() {
+        columns.extend(job.grains.iter().flat_map(bond_output::columns));
+    }
+    if let Some(part) = &job.solid
+        && system.reactions().is_some()
+    {
+        for (name, _) in &part.named_supports {
+            vector(&mut columns, &format!("{name}_reaction"), "N");
+        }
+    }
+    for (name, _) in &job.probes {
+        vector(&mut columns, &format!("{name}_u"), "m");
+        vector(&mut columns, &format!("{name}_v"), "m/s");
+    }
+    columns.extend(job.grains.iter().flat_map(wall_output::columns));
+    columns
 }
 
 const ENERGY_COLUMNS: [&str; 12] = [
@@ -293,7 +389,8 @@ fn cycle_columns() -> Vec<Column> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 10] = [
+const FILES: [&str; 14] = [
+    "breaks.csv",
     "summary.json",
     "log.txt",
     "history.csv",
@@ -304,7 +401,50 @@ const FILES: [&str; 10] = [
     "results.pvd",
     "settlement.svg",
     "sleeper.svg",
+    "gradation.csv",
+    "gradation.svg",
+    "packing.csv",
 ];
+
+/// The packing of one of several groups.
+fn of_a_group(path: &Path) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let number = name.strip_prefix("packing_").and_then(|rest| rest.strip_suffix(".csv"));
+    number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
+}
+
+/// Whether a file is one of the frames that this program writes, or the beginning of one.
+fn is_frame(path: &Path) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = name.strip_suffix(".part").unwrap_or(&name);
+    ["vtu", "vtp", "dat"].iter().any(|kind| Path::new(name).extension().is_some_and(|e| e == *kind))
+}
+
+/// Makes the folder of the results ready for a run that goes on there: files that a stopped program left half-written go.
+///
+/// # Errors
+/// The folder cannot be made or cleaned.
+pub fn take_up(dir: &Path, output: &crate::model::OutputPlan) -> Result<(), Failure> {
+    let fail = |e: io::Error| Failure::Other(format!("{}: {e}", dir.display()));
+    for (sub, wanted) in [("", true), ("frames", output.vtk), ("tecplot", output.tecplot)] {
+        let folder = dir.join(sub);
+        if wanted {
+            fs::create_dir_all(&folder).map_err(fail)?;
+        }
+        for half in FILES.map(|name| folder.join(format!("{name}.part"))).iter().filter(|f| f.is_file()) {
+            fs::remove_file(half).map_err(fail)?;
+        }
+        if folder.is_dir() && !sub.is_empty() {
+            for entry in fs::read_dir(&folder).map_err(fail)? {
+                let path = entry.map_err(fail)?.path();
+                if is_frame(&path) && path.extension().is_some_and(|e| e == "part") {
+                    fs::remove_file(&path).map_err(fail)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
 
 /// Makes the folder of the results; what an earlier run left there is removed, so that no result of another run is
 /// taken for one of this. Files that are not of this program stay.
@@ -319,13 +459,20 @@ pub fn prepare(dir: &Path, output: &crate::model::OutputPlan) -> Result<(), Fail
     for file in FILES.map(|name| dir.join(name)).iter().filter(|file| of_a_run && file.is_file()) {
         fs::remove_file(file).map_err(fail)?;
     }
+    if of_a_run {
+        for entry in fs::read_dir(dir).map_err(fail)? {
+            let path = entry.map_err(fail)?.path();
+            if of_a_group(&path) {
+                fs::remove_file(&path).map_err(fail)?;
+            }
+        }
+    }
     for (sub, wanted) in [("frames", output.vtk), ("tecplot", output.tecplot)] {
         let folder = dir.join(sub);
         if folder.is_dir() {
             for entry in fs::read_dir(&folder).map_err(fail)? {
                 let path = entry.map_err(fail)?.path();
-                let ours = path.extension().is_some_and(|e| ["vtu", "vtp", "dat"].iter().any(|k| e == *k));
-                if ours {
+                if is_frame(&path) {
                     fs::remove_file(&path).map_err(fail)?;
                 }
             }

@@ -1,10 +1,13 @@
 //! Before the run proper: filled grains settle, the bed is levelled, the sleeper is set down.
 
-use super::Stage;
+use super::checkpoint::{Loaded, Moment};
+use super::packing::{CompactionRecord, GrowthRecord};
 use super::summary::{StageRecord, Summary};
+use super::{Stage, bed};
 use crate::failure::Failure;
 use crate::model::grains::{DepositionPlan, GrainsPart, refused};
 use crate::progress::Progress;
+use serde::{Deserialize, Serialize};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
@@ -12,61 +15,130 @@ use trackbed_dem::BodyInput;
 /// Time that bodies need to get going before slowness counts as rest [s].
 const START_OF_SETTLING: f64 = 0.05;
 
+/// Stage of a checkpoint from within the settling.
+const SETTLING: &str = "settling";
+/// Stage of the checkpoint between settling and run proper.
+const SETTLED: &str = "settled";
+
+/// A bed that has settled.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Settled {
+    /// The grains at rest.
+    pub bodies: Vec<BodyInput>,
+    /// Points of the planes, which compaction may have moved [m].
+    pub planes: Vec<dem::Vec3>,
+    /// Time that the settling took [s].
+    pub time: f64,
+    pub stages: Vec<StageRecord>,
+    pub warnings: Vec<String>,
+    pub growth: Vec<GrowthRecord>,
+    pub compaction: Vec<CompactionRecord>,
+}
+
 impl Stage<'_> {
-    /// Lets filled grains settle and levels the bed; the bodies come back at rest where they lie.
+    /// Makes the bed that the run proper starts with: grains grow, settle, and are compacted. They come back at rest where they
+    /// lie, with the walls where compaction has left them. `resumed` is the checkpoint of a run proper, which has them already.
     pub(super) fn deposit(
         &self,
         grains: &GrainsPart,
         surface: Option<&SolidSurface>,
+        resumed: Option<&mut Loaded>,
         summary: &mut Summary,
-    ) -> Result<Vec<BodyInput>, Failure> {
-        let Some(plan) = &grains.deposition else { return Ok(grains.bodies.clone()) };
+    ) -> Result<(GrainsPart, Vec<BodyInput>), Failure> {
+        let mut grains = grains.clone();
+        if grains.deposition.is_none() && grains.growths.is_empty() && grains.compaction.is_empty() {
+            let bodies = grains.bodies.clone();
+            return Ok((grains, bodies));
+        }
+        let settled = match (resumed, self.resumed(SETTLED)) {
+            (Some(loaded), _) => loaded.take()?,
+            (None, Some(mut loaded)) => loaded.take()?,
+            (None, None) => {
+                let settled = self.packed(grains.clone(), surface)?;
+                let step = settled.stages.iter().map(|s| s.grain_steps).sum();
+                let moment = Moment { stage: SETTLED.into(), step, time: settled.time };
+                self.keeper.save(moment, |body| body.put(&settled))?;
+                settled
+            }
+        };
+        summary.warnings.extend(settled.warnings.iter().cloned());
+        summary.stages.extend(settled.stages.iter().cloned());
+        summary.growth.clone_from(&settled.growth);
+        summary.compaction.clone_from(&settled.compaction);
+        let bodies = settled.bodies.clone();
+        settled.planes.iter().enumerate().for_each(|(k, point)| grains.place_plane(k, *point));
+        self.settled.replace(Some(settled));
+        Ok((grains, bodies))
+    }
+
+    /// The settling itself; adds to what was done before.
+    pub(super) fn settle(
+        &self,
+        grains: &GrainsPart,
+        plan: &DepositionPlan,
+        surface: Option<&SolidSurface>,
+        bed: &mut Settled,
+    ) -> Result<(), Failure> {
         let input = grains.deposition_input(plan);
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-        let mut state = dem::State::new(&model);
+        let (mut state, seconds) = match self.resumed(SETTLING) {
+            Some(mut loaded) => loaded.take()?,
+            None => (dem::State::new(&model), 0.0),
+        };
         let mut work = dem::Work::new(&model, &state);
-        let progress = Progress::start("settling", plan.max_time, self.quiet);
+        let progress = Progress::start(SETTLING, plan.max_time, self.quiet).resumed(state.time, seconds);
         // Look at the speed about every millisecond.
         let stride = ((1e-3 / model.dt()) as u64).max(1);
         let mut settled = false;
-        while state.time < plan.max_time && !settled {
-            for _ in 0..stride {
-                match surface {
-                    Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
-                    None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
-                }
-                .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+        let mut going = true;
+        self.keeper.begin();
+        while going {
+            match surface {
+                Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
+                None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
             }
-            let speed = rms_speed(&model, &state);
-            // Everything starts at rest: free fall has to be under way before slowness means anything.
-            settled = state.time > START_OF_SETTLING && speed < plan.settled_speed;
-            progress.at(state.time);
-            progress.message(format!("rms speed {speed:.2e} m/s"));
+            .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+            if state.steps.is_multiple_of(stride) {
+                let speed = bed::rms_speed(&model, &state);
+                // Everything starts at rest: free fall has to be under way before slowness means anything.
+                settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
+                going = !settled && state.time < plan.max_time;
+                progress.at(state.time);
+                progress.message(format!("rms speed {speed:.2e} m/s"));
+            }
+            if going {
+                self.keeper.step(
+                    || Moment { stage: SETTLING.into(), step: state.steps, time: state.time },
+                    |body| body.put(&(&state, progress.seconds())),
+                )?;
+            }
         }
+        self.keeper.end();
         if !settled {
-            let speed = rms_speed(&model, &state);
-            summary.warnings.push(format!(
+            let speed = bed::rms_speed(&model, &state);
+            bed.warnings.push(format!(
                 "the grains were still moving at {speed:.2e} m/s (root mean square) after {} s of settling",
                 plan.max_time
             ));
         }
-        let steps = state.steps;
         let (bodies, removed) = at_rest(&grains.bodies, &model, &state, plan);
         let seconds = progress.finish(&format!(
             "{} grains at rest after {:.2} s, {removed} above the level taken away",
             bodies.len(),
             state.time
         ));
-        summary.stages.push(StageRecord {
-            name: "settling".into(),
-            seconds,
-            grain_steps: steps,
-            solid_steps: 0,
-        });
         if bodies.is_empty() {
             return Err(self.document.error("deposition.level", "no grain below it", "at least one").into());
         }
-        Ok(bodies)
+        bed.stages.push(StageRecord {
+            name: SETTLING.into(),
+            seconds,
+            grain_steps: state.steps,
+            solid_steps: 0,
+        });
+        bed.bodies = bodies;
+        bed.time = state.time;
+        Ok(())
     }
 
     /// Adds the sleeper, just above the highest grain below it.
@@ -79,30 +151,10 @@ impl Stage<'_> {
         let Some(plan) = &grains.sleeper else { return Ok(bodies) };
         let model = dem::Model::new(grains.input(bodies.clone())).map_err(|e| refused(self.document, &e))?;
         let state = dem::State::new(&model);
-        let mut top = f64::NEG_INFINITY;
-        for body in 0..model.body_count() {
-            for (x, r) in state.spheres(&model, body) {
-                let over = [0, 1].map(|d| ((x[d] - plan.centre[d]).abs() - plan.half[d]).max(0.0));
-                let reach = r * r - over[0] * over[0] - over[1] * over[1];
-                if reach > 0.0 {
-                    top = top.max(x.z + reach.sqrt());
-                }
-            }
-        }
-        if !top.is_finite() {
-            // No grain below: on the solid, or on the plane z = 0.
-            top = surface.map_or(0.0, |s| s.highest());
-        }
+        let top = bed::top_below(&model, &state, plan.centre, &plan.half, surface);
         bodies.push(grains.sleeper_body(plan, top + plan.half[2]));
         Ok(bodies)
     }
-}
-
-/// Root-mean-square speed of all bodies [m/s].
-fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
-    let n = model.body_count();
-    let sum: f64 = (0..n).map(|b| state.velocity(b).norm_squared()).sum();
-    (sum / n.max(1) as f64).sqrt()
 }
 
 /// Bodies where they have come to lie, at rest, without those above the level.

@@ -1,8 +1,9 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
+use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
 use crate::write::WriteError;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::step::Stability;
@@ -36,6 +37,9 @@ pub struct Summary {
     /// Momentum account of the grains in the run proper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum: Option<MomentumRecord>,
+    /// Bonds between grains.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bonds: Option<BondSummary>,
     /// Force and moment across the interface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingRecord>,
@@ -54,6 +58,15 @@ pub struct Summary {
     /// Settlement per load cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
+    /// Groups that have grown to their size.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub growth: Vec<GrowthRecord>,
+    /// Stages of compaction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compaction: Vec<CompactionRecord>,
+    /// The grains at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<PackingRecord>,
     /// Remarks that do not stop a run.
     pub warnings: Vec<String>,
     /// Sources of the models used.
@@ -61,7 +74,7 @@ pub struct Summary {
 }
 
 /// One stage of a run.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StageRecord {
     /// Name.
     pub name: String,
@@ -126,6 +139,23 @@ pub struct MomentumRecord {
     pub linear: f64,
     /// Largest deviation of angular momentum about the origin over the sum of |angular impulses|.
     pub angular: f64,
+}
+
+/// Bonds between grains at the end.
+#[derive(Debug, Serialize)]
+pub struct BondSummary {
+    /// Bonds at the start of the run proper.
+    pub made: usize,
+    /// Broken by tension and bending.
+    pub broken_by_tension: u64,
+    /// Broken by shear and twisting.
+    pub broken_by_shear: u64,
+    /// Energy set free by breaks [J].
+    pub energy_of_breaks: f64,
+    /// Pieces, unbonded bodies among them.
+    pub fragments: usize,
+    /// Bodies of the largest piece.
+    pub largest_fragment: u32,
 }
 
 /// Interface audit.
@@ -321,6 +351,18 @@ impl Summary {
                 m.linear, m.angular
             ));
         }
+        if let Some(b) = &self.bonds {
+            lines.push(format!(
+                "bonds: {} of {} broken ({} by tension, {} by shear), {:.3e} J set free; {} fragments, the largest of {} bodies",
+                b.broken_by_tension + b.broken_by_shear,
+                b.made,
+                b.broken_by_tension,
+                b.broken_by_shear,
+                b.energy_of_breaks,
+                b.fragments,
+                b.largest_fragment
+            ));
+        }
         if let Some(c) = &self.coupling {
             lines.push(format!(
                 "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}",
@@ -331,6 +373,7 @@ impl Summary {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
             lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
         }
+        lines.extend(packing::report(self));
         for warning in &self.warnings {
             lines.push(format!("note: {warning}"));
         }
@@ -362,6 +405,11 @@ impl Hash {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }
+    }
+
+    /// The hash as a number.
+    pub fn value(self) -> u64 {
+        self.0
     }
 
     /// The hash in hexadecimal.

@@ -1,7 +1,9 @@
 //! What the main loop needs of a model, whatever it consists of: solid, grains, or both.
 
+use super::checkpoint::{Body, Loaded};
 use crate::failure::Failure;
 use crate::model::solid::{SolidPart, TimeMethod};
+use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
@@ -36,6 +38,8 @@ pub trait System {
     fn steps_per_window(&self) -> (u64, u64);
     /// Advances by one window.
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
+    /// Puts into a checkpoint what `resume` of the system goes on from.
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
     /// Energy stored now [J].
     fn stored(&self) -> Stored;
     /// Work and dissipation so far [J].
@@ -97,6 +101,21 @@ impl<'a> SolidSystem<'a> {
         let next_load = vec![0.0; load.len()];
         Ok(SolidSystem { part, state, solver, gravity, load, next_load, spent: Spent::default() })
     }
+
+    /// The same, going on from a checkpoint.
+    ///
+    /// # Errors
+    /// As [`SolidSystem::new`]; a checkpoint of something else.
+    pub fn resume(
+        part: &'a SolidPart,
+        method: TimeMethod,
+        dt: f64,
+        loaded: &mut Loaded,
+    ) -> Result<Self, Failure> {
+        let system = SolidSystem::new(part, method, dt).map_err(|e| part.failure(&e))?;
+        let (state, load, spent) = loaded.take()?;
+        Ok(SolidSystem { state, load, spent, ..system })
+    }
 }
 
 impl System for SolidSystem<'_> {
@@ -137,6 +156,10 @@ impl System for SolidSystem<'_> {
         self.spent.absorbed += audit.boundary_dissipation;
         self.spent.numerical += audit.numerical_dissipation;
         Ok(())
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&(&self.state, &self.load, &self.spent))
     }
 
     fn stored(&self) -> Stored {
@@ -184,6 +207,16 @@ impl GrainsSystem {
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
         Ok(GrainsSystem { model, state, work, applied: Vec::new() })
     }
+
+    /// The grains as a checkpoint has them.
+    ///
+    /// # Errors
+    /// A checkpoint of something else.
+    pub fn resume(model: dem::Model, loaded: &mut Loaded) -> Result<GrainsSystem, Failure> {
+        let state = loaded.take()?;
+        let work = dem::Work::new(&model, &state);
+        Ok(GrainsSystem { model, state, work, applied: Vec::new() })
+    }
 }
 
 impl System for GrainsSystem {
@@ -202,11 +235,16 @@ impl System for GrainsSystem {
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))
     }
 
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&self.state)
+    }
+
     fn stored(&self) -> Stored {
         let e = dem::measure::energies(&self.model, &self.state);
         Stored {
             grains_kinetic: e.kinetic_translation + e.kinetic_rotation,
             contact_springs: e.elastic_normal + e.elastic_tangential,
+            bonds: e.elastic_bonds,
             grains_gravity: e.gravity,
             ..Stored::default()
         }
@@ -250,6 +288,10 @@ impl System for CoupledSystem<'_> {
             |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| applied(t, &model.grains, s, out);
         coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
             .map_err(|e| Failure::Numerical(e.to_string()))
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&(&self.model.reference, self.work.memory(), &self.state))
     }
 
     fn stored(&self) -> Stored {

@@ -10,8 +10,12 @@ pub struct Deposition {
     /// Longest time [s].
     pub max_time: Quantity<Time>,
     /// Settled when the root-mean-square speed of the grains stays below this [m/s]; default 5 mm/s.
-    #[serde(default = "slow")]
-    pub settled_speed: Quantity<Velocity>,
+    pub settled_speed: Option<Quantity<Velocity>>,
+    /// Settled when instead the mean unbalanced force over the mean contact force is below this, above 0 and below 1.
+    pub unbalanced_ratio: Option<f64>,
+    /// Parts that the grains are dropped in, each on the settled ones before, 1 to 1000; default 1: all at once.
+    #[serde(default = "one")]
+    pub layers: u32,
     /// Friction between grains while they settle, instead of their own: lower packs denser.
     pub friction: Option<f64>,
     /// Local non-viscous damping while they settle, 0–1; default 0.
@@ -21,6 +25,6 @@ pub struct Deposition {
     pub level: Option<Quantity<Length>>,
 }
 
-fn slow() -> Quantity<Velocity> {
-    Quantity::new(5e-3)
+fn one() -> u32 {
+    1
 }

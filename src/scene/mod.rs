@@ -4,6 +4,8 @@
 //! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
+pub mod bonds;
+pub mod compaction;
 pub mod deposition;
 mod document;
 pub mod grains;
@@ -42,11 +44,20 @@ pub struct Scene {
     /// Groups of grains.
     #[serde(default)]
     pub grains: Vec<grains::Grains>,
+    /// Bonds between grains.
+    #[serde(default)]
+    pub bond: Vec<bonds::BondTable>,
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,
     /// Gravity deposition before the run proper.
     pub deposition: Option<deposition::Deposition>,
+    /// Compaction after it, stage by stage.
+    #[serde(default)]
+    pub compaction: Vec<compaction::Compaction>,
+    /// Boxes whose packing is measured.
+    #[serde(default)]
+    pub measure: Vec<compaction::Measure>,
     /// Sleeper and its load.
     pub track: Option<track::Track>,
     /// Exchange between grains and solid; needed when a scene has both.
@@ -133,12 +144,30 @@ pub struct Output {
     /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
     /// solid (coupled and solid runs) or of the grains.
     pub history_interval: Option<Quantity<Time>>,
+    /// Time by the clock after which the state of the run is kept anew for `--resume` [s]; default 10 minutes. The state is
+    /// kept too when settling ends and when the run is interrupted.
+    pub checkpoint: Option<Quantity<Time>>,
     /// Write VTK files (`results.pvd`); default true.
     pub vtk: Option<bool>,
     /// Write the solid as Tecplot files; default true.
     pub tecplot: Option<bool>,
     /// Write nodal displacements, reactions and Gauss-point stresses of the last state as CSV; default false.
     pub tables: Option<bool>,
+    /// Write the grains at the end as `packing.csv`, which `[[grains]] packing` reads; default false.
+    pub packing: Option<bool>,
+    /// Force chains of the frames: all contacts (default), or those above the mean normal force.
+    pub chains: Option<Chains>,
+}
+
+/// Contacts that the frames show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Chains {
+    /// All of them.
+    #[default]
+    All,
+    /// Those with more than the mean normal force.
+    Strong,
 }
 
 /// A node of the solid, by number or by the place nearest to it, whose motion goes to `history.csv`.

@@ -3,8 +3,9 @@
 //! Numbers are written in Rust's shortest form that reads back to the same bits. The first column is what the
 //! rows are ordered by (time or cycle).
 
+use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::atomic;
@@ -33,6 +34,14 @@ pub struct History {
     columns: Vec<Column>,
     out: File,
     rows: usize,
+    bytes: u64,
+}
+
+/// How far a history has come, for a checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mark {
+    rows: usize,
+    bytes: u64,
 }
 
 impl History {
@@ -43,27 +52,50 @@ impl History {
     pub fn create(file: &Path, columns: Vec<Column>) -> Result<Self, WriteError> {
         let text = header(&columns) + "\n";
         atomic::write(file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(file)))?;
-        Self::open(file, columns, 0)
+        Self::open(file, columns, Mark { rows: 0, bytes: text.len() as u64 })
     }
 
-    /// Takes up the history of an earlier run: rows whose first column is above `last` (the time of the
-    /// checkpoint), and a row cut short, are dropped. A file that does not exist is started.
+    /// Takes up the history of an earlier run at a mark; what was written after it is cut off.
     ///
     /// # Errors
-    /// The file has other columns, or a row that is none of ours; what the system refuses.
-    pub fn resume(file: &Path, columns: Vec<Column>, last: f64) -> Result<Self, WriteError> {
-        let text = match std::fs::read_to_string(file) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Self::create(file, columns),
-            text => text.map_err(WriteError::io(file))?,
-        };
-        let (kept, rows) = keep(file, &text, &columns, last)?;
-        atomic::write(file, |out| out.write_all(kept.as_bytes()).map_err(WriteError::io(file)))?;
-        Self::open(file, columns, rows)
+    /// The file has other columns, or less than was there at the mark; what the system refuses.
+    pub fn resume(file: &Path, columns: Vec<Column>, mark: Mark) -> Result<Self, WriteError> {
+        let head = header(&columns) + "\n";
+        let mut old = OpenOptions::new().read(true).write(true).open(file).map_err(WriteError::io(file))?;
+        let length = old.metadata().map_err(WriteError::io(file))?.len();
+        let mut found = vec![0; head.len().min(length as usize)];
+        old.read_exact(&mut found).map_err(WriteError::io(file))?;
+        if found != head.as_bytes() {
+            let message = format!("has other columns than this run, which writes {}", head.trim_end());
+            return Err(WriteError::format(file, message));
+        }
+        let Mark { rows, bytes } = mark;
+        let mut last = [0];
+        if length >= bytes {
+            old.seek(SeekFrom::Start(bytes - 1)).map_err(WriteError::io(file))?;
+            old.read_exact(&mut last).map_err(WriteError::io(file))?;
+        }
+        if last != *b"\n" {
+            let message =
+                format!("is not the history that the checkpoint goes on from: {rows} rows in {bytes} bytes");
+            return Err(WriteError::format(file, message));
+        }
+        old.set_len(bytes).map_err(WriteError::io(file))?;
+        Self::open(file, columns, mark)
     }
 
-    fn open(file: &Path, columns: Vec<Column>, rows: usize) -> Result<Self, WriteError> {
+    fn open(file: &Path, columns: Vec<Column>, mark: Mark) -> Result<Self, WriteError> {
         let out = OpenOptions::new().append(true).open(file).map_err(WriteError::io(file))?;
-        Ok(History { file: file.to_path_buf(), columns, out, rows })
+        Ok(History { file: file.to_path_buf(), columns, out, rows: mark.rows, bytes: mark.bytes })
+    }
+
+    /// How far the history has come. All of it is on the disk, whatever happens to the machine, when this returns.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn mark(&self) -> Result<Mark, WriteError> {
+        self.out.sync_data().map_err(WriteError::io(&self.file))?;
+        Ok(Mark { rows: self.rows, bytes: self.bytes })
     }
 
     /// Adds a row, which is on disk for other programs to read when this returns.
@@ -86,6 +118,7 @@ impl History {
         // One call per row: a row is there whole or not at all.
         self.out.write_all(line.as_bytes()).map_err(WriteError::io(&self.file))?;
         self.rows += 1;
+        self.bytes += line.len() as u64;
         Ok(())
     }
 }
@@ -102,28 +135,6 @@ fn header(columns: &[Column]) -> String {
         if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
     };
     columns.iter().map(title).collect::<Vec<_>>().join(",")
-}
-
-/// The header and the rows up to `last`.
-fn keep(file: &Path, text: &str, columns: &[Column], last: f64) -> Result<(String, usize), WriteError> {
-    let mut lines = text.split_inclusive('\n');
-    let mut kept = header(columns) + "\n";
-    if lines.next() != Some(&kept) {
-        let message = format!("has other columns than this run, which writes {}", kept.trim_end());
-        return Err(WriteError::format(file, message));
-    }
-    let mut rows = 0;
-    for (number, line) in lines.enumerate().filter(|(_, line)| line.ends_with('\n')) {
-        let first = line.trim_end().split(',').next().unwrap_or_default();
-        let time: f64 = first.parse().map_err(|_| {
-            WriteError::format(file, format!("line {}: found \"{first}\", expected a number", number + 2))
-        })?;
-        if time <= last {
-            kept += line;
-            rows += 1;
-        }
-    }
-    Ok((kept, rows))
 }
 
 #[cfg(test)]
@@ -178,20 +189,30 @@ mod tests {
         let dir = folder("csv_resume");
         let file = dir.join("history.csv");
         let row = |i: u32| [0.1 * f64::from(i), f64::from(i), 0.25];
-        let mut whole = History::resume(&file, columns(), 0.0).unwrap();
-        (0..6).for_each(|i| whole.row(&row(i)).unwrap());
+        let mut whole = History::create(&file, columns()).unwrap();
+        let start = whole.mark().unwrap();
+        (0..3).for_each(|i| whole.row(&row(i)).unwrap());
+        let mark = whole.mark().unwrap();
+        (3..6).for_each(|i| whole.row(&row(i)).unwrap());
         let expected = std::fs::read_to_string(&file).unwrap();
-        // A checkpoint at row 3, later rows already written, the last cut short.
-        std::fs::write(&file, &expected[..expected.len() - 4]).unwrap();
-        let mut second = History::resume(&file, columns(), row(3)[0]).unwrap();
-        (4..6).for_each(|i| second.row(&row(i)).unwrap());
-        assert_eq!(std::fs::read_to_string(&file).unwrap(), expected);
+        // Later rows already written, the last cut short; then nothing beyond the mark; then nothing at all.
+        for (left, mark, first) in
+            [(expected.len() - 4, mark, 3), (mark.bytes as usize, mark, 3), (40, start, 0)]
+        {
+            std::fs::write(&file, &expected[..left]).unwrap();
+            let mut second = History::resume(&file, columns(), mark).unwrap();
+            (first..6).for_each(|i| second.row(&row(i)).unwrap());
+            assert_eq!(std::fs::read_to_string(&file).unwrap(), expected);
+            assert_eq!(second.mark().unwrap(), Mark { rows: 6, bytes: expected.len() as u64 });
+        }
 
-        let error = History::resume(&file, columns()[..2].to_vec(), 1.0).unwrap_err();
+        let error = History::resume(&file, columns()[..2].to_vec(), mark).unwrap_err();
         assert!(error.to_string().contains("has other columns"), "{error}");
-        std::fs::write(&file, expected.replace("0.2,", "x,")).unwrap();
-        let error = History::resume(&file, columns(), 1.0).unwrap_err();
-        assert!(error.to_string().contains("line 4: found \"x\", expected a number"), "{error}");
+        for wrong in [&expected[..mark.bytes as usize - 1], &expected.replace("0.1,", "0.123,")] {
+            std::fs::write(&file, wrong).unwrap();
+            let error = History::resume(&file, columns(), mark).unwrap_err();
+            assert!(error.to_string().contains("is not the history"), "{error}");
+        }
         std::fs::remove_dir_all(&dir).unwrap();
     }
 }

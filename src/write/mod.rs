@@ -14,6 +14,7 @@ mod mesh_file;
 pub mod pvd;
 #[cfg(test)]
 pub(crate) mod sample;
+pub mod stl;
 pub mod svg;
 pub mod tecplot;
 mod vtk;

@@ -30,25 +30,32 @@ impl Series {
         Series { file: file.to_path_buf(), frames: Vec::new() }
     }
 
-    /// Takes up the series of an earlier run, up to the frames at `time` [s] (those of a checkpoint), so that
-    /// later ones are written again. A series that does not exist is empty.
+    /// Takes up the series of an earlier run with its first `entries` files, so that later ones are written again. A series
+    /// without files need not exist.
     ///
     /// # Errors
-    /// The file cannot be read or is not one of ours.
-    pub fn resume(file: &Path, time: f64) -> Result<Self, WriteError> {
+    /// The file cannot be read, is not one of ours, or has fewer entries.
+    pub fn resume(file: &Path, entries: usize) -> Result<Self, WriteError> {
         let mut series = Series::new(file);
-        let text = match std::fs::read_to_string(file) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(series),
-            text => text.map_err(WriteError::io(file))?,
-        };
-        for row in text.lines().filter(|row| row.trim_start().starts_with("<DataSet")) {
+        if entries == 0 {
+            return Ok(series);
+        }
+        let text = std::fs::read_to_string(file).map_err(WriteError::io(file))?;
+        for row in text.lines().filter(|row| row.trim_start().starts_with("<DataSet")).take(entries) {
             let frame = parse(row)
                 .ok_or_else(|| WriteError::format(file, format!("not a row of this program: {row}")))?;
-            if frame.time <= time {
-                series.frames.push(frame);
-            }
+            series.frames.push(frame);
+        }
+        if series.frames.len() < entries {
+            let message = format!("{} frames, expected at least {entries}", series.frames.len());
+            return Err(WriteError::format(file, message));
         }
         Ok(series)
+    }
+
+    /// Number of files in the series.
+    pub fn entries(&self) -> usize {
+        self.frames.len()
     }
 
     /// Adds a file: `part` keeps the parts apart (0 solid, 1 grains, …), `name` is shown for it, `file` is its
@@ -110,10 +117,11 @@ mod tests {
     use crate::write::sample::folder;
 
     #[test]
-    fn a_series_is_taken_up_again_at_a_time() {
+    fn a_series_is_taken_up_again_after_some_files() {
         let dir = folder("pvd");
         let file = dir.join("results.pvd");
-        assert_eq!(Series::resume(&file, 1.0).unwrap(), Series::new(&file));
+        assert_eq!(Series::resume(&file, 0).unwrap(), Series::new(&file));
+        assert!(Series::resume(&file, 1).is_err());
         let mut series = Series::new(&file);
         for frame in 0..4 {
             let time = 0.1 * f64::from(frame);
@@ -121,10 +129,11 @@ mod tests {
             series.push(time, 1, "grains & <chains>", &format!("\"{frame}\".vtp"));
         }
         series.write().unwrap();
-        assert_eq!(Series::resume(&file, f64::INFINITY).unwrap(), series);
-        // 0.1 * 3 is above 0.3: times are compared as they are.
-        let cut = Series::resume(&file, 0.2).unwrap();
+        assert_eq!((Series::resume(&file, 8).unwrap(), series.entries()), (series.clone(), 8));
+        let cut = Series::resume(&file, 6).unwrap();
         assert_eq!(cut.frames, series.frames[..6]);
+        let error = Series::resume(&file, 9).unwrap_err().to_string();
+        assert!(error.contains("8 frames, expected at least 9"), "{error}");
         std::fs::remove_dir_all(&dir).unwrap();
     }
 
@@ -139,7 +148,7 @@ mod tests {
         assert!(error.to_string().contains("time at index 1 is NaN"), "{error}");
         assert!(!file.exists());
         std::fs::write(&file, "<DataSet nonsense/>\n").unwrap();
-        assert!(Series::resume(&file, 1.0).is_err());
+        assert!(Series::resume(&file, 1).is_err());
         std::fs::remove_dir_all(&dir).unwrap();
     }
 }

@@ -75,6 +75,8 @@ fn grains(count: usize) -> GrainFrame {
         part: vec![1; count],
         mean_stress: vec![-2.0e3; count],
         force: (0..count).map(vector).collect(),
+        coordination: vec![6; count],
+        fragment: vec![1; count],
     }
 }
 
@@ -84,6 +86,7 @@ fn chains(count: usize) -> ChainFrame {
         normal_force: (0..count).map(|i| i as f64).collect(),
         tangential_force: vec![0.1; count],
         kind: vec![0; count],
+        strong: vec![1; count],
     }
 }
 

@@ -33,6 +33,10 @@ pub struct GrainFrame {
     pub mean_stress: Vec<f64>,
     /// Sum of contact forces on the body [N].
     pub force: Vec<[f64; 3]>,
+    /// Number of partners that press on the body.
+    pub coordination: Vec<u32>,
+    /// Number of the fragment: the bodies that bonds hold together.
+    pub fragment: Vec<u32>,
 }
 
 /// The contacts at one moment. Every field has the shape `[contacts]`.
@@ -46,6 +50,8 @@ pub struct ChainFrame {
     pub tangential_force: Vec<f64>,
     /// Kind of contact, as the run numbers it.
     pub kind: Vec<u32>,
+    /// 1 where the normal force is above the mean of all contacts, else 0.
+    pub strong: Vec<u32>,
 }
 
 /// The walls at one moment.
@@ -74,6 +80,8 @@ pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
     fields.ids("part", &frame.part)?;
     fields.scalar("mean_stress", &frame.mean_stress)?;
     fields.vector("force", frame.force.as_flattened())?;
+    fields.ids("coordination", &frame.coordination)?;
+    fields.ids("fragment", &frame.fragment)?;
     let point = fields.finish();
     let piece = PolyDataPiece {
         points: vtk::points(file, &frame.position)?,
@@ -84,7 +92,7 @@ pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
     vtk::write_poly(file, piece)
 }
 
-/// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`.
+/// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`.
 ///
 /// # Errors
 /// As [`write_grains`].
@@ -97,6 +105,7 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     let magnitude: Vec<f64> = parts.map(|(normal, tangential)| normal.hypot(*tangential)).collect();
     fields.scalar("magnitude", &magnitude)?;
     fields.ids("kind", &frame.kind)?;
+    fields.ids("strong", &frame.strong)?;
     let cell = fields.finish();
     let piece = PolyDataPiece {
         points: vtk::points(file, frame.ends.as_flattened())?,
@@ -170,6 +179,8 @@ mod tests {
             part: vec![2; count],
             mean_stress: vec![-3.0; count],
             force: (0..count).map(v).collect(),
+            coordination: vec![6; count],
+            fragment: vec![1; count],
         }
     }
 
@@ -220,6 +231,7 @@ mod tests {
             normal_force: vec![3.0],
             tangential_force: vec![4.0],
             kind: vec![1],
+            strong: vec![1],
         };
         write_chains(&file, &frame).unwrap();
         let DataSet::PolyData { mut pieces, .. } = vtkio::Vtk::import(&file).unwrap().data else {

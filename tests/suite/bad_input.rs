@@ -8,8 +8,10 @@
 use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder, snapshot, trackbed};
 use std::fs;
 
+mod bonds;
 mod grains;
 mod lists;
+mod materials;
 mod scene;
 mod solid;
 mod walls;

@@ -2,8 +2,7 @@
 //!
 //! The summary, which tells threads, seconds and memory, is compared without those.
 
-use super::support::{Folder, SOLID, json, repository, scene_folder, snapshot, trackbed};
-use serde_json::Value;
+use super::support::{Folder, SOLID, json, repository, results, scene_folder, trackbed};
 use std::path::Path;
 
 /// Runs a scene with 1, 2 and 3 threads; all files must be the same, and those of `expected` must be there.
@@ -21,25 +20,7 @@ pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder
         assert_eq!(json(&out.join("summary.json"))["threads"].to_string(), threads);
         out
     });
-    let [one, others @ ..] = outs.each_ref().map(|out| {
-        let mut files = snapshot(out);
-        // The log tells seconds; all else in it stands in the summary too.
-        files.remove("log.txt").expect("a log");
-        let mut summary: Value = serde_json::from_slice(&files.remove("summary.json").unwrap()).unwrap();
-        summary["threads"] = Value::Null;
-        summary["peak_memory"] = Value::Null;
-        summary["model"]["predicted_memory"] = Value::Null;
-        for seconds in ["assembly_seconds", "factor_seconds", "solve_seconds"] {
-            if let Some(newton) = summary.get_mut("newton") {
-                newton[seconds] = Value::Null;
-            }
-        }
-        summary["stages"].as_array_mut().unwrap().iter_mut().for_each(|s| {
-            s["seconds"] = Value::Null;
-        });
-        files.insert("summary.json".into(), summary.to_string().into_bytes());
-        files
-    });
+    let [one, others @ ..] = outs.each_ref().map(|out| results(out));
     for name in expected {
         assert!(one.contains_key(*name), "no {name} among {:?}", one.keys());
     }

@@ -127,6 +127,37 @@ pub fn snapshot(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
+/// Every result of a run with its bytes, without what no run repeats: seconds by the clock, memory, and the number of threads.
+pub fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = snapshot(out);
+    let log = String::from_utf8(files.remove("log.txt").expect("a log")).unwrap();
+    let mut summary: serde_json::Value =
+        serde_json::from_slice(&files.remove("summary.json").unwrap()).unwrap();
+    summary["threads"].take();
+    summary["peak_memory"].take();
+    summary["model"]["predicted_memory"].take();
+    for seconds in ["assembly_seconds", "factor_seconds", "solve_seconds"] {
+        if let Some(newton) = summary.get_mut("newton") {
+            newton[seconds].take();
+        }
+    }
+    let mut stages = Vec::new();
+    for stage in summary["stages"].as_array_mut().unwrap() {
+        stage["seconds"].take();
+        stages.push(format!("{}: ", stage["name"].as_str().unwrap()));
+    }
+    let log: String = log
+        .lines()
+        .map(|line| match stages.iter().find(|s| line.starts_with(*s)) {
+            Some(stage) => format!("{stage}{}\n", line.split_once(" s, ").unwrap().1),
+            None => format!("{}\n", line.split("; seconds in assembly").next().unwrap()),
+        })
+        .collect();
+    files.insert("summary.json".into(), summary.to_string().into_bytes());
+    files.insert("log.txt".into(), log.into_bytes());
+    files
+}
+
 /// A JSON file.
 pub fn json(file: &Path) -> serde_json::Value {
     let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));

@@ -181,6 +181,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
     let mut touched = std::mem::take(&mut w.touches);
     let mut live = std::mem::take(&mut w.live);
     live.clear();
+    // Out of `w`, which takes the forces meanwhile.
     let owners = std::mem::take(&mut w.owner);
     let owner = |i: u32| if RIGID { owners[i as usize] as usize } else { i as usize };
     let end = |c: &mut PatchContact| {
@@ -260,9 +261,9 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
                 exchange.work += f.force.dot(&wall) * dt;
                 exchange.impulse.add(&g.point, &(f.force * dt));
                 exchange.impulse.angular += f.moment * dt;
-                let member = if RIGID { sphere - w.first[a] } else { 0 };
+                let first = if RIGID { w.first[a] } else { sphere };
                 w.contacts.push(SurfaceContact {
-                    sphere: member,
+                    sphere: sphere - first,
                     body: block.bodies[a],
                     patch: t.patch,
                     local: t.closest.local,

@@ -210,7 +210,7 @@ impl Gradation {
 /// A stone passes the sieves that are larger than it or equal. Without mass every fraction is 0.
 pub fn achieved_passing(sieves: &[f64], stones: &[(f64, f64)]) -> Vec<f64> {
     let total: f64 = stones.iter().map(|s| s.1).sum();
-    let finer = |sieve: f64| stones.iter().filter(|s| s.0 <= sieve).map(|s| s.1).sum::<f64>();
+    let finer = |sieve: f64| stones.iter().filter(|s| s.0 <= sieve).fold(0.0, |sum, s| sum + s.1);
     sieves.iter().map(|&s| if total > 0.0 { finer(s) / total } else { 0.0 }).collect()
 }
 

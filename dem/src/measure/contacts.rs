@@ -21,6 +21,8 @@ pub struct ContactRecord {
     pub normal: Vec3,
     /// Overlap [m].
     pub overlap: f64,
+    /// Reduced radius of the two spheres, r₁r₂/(r₁ + r₂); of the sphere alone where the partner is flat [m].
+    pub radius: f64,
     /// Normal force, pressure positive [N].
     pub normal_force: f64,
     /// Whole force on a [N].
@@ -83,6 +85,7 @@ impl Snapshot {
 /// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
 pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&Visited<'_>)) {
     let now = Snapshot::new(model, state, back);
+    remnants(state, &now, &mut f);
     for b in 0..now.blocks.len() {
         let block = &now.blocks[b];
         let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History| {
@@ -153,6 +156,24 @@ struct Partnership {
     spin: Vec3,
     /// One over the mass that it belongs to [1/kg].
     inverse_mass: f64,
+}
+
+/// Contacts of pairs whose bond has broken.
+fn remnants(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
+    crate::bond::each_touch(&now.blocks, state, |p, q, r, geometry| {
+        let (i, j) = (r.i as usize, r.j as usize);
+        let (ma, mb) = (pass::motion(p, i, &geometry.point), pass::motion(q, j, &geometry.point));
+        f(&Visited {
+            body: p.bodies[i],
+            partner: Partner::Body(q.bodies[j] as usize),
+            geometry: *geometry,
+            velocity: ma.at_point() - mb.at_point(),
+            mass: 1.0 / (p.velocity[i][3] + q.velocity[j][3]),
+            history: &r.history,
+            spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
+            materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
+        });
+    });
 }
 
 fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
@@ -233,6 +254,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             point: c.geometry.point,
             normal: c.geometry.normal,
             overlap: c.geometry.overlap,
+            radius: c.geometry.radius,
             normal_force: normal,
             force,
         });
@@ -253,7 +275,7 @@ pub fn coordination(model: &Model, state: &State) -> f64 {
     if bodies == 0 { 0.0 } else { count as f64 / bodies as f64 }
 }
 
-/// Sum of the contact forces on each body [N]. Shape `[bodies]`.
+/// Sum of the forces of contacts and bonds on each body [N]. Shape `[bodies]`.
 pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
     let mut sum = vec![Vec3::zeros(); model.body_count()];
     for c in contacts(model, state) {
@@ -261,6 +283,10 @@ pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
         if let Partner::Body(b) = c.b {
             sum[b] -= c.force;
         }
+    }
+    for b in crate::bond::records(model, state) {
+        sum[b.a] += b.force;
+        sum[b.b] -= b.force;
     }
     sum
 }

@@ -17,6 +17,8 @@ pub struct Energies {
     pub elastic_normal: f64,
     /// Tangential springs.
     pub elastic_tangential: f64,
+    /// Bonds: tension, shear, bending, twisting.
+    pub elastic_bonds: f64,
     /// −m g·x, zero at the origin.
     pub gravity: f64,
 }
@@ -29,7 +31,7 @@ impl Energies {
 
     /// Energy in springs.
     pub fn elastic(&self) -> f64 {
-        self.elastic_normal + self.elastic_tangential
+        self.elastic_normal + self.elastic_tangential + self.elastic_bonds
     }
 
     /// All of it. This less [`Ledger::work`](crate::ledger::Ledger::work) plus
@@ -85,6 +87,7 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_normal += normal;
         e.elastic_tangential += tangential;
     });
+    e.elastic_bonds = crate::bond::elastic(model, state);
     e
 }
 

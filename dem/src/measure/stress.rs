@@ -1,27 +1,40 @@
-//! Mean stress of each body from its contact forces (Love 1927; Weber 1966):
+//! Mean stress of each body from its contact and bond forces (Love 1927; Weber 1966):
 //! σ = (1/V) Σ ½ (r ⊗ F + F ⊗ r), r from the body's centre to the contact point, F the force on the body.
 //! With this sign pressure is negative: tension positive, as in the solid. The symmetric part is taken: the rest
 //! is the unbalanced torque.
+//!
+//! The mean stress in a region of volume V is Σ V_p σ_p / V over the bodies with their centre in it. For a region that
+//! ends at walls which hold all bodies, in equilibrium without weight, this is the force on a wall over its area.
+//! Limits: a region with sides amid the bodies should be many of them wide: those on its border count whole or not.
 
-use super::contacts::contacts;
+use super::BoxRegion;
+use super::contacts::{ContactRecord, contacts};
+use crate::Vec3;
 use crate::error::Partner;
 use crate::model::Model;
 use crate::state::State;
 
 /// Mean stress of each body [Pa] in the order xx, yy, zz, xy, yz, zx. Shape `[bodies][6]`.
 pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
+    mean_stress_of(model, state, &contacts(model, state))
+}
+
+/// As [`mean_stress`], from contacts that are known already.
+pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<[f64; 6]> {
     let mut stress = vec![[0.0; 6]; model.body_count()];
-    for c in contacts(model, state) {
-        let mut add = |body: usize, force: crate::Vec3| {
-            let r = c.point - state.position(body);
+    let bonds = crate::bond::records(model, state);
+    let bonds = bonds.iter().map(|b| (b.a, Partner::Body(b.b), b.point, b.force));
+    for (a, b, point, force) in contacts.iter().map(|c| (c.a, c.b, c.point, c.force)).chain(bonds) {
+        let mut add = |body: usize, force: Vec3| {
+            let r = point - state.position(body);
             let s = &mut stress[body];
             for (k, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
                 s[k] += 0.5 * (r[i] * force[j] + r[j] * force[i]);
             }
         };
-        add(c.a, c.force);
-        if let Partner::Body(b) = c.b {
-            add(b, -c.force);
+        add(a, force);
+        if let Partner::Body(b) = b {
+            add(b, -force);
         }
     }
     for (body, s) in stress.iter_mut().enumerate() {
@@ -29,4 +42,16 @@ pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
         s.iter_mut().for_each(|x| *x /= volume);
     }
     stress
+}
+
+/// Mean stress in a region [Pa], voids included, in the order xx, yy, zz, xy, yz, zx, from the stress of each body.
+pub fn region_stress(model: &Model, state: &State, bodies: &[[f64; 6]], region: &BoxRegion) -> [f64; 6] {
+    let mut sum = [0.0; 6];
+    for (body, stress) in bodies.iter().enumerate() {
+        if region.holds(&state.position(body)) {
+            let volume = model.volume(body);
+            sum.iter_mut().zip(stress).for_each(|(s, x)| *s += volume * x);
+        }
+    }
+    sum.map(|s| s / region.volume())
 }

@@ -19,9 +19,10 @@ pub(crate) fn spheres<'a>(block: &'a Block, work: &'a BlockWork, rigid: bool) ->
 
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
+    work.held.update(model, state);
     // Needed for the search only, which is rare: not kept.
     let (mut points, mut names, mut cells) = (Vec::new(), Vec::new(), Cells::default());
-    let Work { blocks, parallel, .. } = &mut *work;
+    let Work { blocks, parallel, held, .. } = &mut *work;
     for (b, (block, w)) in state.blocks.iter().zip(blocks.iter()).enumerate() {
         let own = spheres(block, w, model.rigid);
         points.extend_from_slice(&own[..w.count]);
@@ -31,7 +32,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
 
     let walls = model.walls.placed(&state.walls);
     let boxes = boxes(model, state);
-    let (points, names, cells) = (&points[..], &names[..], &cells);
+    let (points, names, cells, held) = (&points[..], &names[..], &cells, &*held);
     // First sphere of each block among all points.
     let first: Vec<u32> = blocks
         .iter()
@@ -46,6 +47,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         let [block, sphere] = names[point as usize];
         (block, if model.rigid { owners[point as usize] } else { sphere })
     };
+    let number = |(block, place): (u32, u32)| state.blocks[block as usize].bodies[place as usize];
     let still = |(block, place): (u32, u32)| state.blocks[block as usize].velocity[place as usize][3] == 0.0;
 
     let one = |(b, w): (usize, &mut BlockWork)| {
@@ -67,7 +69,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
                 let reach = p[3] + q[3] + model.skin;
                 if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
                     let other = body(j);
-                    if other != me && !(fixed && still(other)) {
+                    if other != me && !(fixed && still(other)) && !held.has(number(me), number(other)) {
                         w.row.push(j);
                     }
                 }

@@ -151,7 +151,7 @@ impl Walls {
     pub(crate) fn join(
         &mut self,
         limit: &mut DtLimit,
-        bodies: &Bodies,
+        bodies: &crate::bodies::Bodies,
         planes: &[Plane],
         laws: &Laws,
         expected: f64,
@@ -177,7 +177,7 @@ impl Walls {
                 let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
                 if dt < limit.dt {
                     let (partner, mass) = (partner as usize, body.mass);
-                    *limit = DtLimit { dt, body: 0, partner, stiffness, mass, wall: Some(k) };
+                    *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds: 0.0, wall: Some(k) };
                 }
             }
         }

@@ -122,11 +122,11 @@ fn servo_holds_its_pressure() {
                 - run.state.ledger.work()
         };
         let start = total(&run);
-        let (mut worst, mut when) = (0.0_f64, 0.0);
-        while run.state.time < 0.9 {
+        let mut worst = 0.0_f64;
+        while run.state.time < 1.05 {
             run.step();
             let t = run.state.time;
-            if t > 0.75 {
+            if t > 0.9 {
                 let pressure = run.state.wall_force(0).0.z / area;
                 let off = (pressure / 1e3 - 1.0).abs();
                 if off > worst {

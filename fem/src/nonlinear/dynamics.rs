@@ -12,6 +12,7 @@
 //! method; a step that is halved takes its loads at the time that it reaches.
 
 use super::internal_force::InternalForce;
+use super::memory::Memory;
 use super::motion::{close, inner_force};
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::quasi_static::{Loading, check_state, ensure_points, prescribe, subtract_springs};
@@ -100,6 +101,19 @@ impl Dynamics {
     /// Counts and times since the solver was made.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
+    }
+
+    /// What the solver remembers beside the state, for a checkpoint.
+    pub fn memory(&self) -> Memory {
+        self.newton.memory(Some(self.length))
+    }
+
+    /// Goes on with the memory of a solver of the same model and options.
+    ///
+    /// # Errors
+    /// The elastic matrix cannot be factored.
+    pub fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
+        self.newton.recall(model, memory, Some(&mut self.length))
     }
 
     /// Steps `state` to the time `to`. After every accepted step `on_step` sees the state, how the step converged, and its energies.

@@ -74,6 +74,11 @@ impl LinearSystem {
         })
     }
 
+    /// The matrix that the elastic factor at hand is of.
+    pub fn elastic_of(&self) -> Option<Combination> {
+        self.elastic_of
+    }
+
     /// Factors the elastic matrix, unless it is at hand. Leaves it in `tangent` when it had to be formed.
     ///
     /// # Errors

@@ -9,6 +9,7 @@ pub mod energy;
 pub mod initial_stress;
 mod internal_force;
 mod linear_system;
+mod memory;
 pub(crate) mod motion;
 mod newton;
 mod points;
@@ -19,6 +20,7 @@ mod tangent;
 mod window;
 
 pub use dynamics::Dynamics;
+pub use memory::Memory;
 pub use newton::{LinearMethod, NewtonOptions, Statistics, StepReport, Variant};
 pub use quasi_static::{Driven, Loading, QuasiStatic};
 pub use step_control::StepControl;

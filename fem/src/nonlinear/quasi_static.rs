@@ -4,6 +4,7 @@
 //! what one step leaves within the tolerance is taken up by the next and does not add up. Limits: no path following: beyond
 //! a limit load only prescribed displacements go on.
 
+use super::memory::Memory;
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::step_control::{StepControl, StepLength};
 use crate::assembly::Combination;
@@ -83,6 +84,19 @@ impl QuasiStatic {
     /// Counts and times since the solver was made.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
+    }
+
+    /// What the solver remembers beside the state, for a checkpoint.
+    pub fn memory(&self) -> Memory {
+        self.newton.memory(Some(self.length))
+    }
+
+    /// Goes on with the memory of a solver of the same model and options.
+    ///
+    /// # Errors
+    /// The elastic matrix cannot be factored.
+    pub fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
+        self.newton.recall(model, memory, Some(&mut self.length))
     }
 
     /// Steps `state` to the time `to`. After every accepted step `on_step` sees the state and how the step converged.

@@ -48,7 +48,7 @@ impl StepControl {
 }
 
 /// The length of the next step, from the course of those before.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepLength {
     control: StepControl,
     length: f64,

@@ -10,6 +10,7 @@
 //! Source: as the elastic one; the stresses are returned at the end of the step (backward Euler) and weighted as forces, so the
 //! ledger closes without approximation with the mean of the stresses at both ends. Limits: second order for theta = 1/2 only.
 
+use super::memory::Memory;
 use super::motion::{close, inner_force};
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::quasi_static::{check_state, ensure_points, subtract_springs};
@@ -78,6 +79,19 @@ impl PlasticWindowSolver {
     /// Counts and times since the solver was made.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
+    }
+
+    /// What the solver remembers beside the state, for a checkpoint.
+    pub fn memory(&self) -> Memory {
+        self.newton.memory(None)
+    }
+
+    /// Goes on with the memory of a solver of the same model and options.
+    ///
+    /// # Errors
+    /// The elastic matrix cannot be factored.
+    pub fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
+        self.newton.recall(model, memory, None)
     }
 
     /// How the last step, or the last part of it, converged.

@@ -1,6 +1,7 @@
-//! `[[grains]]` resolved: spheres by hand or from a packing, or grains filled into a box.
+//! `[[grains]]` resolved: grains by hand or from a packing, stacked in a box, on a lattice, or in a container.
 
-use super::{GrainsPart, check};
+use super::sizes::SizeSource;
+use super::{GradedGroup, GrainsPart, Moving, bonded, check, regions};
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::grains::{FillBox, GrainShape, Grains};
@@ -19,9 +20,15 @@ pub(super) fn add(
     material: usize,
     part: &mut GrainsPart,
 ) -> Result<(), Failure> {
-    let sources = [group.spheres.is_some(), group.packing.is_some(), group.fill.is_some()];
+    let sources = [
+        group.spheres.is_some(),
+        group.packing.is_some(),
+        group.fill.is_some(),
+        group.lattice.is_some(),
+        group.region.is_some(),
+    ];
     if sources.iter().filter(|s| **s).count() != 1 {
-        let expected = "exactly one of `spheres`, `packing` and `fill`";
+        let expected = "exactly one of `spheres`, `packing`, `fill`, `lattice` and `region`";
         return Err(document.error(&format!("grains.{index}"), "another number of sources", expected).into());
     }
     let model = BodyInput {
@@ -31,13 +38,72 @@ pub(super) fn add(
         spin: group.spin.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
         ..BodyInput::default()
     };
-    match &group.fill {
-        None => given(document, index, group, &model, part),
-        Some(fill) => filled(document, index, group, fill, &model, part),
+    refuse_idle_keys(document, index, group)?;
+    prescribed(document, index, group, part)?;
+    part.first_shape.push(part.shapes.len());
+    if let Some(fill) = &group.fill {
+        return filled(document, index, group, fill, &model, part);
     }
+    if let Some(fill) = &group.lattice {
+        regions::spheres_only(document, index, group.shape)?;
+        return Ok(regions::lattice(document, index, fill, &model, part)?);
+    }
+    if let Some(region) = &group.region {
+        if group.shape == GrainShape::Bonded {
+            let key = format!("grains.{index}.shape");
+            return Err(document.error(&key, "\"bonded\"", "`fill`, which bonded stones need").into());
+        }
+        return regions::scattered(document, index, group, region, &model, part);
+    }
+    given(document, index, group, &model, part)
 }
 
-/// Spheres whose places are given.
+/// Grips and groups that are recorded.
+fn prescribed(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    part: &mut GrainsPart,
+) -> Result<(), SceneError> {
+    let number = part.parts.len() as u32 - 1;
+    if let Some(motion) = &group.motion {
+        for (k, present) in [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())] {
+            if present {
+                let key = format!("grains.{index}.{k}");
+                return Err(document.error(&key, "a value", "no such key beside `motion`"));
+            }
+        }
+        part.moving.push(Moving { part: number, velocity: Vec3::from(vector(motion)) });
+    }
+    if group.record.unwrap_or(group.motion.is_some()) {
+        part.recorded_groups.push(number);
+    }
+    Ok(())
+}
+
+/// Refuses keys that the source of the grains has no use for.
+fn refuse_idle_keys(document: &Document, index: usize, group: &Grains) -> Result<(), SceneError> {
+    let random = group.fill.is_some() || group.region.is_some();
+    let shapes = random || (group.packing.is_some() && group.shape == GrainShape::Clump);
+    for (k, present, used, needs) in [
+        ("count", group.count.is_some(), random, "`fill` or `region`"),
+        ("gradation", group.gradation.is_some(), random, "`fill` or `region`"),
+        ("size", group.size.is_some(), random, "`fill` or `region`"),
+        ("sizes", group.sizes.is_some(), random, "`fill` or `region`"),
+        ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of clumps"),
+        ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
+        ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),
+        ("bond", group.bond.is_some(), group.shape == GrainShape::Bonded, "`shape = \"bonded\"`"),
+    ] {
+        if present && !used {
+            let key = format!("grains.{index}.{k}");
+            return Err(document.error(&key, "a value", format!("no such key without {needs}")));
+        }
+    }
+    Ok(())
+}
+
+/// Grains whose places are given.
 fn given(
     document: &Document,
     index: usize,
@@ -46,18 +112,36 @@ fn given(
     part: &mut GrainsPart,
 ) -> Result<(), Failure> {
     let key = |k: &str| format!("grains.{index}.{k}");
-    for (k, present) in [
-        ("count", group.count.is_some()),
-        ("gradation", group.gradation.is_some()),
-        ("size", group.size.is_some()),
-        ("library", group.library.is_some()),
-    ] {
-        if present {
-            return Err(document.error(&key(k), "a value", "no such key without `fill`").into());
-        }
+    if group.shape == GrainShape::Bonded {
+        let expected = "`fill`, which bonded stones need";
+        return Err(document.error(&key("shape"), "\"bonded\"", expected).into());
     }
     if group.shape == GrainShape::Clump {
-        return Err(document.error(&key("shape"), "\"clump\"", "`fill`, which clumps need").into());
+        let Some(file) = &group.packing else {
+            let expected = "`fill`, `region` or `packing`, which clumps need";
+            return Err(document.error(&key("shape"), "\"clump\"", expected).into());
+        };
+        let first = part.shapes.len();
+        let stones = shapes(document, index, group, part)?.len();
+        let placed = tables::clump_packing(&document.resolve(file), stones)?;
+        part.bodies.extend(placed.iter().map(|p| {
+            let [w, x, y, z] = p.orientation;
+            let q = nalgebra::Quaternion::new(w, x, y, z);
+            // A packing that a run has written comes back bit for bit; one by hand may be rounded.
+            let exact = (q.norm_squared() - 1.0).abs() < 1e-14;
+            BodyInput {
+                shape: first + p.stone,
+                scale: p.scale,
+                position: Vec3::from(p.position),
+                orientation: if exact {
+                    UnitQuaternion::new_unchecked(q)
+                } else {
+                    UnitQuaternion::new_normalize(q)
+                },
+                ..model.clone()
+            }
+        }));
+        return Ok(());
     }
     let spheres = match (&group.spheres, &group.packing) {
         (Some(list), _) => {
@@ -98,12 +182,13 @@ fn filled(
         .count
         .ok_or_else(|| document.error(&key("count"), "nothing", "the number of grains to fill in"))?;
     check(document, &key("count"), Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
-    let first = part.shapes.len();
+    let (first, first_body) = (part.shapes.len(), part.bodies.len());
     let unit_scale = shapes(document, index, group, part)?;
-    let sizes = sizes(document, index, group, count)?;
-    let shape = |i: usize| first + i % unit_scale.len();
-    let scale: Vec<f64> =
-        sizes.iter().enumerate().map(|(i, s)| s * unit_scale[i % unit_scale.len()]).collect();
+    let source = SizeSource::of(document, index, group)?;
+    let sizes = source.sample(count, group.seed);
+    let dealt = deal(&sizes, unit_scale.len());
+    let shape = |i: usize| first + dealt[i];
+    let scale: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| s * unit_scale[*d]).collect();
     let radii: Vec<f64> =
         scale.iter().enumerate().map(|(i, s)| s * bounding_radius(&part.shapes[shape(i)])).collect();
 
@@ -119,12 +204,20 @@ fn filled(
         orientation: place.orientation,
         ..model.clone()
     }));
+    if let SizeSource::Graded(grading) = source
+        && group.shape != GrainShape::Bonded
+    {
+        part.graded.push(GradedGroup { part: model.part, name: group.name.clone(), grading });
+    }
+    if group.shape == GrainShape::Bonded {
+        bonded::expand(document, index, group, first_body, first, part)?;
+    }
     Ok(())
 }
 
 /// Adds the shapes of a filled group; returns the scale that gives each a sieve size of 1 m, so that the scale of a
 /// body is its sieve size.
-fn shapes(
+pub(super) fn shapes(
     document: &Document,
     index: usize,
     group: &Grains,
@@ -138,6 +231,7 @@ fn shapes(
             Ok(clumps.iter().map(|c| 1.0 / c.sieve_size()).collect())
         }
         (GrainShape::Clump, None) => Err(document.error(&key, "nothing", "the stone library of the clumps")),
+        (GrainShape::Bonded, _) => bonded::stand_ins(document, index, group, part),
         (GrainShape::Sphere, Some(_)) => Err(document.error(&key, "a file", "no such key for spheres")),
         (GrainShape::Sphere, None) => {
             part.shapes.push(Shape::Sphere { radius: 0.5 });
@@ -146,22 +240,14 @@ fn shapes(
     }
 }
 
-/// Sieve sizes of `count` grains [m].
-fn sizes(document: &Document, index: usize, group: &Grains, count: usize) -> Result<Vec<f64>, SceneError> {
-    let key = |k: &str| format!("grains.{index}.{k}");
-    match (&group.gradation, &group.size) {
-        (Some(g), None) => {
-            check(document, &key("gradation.scale"), Some(g.scale), |s| s > 0.0, "above 0")?;
-            let curve = tables::gradation(&document.resolve(&g.file), &g.standard, &g.grade)?;
-            Ok(curve.scaled(g.scale).sample(count, group.seed))
-        }
-        (None, Some([low, high])) => {
-            check(document, &key("size"), Some(low.si), |s| s > 0.0, "sizes above 0")?;
-            check(document, &key("size"), Some(high.si), |s| s >= low.si, "the larger size last")?;
-            Ok((0..count).map(|i| low.si + (high.si - low.si) * (i as f64 + 0.5) / count as f64).collect())
-        }
-        _ => Err(document.error(&key("gradation"), "both or none of `gradation` and `size`", "one of them")),
-    }
+/// Deals `shapes` shapes out to grains in the order of their sizes, so that every shape has the sizes of all: mass per
+/// size³ differs between shapes, and would else make the sieve curve err.
+pub(super) fn deal(sizes: &[f64], shapes: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..sizes.len()).collect();
+    order.sort_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
+    let mut dealt = vec![0; sizes.len()];
+    order.into_iter().enumerate().for_each(|(rank, i)| dealt[i] = rank % shapes);
+    dealt
 }
 
 /// Height above which a box is free of the grains that earlier groups have put there [m].
@@ -178,7 +264,7 @@ fn top_of(part: &GrainsPart, low: [f64; 3], high: [f64; 2]) -> f64 {
 }
 
 /// Radius about the centre of mass that holds a grain of scale 1 [m].
-fn bounding_radius(shape: &Shape) -> f64 {
+pub(super) fn bounding_radius(shape: &Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } => *radius,
         Shape::Clump(clump) => clump.bounding_radius(),

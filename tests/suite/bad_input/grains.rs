@@ -154,39 +154,145 @@ fn unknown_held_motion() {
         .refused("scene.toml:33: track.sleeper.hold.0: found \"w\", expected one of \"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"");
 }
 
-#[test]
-fn modulus_without_poisson() {
-    grains_scene()
-        .scene("stiffness = \"1 MN/m\"", "young = \"50 MPa\"")
-        .refused("scene.toml:3: material.0.poisson: found nothing, expected Poisson's ratio beside `young`");
-}
+const LATTICE: &str = "lattice = { kind = \"loose\", size = 0.1, low = [0, 0, 0.1], counts = [2, 2, 2] }";
 
 #[test]
-fn poisson_without_modulus() {
-    grains_scene()
-        .scene("friction = 0.5", "friction = 0.5\npoisson = 0.3")
-        .refused("scene.toml:8: material.0.poisson: found a value, expected no such key without `young`");
-}
-
-#[test]
-fn two_laws_in_one_scene() {
-    grains_scene()
-        .scene("stiffness = \"1 MN/m\"", "stiffness = \"1 MN/m\"\nyoung = \"50 MPa\"\npoisson = 0.3")
-        .refused(
-            "scene.toml:6: material.0.stiffness: found a stiffness, expected no stiffness, as \"stone\" has a Young's modulus",
-        );
-}
-
-#[test]
-fn negative_rolling_friction() {
-    grains_scene()
-        .scene("friction = 0.5", "friction = 0.5\nrolling_friction = -1.0")
-        .refused("scene.toml:8: material.0.rolling_friction: found -1, expected 0 or more");
-}
-
-#[test]
-fn impact_speed_of_linear_contacts() {
-    grains_scene().scene("end = \"20 ms\"", "end = \"20 ms\"\nimpact_speed = 1.0").refused(
-        "scene.toml:24: time.impact_speed: found a value, expected no such key without a material with `young`",
+fn lattice_of_both_counts_and_corner() {
+    grains_scene().scene(SPHERES, &LATTICE.replace("counts", "high = [1, 1, 1], counts")).refused(
+        "scene.toml:14: grains.0.lattice: found both or none of `counts` and `high`, expected one of them",
     );
+}
+
+#[test]
+fn size_without_a_fill() {
+    grains_scene().scene(SPHERES, &format!("{LATTICE}\nsize = [0.1, 0.2]")).refused(
+        "scene.toml:15: grains.0.size: found a value, expected no such key without `fill` or `region`",
+    );
+}
+
+#[test]
+fn two_sources_of_grains() {
+    grains_scene().scene(SPHERES, &format!("{SPHERES}\n{LATTICE}")).refused(
+        "scene.toml:10: grains.0: found another number of sources, expected exactly one of `spheres`, `packing`, `fill`, \
+         `lattice` and `region`",
+    );
+}
+
+const SCATTER: &str =
+    "region = { box = [[0, 0, 0], [1, 1, 1]] }\nsizes = { law = \"equal\", size = 0.1 }\nconcentration = 0.1";
+
+#[test]
+fn container_that_is_too_full() {
+    let full = SCATTER.replace("concentration = 0.1", "concentration = 0.6");
+    let line = "scene.toml:14: grains.0.region: found no free place for a grain of radius 0.05 m after ";
+    let folder = scene_folder("bad_input", super::super::support::GRAINS);
+    folder.edit(SCENE, SPHERES, &full);
+    let said = trackbed(["check", &folder.join(SCENE).display().to_string()]);
+    assert_eq!(said.code, 2);
+    assert!(
+        said.stderr
+            .replace(&format!("{}/", folder.path().display()), "")
+            .starts_with(&format!("error: {line}")),
+        "{}",
+        said.stderr
+    );
+}
+
+#[test]
+fn growth_with_a_concentration() {
+    grains_scene().scene(SPHERES, &format!("{SCATTER}\ngrowth = {{ porosity = 0.5 }}")).refused(
+        "scene.toml:16: grains.0.concentration: found a value, expected no such key beside `growth`",
+    );
+}
+
+#[test]
+fn porosity_above_one() {
+    let growth = SCATTER.replace("concentration = 0.1", "growth = { porosity = 1.5 }");
+    grains_scene()
+        .scene(SPHERES, &growth)
+        .refused("scene.toml:16: grains.0.growth.porosity: found 1.5, expected above 0, below 1");
+}
+
+#[test]
+fn sizes_in_the_wrong_order() {
+    let sizes = SCATTER.replace("\"equal\", size = 0.1", "\"uniform\", low = 0.2, high = 0.1");
+    grains_scene().scene(SPHERES, &sizes).refused(
+        "scene.toml:15: grains.0.sizes: found sizes from 0.2 m to 0.1 m: the first must be the smaller, expected sizes \
+         above 0 in rising order, and positive deviations",
+    );
+}
+
+#[test]
+fn open_surface() {
+    let open = SCATTER.replace("box = [[0, 0, 0], [1, 1, 1]]", "surface = \"sheet.obj\"");
+    grains_scene().scene(SPHERES, &open).file("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").refused(
+        "scene.toml:14: grains.0.region.surface: found the surface is not closed: 3 edges join an odd number of triangles, \
+         one at (0.5, 0, 0) m, expected a closed surface",
+    );
+}
+
+#[test]
+fn clump_packing_with_an_unknown_stone() {
+    grains_scene()
+        .scene("shape = \"sphere\"", "shape = \"clump\"")
+        .scene(SPHERES, "packing = \"bed.csv\"\nlibrary = \"stones.toml\"")
+        .file(
+            "stones.toml",
+            "name = \"a\"\nsource = \"b\"\n[[stones]]\nname = \"c\"\nspheres = [[0, 0, 0, 0.5]]\n",
+        )
+        .file("bed.csv", "x,y,z,qw,qx,qy,qz,scale,stone\n0,0,1,1,0,0,0,0.1,0\n0,0,2,1,0,0,0,0.1,1\n")
+        .refused("bed.csv:3: stone: found 1, expected the number of a stone of the library, 0 to 0");
+}
+
+#[test]
+fn ratio_of_forces_above_one() {
+    grains_scene()
+        .scene("[time]", "[deposition]\nmax_time = 1\nunbalanced_ratio = 2\n\n[time]")
+        .refused("scene.toml:24: deposition.unbalanced_ratio: found 2, expected above 0, below 1");
+}
+
+#[test]
+fn no_layers() {
+    grains_scene()
+        .scene("[time]", "[deposition]\nmax_time = 1\nlayers = 0\n\n[time]")
+        .refused("scene.toml:24: deposition.layers: found 0, expected 1 to 1000");
+}
+
+const VIBRATION: &str = "[[compaction]]\nkind = \"vibration\"\nregion = [[0, 0, 0], [1, 1, 1]]\namplitude = 0.001\n\
+                         frequency = 30\ncycles = 5\n\n[time]";
+
+#[test]
+fn vibration_of_a_wall_that_is_not_there() {
+    grains_scene().scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nwalls = [0, 1]")).refused(
+        "scene.toml:28: compaction.0.walls: found 1, expected the number of a plane in [[walls]], counted from 0",
+    );
+}
+
+#[test]
+fn vibration_without_an_amplitude() {
+    grains_scene()
+        .scene("[time]", &VIBRATION.replace("amplitude = 0.001\n", ""))
+        .refused("scene.toml:22: compaction.0.amplitude: found nothing, expected an amplitude");
+}
+
+#[test]
+fn plate_of_a_vibration() {
+    grains_scene().scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nforce = 100")).refused(
+        "scene.toml:28: compaction.0.force: found a value, expected no such key for this kind of compaction",
+    );
+}
+
+#[test]
+fn region_upside_down() {
+    grains_scene().scene("[time]", &VIBRATION.replace("[1, 1, 1]", "[1, 1, -1]")).refused(
+        "scene.toml:24: compaction.0.region: found corners in another order, expected the lower corner, then the upper",
+    );
+}
+
+#[test]
+fn two_measures_of_one_name() {
+    let measure = "[[measure]]\nname = \"core\"\nbox = [[0, 0, 0], [1, 1, 1]]\n\n";
+    grains_scene()
+        .scene("[time]", &format!("{measure}{measure}[time]"))
+        .refused("scene.toml:27: measure.1.name: found \"core\" again, expected each name once");
 }

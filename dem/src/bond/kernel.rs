@@ -1,0 +1,205 @@
+//! The forces of a bond, one or four at a time.
+//!
+//! With d from b to a, L = |d|, n = d/L, lₐ + l_b = L the lever arms, and dt since the last step:
+//!
+//! * the line of centres has swung by the Rodrigues vector s = tan(α/2) about d′ × d, tan α = |d′ × d|/d′·d, with
+//!   d′ = d − v dt the line one step ago;
+//! * the stored vectors turn with it, and about n as far as the mean spin ω̄ of both does, by tan(ω̄dt/2)·n;
+//! * shear: u += [2 L s − 2 tan(dt/2)(lₐωₐ + l_bω_b)] × n̄, the slip at the bond, with n̄ the normal halfway: exactly
+//!   nothing in a rigid rotation by any angle about any axis, since then n − n′ = 2 tan(ω̄dt/2) × ½(n + n′);
+//! * relative rotation: θ += (ωₐ − ω_b) dt;
+//! * force on a: −n kₙ(L − L₀) − kₛ u, moment on a: −k_t (θ·n) n − k_b θ⊥, with dashpots on the velocities;
+//! * force and its opposite act at one point, so momentum and angular momentum are kept to rounding.
+//!
+//! The bond breaks at max(S₁, S₂) = 1 or, by sum, at S₁ + S₂ = 1, with the shares of strength
+//! S₁ = s₀T + s₁|θ⊥|, S₂ = s₂|u| + s₃|θ·n| + s₄T. Dashpots do not count.
+
+use crate::lanes::{Real, V3};
+
+pub(crate) const LENGTH: usize = 0;
+/// Difference of the lever arms [m].
+pub(crate) const OFFSET: usize = 1;
+/// Tension, shear, bending, twisting.
+pub(crate) const STIFFNESS: usize = 2;
+pub(crate) const DAMPING: usize = 6;
+/// s₀ … s₄.
+pub(crate) const LIMIT: usize = 10;
+/// 1 for the criterion by sum, 0 for the larger share.
+pub(crate) const SUM: usize = 15;
+pub(crate) const COUNT: usize = 16;
+
+/// Centre, velocity and spin of a body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<R> {
+    pub x: V3<R>,
+    pub v: V3<R>,
+    pub w: V3<R>,
+}
+
+/// What a bond remembers: shear displacement [m] and relative rotation [rad] of a against b.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Memory<R> {
+    pub shear: V3<R>,
+    pub turn: V3<R>,
+}
+
+/// Where a bond is now.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<R> {
+    pub normal: V3<R>,
+    pub length: R,
+    /// Speed of separation [m/s].
+    rate: R,
+    /// lₐωₐ + l_bω_b [m/s].
+    roll: V3<R>,
+    arm_a: R,
+    arm_b: R,
+}
+
+/// What a bond does in a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Response<R> {
+    /// Force on a.
+    pub force: V3<R>,
+    pub torque_a: V3<R>,
+    pub torque_b: V3<R>,
+    /// Shares of strength used up: S₁, S₂, and the one that counts.
+    pub tensile: R,
+    pub shearing: R,
+    pub share: R,
+    /// Power of the dashpots at the velocities of half a step ago [W].
+    pub power: R,
+}
+
+/// Brings the memory of a bond to the present places of its bodies, which have moved with their velocities over `dt`.
+#[inline(always)]
+pub(crate) fn carry<R: Real>(
+    offset: R,
+    a: &Motion<R>,
+    b: &Motion<R>,
+    memory: &mut Memory<R>,
+    dt: R,
+) -> Frame<R> {
+    let half = R::splat(0.5);
+    let one = R::splat(1.0);
+    let d = a.x - b.x;
+    let v = a.v - b.v;
+    let square = d.norm2();
+    let length = square.sqrt();
+    let inverse_square = one / square;
+    let inverse = length * inverse_square;
+    let normal = d * inverse;
+    let along = v.dot(d);
+
+    // e = d′ × d / (2 d′·d), half the tangent of the angle; 1/d′·d by its series in the strain of a step.
+    let strain = along * inverse_square * dt;
+    let inverse_dot = inverse_square * (one + strain * (one + strain));
+    let e = d.cross(v) * (half * dt * inverse_dot);
+    let e2 = e.norm2();
+    let swing = e * (one - e2 * (one - e2 * R::splat(2.0)));
+    let mean = (a.w + b.w) * (half * dt);
+    // 2 tan(ω̄dt/2)/ω̄dt.
+    let mean2 = mean.norm2();
+    let stretch = one + mean2 * (R::splat(1.0 / 12.0) + mean2 * R::splat(1.0 / 120.0));
+    let twist = mean.dot(normal) * (half * stretch);
+    let c = swing + normal * twist + normal.cross(swing) * twist;
+    let c2 = c.norm2();
+    let s = R::splat(2.0) * (one - c2 * (one - c2));
+    let swing2 = swing.norm2();
+    let middle = (normal - swing.cross(normal)) * (one - half * swing2 * (one - R::splat(0.75) * swing2));
+
+    let (arm_a, arm_b) = ((length + offset) * half, (length - offset) * half);
+    let roll = a.w * arm_a + b.w * arm_b;
+    // Half of each increment before the turn and half after it.
+    let slip = (swing * length - roll * (half * dt * stretch)).cross(middle);
+    memory.shear = rotate(c, s, memory.shear + slip) + slip;
+    let turn = (a.w - b.w) * (half * dt);
+    memory.turn = rotate(c, s, memory.turn + turn) + turn;
+    Frame { normal, length, rate: along * inverse, roll, arm_a, arm_b }
+}
+
+/// y turned by the Rodrigues vector c, s = 2/(1 + c²).
+#[inline(always)]
+fn rotate<R: Real>(c: V3<R>, s: R, y: V3<R>) -> V3<R> {
+    let z = c.cross(y);
+    y + (z + c.cross(z)) * s
+}
+
+/// Splits a rotation into the part along n and the part across.
+#[inline(always)]
+fn split<R: Real>(v: V3<R>, n: V3<R>) -> (R, V3<R>) {
+    let along = v.dot(n);
+    (along, v - n * along)
+}
+
+/// Force, moments and shares of strength.
+#[inline(always)]
+pub(crate) fn respond<R: Real>(
+    k: &[R; COUNT],
+    a: &Motion<R>,
+    b: &Motion<R>,
+    frame: &Frame<R>,
+    memory: &Memory<R>,
+) -> Response<R> {
+    let n = frame.normal;
+    let tension = k[STIFFNESS] * (frame.length - k[LENGTH]);
+    let (twist, bend) = split(memory.turn, n);
+    let slip = a.v - b.v - n * frame.rate - frame.roll.cross(n);
+    let (turning, bending) = split(a.w - b.w, n);
+
+    let force =
+        -(n * (tension + k[DAMPING] * frame.rate)) - memory.shear * k[STIFFNESS + 1] - slip * k[DAMPING + 1];
+    let moment = -(n * (twist * k[STIFFNESS + 3] + turning * k[DAMPING + 3]))
+        - bend * k[STIFFNESS + 2]
+        - bending * k[DAMPING + 2];
+    let lever = n.cross(force);
+
+    let tensile = k[LIMIT] * tension + k[LIMIT + 1] * bend.norm2().sqrt();
+    let shearing =
+        k[LIMIT + 2] * memory.shear.norm2().sqrt() + k[LIMIT + 3] * twist.abs() + k[LIMIT + 4] * tension;
+    let share = tensile.max(shearing) + k[SUM] * tensile.min(shearing);
+    let power = k[DAMPING] * frame.rate * frame.rate
+        + k[DAMPING + 1] * slip.norm2()
+        + k[DAMPING + 2] * bending.norm2()
+        + k[DAMPING + 3] * turning * turning;
+    Response {
+        force,
+        torque_a: moment - lever * frame.arm_a,
+        torque_b: -moment - lever * frame.arm_b,
+        tensile,
+        shearing,
+        share,
+        power,
+    }
+}
+
+/// Elastic energy of tension, shear, bending, twisting [J].
+#[inline(always)]
+pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &Memory<f64>) -> f64 {
+    let stretch = frame.length - k[LENGTH];
+    let (twist, bend) = split(memory.turn, frame.normal);
+    0.5 * (k[STIFFNESS] * stretch * stretch
+        + k[STIFFNESS + 1] * memory.shear.norm2()
+        + k[STIFFNESS + 2] * bend.norm2()
+        + k[STIFFNESS + 3] * twist * twist)
+}
+
+/// Elastic energy half a step before the bodies' positions. `since` is the time from the memory's instant to that half
+/// step: ½ dt for a memory of the last step, −½ dt for one of the present positions.
+pub(crate) fn half_step_energy(
+    k: &[f64; COUNT],
+    a: &Motion<f64>,
+    b: &Motion<f64>,
+    memory: &Memory<f64>,
+    dt: f64,
+    since: f64,
+) -> f64 {
+    let back = |m: &Motion<f64>| Motion { x: m.x - m.v * (0.5 * dt), ..*m };
+    let mut memory = *memory;
+    let frame = carry(k[OFFSET], &back(a), &back(b), &mut memory, since);
+    energy(k, &frame, &memory)
+}
+
+#[cfg(test)]
+#[path = "kernel_tests.rs"]
+mod tests;

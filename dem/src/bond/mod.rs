@@ -1,0 +1,305 @@
+//! Bonds between spheres: elastic bars that carry force (and moment) until they break.
+//!
+//! A [`Bond`] is a kind of bond, one file each: [`ParallelBond`] (a cemented disk between two spheres), [`ContactPoint`]
+//! (force only), [`DirectBond`] (stiffnesses and strengths of the bond itself). A [`BondInput`] puts one between two
+//! spheres. All of them end up as the same sixteen constants, and one kernel (`kernel.rs`) computes the forces:
+//!
+//! * tension from the present length, kₙ (L − L₀): no drift;
+//! * shear, bending and twisting by increments in a frame that turns with the line of centres and with the mean spin
+//!   about it (Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004). The increments are those of the angle
+//!   between the spins and the line of centres, so that a rigid motion of any size stores nothing.
+//!
+//! A bond breaks in the step in which its criterion reaches 1 (`kernel.rs`); the elastic energy it held goes to the
+//! ledger and, as the energy of an acoustic event, to the list of breaks. The pair then stays with this module as a
+//! `Remnant` (`remnant.rs`) until the two have separated.
+//!
+//! Limits: bonds join single spheres only, not clumps or boxes; rotations between bonded spheres are small (linear
+//! springs); the stored vectors turn with an error of the sixth power of the angle per step.
+
+mod contact_point;
+mod direct;
+mod fragments;
+pub(crate) mod kernel;
+mod limit;
+mod measure;
+mod pairs;
+mod parallel;
+pub(crate) mod pass;
+pub(crate) mod remnant;
+pub(crate) mod store;
+mod strength;
+
+pub use contact_point::ContactPoint;
+pub use direct::DirectBond;
+pub use fragments::{Fragments, fragments};
+pub use measure::{BondRecord, force_on, records};
+pub use pairs::within_gap;
+pub use parallel::{ParallelBond, ParallelStiffness, ShearStrength};
+pub use strength::{Spread, factors};
+
+pub(crate) use limit::stiffest;
+pub(crate) use measure::{each_touch, elastic};
+pub(crate) use store::{BondList, BondState, Held};
+
+use crate::Vec3;
+use crate::bodies::{Bodies, Body, Kind};
+use crate::error::ModelError;
+use crate::input::ModelInput;
+use serde::{Deserialize, Serialize};
+
+/// A kind of bond.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bond {
+    /// A cemented disk between the spheres: force and moment.
+    Parallel(ParallelBond),
+    /// A spring at the contact point: force only.
+    ContactPoint(ContactPoint),
+    /// Stiffnesses and strengths of the bond itself, the same for every length and radius.
+    Direct(DirectBond),
+}
+
+/// A bond between two bodies, both single spheres. Its length at rest is their distance at the start of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BondInput {
+    /// First body (index).
+    pub a: usize,
+    /// Second body (index).
+    pub b: usize,
+    /// Kind of bond (index into [`ModelInput::bond_kinds`]).
+    pub kind: usize,
+    /// Factor on the tensile strength [-].
+    pub tension: f64,
+    /// Factor on the shear strength [-].
+    pub shear: f64,
+    /// Factor on all stiffnesses [-].
+    pub stiffness: f64,
+}
+
+impl BondInput {
+    /// A bond with the strengths and stiffnesses of its kind.
+    pub fn new(a: usize, b: usize, kind: usize) -> BondInput {
+        BondInput { a, b, kind, tension: 1.0, shear: 1.0, stiffness: 1.0 }
+    }
+}
+
+/// Viscous damping of a bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BondDamping {
+    /// None.
+    None,
+    /// This fraction of critical damping of the two spheres on each spring: c = 2 ζ √(k m*), with the reduced mass for
+    /// tension and shear and the reduced moment of inertia for bending and twisting.
+    Fraction(f64),
+    /// Coefficients of tension and shear [N s/m], bending and twisting [N m s].
+    Coefficients([f64; 4]),
+}
+
+/// When a bond breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// When the tensile or the shear stress reaches its strength.
+    Stress,
+    /// When the shares of strength that tension, bending, shear and twisting use up add up to 1.
+    Sum,
+}
+
+/// How a bond broke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BreakMode {
+    /// Tension and bending used up the larger share.
+    Tension,
+    /// Shear and twisting did.
+    Shear,
+}
+
+/// A bond that broke: an acoustic event.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Break {
+    /// Time [s].
+    pub time: f64,
+    /// Number of the bond in the model.
+    pub bond: u32,
+    /// The bodies it joined.
+    pub bodies: [u32; 2],
+    /// Place of its middle [m].
+    pub place: Vec3,
+    /// How it broke.
+    pub mode: BreakMode,
+    /// Elastic energy set free, less what a contact of the pair takes over [J].
+    pub energy: f64,
+}
+
+/// Two spheres about to be joined.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joint {
+    /// Radii [m].
+    pub radii: [f64; 2],
+    /// Distance of the centres [m].
+    pub length: f64,
+    /// Reduced mass [kg] and moment of inertia [kg m²]; zero between two fixed bodies.
+    pub mass: f64,
+    pub inertia: f64,
+}
+
+/// Four springs and what breaks them, as a kind of bond makes them for a joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Springs {
+    /// Tension and shear [N/m], bending and twisting [N m/rad].
+    pub stiffness: [f64; 4],
+    /// 1/strength in tension [1/N], bending [1/(N m)], shear [1/N], twisting [1/(N m)]; and the share of tension in the
+    /// shear criterion [1/N].
+    pub limit: [f64; 5],
+    /// Whether forces act in the middle of the line of centres instead of the middle of the gap.
+    pub middle: bool,
+}
+
+/// A bond resolved: what the kernel needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Constants {
+    /// Bodies.
+    pub ends: [u32; 2],
+    /// In the order of [`kernel`]'s indices.
+    pub values: [f64; kernel::COUNT],
+    /// Whether the contact of the pair acts beside the bond.
+    pub contact: bool,
+}
+
+/// Checks and resolves the bonds of an input.
+pub(crate) fn resolve(input: &ModelInput, bodies: &Bodies) -> Result<Vec<Constants>, ModelError> {
+    for (kind, bond) in input.bond_kinds.iter().enumerate() {
+        let problem = match bond {
+            Bond::Parallel(p) => p.problem(),
+            Bond::ContactPoint(p) => p.problem(),
+            Bond::Direct(d) => d.problem(),
+        };
+        if let Some((quantity, value, requirement)) = problem {
+            return Err(ModelError::BondKind { kind, quantity, value, requirement });
+        }
+    }
+    let mut seen = std::collections::HashSet::new();
+    input
+        .bonds
+        .iter()
+        .enumerate()
+        .map(|(index, b)| {
+            let error = |problem: String| ModelError::Bond { index, problem };
+            for body in [b.a, b.b] {
+                if body >= bodies.len() {
+                    return Err(error(format!("there is no body {body}")));
+                }
+                if bodies.kind(body) != Kind::Sphere {
+                    return Err(error(format!("body {body} is not a single sphere")));
+                }
+            }
+            if b.a == b.b {
+                return Err(error(format!("it joins body {} with itself", b.a)));
+            }
+            if !seen.insert((b.a.min(b.b), b.a.max(b.b))) {
+                return Err(error(format!("bodies {} and {} have another bond already", b.a, b.b)));
+            }
+            let Some(kind) = input.bond_kinds.get(b.kind) else {
+                return Err(error(format!("there is no kind of bond {}", b.kind)));
+            };
+            let factors = [b.tension, b.shear, b.stiffness];
+            if !factors.iter().all(|f| *f > 0.0 && f.is_finite()) {
+                return Err(error(
+                    "its factors on strength and stiffness must be positive and finite".into(),
+                ));
+            }
+            let (p, q) = (&bodies.get(b.a), &bodies.get(b.b));
+            let length = (input.bodies[b.a].position - input.bodies[b.b].position).norm();
+            if length.is_nan() || length <= 0.0 {
+                return Err(error("its spheres have the same centre".into()));
+            }
+            Ok(constants(kind, b, p, q, length))
+        })
+        .collect()
+}
+
+fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Constants {
+    let inertia = |body: &Body| if body.fixed >> 3 == 7 { 0.0 } else { 1.0 / body.inertia.x };
+    let reduced = |sum: f64| if sum > 0.0 { 1.0 / sum } else { 0.0 };
+    let joint = Joint {
+        radii: [p.radius, q.radius],
+        length,
+        mass: reduced(p.inverse_mass + q.inverse_mass),
+        inertia: reduced(inertia(p) + inertia(q)),
+    };
+    let (springs, damping, criterion, contact) = match kind {
+        Bond::Parallel(k) => (k.springs(&joint), k.damping, k.criterion, k.contact),
+        Bond::ContactPoint(k) => (k.springs(), k.damping, Criterion::Stress, k.contact),
+        Bond::Direct(k) => (k.springs(), k.damping, k.criterion, k.contact),
+    };
+    let stiffness = springs.stiffness.map(|k| k * b.stiffness);
+    let dashpots = match damping {
+        BondDamping::None => [0.0; 4],
+        BondDamping::Coefficients(c) => c,
+        BondDamping::Fraction(zeta) => std::array::from_fn(|m| {
+            2.0 * zeta * (stiffness[m] * if m < 2 { joint.mass } else { joint.inertia }).sqrt()
+        }),
+    };
+    let [tension, bending, shear, twisting, confined] = springs.limit;
+    let mut values = [0.0; kernel::COUNT];
+    values[kernel::LENGTH] = length;
+    values[kernel::OFFSET] = if springs.middle { 0.0 } else { joint.radii[0] - joint.radii[1] };
+    values[kernel::STIFFNESS..kernel::STIFFNESS + 4].copy_from_slice(&stiffness);
+    values[kernel::DAMPING..kernel::DAMPING + 4].copy_from_slice(&dashpots);
+    // Per unit of tension, bending angle, shear displacement, twist; the last per unit of tension.
+    let limit = [
+        tension / b.tension,
+        bending / b.tension * stiffness[2],
+        shear / b.shear * stiffness[1],
+        twisting / b.shear * stiffness[3],
+        confined / b.shear,
+    ];
+    values[kernel::LIMIT..kernel::LIMIT + 5].copy_from_slice(&limit);
+    values[kernel::SUM] = if criterion == Criterion::Sum { 1.0 } else { 0.0 };
+    Constants { ends: [b.a as u32, b.b as u32], values, contact }
+}
+
+/// A quantity out of range: its name, value and what it must be.
+type Problem = Option<(&'static str, f64, &'static str)>;
+
+const POSITIVE: &str = "be positive and finite";
+const NOT_NEGATIVE: &str = "be zero or positive, and finite";
+const STRENGTH: &str = "be positive (infinite for an unbreakable bond)";
+
+fn positive(name: &'static str, x: f64) -> Problem {
+    (!(x > 0.0 && x.is_finite())).then_some((name, x, POSITIVE))
+}
+
+fn not_negative(name: &'static str, x: f64) -> Problem {
+    (!(x >= 0.0 && x.is_finite())).then_some((name, x, NOT_NEGATIVE))
+}
+
+fn strength(name: &'static str, x: f64) -> Problem {
+    (x.is_nan() || x <= 0.0).then_some((name, x, STRENGTH))
+}
+
+impl BondDamping {
+    fn problem(&self) -> Problem {
+        match self {
+            BondDamping::None => None,
+            BondDamping::Fraction(f) => not_negative("fraction of critical damping", *f),
+            BondDamping::Coefficients(c) => c.iter().find_map(|c| not_negative("damping coefficient", *c)),
+        }
+    }
+}
+
+impl Bond {
+    /// The same bond without a limit of strength.
+    pub fn unbreakable(&self) -> Bond {
+        let endless = f64::INFINITY;
+        match self {
+            Bond::Parallel(p) => Bond::Parallel(ParallelBond {
+                tensile_strength: endless,
+                shear_strength: ShearStrength::Constant(endless),
+                ..*p
+            }),
+            Bond::ContactPoint(p) => {
+                Bond::ContactPoint(ContactPoint { tension_limit: endless, shear_limit: endless, ..*p })
+            }
+            Bond::Direct(d) => Bond::Direct(DirectBond { strength: [endless; 4], ..*d }),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Which spheres to bond: those whose surfaces are nearer than a gap.
+
+use crate::Vec3;
+use crate::search::cells::Cells;
+use crate::state::Lanes;
+
+/// Pairs (a, b), a < b, of spheres whose surfaces are less than `gap` [m] apart (overlapping ones included) and that
+/// `accept` takes, in ascending order. `spheres` are centres and radii [m].
+pub fn within_gap(
+    spheres: &[(Vec3, f64)],
+    gap: f64,
+    accept: impl Fn(usize, usize) -> bool,
+) -> Vec<[usize; 2]> {
+    let points: Vec<_> = spheres.iter().map(|(c, r)| Lanes([c.x, c.y, c.z, *r])).collect();
+    let radii = points.iter().fold((f64::INFINITY, 0.0_f64), |(lo, hi), p| (lo.min(p[3]), hi.max(p[3])));
+    let mut out = Vec::new();
+    if points.is_empty() {
+        return out;
+    }
+    let mut cells = Cells::default();
+    cells.build(&points, radii, gap.max(0.0));
+    for (a, p) in points.iter().enumerate() {
+        let first = out.len();
+        cells.near(p, gap.max(0.0), |b| {
+            let (b, q) = (b as usize, &points[b as usize]);
+            let reach = p[3] + q[3] + gap;
+            let distance = (spheres[a].0 - spheres[b].0).norm();
+            if b > a && distance < reach && accept(a, b) {
+                out.push([a, b]);
+            }
+        });
+        out[first..].sort_unstable();
+    }
+    out
+}

@@ -1,0 +1,124 @@
+//! Parallel bond: a disk of cement between two spheres, which stretches, shears, bends and twists.
+//!
+//! With R the radius of the disk, A = πR², I = πR⁴/4, J = πR⁴/2 and stiffnesses kₙ, kₛ per area [Pa/m]:
+//! tension kₙA, shear kₛA, bending kₙI, twisting kₛJ. Stresses at the rim
+//!
+//! σ = T/A + β|M_b|R/I,  τ = |F_s|/A + |M_t|R/J,
+//!
+//! T tension positive. The bond breaks where σ reaches the tensile or τ the shear strength; the latter is constant or
+//! grows with pressure, τ_max = c + (−T/A) tan φ.
+//!
+//! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; the moment factor β is that of Potyondy
+//! (Proc. 45th US Rock Mech. Symp., 2011).
+
+use super::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
+use std::f64::consts::PI;
+
+/// Stiffness of the cement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParallelStiffness {
+    /// Young's modulus E [Pa] of a bar as long as the distance of the centres, kₙ = E/L, and the ratio kₙ/kₛ [-].
+    Modulus {
+        /// Young's modulus [Pa].
+        young: f64,
+        /// kₙ/kₛ [-].
+        ratio: f64,
+    },
+    /// kₙ and kₛ themselves.
+    PerArea {
+        /// kₙ [Pa/m].
+        normal: f64,
+        /// kₛ [Pa/m].
+        shear: f64,
+    },
+}
+
+/// Strength in shear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShearStrength {
+    /// The same under any pressure [Pa].
+    Constant(f64),
+    /// Mohr–Coulomb.
+    MohrCoulomb {
+        /// Cohesion c [Pa].
+        cohesion: f64,
+        /// tan φ [-].
+        friction: f64,
+    },
+}
+
+/// A parallel bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallelBond {
+    /// Radius of the disk over the smaller radius of the two spheres [-].
+    pub radius_factor: f64,
+    /// Stiffness.
+    pub stiffness: ParallelStiffness,
+    /// Tensile strength [Pa]; infinite for none.
+    pub tensile_strength: f64,
+    /// Shear strength.
+    pub shear_strength: ShearStrength,
+    /// β: part of the bending moment that counts in the tensile stress, 0 to 1.
+    pub moment_factor: f64,
+    /// When it breaks.
+    pub criterion: Criterion,
+    /// Dashpots.
+    pub damping: BondDamping,
+    /// Whether the contact of the pair acts beside the bond; otherwise it starts when the bond has broken.
+    pub contact: bool,
+}
+
+impl ParallelBond {
+    pub(super) fn problem(&self) -> Problem {
+        let stiffness = match self.stiffness {
+            ParallelStiffness::Modulus { young, ratio } => {
+                positive("Young's modulus", young).or(positive("stiffness ratio", ratio))
+            }
+            ParallelStiffness::PerArea { normal, shear } => positive("normal stiffness per area", normal)
+                .or(not_negative("shear stiffness per area", shear)),
+        };
+        let shear = match self.shear_strength {
+            ShearStrength::Constant(tau) => strength("shear strength", tau),
+            ShearStrength::MohrCoulomb { cohesion, friction } => {
+                strength("cohesion", cohesion).or(not_negative("tangent of the friction angle", friction))
+            }
+        };
+        let factor = self.moment_factor;
+        let in_range = (0.0..=1.0).contains(&factor);
+        positive("radius factor", self.radius_factor)
+            .or(stiffness)
+            .or(strength("tensile strength", self.tensile_strength))
+            .or(shear)
+            .or((!in_range).then_some(("moment factor", factor, "lie in [0, 1]")))
+            .or(self.damping.problem())
+    }
+
+    pub(super) fn springs(&self, joint: &Joint) -> Springs {
+        let r = self.radius_factor * joint.radii[0].min(joint.radii[1]);
+        let area = PI * r * r;
+        let second = 0.25 * area * r * r;
+        let polar = 2.0 * second;
+        let (kn, ks) = match self.stiffness {
+            ParallelStiffness::Modulus { young, ratio } => {
+                (young / joint.length, young / joint.length / ratio)
+            }
+            ParallelStiffness::PerArea { normal, shear } => (normal, shear),
+        };
+        let tensile = 1.0 / self.tensile_strength;
+        let (shear, confined) = match self.shear_strength {
+            ShearStrength::Constant(tau) => (1.0 / tau, 0.0),
+            ShearStrength::MohrCoulomb { cohesion, friction } => (1.0 / cohesion, friction / cohesion),
+        };
+        Springs {
+            stiffness: [kn * area, ks * area, kn * second, ks * polar],
+            limit: [
+                tensile / area,
+                self.moment_factor * r / second * tensile,
+                shear / area,
+                r / polar * shear,
+                confined / area,
+            ],
+            middle: false,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! How many partners bodies have, and which way their contacts look.
+
+use super::contacts::ContactRecord;
+use crate::error::Partner;
+use crate::model::Model;
+
+/// Coordination of a packing. A contact counts when it carries a force; several contacts of one pair of clumps are one
+/// neighbour; walls and surfaces are neighbours, those of one wall (or patch) one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coordination {
+    /// Mean number of neighbours of a body that is free to move.
+    pub mean: f64,
+    /// The same without those that carry nothing: bodies with no or one neighbour are left out, with their contacts
+    /// (mechanical coordination number, Thornton 2000).
+    pub mechanical: f64,
+    /// Share of the free bodies with no or one neighbour.
+    pub rattlers: f64,
+    /// Number of free bodies with 0, 1, 2, … neighbours.
+    pub distribution: Vec<usize>,
+}
+
+/// Number of neighbours of each body. Shape `[bodies]`.
+pub fn neighbours(model: &Model, contacts: &[ContactRecord]) -> Vec<u32> {
+    let mut pairs: Vec<(usize, u8, usize)> = Vec::with_capacity(2 * contacts.len());
+    for c in contacts.iter().filter(|c| c.normal_force > 0.0) {
+        match c.b {
+            Partner::Body(b) => pairs.extend([(c.a, 0, b), (b, 0, c.a)]),
+            Partner::Plane(k) => pairs.push((c.a, 1, k)),
+            Partner::Triangle(k) => pairs.push((c.a, 2, k as usize)),
+            Partner::Wall(k) => pairs.push((c.a, 3, k as usize)),
+            Partner::Patch(k) => pairs.push((c.a, 4, k as usize)),
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut count = vec![0; model.body_count()];
+    pairs.iter().for_each(|p| count[p.0] += 1);
+    count
+}
+
+/// Coordination of the bodies of which `counted` is true (all others still are neighbours).
+pub fn coordination_of(
+    model: &Model,
+    contacts: &[ContactRecord],
+    counted: impl Fn(usize) -> bool,
+) -> Coordination {
+    let counts = neighbours(model, contacts);
+    let free = |&body: &usize| model.body(body).inverse_mass > 0.0 && counted(body);
+    let mut distribution = Vec::new();
+    for n in (0..model.body_count()).filter(free).map(|body| counts[body] as usize) {
+        if distribution.len() <= n {
+            distribution.resize(n + 1, 0);
+        }
+        distribution[n] += 1;
+    }
+    let bodies: usize = distribution.iter().sum();
+    let total: usize = distribution.iter().enumerate().map(|(n, count)| n * count).sum();
+    let idle: usize = distribution.iter().take(2).sum();
+    let single = distribution.get(1).copied().unwrap_or(0);
+    let ratio = |a: usize, b: usize| if b > 0 { a as f64 / b as f64 } else { 0.0 };
+    Coordination {
+        mean: ratio(total, bodies),
+        mechanical: ratio(total - single, bodies - idle),
+        rattlers: ratio(idle, bodies),
+        distribution,
+    }
+}
+
+/// Fabric tensor (Satake 1982): mean of n ⊗ n over the contacts that carry a force and pass `counted`, in the order xx,
+/// yy, zz, xy, yz, zx [-]. Its trace is 1; a third on the diagonal is an isotropic packing. Zero without contacts.
+pub fn fabric(contacts: &[ContactRecord], counted: impl Fn(&ContactRecord) -> bool) -> [f64; 6] {
+    let mut sum = [0.0; 6];
+    let mut count = 0;
+    for c in contacts.iter().filter(|c| c.normal_force > 0.0 && counted(c)) {
+        let n = &c.normal;
+        let products = [n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x];
+        sum.iter_mut().zip(products).for_each(|(s, p)| *s += p);
+        count += 1;
+    }
+    sum.map(|s| if count > 0 { s / f64::from(count) } else { 0.0 })
+}
+
+/// The strong contacts: those with more than the mean normal force (Radjai, Wolf, Jean & Moreau 1998).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StrongNetwork {
+    /// Mean normal force of the contacts that carry one [N].
+    pub mean_force: f64,
+    /// Share of those contacts that is above the mean [-].
+    pub contacts: f64,
+    /// Share of the sum of normal forces that these carry [-].
+    pub load: f64,
+}
+
+/// Mean force, and what the contacts above it carry.
+pub fn strong_network(contacts: &[ContactRecord]) -> StrongNetwork {
+    let forces = || contacts.iter().map(|c| c.normal_force).filter(|f| *f > 0.0);
+    let (count, sum) = forces().fold((0_usize, 0.0), |(n, s), f| (n + 1, s + f));
+    if count == 0 {
+        return StrongNetwork::default();
+    }
+    let mean_force = sum / count as f64;
+    let (strong, carried) =
+        forces().filter(|f| *f > mean_force).fold((0_usize, 0.0), |(n, s), f| (n + 1, s + f));
+    StrongNetwork { mean_force, contacts: strong as f64 / count as f64, load: carried / sum }
+}
+
+/// Unbalanced-force ratio: mean of |sum of contact forces and weight| over the bodies that are free to move, over the
+/// mean of |contact force|. It tends to 0 in equilibrium; without contacts it is infinite.
+pub fn unbalanced_ratio(model: &Model, contacts: &[ContactRecord]) -> f64 {
+    let mut net: Vec<crate::Vec3> =
+        (0..model.body_count()).map(|b| model.gravity() * model.mass(b)).collect();
+    let mut carried = 0.0;
+    for c in contacts {
+        net[c.a] += c.force;
+        if let Partner::Body(b) = c.b {
+            net[b] -= c.force;
+        }
+        carried += c.force.norm();
+    }
+    if carried <= 0.0 {
+        return f64::INFINITY;
+    }
+    let mut sum = 0.0;
+    let mut free = 0;
+    for (force, body) in net.iter().zip(model.bodies.iter()) {
+        if body.inverse_mass > 0.0 {
+            // What is held fixed is balanced by its support.
+            let d = |k: usize| if body.fixed >> k & 1 == 1 { 0.0 } else { force[k] * force[k] };
+            sum += (d(0) + d(1) + d(2)).sqrt();
+            free += 1;
+        }
+    }
+    if free == 0 { 0.0 } else { (sum / f64::from(free)) / (carried / contacts.len() as f64) }
+}

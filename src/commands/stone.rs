@@ -1,0 +1,268 @@
+//! `trackbed stone`: makes stones of spheres from surfaces or at random, and measures libraries and surfaces.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use super::print;
+use crate::cli::{StoneArgs, StoneCommand, StoneKind};
+use crate::failure::Failure;
+use crate::read::read_surface;
+use crate::scene::Document;
+use crate::stone_tools::{Kind, Made, Source, fill, grow, library_file, make, random};
+use crate::write::{atomic, stl::stl_bytes};
+use trackbed_dem::insert::library::StoneLibrary;
+use trackbed_dem::shape::clump::Clump;
+use trackbed_dem::shape::polyhedron::Polyhedron;
+
+/// Most spheres of a clump: the moments of the union take n³ steps.
+const MOST_CLUMP: usize = 200;
+/// Most spheres of a bonded stone.
+const MOST_BONDED: usize = 2000;
+const MOST_STONES: usize = 10_000;
+
+/// Carries out a `stone` command.
+pub(super) fn stone(command: &StoneCommand) -> Result<(), Failure> {
+    match command {
+        StoneCommand::Make { surfaces, stones } => {
+            let kind = kind(stones, false)?;
+            free(stones.out.as_deref(), stones.force)?;
+            let sources = surfaces.iter().map(|file| source(file)).collect::<Result<Vec<_>, _>>()?;
+            let names: Vec<String> = surfaces.iter().map(|f| f.display().to_string()).collect();
+            finish(&sources, kind, stones, &format!("surfaces {}", names.join(", ")))
+        }
+        StoneCommand::Random { count, elongation, flatness, angularity, surfaces, stones } => {
+            within("--count", *count, MOST_STONES)?;
+            let form = random::Form {
+                elongation: range("--elongation", elongation, 0.05)?,
+                flatness: range("--flatness", flatness, 0.05)?,
+                angularity: range("--angularity", angularity, 0.0)?,
+            };
+            let kind = kind(stones, true)?;
+            free(stones.out.as_deref(), stones.force)?;
+            let seed = stones.seed.unwrap_or(1);
+            let sources: Vec<Source> = (0..*count)
+                .map(|i| Source {
+                    name: format!("random {}", i + 1),
+                    body: random::stone(seed, i as u64, &form),
+                })
+                .collect();
+            if let Some(dir) = surfaces {
+                write_surfaces(dir, &sources, stones.force)?;
+            }
+            let told = format!(
+                "trackbed stone random --count {count} --seed {seed} --elongation {elongation} --flatness {flatness} \
+                 --angularity {angularity}"
+            );
+            finish(&sources, kind, stones, &told)
+        }
+        StoneCommand::Info { input } => info(input),
+    }
+}
+
+/// Makes the stones, prints their measures, writes the library.
+fn finish(sources: &[Source], kind: Kind, args: &StoneArgs, told: &str) -> Result<(), Failure> {
+    let made = make(sources, kind).map_err(|e| Failure::Input(e.to_string()))?;
+    let mut text: String = made.iter().map(|m| format!("{}: {}\n", m.stone.name, m.report)).collect();
+    if let Some(out) = &args.out {
+        let name = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        write_library(out, &name, told, &made)?;
+        let _ = writeln!(text, "{} written", out.display());
+    }
+    print(&text)
+}
+
+fn write_library(out: &Path, name: &str, source: &str, made: &[Made]) -> Result<(), Failure> {
+    let text = library_file::text(name, source, made);
+    atomic::write(out, |w| w.write_all(text.as_bytes()).map_err(crate::write::WriteError::io(out)))?;
+    Ok(())
+}
+
+fn write_surfaces(dir: &Path, sources: &[Source], force: bool) -> Result<(), Failure> {
+    let digits = sources.len().to_string().len();
+    let file = |i: usize| dir.join(format!("stone_{:0digits$}.stl", i + 1));
+    if !dir.is_dir() {
+        return Err(bad("--surfaces", &dir.display().to_string(), "a folder that exists"));
+    }
+    for i in 0..sources.len() {
+        free(Some(&file(i)), force)?;
+    }
+    for (i, source) in sources.iter().enumerate() {
+        let file = file(i);
+        let bytes = stl_bytes(source.body.surface());
+        atomic::write(&file, |w| w.write_all(&bytes).map_err(crate::write::WriteError::io(&file)))?;
+    }
+    Ok(())
+}
+
+/// A surface of a file as the source of a stone.
+fn source(file: &Path) -> Result<Source, Failure> {
+    let surface = read_surface(file)?;
+    let body = Polyhedron::new(&surface).map_err(|e| {
+        Failure::Input(format!("{}: surface: found that {e}, expected one closed surface", file.display()))
+    })?;
+    let name = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    Ok(Source { name, body })
+}
+
+fn bad(option: &str, found: &str, expected: &str) -> Failure {
+    Failure::Input(format!("{option}: found {found}, expected {expected}"))
+}
+
+fn within(option: &str, found: usize, most: usize) -> Result<(), Failure> {
+    if (1..=most).contains(&found) {
+        return Ok(());
+    }
+    Err(bad(option, &found.to_string(), &format!("1 to {most}")))
+}
+
+/// A number or a range `low:high`, from `least` to 1.
+fn range(option: &str, text: &str, least: f64) -> Result<[f64; 2], Failure> {
+    let (low, high) = text.split_once(':').unwrap_or((text, text));
+    match (low.trim().parse::<f64>(), high.trim().parse::<f64>()) {
+        (Ok(low), Ok(high)) if low >= least && low <= high && high <= 1.0 => Ok([low, high]),
+        _ => Err(bad(option, text, &format!("a number or a range low:high between {least} and 1"))),
+    }
+}
+
+/// The options for the kind of stone; those of the other kind are refused. A seed also starts random shapes.
+fn kind(args: &StoneArgs, random: bool) -> Result<Kind, Failure> {
+    let share = |option: &str, value: Option<f64>, default: f64, most: f64| {
+        let v = value.unwrap_or(default);
+        if (0.0..=most).contains(&v) {
+            return Ok(v);
+        }
+        Err(bad(option, &v.to_string(), &format!("0 to {most}")))
+    };
+    let foreign = |option: &str, given: bool, expected: &str| {
+        if given { Err(bad(option, "it", expected)) } else { Ok(()) }
+    };
+    match args.kind {
+        StoneKind::Clump => {
+            within("--spheres", args.spheres, MOST_CLUMP)?;
+            foreign("--spread", args.spread.is_some(), "it with --as bonded only")?;
+            foreign("--gap", args.gap.is_some(), "it with --as bonded only")?;
+            foreign(
+                "--seed",
+                args.seed.is_some() && !random,
+                "it with --as bonded only: clumps have no chance in them",
+            )?;
+            Ok(Kind::Clump(fill::Options {
+                spheres: args.spheres,
+                overhang: share("--overhang", args.overhang, 0.1, 1.0)?,
+            }))
+        }
+        StoneKind::Bonded => {
+            within("--spheres", args.spheres, MOST_BONDED)?;
+            foreign("--overhang", args.overhang.is_some(), "it with --as clump only")?;
+            Ok(Kind::Bonded(grow::Options {
+                spheres: args.spheres,
+                seed: args.seed.unwrap_or(1),
+                spread: share("--spread", args.spread, 0.2, 0.9)?,
+                gap: share("--gap", args.gap, 0.2, 2.0)?,
+            }))
+        }
+    }
+}
+
+/// Refuses a file that exists, unless it may be replaced, and one that cannot be.
+fn free(out: Option<&Path>, force: bool) -> Result<(), Failure> {
+    let Some(out) = out else { return Ok(()) };
+    let shown = out.display().to_string();
+    if out.is_dir() || out.extension().is_none() {
+        return Err(bad("--out", &shown, "a file name such as stones.toml"));
+    }
+    let folder = out.parent().filter(|p| !p.as_os_str().is_empty()).map(PathBuf::from);
+    if folder.is_some_and(|p| !p.is_dir()) {
+        return Err(bad("--out", &shown, "a file in a folder that exists"));
+    }
+    if out.exists() && !force {
+        return Err(bad("--out", &format!("{shown}, which exists"), "a new file, or --force to replace it"));
+    }
+    Ok(())
+}
+
+/// Prints the numbers of a library's stones, or of a surface.
+fn info(input: &Path) -> Result<(), Failure> {
+    if input.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        return library_info(input);
+    }
+    let surface = read_surface(input)?;
+    let told = surface.topology().map_err(|e| Failure::Input(e.to_string()))?;
+    let [lo, hi] = surface.bounds();
+    let mut text = String::new();
+    let mut line = |t: String| writeln!(text, "{t}").expect("writing to a string does not fail");
+    line(format!("vertices          {:>12}", surface.vertices.len()));
+    line(format!("triangles         {:>12}", surface.triangles.len()));
+    line(format!("edges             {:>12}", told.edges));
+    line(format!("  open            {:>12}", told.open_edges));
+    line(format!("  branching       {:>12}", told.branching_edges));
+    line(format!("  turned          {:>12}   wound unlike their neighbours", told.turned_edges));
+    line(format!("pieces            {:>12}", told.pieces));
+    for (k, name) in ["x", "y", "z"].iter().enumerate() {
+        line(format!("{name}                 {:>12.6} to {:.6} m", lo[k], hi[k]));
+    }
+    line(format!("area              {:>12.6e} m²", surface.area()));
+    match Polyhedron::new(&surface) {
+        Ok(body) => {
+            let m = body.moments();
+            let [x, y, z] = m.principal();
+            let mut e = body.extents();
+            e.sort_by(|a, b| b.total_cmp(a));
+            line(format!("volume            {:>12.6e} m³", m.volume));
+            line(format!("holes             {:>12}", body.holes()));
+            line(format!(
+                "centroid          {:>12.6} {:.6} {:.6} m",
+                m.centroid.x, m.centroid.y, m.centroid.z
+            ));
+            line(format!("principal inertia {x:>12.6e} {y:.6e} {z:.6e} m⁵, per unit density"));
+            line(format!(
+                "extents           {:>12.6} {:.6} {:.6} m, in the principal frame",
+                e[0], e[1], e[2]
+            ));
+            line(format!("sieve size        {:>12.6} m", body.sieve_size()));
+            line(format!("b/a, c/b          {:>12.4} {:.4}", e[1] / e[0], e[2] / e[1]));
+            line(format!("sphericity        {:>12.4}   Wadell", body.sphericity()));
+        }
+        Err(e) => line(format!("note: {e}")),
+    }
+    print(&text)
+}
+
+fn library_info(input: &Path) -> Result<(), Failure> {
+    let document = Document::open(input)?;
+    let library: StoneLibrary = document.read()?;
+    let fault = |e: &dyn std::fmt::Display| {
+        document.error("stones", e.to_string(), "stones of connected spheres with positive radii")
+    };
+    if library.stones.is_empty() {
+        return Err(document.error("stones", "none", "at least one stone").into());
+    }
+    let mut text = format!("{}: {} stones\n{}\n", library.name, library.stones.len(), library.source);
+    for (i, stone) in library.stones.iter().enumerate() {
+        // A stone alone, so that rigid and bonded ones may stand in one file.
+        let alone = StoneLibrary { stones: vec![stone.clone()], ..library.clone() };
+        let least = stone.spheres.iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
+        let (kind, volume, inertia, mut extents, sieve) = if stone.bonds.is_empty() {
+            let c: Clump = alone.clumps().map_err(|e| fault(&e))?.swap_remove(0);
+            ("clump".to_string(), c.volume, c.inertia, c.extents(), c.sieve_size())
+        } else {
+            let c = alone.clusters().map_err(|e| fault(&e))?.swap_remove(0);
+            let kind = format!("bonded, {} bonds, density factor {:.4}", c.bonds.len(), c.density_factor);
+            (kind, c.volume, c.inertia, c.extents(), c.sieve_size())
+        };
+        extents.sort_by(|a, b| b.total_cmp(a));
+        let [x, y, z] = inertia.map(|v| v / sieve.powi(5));
+        let _ = writeln!(
+            text,
+            "{i} '{}': {kind}, {} spheres, sieve size {sieve:.6} m; for sieve size 1 m: volume {:.6} m³, inertia {x:.6} \
+             {y:.6} {z:.6} m⁵, least radius {:.4} m; b/a {:.3}, c/b {:.3}",
+            stone.name,
+            stone.spheres.len(),
+            volume / sieve.powi(3),
+            least / sieve,
+            extents[1] / extents[0],
+            extents[2] / extents[1],
+        );
+    }
+    print(&text)
+}

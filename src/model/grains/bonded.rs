@@ -1,0 +1,83 @@
+//! Stones that can break: each sphere of a bonded stone is a body, and the bonds of the library join them.
+
+use super::GrainsPart;
+use crate::failure::Failure;
+use crate::model::tables;
+use crate::scene::grains::Grains;
+use crate::scene::{Document, SceneError};
+use trackbed_dem::shape::Shape;
+use trackbed_dem::shape::cluster::Cluster;
+use trackbed_dem::{BodyInput, Vec3};
+
+/// Turns the stones that a group was filled with, one body each, into their spheres and bonds. `first` is the first of
+/// these bodies, the shapes from `first_shape` on are the stones of the library in their order.
+pub(super) fn expand(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    first: usize,
+    first_shape: usize,
+    part: &mut GrainsPart,
+) -> Result<(), Failure> {
+    let clusters = clusters(document, index, group)?;
+    let key = format!("grains.{index}.bond");
+    let name = group.bond.as_ref().ok_or_else(|| {
+        document.error(&key, "nothing", "the name of the [[bond]] that holds the stones together")
+    })?;
+    let kind = part.bonds.find(name).ok_or_else(|| {
+        let known = format!("the name of a [[bond]]: {}", part.bonds.names.join(", "));
+        document.error(&key, format!("\"{name}\""), known)
+    })?;
+    let stones = part.bodies.split_off(first);
+    // One unit sphere serves all; the stones' own shapes go.
+    part.shapes.truncate(first_shape);
+    part.shapes.push(Shape::Sphere { radius: 1.0 });
+    for stone in stones {
+        let cluster = &clusters[stone.shape - first_shape];
+        let start = part.bodies.len();
+        for (centre, radius) in &cluster.spheres {
+            let scale = radius * stone.scale;
+            let volume = 4.0 / 3.0 * std::f64::consts::PI * scale.powi(3);
+            let arm = stone.orientation * (Vec3::from(*centre) * stone.scale);
+            part.bodies.push(BodyInput {
+                shape: first_shape,
+                scale,
+                position: stone.position + arm,
+                orientation: nalgebra::UnitQuaternion::identity(),
+                velocity: stone.velocity + stone.spin.cross(&arm),
+                mass: Some(part.density(stone.material) * cluster.density_factor * volume),
+                ..stone.clone()
+            });
+        }
+        for bond in &cluster.bonds {
+            part.bonds.join_stone(bond.map(|s| start + s as usize), kind);
+        }
+    }
+    Ok(())
+}
+
+/// The stones of a group's library as clusters.
+pub(super) fn clusters(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+) -> Result<Vec<Cluster>, SceneError> {
+    let file = group.library.as_ref().ok_or_else(|| {
+        let key = format!("grains.{index}.library");
+        document.error(&key, "nothing", "the library of the bonded stones")
+    })?;
+    tables::clusters(&document.resolve(file))
+}
+
+/// Shapes that stand for the stones while places are sought: spheres that hold them. Returns the scale that gives each
+/// a sieve size of 1 m.
+pub(super) fn stand_ins(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    part: &mut GrainsPart,
+) -> Result<Vec<f64>, SceneError> {
+    let clusters = clusters(document, index, group)?;
+    part.shapes.extend(clusters.iter().map(|c| Shape::Sphere { radius: c.bounding_radius() }));
+    Ok(clusters.iter().map(|c| 1.0 / c.sieve_size()).collect())
+}

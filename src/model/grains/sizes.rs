@@ -1,0 +1,101 @@
+//! Sizes of filled grains: a sieve curve, a law, or a plain range.
+
+use super::check;
+use crate::model::tables::{self, Grading};
+use crate::scene::grains::{Grains, Share, Sizes};
+use crate::scene::units::{Length, Quantity};
+use crate::scene::{Document, SceneError};
+use trackbed_dem::insert::sizes::SizeLaw;
+
+/// Grains whose mean volume stands for that of a law without a closed form.
+const SAMPLES: usize = 10_000;
+
+/// Where sizes come from.
+pub(super) enum SizeSource {
+    /// Sieve limits.
+    Graded(Grading),
+    /// A law.
+    Law(SizeLaw),
+    /// Evenly spaced sizes from the first to the second [m], in order.
+    Range(f64, f64),
+}
+
+impl SizeSource {
+    /// Reads the one key of a group that tells its sizes.
+    pub fn of(document: &Document, index: usize, group: &Grains) -> Result<SizeSource, SceneError> {
+        let key = |k: &str| format!("grains.{index}.{k}");
+        match (&group.gradation, &group.size, &group.sizes) {
+            (Some(g), None, None) => {
+                check(document, &key("gradation.scale"), Some(g.scale), |s| s > 0.0, "above 0")?;
+                let grading = tables::gradation(&document.resolve(&g.file), &g.standard, &g.grade)?;
+                Ok(SizeSource::Graded(grading.scaled(g.scale)))
+            }
+            (None, Some([low, high]), None) => {
+                check(document, &key("size"), Some(low.si), |s| s > 0.0, "sizes above 0")?;
+                check(document, &key("size"), Some(high.si), |s| s >= low.si, "the larger size last")?;
+                Ok(SizeSource::Range(low.si, high.si))
+            }
+            (None, None, Some(sizes)) => {
+                let law = law(sizes);
+                let expected = "sizes above 0 in rising order, and positive deviations";
+                law.check().map_err(|e| document.error(&key("sizes"), e.to_string(), expected))?;
+                Ok(SizeSource::Law(law))
+            }
+            (None, None, None) => Err(document.error(
+                &key("gradation"),
+                "none of `gradation`, `size` and `sizes`",
+                "one of them",
+            )),
+            _ => Err(document.error(
+                &key("gradation"),
+                "more than one of `gradation`, `size` and `sizes`",
+                "one of them",
+            )),
+        }
+    }
+
+    /// Sieve sizes of `count` grains [m].
+    pub fn sample(&self, count: usize, seed: u64) -> Vec<f64> {
+        match self {
+            SizeSource::Graded(g) => g.curve.sample(count, seed),
+            SizeSource::Law(law) => law.sample(count, seed),
+            SizeSource::Range(low, high) => {
+                (0..count).map(|i| low + (high - low) * (i as f64 + 0.5) / count as f64).collect()
+            }
+        }
+    }
+
+    /// Mean of size³ over the grains [m³].
+    pub fn mean_cube(&self) -> f64 {
+        match self {
+            SizeSource::Graded(g) => g.curve.mean_cube(),
+            _ => self.sample(SAMPLES, 1).iter().map(|s| s.powi(3)).sum::<f64>() / SAMPLES as f64,
+        }
+    }
+}
+
+fn law(sizes: &Sizes) -> SizeLaw {
+    let ends = |low: &Quantity<Length>, high: &Quantity<Length>| (low.si, high.si);
+    match sizes {
+        Sizes::Equal { size } => SizeLaw::Equal(size.si),
+        Sizes::Two { small, large, large_share } => {
+            SizeLaw::Two { small: small.si, large: large.si, large_share: *large_share }
+        }
+        Sizes::Uniform { low, high, by: Share::Number } => {
+            let (low, high) = ends(low, high);
+            SizeLaw::ByNumber { low, high }
+        }
+        Sizes::Uniform { low, high, by: Share::Volume } => {
+            let (low, high) = ends(low, high);
+            SizeLaw::ByVolume { low, high }
+        }
+        Sizes::Normal { mean, deviation, low, high } => {
+            let (low, high) = ends(low, high);
+            SizeLaw::Normal { mean: mean.si, deviation: deviation.si, low, high }
+        }
+        Sizes::LogNormal { median, deviation, low, high } => {
+            let (low, high) = ends(low, high);
+            SizeLaw::LogNormal { median: median.si, deviation: *deviation, low, high }
+        }
+    }
+}

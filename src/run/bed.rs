@@ -1,0 +1,108 @@
+//! A bed of grains on its way to the run proper: it settles, is shaken, pressed, squeezed.
+
+use crate::failure::Failure;
+use crate::model::grains::DepositionPlan;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::BodyInput;
+
+/// Time that bodies need to get going before slowness counts as rest [s].
+const START: f64 = 0.02;
+
+/// Grains with the walls and the rigid solid that hold them.
+pub struct Bed<'a> {
+    /// Model.
+    pub model: dem::Model,
+    /// Its state.
+    pub state: dem::State,
+    work: dem::Work,
+    surface: Option<&'a SolidSurface>,
+    doing: &'static str,
+}
+
+impl<'a> Bed<'a> {
+    /// The bed at the start of a stage; `doing` is said when a step fails.
+    pub fn new(model: dem::Model, surface: Option<&'a SolidSurface>, doing: &'static str) -> Bed<'a> {
+        let state = dem::State::new(&model);
+        let work = dem::Work::new(&model, &state);
+        Bed { model, state, work, surface, doing }
+    }
+
+    /// One step under forces.
+    ///
+    /// # Errors
+    /// Overlaps or speeds without meaning.
+    pub fn step(&mut self, applied: &[dem::AppliedForce]) -> Result<(), Failure> {
+        match self.surface {
+            Some(s) => dem::step(&self.model, &mut self.state, &mut self.work, s, applied),
+            None => {
+                dem::step(&self.model, &mut self.state, &mut self.work, &dem::surface::NoSurface, applied)
+            }
+        }
+        .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))
+    }
+
+    /// Steps in about a millisecond, the time between two looks at the bed.
+    pub fn stride(&self) -> u64 {
+        ((1e-3 / self.model.dt()) as u64).max(1)
+    }
+
+    /// Lets the bed come to rest, for as long as the plan allows; whether it did.
+    ///
+    /// # Errors
+    /// As [`Bed::step`].
+    pub fn rest(&mut self, plan: &DepositionPlan) -> Result<bool, Failure> {
+        let begun = self.state.time;
+        while self.state.time - begun < plan.max_time {
+            for _ in 0..self.stride() {
+                self.step(&[])?;
+            }
+            let moving = self.state.time - begun < START;
+            if !moving && plan.settled(rms_speed(&self.model, &self.state), &self.model, &self.state) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The first bodies of the model where they are now, at rest: as many as `inputs`, which tell all else.
+    pub fn at_rest(&self, inputs: &[BodyInput]) -> Vec<BodyInput> {
+        let place = |(b, input): (usize, &BodyInput)| BodyInput {
+            position: self.state.position(b),
+            orientation: self.state.orientation(&self.model, b),
+            velocity: dem::Vec3::zeros(),
+            spin: dem::Vec3::zeros(),
+            ..input.clone()
+        };
+        inputs.iter().enumerate().map(place).collect()
+    }
+}
+
+/// Root-mean-square speed of all bodies [m/s].
+pub fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
+    let n = model.body_count();
+    let sum: f64 = (0..n).map(|b| state.velocity(b).norm_squared()).sum();
+    (sum / n.max(1) as f64).sqrt()
+}
+
+/// Height at which a box with half sides `half`, let down at `centre` in plan, meets the highest sphere below it [m];
+/// where there is none, the highest point of the solid, or 0.
+pub fn top_below(
+    model: &dem::Model,
+    state: &dem::State,
+    centre: [f64; 2],
+    half: &[f64; 3],
+    surface: Option<&SolidSurface>,
+) -> f64 {
+    let mut top = f64::NEG_INFINITY;
+    for body in 0..model.body_count() {
+        for (x, r) in state.spheres(model, body) {
+            let over = [0, 1].map(|d| ((x[d] - centre[d]).abs() - half[d]).max(0.0));
+            let reach = r * r - over[0] * over[0] - over[1] * over[1];
+            if reach > 0.0 {
+                top = top.max(x.z + reach.sqrt());
+            }
+        }
+    }
+    if top.is_finite() { top } else { surface.map_or(0.0, |s| s.highest()) }
+}

@@ -1,0 +1,169 @@
+//! When a checkpoint is due: after an interval of the clock, and when the user interrupts the run.
+
+use super::checkpoint::{Body, Moment, Slots};
+use crate::failure::Failure;
+use std::cell::{Cell, RefCell};
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// A request to stop a run at the end of its present step.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupt {
+    stop: Arc<AtomicBool>,
+    /// Whether a signal ends the program at once, because no stage is there to write a checkpoint.
+    at_once: Arc<AtomicBool>,
+    /// Steps after which the run stops by itself.
+    steps: Option<u64>,
+}
+
+impl Interrupt {
+    /// A request that comes with Ctrl-C (SIGINT) or SIGTERM. A second signal ends the program at once, with exit code 130, as
+    /// the first does where nothing could be kept.
+    ///
+    /// # Errors
+    /// The system refuses the handlers.
+    pub fn on_signals() -> io::Result<Interrupt> {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        use signal_hook::flag;
+        let interrupt = Interrupt { at_once: Arc::new(AtomicBool::new(true)), ..Interrupt::default() };
+        for signal in [SIGINT, SIGTERM] {
+            // In this order: the first signal finds `at_once` as the stage has set it, the second finds it set.
+            flag::register_conditional_shutdown(signal, 130, interrupt.at_once.clone())?;
+            flag::register(signal, interrupt.at_once.clone())?;
+            flag::register(signal, interrupt.stop.clone())?;
+        }
+        Ok(interrupt)
+    }
+
+    /// A request that comes of itself after so many steps of the program, in whatever stages they are.
+    pub fn after(steps: u64) -> Interrupt {
+        Interrupt { steps: Some(steps), ..Interrupt::default() }
+    }
+}
+
+/// Time between two looks at the clock that is aimed at, from half to twice.
+const LOOK: Duration = Duration::from_millis(2);
+/// Most steps between two looks at the clock.
+const STRIDE: u32 = 1024;
+
+/// Writes the checkpoints of a run when they are due.
+pub struct Keeper {
+    slots: RefCell<Slots>,
+    interrupt: Interrupt,
+    interval: Duration,
+    written: Cell<Instant>,
+    looked: Cell<Instant>,
+    stride: Cell<u32>,
+    left: Cell<u32>,
+    steps: Cell<u64>,
+    /// How the user goes on, for the message.
+    command: String,
+}
+
+impl Keeper {
+    /// A keeper that writes about every `interval`; `command` is what continues the run.
+    pub fn new(slots: Slots, interrupt: Interrupt, interval: Duration, command: String) -> Keeper {
+        let now = Cell::new(Instant::now());
+        Keeper {
+            slots: RefCell::new(slots),
+            interrupt,
+            interval,
+            written: now.clone(),
+            looked: now,
+            stride: Cell::new(1),
+            left: Cell::new(1),
+            steps: Cell::new(0),
+            command,
+        }
+    }
+
+    /// Begins a stage that asks [`Keeper::step`] after every step.
+    pub fn begin(&self) {
+        self.interrupt.at_once.store(false, Ordering::Relaxed);
+    }
+
+    /// Ends it: from now on a signal ends the program at once.
+    pub fn end(&self) {
+        self.interrupt.at_once.store(true, Ordering::Relaxed);
+    }
+
+    /// After a step: writes a checkpoint if one is due. `moment` tells where the run is, `fill` puts its state in.
+    ///
+    /// # Errors
+    /// [`Failure::Interrupted`] after the checkpoint that an interrupt asks for; what the system refuses.
+    #[inline]
+    pub fn step(
+        &self,
+        moment: impl FnOnce() -> Moment,
+        fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        self.steps.set(self.steps.get() + 1);
+        let stop = self.interrupt.stop.load(Ordering::Relaxed)
+            || self.interrupt.steps.is_some_and(|steps| self.steps.get() >= steps);
+        if stop {
+            let moment = moment();
+            let place =
+                format!("stage \"{}\", step {}, t = {:.6e} s", moment.stage, moment.step, moment.time);
+            self.save(moment, fill)?;
+            return Err(Failure::Interrupted(format!("interrupted: {place}; go on with: {}", self.command)));
+        }
+        if self.due() { self.save(moment(), fill) } else { Ok(()) }
+    }
+
+    /// Writes a checkpoint now.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn save(
+        &self,
+        moment: Moment,
+        fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let done = self.slots.borrow_mut().save(moment, fill);
+        self.written.set(Instant::now());
+        done
+    }
+
+    /// Removes the checkpoints: there is nothing to go on from.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn clear(&self) -> Result<(), Failure> {
+        self.slots.borrow_mut().clear()
+    }
+
+    /// Removes checkpoints that another run left.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn clear_others(&self) -> Result<(), Failure> {
+        self.slots.borrow_mut().clear_others()
+    }
+
+    /// Where the last checkpoint is, if there is one.
+    pub fn kept(&self) -> Option<String> {
+        let slots = self.slots.borrow();
+        slots.has_one().then(|| slots.dir().display().to_string())
+    }
+
+    /// Whether the interval is over. Looks at the clock now and then only.
+    fn due(&self) -> bool {
+        self.left.set(self.left.get() - 1);
+        if self.left.get() > 0 {
+            return false;
+        }
+        let now = Instant::now();
+        let passed = now - self.looked.get();
+        let stride = self.stride.get();
+        self.stride.set(match passed {
+            short if short < LOOK / 2 => (2 * stride).min(STRIDE),
+            long if long > 2 * LOOK => (stride / 2).max(1),
+            _ => stride,
+        });
+        self.left.set(self.stride.get());
+        self.looked.set(now);
+        now - self.written.get() >= self.interval
+    }
+}

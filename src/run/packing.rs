@@ -1,0 +1,332 @@
+//! What the grains are like at the end of a run: porosity, coordination, fabric, stress, sieve curves; and the files that
+//! hold it: `gradation.csv`, `gradation.svg`, `packing.csv`.
+
+use super::Stage;
+use super::summary::Summary;
+use super::system::{GrainsView, System};
+use crate::failure::Failure;
+use crate::model::grains::{GradedGroup, GrainsPart};
+use crate::write::csv::{Column, History};
+use crate::write::svg::{LinePlot, Series};
+use crate::write::{WriteError, atomic};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+use std::path::Path;
+use trackbed_dem as dem;
+use trackbed_dem::insert::gradation::achieved_passing;
+use trackbed_dem::measure::{self, BoxRegion, ContactRecord};
+
+/// Sizes at which a plotted sieve curve is evaluated.
+const CURVE_POINTS: usize = 120;
+
+/// A group after growth.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct GrowthRecord {
+    /// Name of the group.
+    pub group: String,
+    /// Porosity of its container, overlaps counted once.
+    pub porosity: f64,
+    /// Largest overlap over the reduced radius of the contact.
+    pub largest_overlap: f64,
+    /// Mean unbalanced force over mean contact force.
+    pub unbalanced_ratio: f64,
+}
+
+/// A stage of compaction.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct CompactionRecord {
+    /// What was done.
+    pub kind: String,
+    /// Porosity of its region before.
+    pub porosity_before: f64,
+    /// The same after, of the region cut off at a plane that has moved in.
+    pub porosity_after: f64,
+    /// Force on the plane that has moved [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_force: Option<f64>,
+}
+
+/// The grains at the end of a run; the sleeper is none.
+#[derive(Debug, Serialize)]
+pub struct PackingRecord {
+    /// Mean number of neighbours.
+    pub coordination: f64,
+    /// The same without the grains that have no or one neighbour, and without their contacts.
+    pub mechanical_coordination: f64,
+    /// Share of the grains with no or one neighbour.
+    pub rattlers: f64,
+    /// Number of grains with 0, 1, 2, … neighbours.
+    pub neighbours: Vec<usize>,
+    /// Mean of n ⊗ n over the contacts of grains with each other: xx, yy, zz, xy, yz, zx.
+    pub fabric: [f64; 6],
+    /// Mean normal force of the contacts [N].
+    pub mean_contact_force: f64,
+    /// Share of the contacts that carry more than the mean.
+    pub strong_contacts: f64,
+    /// Share of the sum of normal forces that they carry.
+    pub strong_load: f64,
+    /// Mean unbalanced force over mean contact force; absent without contacts.
+    pub unbalanced_ratio: Option<f64>,
+    /// Boxes that the scene asks for.
+    pub measures: Vec<MeasureRecord>,
+    /// Sieve curves of the groups filled by one.
+    pub gradations: Vec<GradationRecord>,
+}
+
+/// What a box holds.
+#[derive(Debug, Serialize)]
+pub struct MeasureRecord {
+    /// Its name.
+    pub name: String,
+    /// Share that no grain fills.
+    pub porosity: f64,
+    /// Number of grains with their centre inside.
+    pub grains: usize,
+    /// Their mean number of neighbours, and without those with no or one.
+    pub coordination: f64,
+    /// The same without rattlers.
+    pub mechanical_coordination: f64,
+    /// Fabric of the contacts inside: xx, yy, zz, xy, yz, zx.
+    pub fabric: [f64; 6],
+    /// Mean stress, voids included [Pa]: xx, yy, zz, xy, yz, zx, tension positive.
+    pub stress: [f64; 6],
+}
+
+/// How well a group meets its sieve curve.
+#[derive(Debug, Serialize)]
+pub struct GradationRecord {
+    /// Name of the group.
+    pub group: String,
+    /// Number of stones.
+    pub stones: usize,
+    /// Sieves [m].
+    pub sieves: Vec<f64>,
+    /// Mass fraction passing that was asked for.
+    pub target: Vec<f64>,
+    /// Mass fraction passing that the stones have.
+    pub achieved: Vec<f64>,
+    /// Largest |achieved − target| over all sizes, not the sieves alone.
+    pub largest_deviation: f64,
+}
+
+impl Stage<'_> {
+    /// Measures the grains at the end and writes their files.
+    pub(super) fn record_packing(
+        &self,
+        system: &impl System,
+        grains: &GrainsPart,
+        summary: &mut Summary,
+    ) -> Result<(), Failure> {
+        let Some(view) = system.grains() else { return Ok(()) };
+        let GrainsView { model, state } = view;
+        let sleeper = grains.sleeper.as_ref().map(|_| grains.parts.len() as u32 - 1);
+        let is_grain = |b: usize| Some(model.part(b)) != sleeper;
+        let contacts = measure::contacts(model, state);
+        let stress = measure::mean_stress_of(model, state, &contacts);
+        let all = measure::coordination_of(model, &contacts, is_grain);
+        let strong = measure::strong_network(&contacts);
+        let ratio = measure::unbalanced_ratio(model, &contacts);
+        let between =
+            |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
+        let measures = grains.measures.iter().map(|(name, region)| {
+            let inside = |b: usize| is_grain(b) && region.holds(&state.position(b));
+            let own = measure::coordination_of(model, &contacts, inside);
+            MeasureRecord {
+                name: name.clone(),
+                porosity: porosity(view, region, is_grain),
+                grains: (0..model.body_count()).filter(|&b| inside(b)).count(),
+                coordination: own.mean,
+                mechanical_coordination: own.mechanical,
+                fabric: measure::fabric(&contacts, |c| between(c) && region.holds(&c.point)),
+                stress: measure::region_stress(model, state, &stress, region),
+            }
+        });
+        let gradations = grains.graded.iter().map(|g| graded(model, g)).collect::<Vec<_>>();
+        if !gradations.is_empty() {
+            write_gradations(self.dir, &self.job.title, model, &grains.graded)?;
+        }
+        if self.job.output.packing {
+            write_packings(self.dir, view, grains)?;
+        }
+        summary.packing = Some(PackingRecord {
+            coordination: all.mean,
+            mechanical_coordination: all.mechanical,
+            rattlers: all.rattlers,
+            neighbours: all.distribution,
+            fabric: measure::fabric(&contacts, between),
+            mean_contact_force: strong.mean_force,
+            strong_contacts: strong.contacts,
+            strong_load: strong.load,
+            unbalanced_ratio: ratio.is_finite().then_some(ratio),
+            measures: measures.collect(),
+            gradations,
+        });
+        Ok(())
+    }
+}
+
+/// Share of a box that grains leave.
+fn porosity(view: GrainsView<'_>, region: &BoxRegion, is_grain: impl Fn(usize) -> bool) -> f64 {
+    let grains = (0..view.model.body_count()).filter(|&b| is_grain(b));
+    let solid: f64 = grains.map(|b| measure::body_volume_in(view.model, view.state, b, region)).sum();
+    1.0 - solid / region.volume()
+}
+
+fn graded(model: &dem::Model, group: &GradedGroup) -> GradationRecord {
+    let stones = measure::stones(model, |b| model.part(b) == group.part);
+    let curve = &group.grading.curve;
+    let sieves = curve.sizes().to_vec();
+    let points = curve_sizes(group);
+    let far = points.iter().zip(achieved_passing(&points, &stones));
+    GradationRecord {
+        group: group.name.clone(),
+        stones: stones.len(),
+        target: curve.passing().to_vec(),
+        achieved: achieved_passing(&sieves, &stones),
+        largest_deviation: far.map(|(d, a)| (a - curve.passing_at(*d)).abs()).fold(0.0, f64::max),
+        sieves,
+    }
+}
+
+/// Sizes from the smallest sieve to the largest, evenly on the logarithmic scale, a little beyond at both ends [m].
+fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
+    let sizes = group.grading.curve.sizes();
+    let (low, high) = (sizes[0] * 0.999, sizes[sizes.len() - 1] * 1.001);
+    (0..=CURVE_POINTS).map(|k| low * (high / low).powf(k as f64 / CURVE_POINTS as f64)).collect()
+}
+
+/// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
+/// same drawn.
+fn write_gradations(
+    dir: &Path,
+    title: &str,
+    model: &dem::Model,
+    groups: &[GradedGroup],
+) -> Result<(), Failure> {
+    let columns = [
+        ("group", ""),
+        ("sieve", "m"),
+        ("lower_limit", ""),
+        ("upper_limit", ""),
+        ("target", ""),
+        ("achieved", ""),
+    ];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let mut file = History::create(&dir.join("gradation.csv"), columns)?;
+    let mut series = Vec::new();
+    for group in groups {
+        let stones = measure::stones(model, |b| model.part(b) == group.part);
+        let limits = &group.grading.limits;
+        let sieves: Vec<f64> = limits.iter().map(|l| l[0]).collect();
+        for (&[size, low, high], achieved) in limits.iter().zip(achieved_passing(&sieves, &stones)) {
+            let target = group.grading.curve.passing_at(size);
+            file.row(&[f64::from(group.part), size, low, high, target, achieved])?;
+        }
+        let mut add = |name: &str, points: Vec<[f64; 2]>| {
+            let name = if groups.len() > 1 { format!("{}: {name}", group.name) } else { name.to_string() };
+            let points = points.into_iter().map(|[size, passing]| [1e3 * size, 100.0 * passing]).collect();
+            series.push(Series { name, points });
+        };
+        let points = curve_sizes(group);
+        let curve = &group.grading.curve;
+        add("asked for", points.iter().map(|&d| [d, curve.passing_at(d)]).collect());
+        let achieved = achieved_passing(&points, &stones);
+        add("stones", points.iter().zip(achieved).map(|(&d, a)| [d, a]).collect());
+        add("upper limit", limits.iter().map(|l| [l[0], l[2]]).collect());
+        add("lower limit", limits.iter().map(|l| [l[0], l[1]]).collect());
+    }
+    let plot = LinePlot {
+        title: format!("{title}: sieve curve"),
+        x_label: "sieve [mm]".into(),
+        y_label: "passing by mass [%]".into(),
+        series,
+    };
+    Ok(plot.write(&dir.join("gradation.svg"))?)
+}
+
+/// `packing.csv`, or one file for each of several groups: what `[[grains]] packing` reads.
+fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPart) -> Result<(), Failure> {
+    let groups = grains.first_shape.len();
+    for group in 0..groups {
+        let name = if groups == 1 { "packing.csv".to_string() } else { format!("packing_{group}.csv") };
+        let file = dir.join(name);
+        let text = packing(view, group as u32, grains.first_shape[group]);
+        atomic::write(&file, |out| {
+            out.write_all(text.as_bytes()).map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+    }
+    Ok(())
+}
+
+/// Rows of one group: `x,y,z,r` of spheres; of clumps place, quaternion, scale and number of the stone. Numbers are
+/// written in the shortest form that reads back to the same bits.
+fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
+    let GrainsView { model, state } = view;
+    let own = || (0..model.body_count()).filter(|&b| model.part(b) == part);
+    let single = |b: usize| matches!(model.shape(b), dem::Shape::Sphere { .. });
+    let mut text = String::new();
+    let mut line = |row: &[f64]| {
+        let fields: Vec<String> = row.iter().map(f64::to_string).collect();
+        writeln!(text, "{}", fields.join(",")).expect("writing to a string does not fail");
+    };
+    let spheres = own().all(single);
+    for b in own() {
+        let x = state.position(b);
+        if spheres {
+            line(&[x.x, x.y, x.z, model.radius(b)]);
+        } else {
+            let q = state.orientation(model, b);
+            let stone = model.shape_number(b) - first_shape;
+            line(&[x.x, x.y, x.z, q.w, q.i, q.j, q.k, model.scale(b), stone as f64]);
+        }
+    }
+    let heading = if spheres { "x,y,z,r\n" } else { "x,y,z,qw,qx,qy,qz,scale,stone\n" };
+    heading.to_string() + &text
+}
+
+/// Lines of the report about grains.
+pub(super) fn report(summary: &Summary) -> Vec<String> {
+    let mut lines = Vec::new();
+    for g in &summary.growth {
+        lines.push(format!(
+            "growth of {}: porosity {:.4}, largest overlap {:.2e} of the radius, unbalanced force {:.1e}",
+            g.group, g.porosity, g.largest_overlap, g.unbalanced_ratio
+        ));
+    }
+    for (i, c) in summary.compaction.iter().enumerate() {
+        let force = c.wall_force.map_or(String::new(), |f| format!(", force on the plane {f:.3e} N"));
+        lines.push(format!(
+            "compaction {} ({}): porosity {:.4} to {:.4}{force}",
+            i + 1,
+            c.kind,
+            c.porosity_before,
+            c.porosity_after
+        ));
+    }
+    let Some(p) = &summary.packing else { return lines };
+    lines.push(format!(
+        "grains: {:.2} neighbours, {:.2} without rattlers ({:.1} % of the grains); {:.0} % of the contacts carry {:.0} % of \
+         the normal forces",
+        p.coordination,
+        p.mechanical_coordination,
+        100.0 * p.rattlers,
+        100.0 * p.strong_contacts,
+        100.0 * p.strong_load
+    ));
+    for m in &p.measures {
+        let pressure = -(m.stress[0] + m.stress[1] + m.stress[2]) / 3.0;
+        lines.push(format!(
+            "{}: porosity {:.4}, {} grains, {:.2} neighbours, mean pressure {pressure:.3e} Pa",
+            m.name, m.porosity, m.grains, m.coordination
+        ));
+    }
+    for g in &p.gradations {
+        lines.push(format!(
+            "sieve curve of {}: {} stones, within {:.2} % passing of the curve asked for",
+            g.group,
+            g.stones,
+            100.0 * g.largest_deviation
+        ));
+    }
+    lines
+}

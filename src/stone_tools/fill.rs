@@ -1,0 +1,311 @@
+//! A body filled with overlapping spheres, for a rigid clump.
+//!
+//! Sought are n spheres whose union comes closest to the body. With d(p) = min over spheres of |p − c| − r, the distance
+//! of a point from the union, the measure is
+//!
+//! ```text
+//! E = mean over the surface of d²  +  mean over the inside of max(0, d)²
+//! ```
+//!
+//! The second term keeps the inside free of holes. Spheres may stand out over the surface by a chosen overhang h: no
+//! radius exceeds the depth of its centre plus h. Three steps:
+//!
+//! 1. Greedy choice: from the points of a lattice inside the body, each with the largest sphere that it may carry, the
+//!    one that lowers E most, again and again; the first is the large one in the middle, the next ones reach into edges
+//!    and corners, all of them on or near the medial axis.
+//! 2. Descent: every point of the sample belongs to the sphere nearest to it, so that E falls apart into one least
+//!    squares problem of four unknowns for each sphere. Damped Gauss–Newton steps (Levenberg–Marquardt) of all spheres
+//!    together, taken only when E falls, limits included, and the union stays in one piece.
+//! 3. Exchange: the sphere that E misses least is taken out and chosen anew by step 1, then step 2; kept when E falls.
+//!
+//! Source: own, after the variational sphere sets of R. Wang et al., The Visual Computer 22, 2006 (assignment and fit in
+//! turn), with distance for volume as measure.
+//! Limits: features smaller than the lattice (a 26th of the longest side) are not seen by step 1.
+
+use nalgebra::{Matrix4, Vector3, Vector4};
+use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
+
+/// A sphere: centre and radius.
+pub type Ball = ([f64; 3], f64);
+
+/// How to fill.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Number of spheres, 1 or more.
+    pub spheres: usize,
+    /// How far spheres may stand out over the surface, as a share of the largest inscribed radius; 0 or more.
+    pub overhang: f64,
+}
+
+/// Lattice cells along the longest side.
+const CELLS: f64 = 26.0;
+/// The lattice is refined while it has fewer points inside, down to this many cells along the longest side.
+const FEW: usize = 300;
+const FINEST: f64 = 120.0;
+/// Points on the surface, at least and for each sphere; as many inside at most.
+const POINTS: [usize; 2] = [1200, 40];
+/// About so many of them judge a candidate.
+const GREEDY_POINTS: usize = 2400;
+/// Places of candidates of the greedy choice at most.
+const CANDIDATES: usize = 1400;
+const DESCENTS: usize = 60;
+const EXCHANGES: usize = 12;
+/// Least radius as a share of the largest inscribed one.
+const LEAST: f64 = 0.05;
+
+/// Fills a body; `distance` belongs to it. `None` when it is too thin for a lattice point to fall inside.
+pub fn fill(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) -> Option<Vec<Ball>> {
+    let problem = Problem::new(body, distance, options);
+    if problem.candidates.is_empty() {
+        return None;
+    }
+    let mut balls: Vec<Ball> = Vec::new();
+    for _ in 0..options.spheres {
+        let next = problem.best_candidate(&balls);
+        balls.push(next);
+    }
+    let mut error = problem.descend(&mut balls);
+    for _ in 0..EXCHANGES.min(2 * (options.spheres - 1)) {
+        let mut changed = balls.clone();
+        changed.remove(problem.least_missed(&balls));
+        if changed.is_empty() || !in_one_piece(&changed) {
+            break;
+        }
+        changed.push(problem.best_candidate(&changed));
+        let lower = problem.descend(&mut changed);
+        if lower >= error * (1.0 - 1e-4) {
+            break;
+        }
+        (balls, error) = (changed, lower);
+    }
+    Some(balls)
+}
+
+struct Problem<'a> {
+    distance: &'a SurfaceDistance,
+    /// Points on the surface, then inside.
+    points: Vec<Vector3<f64>>,
+    on_surface: usize,
+    /// Weight of each point on the surface and inside.
+    weights: [f64; 2],
+    candidates: Vec<Ball>,
+    /// Overhang and least radius [m].
+    overhang: f64,
+    least: f64,
+}
+
+impl<'a> Problem<'a> {
+    fn new(body: &Polyhedron, distance: &'a SurfaceDistance, options: &Options) -> Problem<'a> {
+        let [lo, hi] = body.surface().bounds();
+        let longest = (0..3).map(|k| hi[k] - lo[k]).fold(0.0, f64::max);
+        let shortest = (0..3).map(|k| hi[k] - lo[k]).fold(f64::INFINITY, f64::min);
+        // A flat body gets a finer lattice, and one of thin walls too, so that points lie near their middle.
+        let mut h = (longest / CELLS).min(shortest / 6.0);
+        let mut inside = lattice(distance, [lo, hi], h);
+        while inside.len() < FEW && h > longest / FINEST {
+            h *= 0.6;
+            inside = lattice(distance, [lo, hi], h);
+        }
+        let largest = inside.iter().map(|b| b.1).fold(0.0, f64::max);
+        let overhang = options.overhang * largest;
+        let points = POINTS[0].max(POINTS[1] * options.spheres);
+        let least = LEAST * largest;
+        let wide: Vec<&Ball> = inside.iter().filter(|b| b.1 > least).collect();
+        // Each place with and without overhang: where many spheres are asked for, late ones only fit without.
+        let sizes = if overhang > 0.0 { &[0.0, 0.5, 1.0][..] } else { &[0.0] };
+        let candidates = thinned(wide.len(), CANDIDATES)
+            .flat_map(|i| sizes.iter().map(move |s| (i, s * overhang)))
+            .map(|(i, out)| (wide[i].0, wide[i].1 + out))
+            .collect();
+        let surface = body.surface_points(points);
+        let filling: Vec<[f64; 3]> = thinned(inside.len(), points).map(|i| inside[i].0).collect();
+        let weights = [1.0 / surface.len() as f64, 1.0 / filling.len().max(1) as f64];
+        Problem {
+            distance,
+            on_surface: surface.len(),
+            points: surface.into_iter().chain(filling).map(Vector3::from).collect(),
+            weights,
+            candidates,
+            overhang,
+            least,
+        }
+    }
+
+    fn weight(&self, point: usize) -> f64 {
+        self.weights[usize::from(point >= self.on_surface)]
+    }
+
+    /// The part of a distance that counts: inside only what is not covered.
+    fn residual(&self, point: usize, d: f64) -> f64 {
+        if point >= self.on_surface { d.max(0.0) } else { d }
+    }
+
+    /// Distance of each point from the union, and its sphere.
+    fn distances(&self, balls: &[Ball]) -> Vec<(f64, usize)> {
+        let nearest = |p: &Vector3<f64>| {
+            let mut best = (f64::INFINITY, 0);
+            for (j, (c, r)) in balls.iter().enumerate() {
+                let d = (p - Vector3::from(*c)).norm() - r;
+                if d < best.0 {
+                    best = (d, j);
+                }
+            }
+            best
+        };
+        self.points.iter().map(nearest).collect()
+    }
+
+    fn error(&self, distances: &[(f64, usize)]) -> f64 {
+        distances.iter().enumerate().map(|(i, (d, _))| self.weight(i) * self.residual(i, *d).powi(2)).sum()
+    }
+
+    /// The candidate that touches the others and lowers E most.
+    fn best_candidate(&self, balls: &[Ball]) -> Ball {
+        let present: Vec<f64> = self.distances(balls).iter().map(|d| d.0).collect();
+        // Every so many points do for a first choice.
+        let stride = (self.points.len() / GREEDY_POINTS).max(1);
+        let mut best = (f64::INFINITY, self.candidates[0]);
+        for &(c, r) in &self.candidates {
+            let centre = Vector3::from(c);
+            if !balls.is_empty() && !balls.iter().any(|b| joined(b, &(c, r))) {
+                continue;
+            }
+            let mut error = 0.0;
+            for (i, (p, present)) in self.points.iter().zip(&present).enumerate().step_by(stride) {
+                let d = ((p - centre).norm() - r).min(*present);
+                error += self.weight(i) * self.residual(i, d).powi(2);
+            }
+            if error < best.0 {
+                best = (error, (c, r));
+            }
+        }
+        best.1
+    }
+
+    /// The sphere without which E grows least.
+    fn least_missed(&self, balls: &[Ball]) -> usize {
+        // Distance from the nearest and from the second nearest sphere tells all removals at once.
+        let mut growth = vec![0.0; balls.len()];
+        for (i, p) in self.points.iter().enumerate() {
+            let (mut first, mut second) = ((f64::INFINITY, 0), f64::INFINITY);
+            for (j, (c, r)) in balls.iter().enumerate() {
+                let d = (p - Vector3::from(*c)).norm() - r;
+                if d < first.0 {
+                    second = first.0;
+                    first = (d, j);
+                } else if d < second {
+                    second = d;
+                }
+            }
+            let (with, without) = (self.residual(i, first.0), self.residual(i, second));
+            growth[first.1] += self.weight(i) * (without * without - with * with);
+        }
+        (0..balls.len()).min_by(|a, b| growth[*a].total_cmp(&growth[*b])).unwrap_or(0)
+    }
+
+    /// Moves and sizes the spheres until E falls no more; returns E.
+    fn descend(&self, balls: &mut Vec<Ball>) -> f64 {
+        let mut distances = self.distances(balls);
+        let mut error = self.error(&distances);
+        let mut damping = 1e-2;
+        for _ in 0..DESCENTS {
+            let trial = self.stepped(balls, &distances, damping);
+            let trial_distances = self.distances(&trial);
+            let lower = self.error(&trial_distances);
+            if lower < error && in_one_piece(&trial) {
+                let gain = error - lower;
+                (*balls, distances, error) = (trial, trial_distances, lower);
+                damping = f64::max(damping / 3.0, 1e-6);
+                if gain < 1e-5 * error {
+                    break;
+                }
+            } else {
+                damping *= 4.0;
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+        error
+    }
+
+    /// One damped step of all spheres.
+    fn stepped(&self, balls: &[Ball], distances: &[(f64, usize)], damping: f64) -> Vec<Ball> {
+        let mut normal = vec![(Matrix4::<f64>::zeros(), Vector4::<f64>::zeros()); balls.len()];
+        for (i, &(d, j)) in distances.iter().enumerate() {
+            let residual = self.residual(i, d);
+            if i >= self.on_surface && residual == 0.0 {
+                continue;
+            }
+            let away = self.points[i] - Vector3::from(balls[j].0);
+            let u = away.try_normalize(0.0).unwrap_or_default();
+            let g = Vector4::new(-u.x, -u.y, -u.z, -1.0);
+            let w = self.weight(i);
+            normal[j].0 += g * g.transpose() * w;
+            normal[j].1 += g * (w * residual);
+        }
+        balls
+            .iter()
+            .zip(&normal)
+            .map(|(ball, (a, b))| {
+                let shift = a.diagonal() * damping + Vector4::repeat(1e-9 * a.trace());
+                let step =
+                    (a + Matrix4::from_diagonal(&shift)).cholesky().map(|f| f.solve(b)).unwrap_or_default();
+                let moved: [f64; 3] = std::array::from_fn(|k| ball.0[k] - step[k]);
+                let depth = self.distance.depth(moved);
+                if depth <= 0.0 {
+                    return *ball;
+                }
+                (moved, (ball.1 - step[3]).min(depth + self.overhang).max(self.least.min(depth)))
+            })
+            .collect()
+    }
+}
+
+/// Points of a lattice of about the width `h` [m] that lie inside, with their depths [m].
+fn lattice(distance: &SurfaceDistance, [lo, hi]: [[f64; 3]; 2], h: f64) -> Vec<Ball> {
+    let count: [usize; 3] = std::array::from_fn(|k| ((hi[k] - lo[k]) / h).ceil().max(1.0) as usize);
+    let mut inside = Vec::new();
+    for i in 0..count[0] {
+        for j in 0..count[1] {
+            for k in 0..count[2] {
+                let at = [i, j, k];
+                let p =
+                    std::array::from_fn(|d| lo[d] + (at[d] as f64 + 0.5) * (hi[d] - lo[d]) / count[d] as f64);
+                let depth = distance.depth(p);
+                if depth > 0.0 {
+                    inside.push((p, depth));
+                }
+            }
+        }
+    }
+    inside
+}
+
+/// `count` indices at most, spread evenly over 0..n.
+fn thinned(n: usize, count: usize) -> impl Iterator<Item = usize> {
+    let take = n.min(count);
+    (0..take).map(move |i| (2 * i + 1) * n / (2 * take))
+}
+
+/// Whether two spheres overlap well enough to be one piece of rock: by a tenth of the smaller radius.
+fn joined(a: &Ball, b: &Ball) -> bool {
+    (Vector3::from(a.0) - Vector3::from(b.0)).norm() < a.1 + b.1 - 0.1 * a.1.min(b.1)
+}
+
+fn in_one_piece(balls: &[Ball]) -> bool {
+    let mut reached = vec![false; balls.len()];
+    let mut open = vec![0];
+    reached[0] = true;
+    let mut count = 1;
+    while let Some(i) = open.pop() {
+        for j in 0..balls.len() {
+            if !reached[j] && joined(&balls[i], &balls[j]) {
+                reached[j] = true;
+                count += 1;
+                open.push(j);
+            }
+        }
+    }
+    count == balls.len()
+}

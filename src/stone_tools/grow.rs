@@ -1,0 +1,197 @@
+//! A body filled with separate spheres that grow until they jam, for a bonded stone.
+//!
+//! Spheres of given size ratios start small at random points inside and grow together. After each growth they are moved
+//! apart, pair by pair and away from the surface, by their overlaps, until none is larger than 0.3 % of the mean radius;
+//! where that fails the growth was too large and is halved. When they are jammed, the overlaps left are taken from the
+//! radii, and each sphere grows alone until it meets a neighbour or the surface. So no two spheres overlap, and none
+//! stands out over the surface.
+//!
+//! Bonds join spheres whose gap is at most a given share of their mean radius. The spheres leave pores; the density
+//! factor gives them the mass of the solid body.
+//!
+//! Source: growth with relaxation after B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 1990, without
+//! their dynamics: overlaps are removed by projection.
+
+use nalgebra::Vector3;
+use trackbed_dem::insert::random::Random;
+use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
+
+use super::fill::Ball;
+
+const PURPOSE: u64 = 12;
+/// Largest overlap left by relaxation, as a share of the mean radius.
+const OVERLAP: f64 = 3e-3;
+const SWEEPS: usize = 1000;
+/// Growth of the radii in one step, at first and at last.
+const GROWTH: [f64; 2] = [0.1, 1e-3];
+/// Neighbours are looked for within this many mean diameters, and again after so many sweeps.
+const REACH: f64 = 1.6;
+const RENEW: usize = 10;
+/// Largest growth alone after the jam.
+const ALONE: f64 = 1.3;
+
+/// How to grow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Number of spheres, 1 or more.
+    pub spheres: usize,
+    /// Starts the random places and sizes.
+    pub seed: u64,
+    /// Radii differ by this share up and down before each grows alone; 0 to below 1.
+    pub spread: f64,
+    /// Largest gap between bonded spheres, as a share of their mean radius.
+    pub gap: f64,
+}
+
+/// Spheres grown in a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grown {
+    /// The spheres.
+    pub spheres: Vec<Ball>,
+    /// Pairs of bonded spheres, counted from 0, the lower one first.
+    pub bonds: Vec<[u32; 2]>,
+    /// Volume of the body over that of the spheres.
+    pub density_factor: f64,
+}
+
+/// Grows spheres in a body; `distance` belongs to it.
+pub fn grow(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) -> Grown {
+    let volume = body.moments().volume;
+    let [lo, hi] = body.surface().bounds();
+    let mut random = Random::new(options.seed, PURPOSE);
+    let n = options.spheres;
+    let mut centres: Vec<Vector3<f64>> = Vec::with_capacity(n);
+    while centres.len() < n {
+        let p = std::array::from_fn(|k| lo[k] + random.uniform() * (hi[k] - lo[k]));
+        if distance.contains(p) {
+            centres.push(Vector3::from(p));
+        }
+    }
+    let ratio: Vec<f64> = (0..n).map(|_| 1.0 + options.spread * (2.0 * random.uniform() - 1.0)).collect();
+    let ball = 4.0 / 3.0 * std::f64::consts::PI;
+    let cubes: f64 = ratio.iter().map(|s| s.powi(3)).sum();
+
+    // From a fifth of the volume on.
+    let mut size = (0.2 * volume / (ball * cubes)).cbrt();
+    let mut jammed = Jam { distance, radii: vec![0.0; n], pairs: Vec::new(), mean: 0.0 };
+    while !jammed.relax(&mut centres, &ratio, size) {
+        size *= 0.8;
+    }
+    let mut growth = GROWTH[0];
+    while growth > GROWTH[1] {
+        let mut trial = centres.clone();
+        if jammed.relax(&mut trial, &ratio, size * (1.0 + growth)) {
+            centres = trial;
+            size *= 1.0 + growth;
+        } else {
+            growth *= 0.5;
+        }
+    }
+    let radii = alone(distance, &centres, &ratio.iter().map(|s| s * size).collect::<Vec<f64>>());
+    let spheres: Vec<Ball> = centres.iter().map(|c| (*c).into()).zip(radii).collect();
+    let solid: f64 = spheres.iter().map(|s| ball * s.1.powi(3)).sum();
+    let mut bonds = Vec::new();
+    for i in 0..n {
+        for j in i + 1..n {
+            if gap(&spheres[i], &spheres[j]) <= options.gap * 0.5 * (spheres[i].1 + spheres[j].1) {
+                bonds.push([i as u32, j as u32]);
+            }
+        }
+    }
+    Grown { spheres, bonds, density_factor: volume / solid }
+}
+
+/// Distance between two spheres [m], negative where they overlap.
+pub fn gap(a: &Ball, b: &Ball) -> f64 {
+    (Vector3::from(a.0) - Vector3::from(b.0)).norm() - a.1 - b.1
+}
+
+/// The relaxation and its scratch.
+struct Jam<'a> {
+    distance: &'a SurfaceDistance,
+    radii: Vec<f64>,
+    pairs: Vec<(u32, u32)>,
+    mean: f64,
+}
+
+impl Jam<'_> {
+    /// Moves spheres of radius `ratio` × `size` apart and into the body; whether no overlap is left.
+    fn relax(&mut self, centres: &mut [Vector3<f64>], ratio: &[f64], size: f64) -> bool {
+        self.mean = size;
+        self.radii.iter_mut().zip(ratio).for_each(|(r, s)| *r = s * size);
+        for sweep in 0..SWEEPS {
+            if sweep % RENEW == 0 {
+                self.find_pairs(centres);
+            }
+            if self.sweep(centres) <= OVERLAP * self.mean {
+                // Neighbours that came in since the last search count as well.
+                self.find_pairs(centres);
+                if self.sweep(centres) <= OVERLAP * self.mean {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    fn find_pairs(&mut self, centres: &[Vector3<f64>]) {
+        self.pairs.clear();
+        for i in 0..centres.len() {
+            for j in i + 1..centres.len() {
+                let reach = REACH * (self.radii[i] + self.radii[j]);
+                if (centres[i] - centres[j]).norm_squared() < reach * reach {
+                    self.pairs.push((i as u32, j as u32));
+                }
+            }
+        }
+    }
+
+    /// Removes each overlap in turn; returns the largest found [m].
+    fn sweep(&self, centres: &mut [Vector3<f64>]) -> f64 {
+        let mut largest = 0.0_f64;
+        for &(i, j) in &self.pairs {
+            let (i, j) = (i as usize, j as usize);
+            let apart = centres[j] - centres[i];
+            let d = apart.norm();
+            let overlap = self.radii[i] + self.radii[j] - d;
+            if overlap > 0.0 {
+                largest = largest.max(overlap);
+                let push = apart.try_normalize(0.0).unwrap_or_else(Vector3::x) * (0.5 * overlap);
+                centres[i] -= push;
+                centres[j] += push;
+            }
+        }
+        for (c, r) in centres.iter_mut().zip(&self.radii) {
+            let (depth, closest) = self.distance.depth_and_closest((*c).into());
+            if depth < *r {
+                largest = largest.max(r - depth);
+                // From the surface inwards; a centre outside goes through its closest point.
+                let inward = (*c - Vector3::from(closest.point)) * depth.signum();
+                *c += inward.try_normalize(0.0).unwrap_or_default() * (r - depth);
+            }
+        }
+        largest
+    }
+}
+
+/// Radii without any overlap, each then as large as its neighbours and the surface allow.
+fn alone(distance: &SurfaceDistance, centres: &[Vector3<f64>], radii: &[f64]) -> Vec<f64> {
+    let n = centres.len();
+    let depth: Vec<f64> = centres.iter().map(|c| distance.depth((*c).into())).collect();
+    let mut fitted = radii.to_vec();
+    for i in 0..n {
+        fitted[i] = fitted[i].min(depth[i]);
+        for j in (0..n).filter(|j| *j != i) {
+            // Each of a pair gives way by its share.
+            fitted[i] = fitted[i].min((centres[i] - centres[j]).norm() * radii[i] / (radii[i] + radii[j]));
+        }
+    }
+    for i in 0..n {
+        let mut room = depth[i].min(ALONE * radii[i]);
+        for j in (0..n).filter(|j| *j != i) {
+            room = room.min((centres[i] - centres[j]).norm() - fitted[j]);
+        }
+        fitted[i] = fitted[i].max(room);
+    }
+    fitted
+}

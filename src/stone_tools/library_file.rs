@@ -1,0 +1,47 @@
+//! The text of a stone library, one sphere a line, with the measures of each stone as a comment.
+
+use std::fmt::Write;
+
+use super::Made;
+
+/// Spheres with 9 decimals: at sieve size 1 m that is far below any contact's overlap.
+const DECIMALS: usize = 9;
+
+/// A library as TOML; `source` says where the shapes come from.
+pub fn text(name: &str, source: &str, stones: &[Made]) -> String {
+    let mut out = String::new();
+    let mut line = |t: &str| writeln!(out, "{t}").expect("writing to a string does not fail");
+    line(
+        "# Stones as spheres; sieve size 1 m, so scale = sieve size in metres. Frame: centre of mass, principal axes.",
+    );
+    line("# Ratios are to the surface that each stone stands for, lengths to its sieve size.");
+    line(&format!("name = {}", quoted(name)));
+    line(&format!("source = {}", quoted(source)));
+    for Made { stone, report } in stones {
+        line("\n[[stones]]");
+        line(&format!("name = {}", quoted(&stone.name)));
+        line(&format!("# {report}"));
+        if let Some(factor) = stone.density_factor {
+            line(&format!("density_factor = {factor:.9}"));
+        }
+        line("spheres = [");
+        for [x, y, z, r] in &stone.spheres {
+            line(&format!("    [{x:.DECIMALS$}, {y:.DECIMALS$}, {z:.DECIMALS$}, {r:.DECIMALS$}],"));
+        }
+        line("]");
+        if !stone.bonds.is_empty() {
+            line("bonds = [");
+            for row in stone.bonds.chunks(8) {
+                let pairs: Vec<String> = row.iter().map(|[a, b]| format!("[{a}, {b}]")).collect();
+                line(&format!("    {},", pairs.join(", ")));
+            }
+            line("]");
+        }
+    }
+    out
+}
+
+/// A TOML string.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_string()).to_string()
+}

@@ -1,0 +1,43 @@
+//! Binary STL of a surface, so that other programs can show it.
+//!
+//! Source: 3D Systems, StereoLithography Interface Specification, 1989. Coordinates have single precision there.
+
+use trackbed_dem::shape::polyhedron::Surface;
+
+/// The bytes of a binary STL file. The title does not begin with `solid`, which some readers take for text.
+pub fn stl_bytes(surface: &Surface) -> Vec<u8> {
+    let mut bytes = b"surface written by trackbed".to_vec();
+    bytes.resize(80, 0);
+    bytes.extend((surface.triangles.len() as u32).to_le_bytes());
+    for t in 0..surface.triangles.len() {
+        let [a, b, c] = surface.corners(t);
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        for v in [normal, a, b, c] {
+            v.iter().for_each(|x| bytes.extend((*x as f32).to_le_bytes()));
+        }
+        bytes.extend([0, 0]);
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read::read_surface;
+    use crate::stone_tools::random;
+    use trackbed_dem::shape::polyhedron::Polyhedron;
+
+    #[test]
+    fn a_stone_comes_back_with_its_volume() {
+        let form = random::Form { elongation: [0.7; 2], flatness: [0.8; 2], angularity: [0.5; 2] };
+        let body = random::stone(3, 0, &form);
+        let file = std::env::temp_dir().join(format!("trackbed-{}-stone.stl", std::process::id()));
+        std::fs::write(&file, stl_bytes(body.surface())).unwrap();
+        let back = read_surface(&file).unwrap();
+        std::fs::remove_file(file).unwrap();
+        assert_eq!(back.triangles.len(), body.surface().triangles.len());
+        assert_eq!(back.topology().unwrap().turned_edges, 0);
+        let volume = Polyhedron::new(&back).unwrap().moments().volume;
+        assert!((volume / body.moments().volume - 1.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,69 @@
+//! Broken input: bonds.
+
+use super::*;
+
+const CEMENT: &str =
+    "[[bond]]\nname = \"cement\"\ngap = \"5 mm\"\n[bond.parallel]\nyoung = \"1 MPa\"\n\n[[walls]]";
+
+/// The pair of spheres with a bond between them.
+fn bonded() -> Good {
+    grains_scene().scene("[[walls]]", CEMENT)
+}
+
+#[test]
+fn bonds_that_join_nothing() {
+    bonded().scene("gap = \"5 mm\"", "gap = \"0.1 mm\"").only_run_sees_it().refused(
+        "scene.toml:16: bond.0: found no pair for \"cement\", expected a bond that joins grains: a larger `gap`, or other \
+         groups",
+    );
+}
+
+#[test]
+fn two_kinds_of_bond() {
+    bonded().scene("[bond.parallel]", "[bond.direct]\nstiffness = [1, 1, 1, 1]\n[bond.parallel]").refused(
+        "scene.toml:16: bond.0: found another number of kinds, expected exactly one of `parallel`, `contact_point` and `direct`",
+    );
+}
+
+#[test]
+fn strength_of_zero() {
+    bonded()
+        .scene("young = \"1 MPa\"", "young = \"1 MPa\"\ntensile_strength = 0")
+        .refused("scene.toml:21: bond.0.parallel.tensile_strength: found 0, expected above 0");
+}
+
+#[test]
+fn bonds_between_unknown_groups() {
+    bonded()
+        .scene("gap = ", "between = [\"pair\", \"other\"]\ngap = ")
+        .refused("scene.toml:18: bond.0.between: found \"other\", expected the name of a [[grains]]: pair");
+}
+
+#[test]
+fn pair_of_one_grain() {
+    bonded()
+        .scene("gap = \"5 mm\"", "pairs = \"pairs.csv\"")
+        .file("pairs.csv", "a,b\n0,0\n")
+        .refused("pairs.csv:2: pair: found 0, 0, expected two different numbers of grains, 0 to 1");
+}
+
+#[test]
+fn spread_without_its_number() {
+    bonded().scene("young = \"1 MPa\"", "young = \"1 MPa\"\n[bond.spread]\nkind = \"weibull\"\ndeviation = 0.1").refused(
+        "scene.toml:21: bond.0.spread: found other keys, expected `deviation` for `normal`, `modulus` for `weibull`",
+    );
+}
+
+#[test]
+fn bonded_stones_without_their_bond() {
+    grains_scene().scene("shape = \"sphere\"", "shape = \"bonded\"").refused(
+        "scene.toml:12: grains.0.shape: found \"bonded\", expected `fill`, which bonded stones need",
+    );
+}
+
+#[test]
+fn velocity_of_a_grip() {
+    bonded()
+        .scene("shape = \"sphere\"", "shape = \"sphere\"\nmotion = [0, 0, 0]\nvelocity = [0, 0, 1]")
+        .refused("scene.toml:14: grains.0.velocity: found a value, expected no such key beside `motion`");
+}

@@ -1,0 +1,59 @@
+//! Grains at and beyond what their contacts can follow, through scenes: refused with the key (exit code 2), or stopped
+//! with the names of both partners (exit code 3).
+
+use super::support::{Folder, GRAINS, json, run};
+
+/// Stops with code 3 and `what` on standard error; the summary says the same.
+fn stops(name: &str, text: &str, what: &str) {
+    let folder = Folder::new(name);
+    let scene = folder.write("scene.toml", text);
+    let out = folder.join("out");
+    let outcome = run(&scene, &out, &[]);
+    assert_eq!(outcome.code, 3, "{outcome:?}");
+    assert!(outcome.stderr.contains(what) && outcome.stderr.contains("at t = "), "{}", outcome.stderr);
+    let summary = json(&out.join("summary.json"));
+    let status = summary["status"].as_str().unwrap();
+    assert!(status.starts_with("failed: ") && status.contains(what), "{status}");
+}
+
+/// 1.5 of the limit: refused by the key. Taken all the same, a single pair, for which the bound is wide, still runs.
+#[test]
+fn step_of_one_and_a_half_limits() {
+    let folder = Folder::new("step_limit");
+    let scene = folder.write("scene.toml", GRAINS);
+    let step = "time.grain_step=2.06e-4";
+    let refused = run(&scene, &folder.join("out"), &[step]);
+    assert_eq!(refused.code, 2, "{refused:?}");
+    assert!(refused.stderr.contains("time.grain_step: found 0.000206 s"), "{}", refused.stderr);
+    assert!(!folder.join("out").exists());
+    run(&scene, &folder.join("out"), &[step, "time.accept_step_above_limit=true"]).good();
+}
+
+/// Two grains shot at each other faster than their contact can stop them.
+#[test]
+fn head_on_at_two_hundred_metres_per_second() {
+    let pair = "spheres = [[0.0, 0.0, 0.051, 0.05], [0.01, 0.0, 0.152, 0.05]]";
+    let group = |name: &str, x: f64, speed: f64| {
+        format!(
+            "[[grains]]\nname = \"{name}\"\nshape = \"sphere\"\nmaterial = \"stone\"\n\
+             spheres = [[{x:?}, 0.0, 0.5, 0.05]]\nvelocity = [{speed:?}, 0.0, 0.0]\n"
+        )
+    };
+    let grains = format!("[[grains]]\nname = \"pair\"\nshape = \"sphere\"\nmaterial = \"stone\"\n{pair}\n");
+    assert!(GRAINS.contains(&grains));
+    let text = GRAINS.replace(&grains, &(group("left", -0.2, 100.0) + &group("right", 0.2, -100.0)));
+    stops("head_on", &text, "body 0 and body 1 overlap");
+}
+
+/// 1000 m/s at a floor that is far too soft for it.
+#[test]
+fn floor_hit_at_a_thousand_metres_per_second() {
+    let spheres = "spheres = [[0.0, 0.0, 0.051, 0.05], [0.01, 0.0, 0.152, 0.05]]";
+    let fast = "spheres = [[0.0, 0.0, 0.3, 0.05]]\nvelocity = [0.0, 0.0, -1000.0]";
+    assert!(GRAINS.contains(spheres));
+    let text = GRAINS.replace(spheres, fast);
+    // Half the radius is passed within a step: stopped by speed, at once. With short steps, by the overlap.
+    stops("fast_floor", &text, "body 0 moves at 1000");
+    let short = text.replace("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"5 us\"");
+    stops("fast_floor_short", &short, "body 0 and plane 0 overlap");
+}
