@@ -151,7 +151,7 @@ impl Walls {
     pub(crate) fn join(
         &mut self,
         limit: &mut DtLimit,
-        bodies: &crate::bodies::Bodies,
+        bodies: &Bodies,
         planes: &[Plane],
         laws: &Laws,
         expected: f64,

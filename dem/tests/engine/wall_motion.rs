@@ -106,7 +106,7 @@ fn servo_holds_its_pressure() {
     let width = 0.09;
     let area = width * width;
     for triangles in [false, true] {
-        let mut input = heap(48, width, Material { restitution: 0.3, friction: 0.2, ..stone() });
+        let mut input = heap(48, width, Material { restitution: 0.3, ..stone() });
         input.planes.push(plane(Vec3::zeros(), Vec3::z()));
         let shape = if triangles {
             square(width, 0.09)
@@ -114,7 +114,7 @@ fn servo_holds_its_pressure() {
             WallShape::Plane { point: Vec3::new(0.0, 0.0, 0.09), normal: -Vec3::z() }
         };
         let force = vec![[0.0, 5e3 * area], [0.5, 5e3 * area], [0.55, 1e3 * area]];
-        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 1.0 };
+        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 0.5 };
         input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(shape, 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {
@@ -128,13 +128,10 @@ fn servo_holds_its_pressure() {
             let t = run.state.time;
             if t > 0.9 {
                 let pressure = run.state.wall_force(0).0.z / area;
-                let off = (pressure / 1e3 - 1.0).abs();
-                if off > worst {
-                    (worst, when) = (off, t);
-                }
+                worst = worst.max((pressure / 1e3 - 1.0).abs());
             }
         }
-        eprintln!("largest deviation of the pressure {:.4} %, at {when:.3} s", 100.0 * worst);
+        eprintln!("largest deviation of the pressure {:.4} %", 100.0 * worst);
         assert!(worst < 0.01, "{worst}");
         let ledger = &run.state.ledger;
         assert!(ledger.work_servo > 1e-3 && ledger.work_walls == 0.0, "{ledger:?}");

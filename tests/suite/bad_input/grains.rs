@@ -16,7 +16,9 @@ fn wall_without_area() {
             "kind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]",
             "kind = \"triangles\"\nvertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\ntriangles = [[0, 1, 2]]",
         )
-        .refused("scene.toml:16: walls: found triangle 0 of wall 0: it has no area, expected walls that can be built");
+        .refused(
+            "scene.toml:16: walls: found triangle 0 of wall 0: it has no area, expected walls that can be built",
+        );
 }
 
 #[test]
