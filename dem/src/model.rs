@@ -74,7 +74,7 @@ impl Model {
         let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
-        walls.limit_step(&mut limit, &bodies, &input.planes, &laws, expected, radii);
+        walls.join(&mut limit, &bodies, &input.planes, &laws, expected, radii);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
             TimeStep::Fixed(dt) if dt > limit.dt => {
