@@ -212,4 +212,5 @@ fn skin_changes_nothing_at_walls() {
         let close = a.1.iter().zip(b.1).all(|(x, y)| (x - y).abs() <= 1e-11 * x.abs());
         seen.push((kind, a.0 == b.0, close));
     }
+    assert!(seen.iter().all(|s| s.1 && s.2), "the skin shows: {seen:?}");
 }
