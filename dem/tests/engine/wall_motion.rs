@@ -122,7 +122,7 @@ fn servo_holds_its_pressure() {
                 - run.state.ledger.work()
         };
         let start = total(&run);
-        let (mut worst, mut when) = (0.0_f64, 0.0);
+        let mut worst = 0.0_f64;
         while run.state.time < 1.05 {
             run.step();
             let t = run.state.time;
