@@ -70,6 +70,9 @@ pub struct Ledger {
     pub constraints: Impulse,
     /// Impulse of local damping.
     pub local_damping: Impulse,
+    /// Change of momentum by bodies that were set elsewhere.
+    #[serde(default)]
+    pub jumps: Impulse,
 }
 
 impl Ledger {
@@ -90,7 +93,7 @@ impl Ledger {
     /// Sum of all impulses: the change of momentum since the start.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
-        for part in [self.walls, self.surface, self.applied, self.constraints, self.local_damping] {
+        for part in [self.walls, self.surface, self.applied, self.constraints, self.local_damping, self.jumps] {
             sum += &part;
         }
         sum
@@ -115,5 +118,6 @@ impl AddAssign<&Ledger> for Ledger {
         self.applied += &other.applied;
         self.constraints += &other.constraints;
         self.local_damping += &other.local_damping;
+        self.jumps += &other.jumps;
     }
 }

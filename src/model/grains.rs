@@ -10,6 +10,7 @@ mod sizes;
 mod track;
 pub mod walls;
 
+use super::after::{self, AfterPlan};
 use super::seat_load::CyclicLoad;
 use super::tables::Grading;
 use crate::failure::Failure;
@@ -71,6 +72,8 @@ pub struct GrainsPart {
     pub sleeper: Option<SleeperPlan>,
     /// The load on them.
     pub load: Option<CyclicLoad>,
+    /// Jumps over cycles, push at the end.
+    pub after: AfterPlan,
 }
 
 /// A group of prescribed motion.
@@ -147,6 +150,18 @@ pub struct SleeperPlan {
     pub centres: Vec<[f64; 2]>,
     /// Points of the top that share the load, in the sleeper's frame [m].
     pub seats: Vec<[f64; 3]>,
+}
+
+impl SleeperPlan {
+    /// Motions that are held: along x, y, z, about x, y, z.
+    pub fn held(&self) -> [bool; 6] {
+        self.fixed
+    }
+
+    /// Mass of a sleeper [kg].
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
 }
 
 impl GrainsPart {
@@ -367,6 +382,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         measures: Vec::new(),
         sleeper: None,
         load: None,
+        after: AfterPlan::default(),
     };
     for (i, group) in scene.grains.iter().enumerate() {
         let material = find(&format!("grains.{i}.material"), &group.material)?;
@@ -432,6 +448,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;
+        part.after = after::build(document, track, &part)?;
     }
     Ok(part)
 }
@@ -458,7 +475,7 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
     }
 }
 
-fn check(
+pub(super) fn check(
     document: &Document,
     key: &str,
     value: Option<f64>,
