@@ -28,7 +28,7 @@ pub struct JumpPlan {
     pub measure: u32,
     /// Cycles after a jump whose rate does not count.
     pub settle: u32,
-    /// Error of the rate up to which the next jump is longer.
+    /// Error of a jump over the settlement up to which the next jump is longer.
     pub tolerance: f64,
     /// Largest jump over the cycles before it.
     pub largest: f64,

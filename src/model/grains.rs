@@ -58,6 +58,8 @@ pub struct GrainsPart {
     pub bonds: BondPart,
     /// Groups of prescribed motion.
     pub moving: Vec<Moving>,
+    /// Groups that foul the bed.
+    pub fouling: Vec<u32>,
     /// Groups whose mean place and force are recorded.
     pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
@@ -375,6 +377,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         growths: Vec::new(),
         bonds: bonds::kinds(document, scene)?,
         moving: Vec::new(),
+        fouling: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
         deposition: None,
@@ -393,8 +396,15 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         if !part.grain_materials.contains(&material) {
             part.grain_materials.push(material);
         }
+        if group.fouling {
+            part.fouling.push(part.parts.len() as u32);
+        }
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
+    }
+    if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
+        let expected = "a group of grains beside it that is fouled";
+        return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
     }
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;

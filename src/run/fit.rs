@@ -173,11 +173,7 @@ const GRID: usize = 120;
 
 /// The number between two bounds whose linear fit leaves least, with that fit: the best of a grid, narrowed down by golden
 /// sections. None when the best lies at a bound, where the data do not tell it.
-fn search(
-    low: f64,
-    high: f64,
-    fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>,
-) -> Option<(f64, Vec<f64>, f64)> {
+fn search(low: f64, high: f64, fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>) -> Option<(f64, Vec<f64>, f64)> {
     let at = |k: usize| low + (high - low) * k as f64 / GRID as f64;
     let rest = |x: f64| fit(x).map_or(f64::INFINITY, |f| f.1);
     let best = (0..=GRID).map(|k| (k, rest(at(k)))).min_by(|a, b| a.1.total_cmp(&b.1))?.0;

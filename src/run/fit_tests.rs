@@ -18,7 +18,11 @@ fn fitted(curve: &[[f64; 2]], law: &str) -> Fit {
 #[track_caller]
 fn near(fit: &Fit, name: &str, expected: f64, share: f64) {
     let found = fit.parameter(name).unwrap();
-    assert!((found - expected).abs() <= share * expected.abs(), "{}: {name} = {found}, not {expected}", fit.law);
+    assert!(
+        (found - expected).abs() <= share * expected.abs(),
+        "{}: {name} = {found}, not {expected}",
+        fit.law
+    );
 }
 
 #[test]

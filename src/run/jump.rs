@@ -3,10 +3,11 @@
 //! Settlement grows with the logarithm of the number of cycles, so the rate of N cycles foretells that of the next ΔN:
 //! together they settle b ln(1 + ΔN/N), b the slope ds/d(ln N) of the last simulated cycles. The controller runs in rounds. A
 //! *stretch* of cycles is simulated and its slope compared with the one foretold before the last jump; then comes the next
-//! jump, longer if the two agree within the tolerance and half as long if not.
+//! jump, relative to N twice as long if what the last one went wrong by is within the tolerance, half as long if not.
 //!
 //! * `account`: the grains stay, and the settlement of the row is the measured one plus b ln(N/n), n the age of the bed. Each
-//!   stretch makes the bed older and b new. Its error is estimated as (|change of b| + 2 × standard error of b) ln(N/n).
+//!   stretch makes the bed older and b new. Its error is estimated as ln(N/n) times two standard errors of b and that of b by
+//!   the stretches that were foretold.
 //! * `grains`: every body is moved on along its drift through the last stretch, scaled to the settlement b ln(1 + ΔN/N), as
 //!   far as the overlaps change by a given share of their mean; then some cycles run whose rate does not count. The error of
 //!   a jump is what the settlement after the next stretch differs from the logarithm; errors add up. Contact springs stay:
@@ -164,14 +165,18 @@ impl Jumper {
     fn judge(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder) {
         let (now, Some([age, settlement, slope])) = (cycles.latest, self.foretold) else { return };
         let measured = (now[1] - self.begun[1]) / (now[0] / self.begun[0]).ln();
-        let good = (measured / slope - 1.0).abs() <= plan.tolerance;
-        self.growth = if good { (1.5 * self.growth).min(plan.largest) } else { 0.5 * self.growth };
         let Some(last) = self.jumps.last_mut() else { return };
         last.measured_slope = Some(measured);
-        if plan.grains {
+        // What the jump went wrong by: its place where the grains were moved, its slope where they were not.
+        let found = if plan.grains {
             last.error = (now[1] - settlement - slope * (now[0] / age).ln()).abs();
             cycles.jump_error += last.error;
-        }
+            last.error
+        } else {
+            (measured - slope).abs() * (f64::from(last.cycles) / f64::from(last.from)).ln_1p()
+        };
+        let good = found <= plan.tolerance * cycles.done.last().map_or(0.0, |c| c.settlement.abs());
+        self.growth = if good { (2.0 * self.growth).min(plan.largest) } else { 0.5 * self.growth };
         self.foretold = None;
     }
 
@@ -194,7 +199,8 @@ impl Jumper {
             if own < 0.25 * fit.slope {
                 return false;
             }
-            let whole = |n: u32| fit.slope * (1.0 + f64::from(n) / number).ln() / (settlement - self.begun[1]);
+            let whole =
+                |n: u32| fit.slope * (1.0 + f64::from(n) / number).ln() / (settlement - self.begun[1]);
             let most = plan.overlap / drift.overlap_change;
             if whole(skipped) > most {
                 let ratio = (most * (settlement - self.begun[1]) / fit.slope).exp_m1();
@@ -206,12 +212,10 @@ impl Jumper {
         if skipped == 0 {
             return false;
         }
-        // The account's slope may have changed since the last jump; what it foretells is only as good as it is steady.
-        let before = self.jumps.last().map_or(fit.slope, |j| j.predicted_slope);
         let mut error = 0.0;
         if !plan.grains {
             let beyond = ((number + f64::from(skipped)) / age).ln();
-            error = ((fit.slope - before).abs() + 2.0 * fit.error) * beyond;
+            error = (2.0 * fit.error + self.slope_error()) * beyond;
             cycles.jump_error = error;
         }
         cycles.skip(skipped, if plan.grains { 0.0 } else { fit.slope });
@@ -230,6 +234,14 @@ impl Jumper {
         plan.grains
     }
 
+    /// Standard error of the slope by the stretches that were foretold: root of the sum of squared misses over their
+    /// number [m].
+    fn slope_error(&self) -> f64 {
+        let miss = |j: &JumpRecord| j.measured_slope.map(|m| (m - j.predicted_slope).powi(2));
+        let misses: Vec<f64> = self.jumps.iter().filter_map(miss).collect();
+        misses.iter().sum::<f64>().sqrt() / misses.len().max(1) as f64
+    }
+
     /// For the summary.
     pub fn summary(&self, plan: &JumpPlan, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
         let settlement = cycles.done.last().map_or(0.0, |c| c.settlement);
@@ -238,7 +250,11 @@ impl Jumper {
             simulated: cycles.simulated(),
             skipped: cycles.number() - cycles.simulated(),
             error_estimate: cycles.jump_error,
-            relative_error_estimate: if settlement == 0.0 { 0.0 } else { cycles.jump_error / settlement.abs() },
+            relative_error_estimate: if settlement == 0.0 {
+                0.0
+            } else {
+                cycles.jump_error / settlement.abs()
+            },
             energy,
             jumps: self.jumps.clone(),
         }
@@ -264,7 +280,8 @@ impl Drift {
                 (g.state.position(b) - x, turn.scaled_axis())
             })
             .collect();
-        let at = |b: usize, point: &dem::Vec3| motion[b].0 + motion[b].1.cross(&(point - g.state.position(b)));
+        let at =
+            |b: usize, point: &dem::Vec3| motion[b].0 + motion[b].1.cross(&(point - g.state.position(b)));
         let (mut change, mut overlap, mut known) = (0.0, 0.0, HashMap::new());
         for c in dem::measure::contacts(g.model, g.state) {
             let other = match c.b {

@@ -428,7 +428,8 @@ impl Summary {
             }
         }
         if let Some(p) = &self.push {
-            let at_two = p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
+            let at_two =
+                p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
             lines.push(format!(
                 "lateral push: {at_two}peak {:.3} kN at {:.2} mm, under {:.3} kN",
                 1e-3 * p.peak,

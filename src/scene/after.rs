@@ -18,9 +18,8 @@ pub struct CycleJump {
     pub measure: u32,
     /// Cycles after a jump whose rate does not count, for `grains`; default 3.
     pub settle: Option<u32>,
-    /// Difference between measured and predicted rate, over the predicted one, up to which the next jump is longer;
-    /// default 0.25.
-    #[serde(default = "quarter")]
+    /// Error of a jump over the settlement, up to which the next jump is longer; default 0.02.
+    #[serde(default = "fiftieth")]
     pub tolerance: f64,
     /// Largest jump over the cycles before it; default 1, which doubles them.
     #[serde(default = "unity")]
@@ -46,8 +45,8 @@ fn hundred() -> u32 {
 fn ten() -> u32 {
     10
 }
-fn quarter() -> f64 {
-    0.25
+fn fiftieth() -> f64 {
+    0.02
 }
 fn unity() -> f64 {
     1.0
