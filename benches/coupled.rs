@@ -108,6 +108,7 @@ fn run(
         solid: &solid,
         grains: trackbed_dem::Model::new(input).expect("the grains are a model"),
         substeps: SUBSTEPS,
+        scheme: Default::default(),
         theta: 0.5,
         newton: Default::default(),
         dead_load: zero.clone(),

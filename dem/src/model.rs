@@ -241,6 +241,30 @@ impl Model {
         let radius = self.radii.1;
         (self.laws.stiffness(a, b, self.expected * radius, radius), self.laws.damping_ratio(a, b))
     }
+
+    /// Force of the normal spring [N] and its stiffness [N/m] between two materials at an overlap and an effective radius
+    /// [m].
+    pub fn contact_spring(&self, a: usize, b: usize, overlap: f64, radius: f64) -> (f64, f64) {
+        let stiffness = self.laws.stiffness(a as u32, b as u32, overlap, radius);
+        // Hertz's force grows with the power 3/2.
+        let part = if matches!(self.laws, Laws::Hertz(_)) { 2.0 / 3.0 } else { 1.0 };
+        (part * stiffness * overlap, stiffness)
+    }
+
+    /// Tangential over normal stiffness of a contact between two materials.
+    pub fn tangential_ratio(&self, a: usize, b: usize) -> f64 {
+        self.laws.tangential_ratio(a as u32, b as u32)
+    }
+
+    /// Material that an external surface counts as.
+    pub fn surface_material(&self) -> Option<usize> {
+        self.surface_material.map(|m| m as usize)
+    }
+
+    /// Material of a body.
+    pub fn material(&self, body: usize) -> usize {
+        self.body(body).material as usize
+    }
 }
 
 /// Calls `f` with centre and radius of each sphere of a shape.

@@ -358,6 +358,12 @@ impl State {
         self.stale = true;
     }
 
+    /// Allows for a way [m] that the external surface may have made between two steps, beyond what its
+    /// [`max_speed`](crate::surface::Surface::max_speed) told: neighbours stay known that much longer.
+    pub fn allow_for_jump(&mut self, way: f64) {
+        self.wall_drift += way;
+    }
+
     /// Puts the bodies into blocks of present neighbours and carries the contacts along. Done every
     /// `order::EVERY` steps: by count, so that a restart does not change when.
     pub(crate) fn reorder(&mut self, model: &Model) {

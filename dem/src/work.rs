@@ -243,6 +243,12 @@ impl Work {
         work
     }
 
+    /// Follows another state of the same model from now on, such as an earlier one that is taken up again. What comes
+    /// then has the bits that new scratch gives.
+    pub fn follow(&mut self, model: &Model, state: &State) {
+        self.arrange(model, state);
+    }
+
     /// Lays the constants out in the state's present order.
     pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
         self.listed = false;

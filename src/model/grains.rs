@@ -16,7 +16,6 @@ use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
 pub use compaction::{CompactionPlan, Press};
-use trackbed_coupling::step::{self, Stability};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::measure::BoxRegion;
@@ -25,7 +24,6 @@ use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
     WallInput, WallShape,
 };
-use trackbed_fem::Face;
 
 /// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
 const SETTLED_SPEED: f64 = 5e-3;
@@ -61,6 +59,7 @@ pub struct GrainsPart {
     pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
+    material_names: Vec<String>,
     /// Settling before the run proper.
     pub deposition: Option<DepositionPlan>,
     /// Compaction of the settled bed.
@@ -244,29 +243,24 @@ impl GrainsPart {
         self.materials[material].density
     }
 
-    /// Stability of the exchange with a solid in windows of `window` [s], for the stiffest contact and the heaviest
-    /// grain.
-    pub fn stability(
-        &self,
-        model: &Model,
-        window: f64,
-        solid: &trackbed_fem::Model,
-        faces: &[Face],
-    ) -> Stability {
-        let Some(surface) = self.surface_material else { return Stability::default() };
-        let (mut stiffness, mut damping) = (0.0_f64, 0.0_f64);
-        // The sleeper touches grains only.
+    /// Materials of grains that may touch a solid, with their names. The sleeper touches grains only.
+    pub fn touching_materials(&self) -> impl Iterator<Item = (usize, String)> {
+        self.grain_materials.iter().map(|&m| (m, self.material_names[m].clone()))
+    }
+
+    /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
+    pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
         let grains = self.parts.len() as u32 - u32::from(self.sleeper.is_some());
-        let heaviest = (0..model.body_count())
-            .filter(|&b| model.part(b) < grains)
-            .map(|b| model.mass(b))
-            .fold(0.0, f64::max);
-        for &material in &self.grain_materials {
-            let (k, ratio) = model.contact_stiffness(material, surface);
-            stiffness = stiffness.max(k);
-            damping = damping.max(2.0 * ratio * (heaviest * k).sqrt());
-        }
-        step::stability(window, stiffness, damping, step::face_masses(solid, faces))
+        let own = (0..model.body_count())
+            .filter(|&b| model.part(b) < grains && model.material(b) == material)
+            .map(|b| model.mass(b));
+        let ends = own.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], m| [low.min(m), high.max(m)]);
+        (ends[1] > 0.0).then_some(ends)
+    }
+
+    /// Mean bounding radius of the grains [m].
+    pub fn mean_reach(&self) -> f64 {
+        self.bodies.iter().map(|b| self.reach(b)).sum::<f64>() / self.bodies.len().max(1) as f64
     }
 
     /// Planes, for the pictures of the walls.
@@ -362,6 +356,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         moving: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
+        material_names: names.iter().map(|n| n.to_string()).collect(),
         deposition: None,
         compaction: Vec::new(),
         measures: Vec::new(),

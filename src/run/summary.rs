@@ -2,11 +2,13 @@
 
 use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
+use crate::model::exchange::ContactClass;
 use crate::write::WriteError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
-use trackbed_coupling::step::Stability;
+use trackbed_coupling::scheme::{Passes, Scheme};
+use trackbed_coupling::stability::Stability;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
 
@@ -163,14 +165,20 @@ pub struct BondSummary {
 pub struct CouplingRecord {
     /// Largest relative errors of force and moment over all exchanges.
     pub transfer: TransferAudit,
+    /// Order of the exchange.
+    pub scheme: Scheme,
     /// Steps of the grains per step of the solid.
     pub substeps: u32,
-    /// Stability of the exchange: both numbers should be below about 1.
+    /// Stability of the exchange: the largest numbers of all classes of contacts.
     pub stability: Stability,
+    /// Every class of contacts with its numbers and limits.
+    pub classes: Vec<ContactClass>,
+    /// Windows, and how often they were repeated.
+    pub passes: Passes,
     /// Interface work seen by grains plus that seen by the solid [J], which should vanish.
     pub interface_work_error: f64,
     /// How contact forces are transferred.
-    pub transfer_kind: &'static str,
+    pub transfer_kind: String,
 }
 
 /// Static equilibrium.
@@ -365,9 +373,26 @@ impl Summary {
         }
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}",
-                c.transfer.force, c.transfer.moment, c.stability.stiffness, c.stability.damping
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; {:?}, {} sub-steps, \
+                 transfer {}",
+                c.transfer.force,
+                c.transfer.moment,
+                c.stability.stiffness,
+                c.stability.damping,
+                c.scheme,
+                c.substeps,
+                c.transfer_kind
             ));
+            for class in &c.classes {
+                lines.push(format!("  {}", class.line()));
+            }
+            if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
+                lines.push(format!(
+                    "  {:.2} passes per window, {} windows not converged",
+                    c.passes.passes as f64 / c.passes.windows as f64,
+                    c.passes.unconverged
+                ));
+            }
         }
         if let Some(s) = &self.settlement {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();

@@ -5,5 +5,7 @@ mod impact;
 mod pressure;
 mod rest;
 mod sliding;
+mod spread;
 mod support;
 mod transfer;
+mod two_mass;

@@ -161,18 +161,29 @@ pub struct Coupled<'a> {
 
 impl<'a> Coupled<'a> {
     pub fn new(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) -> Coupled<'a> {
+        Coupled::with_surface(solid, grains, substeps, top(solid))
+    }
+
+    /// The same with a surface of its own.
+    pub fn with_surface(
+        solid: &'a fem::Model,
+        grains: dem::ModelInput,
+        substeps: u32,
+        surface: SolidSurface,
+    ) -> Coupled<'a> {
         let n = solid.dof_count();
         let model = step::Model {
             solid,
             grains: dem::Model::new(grains).expect("valid grains"),
             substeps,
+            scheme: Default::default(),
             theta: 0.5,
             newton: Default::default(),
             dead_load: vec![0.0; n],
             reference: vec![0.0; n],
         };
         let state = step::State::new(fem::State::new(solid), dem::State::new(&model.grains));
-        let work = step::Work::new(&model, &state, top(solid)).expect("a solid that can be factored");
+        let work = step::Work::new(&model, &state, surface).expect("a solid that can be factored");
         Coupled { model, state, work }
     }
 
