@@ -267,8 +267,11 @@ pub fn step(
             solid(model, state, work)?
         }
         Scheme::Stiffened => {
-            begin(model, state, work)?;
-            state.passes.solves += u64::from(predict(model, state, work)?);
+            // The contacts of the start are not known: the first window goes on with the present velocity.
+            if state.passes.windows > 0 {
+                begin(model, state, work)?;
+                state.passes.solves += u64::from(predict(model, state, work)?);
+            }
             grains(model, state, work, &mut applied)?;
             state.held.clear();
             state.held.extend(work.grains.surface_contacts().iter().map(Held::from));

@@ -189,6 +189,11 @@ impl<'a> Coupled<'a> {
 
     /// One window with the given forces on bodies.
     pub fn step(&mut self, applied: &[(usize, [f64; 3])]) {
+        self.step_loaded(applied, |_, _| {});
+    }
+
+    /// The same with loads on the solid.
+    pub fn step_loaded(&mut self, applied: &[(usize, [f64; 3])], load: impl Fn(f64, &mut [f64])) {
         step::step(
             &self.model,
             &mut self.state,
@@ -200,7 +205,7 @@ impl<'a> Coupled<'a> {
                     point: grains.position(body),
                 }));
             },
-            |_, _| {},
+            load,
         )
         .expect("a step without failure");
     }
