@@ -1,8 +1,17 @@
 //! Coupling against closed forms and reference solutions. Numbers and names of the problems (V0.5, (i)a, …) are
 //! those of the project's list of coupling verification problems; each test's head says what is exact in it.
 
+mod beam;
+mod bed;
+mod bounce;
+mod collapse;
+mod curved;
+mod cyclic;
 mod impact;
+mod mapping;
+mod plate;
 mod pressure;
+mod reduction;
 mod rest;
 mod sliding;
 mod support;
