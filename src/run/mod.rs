@@ -41,6 +41,7 @@ use main_stage::RUN;
 use settle::Settled;
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use summary::{CouplingRecord, Hash, NewtonRecord};
 use system::{CoupledSystem, GrainsSystem, System};
 use trackbed_coupling as coupling;
@@ -435,9 +436,17 @@ impl Stage<'_> {
             newton: solid.newton,
             grains,
         };
-        let work = coupling::step::Work::new(&model, &state, surface)
+        let mut work = coupling::step::Work::new(&model, &state, surface)
             .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
             .map_err(|e| solid.failure(&e))?;
+        if let Some(reduction) = solid.reduction {
+            let reduced = fem::reduction::Reduced::new(&solid.model, work.surface.faces(), reduction)
+                .map_err(|e| {
+                    Failure::from(self.document.error("solid.reduction", e.to_string(), "another choice"))
+                })?;
+            work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
+            summary.model.reduction = work.reduction();
+        }
         summary.model.solid_step = Some(model.window());
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
         Ok(CoupledSystem { model, state, work, loads: &solid.loads })

@@ -109,6 +109,9 @@ pub struct ModelRecord {
     pub grain_step_set_by: Option<String>,
     /// Step of the solid [s].
     pub solid_step: Option<f64>,
+    /// Shapes and errors of a reduced solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<trackbed_fem::reduction::Estimate>,
     /// Memory that the solid was predicted to need [bytes].
     pub predicted_memory: Option<u64>,
     /// Mean number of touching partners per grain at the start of the run proper.
@@ -310,6 +313,9 @@ impl Summary {
     /// What a user wants to see when a run has ended.
     pub fn report(&self) -> String {
         let mut lines = Vec::new();
+        if let Some(r) = &self.model.reduction {
+            lines.push(format!("solid reduced: {r}"));
+        }
         for stage in &self.stages {
             lines.push(format!(
                 "{}: {:.1} s, {} grain steps, {} solid steps",

@@ -188,6 +188,29 @@ fn unstable_newmark_constants() {
 }
 
 #[test]
+fn reduction_without_modes() {
+    let key = "reduction = { kind = \"modes\", modes = 0 }\n\n[[solid.material]]";
+    coupled()
+        .scene("\n[[solid.material]]", key)
+        .refused("scene.toml:8: solid.reduction.modes: found 0, expected 1 or more");
+}
+
+#[test]
+fn reduction_of_a_stressed_solid() {
+    let keys = "reduction = { kind = \"surface\" }\ninitial_stress = { method = \"k0\", k0 = 0.5 }\n\n[[solid.material]]";
+    coupled().scene("\n[[solid.material]]", keys).refused(
+        "scene.toml:8: solid.reduction: found initial stress, expected no such key beside solid.initial_stress",
+    );
+}
+
+#[test]
+fn reduction_of_a_solid_alone() {
+    solid()
+        .scene("[[solid.material]]", "reduction = { kind = \"surface\" }\n\n[[solid.material]]")
+        .refused("scene.toml:8: solid.reduction: found a value, expected no such key without [[grains]]");
+}
+
+#[test]
 fn mixed_rayleigh_damping() {
     coupled().scene("damping_ratio = 0.05, ", "damping_ratio = 0.05, alpha_m = 3, ").refused(
         "scene.toml:7: solid.rayleigh: found a mixture of keys, expected either alpha_m and beta_k, or damping_ratio \
@@ -228,9 +251,9 @@ fn substeps_in_words() {
 
 #[test]
 fn substeps_that_are_no_whole_number() {
-    coupled()
-        .scene("substeps = 10", "substeps = 2.5")
-        .refused("scene.toml:46: coupling.substeps: found floating point `2.5`, expected 1 to 1000, or \"auto\"");
+    coupled().scene("substeps = 10", "substeps = 2.5").refused(
+        "scene.toml:46: coupling.substeps: found floating point `2.5`, expected 1 to 1000, or \"auto\"",
+    );
 }
 
 #[test]
