@@ -113,6 +113,12 @@ pub enum ModelError {
         /// What is wrong.
         problem: String,
     },
+    /// Periodic axes cannot be as asked for.
+    #[error("periodic axes: {problem}")]
+    Periodic {
+        /// What is wrong.
+        problem: String,
+    },
     /// A setting of the run is out of range.
     #[error("{quantity} is {value}; it must {requirement}")]
     Setting {

@@ -67,6 +67,7 @@ pub struct Model {
     pub(crate) block: usize,
     /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
+    pub(crate) periodic: Option<crate::periodic::Periodic>,
     dt: f64,
     limit: DtLimit,
 }
@@ -101,6 +102,9 @@ impl Model {
         }
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
+        let skin = input.skin.unwrap_or(0.2 * mean);
+        crate::periodic::check(&input, &bodies, skin)?;
+        let periodic = crate::periodic::Periodic::new(&input);
         let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
@@ -125,7 +129,8 @@ impl Model {
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
-            skin: input.skin.unwrap_or(0.2 * mean),
+            skin,
+            periodic,
             bonds,
             radii,
             dt,

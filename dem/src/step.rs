@@ -1,5 +1,6 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::Vec3;
 use crate::bond;
 use crate::contact::pass::{Between, Interior};
 use crate::contact::planes::{self, Planes};
@@ -11,6 +12,7 @@ use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
+use crate::periodic;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
@@ -113,6 +115,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         lanes::run(simd, kernel);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
+        }
+        if let Some(periodic) = &model.periodic {
+            out.couple = Vec3::zeros();
+            periodic::contacts::<_, RIGID>(periodic, laws, all, scratch, b, pairs, out, dt);
         }
     };
     if *parallel {
@@ -236,6 +242,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum += &w.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
+        sum.periodic.angular += cross.couple;
         fastest = fastest.max(w.fastest);
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
@@ -277,7 +284,6 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::material::Material;
     use crate::shape::Shape;

@@ -10,7 +10,7 @@ use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::cells::Cells;
-use crate::state::{Lanes, PatchContact, PatchPair, State, xyz};
+use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
 
@@ -57,6 +57,8 @@ pub(crate) struct CrossWork {
     pub slots: Vec<Slot>,
     pub dashpot: f64,
     pub friction: f64,
+    /// Angular impulse about the origin that contacts across periodic borders give in this step.
+    pub couple: Vec3,
     pub failure: Option<Failure>,
 }
 
@@ -88,6 +90,7 @@ pub(crate) struct BlockWork {
     pub candidates: Vec<[u32; 2]>,
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
+    pub images: Vec<ImageName>,
     pub planes: Vec<[u32; 2]>,
     pub walls: Vec<[u32; 2]>,
     pub surface: Vec<[u32; 2]>,

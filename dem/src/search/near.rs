@@ -8,10 +8,11 @@
 use crate::contact::History;
 use crate::contact::groups::Groups;
 use crate::model::Model;
+use crate::periodic;
 use crate::search::candidates::{self, spheres};
 use crate::search::patches;
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, State, xyz};
+use crate::state::{Block, Cross, ImageName, ImagePair, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Gather, Work};
 use rayon::prelude::*;
@@ -88,6 +89,16 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
             cuboid::closest_point(&scratch[c[1] as usize].half[k], &local).2 < p[3] + near
         };
         merge(&mut cross.boxes, scratch[b].boxed.iter().filter(close).copied());
+        if let Some(periodic) = &model.periodic {
+            let close = |c: &&ImageName| {
+                let p = &own[c.i as usize];
+                let other = c.block as usize;
+                let q = &spheres(&all[other], &scratch[other], model.rigid)[c.j as usize];
+                let reach = p[3] + q[3] + near;
+                (xyz(p) - xyz(q) - periodic.way(&c.shift)).norm_squared() < reach * reach
+            };
+            periodic::merge(&mut cross.images, scratch[b].images.iter().filter(close).copied());
+        }
     };
     let within = |(block, w): (&mut Block, &mut BlockWork)| {
         let Block { centre, pairs, planes: plane_pairs, walls: wall_pairs, surface: surface_pairs, .. } =
@@ -152,6 +163,17 @@ pub(crate) fn link(state: &State, work: &mut Work) {
             work.blocks[b].gather.push(Gather { place, block, slot, first: true });
             let other = &mut work.blocks[to as usize];
             let place = if boxes { j } else { other.owner[j as usize] };
+            other.gather.push(Gather { place, block, slot, first: false });
+        }
+        let images = &state.cross[b].images;
+        let from = work.cross[b].slots.len();
+        work.cross[b].slots.resize(from + images.len(), Default::default());
+        for (k, ImagePair { name, .. }) in images.iter().enumerate() {
+            let (block, slot) = (b as u32, (from + k) as u32);
+            let place = work.blocks[b].owner[name.i as usize];
+            work.blocks[b].gather.push(Gather { place, block, slot, first: true });
+            let other = &mut work.blocks[name.block as usize];
+            let place = other.owner[name.j as usize];
             other.gather.push(Gather { place, block, slot, first: false });
         }
     }
