@@ -290,15 +290,5 @@ impl Model {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wraps_into_the_box() {
-        let p = Periodic { low: Vec3::new(-1.0, 0.0, 5.0), length: Vec3::new(2.0, 3.0, 0.0) };
-        assert_eq!(p.wrap(&Vec3::new(1.5, -0.5, 99.0)), Vec3::new(-0.5, 2.5, 99.0));
-        assert_eq!(p.wrap(&Vec3::new(1.0, 3.0, -9.0)), Vec3::new(-1.0, 0.0, -9.0));
-        assert_eq!(p.wrap(&Vec3::new(-9.5, -1e-30, 0.0)), Vec3::new(0.5, 0.0, 0.0));
-        assert_eq!(p.turns(&Vec3::new(-9.5, 7.0, 0.0)), [-5, 2, 0]);
-    }
-}
+#[path = "periodic_tests.rs"]
+mod tests;

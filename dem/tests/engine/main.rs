@@ -11,6 +11,7 @@ mod impact;
 mod mesh_cases;
 mod order;
 mod packing;
+mod periodic;
 mod physics_clumps;
 mod physics_flow;
 mod physics_packing;
