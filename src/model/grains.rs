@@ -5,6 +5,7 @@ mod bonds;
 mod compaction;
 mod groups;
 mod materials;
+mod periodic;
 mod regions;
 mod sizes;
 mod track;
@@ -43,6 +44,7 @@ pub struct GrainsPart {
     gravity: Vec3,
     time_step: TimeStep,
     impact_speed: Option<f64>,
+    periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleeper is the group after the last.
@@ -233,6 +235,7 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            periodic: self.periodic,
             ..ModelInput::default()
         };
         self.bonds.add_to(&mut input);
@@ -353,6 +356,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         impact_speed,
+        periodic: [None; 3],
         bodies: Vec::new(),
         parts: Vec::new(),
         first_shape: Vec::new(),
@@ -380,6 +384,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
     }
+    periodic::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();
@@ -450,6 +455,9 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         }
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
+        }
+        ModelError::Periodic { problem } => {
+            document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
         }
         ModelError::Bond { .. } | ModelError::BondKind { .. } => {
             document.error("bond", error.to_string(), "bonds that can be made")

@@ -129,7 +129,7 @@ impl Stage<'_> {
         let between =
             |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
         let measures = grains.measures.iter().map(|(name, region)| {
-            let inside = |b: usize| is_grain(b) && region.holds(&state.position(b));
+            let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
             let own = measure::coordination_of(model, &contacts, inside);
             MeasureRecord {
                 name: name.clone(),
@@ -271,7 +271,7 @@ fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
     };
     let spheres = own().all(single);
     for b in own() {
-        let x = state.position(b);
+        let x = model.wrap(&state.position(b));
         if spheres {
             line(&[x.x, x.y, x.z, model.radius(b)]);
         } else {

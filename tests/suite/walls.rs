@@ -214,3 +214,20 @@ history_interval = "5 ms"
     assert!(history.column("table_moment_z").iter().any(|m| *m < -1e-4), "the ball is dragged along");
     assert!(history.column("bowl_force_z").iter().any(|f| *f < -0.05));
 }
+
+/// A flow down an incline that is periodic downhill and across: it keeps going, its grains stay between the borders in
+/// every file, and energy and momentum close.
+#[test]
+fn flow_goes_round_a_periodic_box() {
+    let out = Folder::new("shear");
+    let set = ["grains.1.count=150", "time.end=0.25", "output.frames=2", "output.packing=true"];
+    run(&scene("shear"), out.path(), &set).good();
+    good_energy(out.path(), 0.02);
+    let packing = fs::read_to_string(out.join("packing.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        packing.lines().skip(1).map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect();
+    assert!(rows.len() >= 150);
+    for row in &rows {
+        assert!((0.0..=0.06).contains(&row[0]) && (0.0..=0.03).contains(&row[1]), "{row:?}");
+    }
+}
