@@ -102,7 +102,9 @@ impl Ledger {
     /// Sum of all impulses: the change of momentum since the start.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
-        for part in [self.walls, self.surface, self.applied, self.constraints, self.local_damping, self.periodic] {
+        for part in
+            [self.walls, self.surface, self.applied, self.constraints, self.local_damping, self.periodic]
+        {
             sum += &part;
         }
         sum

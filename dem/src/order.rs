@@ -129,7 +129,8 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         for &ImagePair { name, history } in &pairs.images {
             let (x, y) = (new(named[b][name.i as usize]), new(named[name.block as usize][name.j as usize]));
             let turned = (name.shift.map(|s| -s), history.turned());
-            let (x, y, (shift, history)) = if x <= y { (x, y, (name.shift, history)) } else { (y, x, turned) };
+            let (x, y, (shift, history)) =
+                if x <= y { (x, y, (name.shift, history)) } else { (y, x, turned) };
             let name = ImageName { i: x.1, block: y.0, j: y.1, shift };
             state.cross[x.0 as usize].images.push(ImagePair { name, history });
         }

@@ -94,11 +94,13 @@ pub(crate) fn check(input: &ModelInput, bodies: &[Body], skin: f64) -> Result<()
         let Some([low, high]) = *side else { continue };
         let length = high - low;
         if !(low.is_finite() && high.is_finite() && length > 0.0) {
-            return error(format!("{axis} runs from {low} to {high}; both must be finite, the second the larger"));
-        }
-        if length < least {
             return error(format!(
-                "{axis} is {length} m long; at least {least} m (three diameters of the largest body and three times the \
+                "{axis} runs from {low} to {high}; both must be finite, the second the larger"
+            ));
+        }
+        if length < least * (1.0 - 1e-9) {
+            return error(format!(
+                "{axis} is {length} m long; at least {least:.3e} m (three diameters of the largest body and three times the \
                  search skin) are needed"
             ));
         }
@@ -106,7 +108,10 @@ pub(crate) fn check(input: &ModelInput, bodies: &[Body], skin: f64) -> Result<()
     for (k, plane) in input.planes.iter().enumerate() {
         let n = plane.normal.normalize();
         if let Some(d) = (0..3).find(|&d| input.periodic[d].is_some() && n[d].abs() > 1e-12) {
-            return error(format!("the normal of plane {k} has a part along {}, which is periodic", ["x", "y", "z"][d]));
+            return error(format!(
+                "the normal of plane {k} has a part along {}, which is periodic",
+                ["x", "y", "z"][d]
+            ));
         }
     }
     Ok(())
@@ -251,7 +256,10 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
         let (pairs, cross) = (&mut state.blocks[b].pairs, &mut state.cross[b]);
         let mut all: Vec<ImagePair> = Vec::new();
         let mut add = |i, block, j, before: &Turns, history| {
-            all.push(ImagePair { name: ImageName { i, block, j, shift: shift(i, block, j, before) }, history });
+            all.push(ImagePair {
+                name: ImageName { i, block, j, shift: shift(i, block, j, before) },
+                history,
+            });
         };
         pairs.iter().for_each(|([i, j], history)| add(i, own, j, &NONE, history));
         cross.spheres.iter().for_each(|([i, block, j], history)| add(i, block, j, &NONE, history));

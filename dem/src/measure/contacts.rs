@@ -107,8 +107,10 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 (c, detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + shift), q[3]))
             };
             if let Some(geometry) = touch {
-                let (ma, mb) =
-                    (pass::motion(block, a, &geometry.point), pass::motion(second, c, &(geometry.point - shift)));
+                let (ma, mb) = (
+                    pass::motion(block, a, &geometry.point),
+                    pass::motion(second, c, &(geometry.point - shift)),
+                );
                 f(&Visited {
                     body: block.bodies[a],
                     partner: Partner::Body(second.bodies[c] as usize),

@@ -30,7 +30,8 @@ pub fn body_volume_in(model: &Model, state: &State, body: usize, region: &BoxReg
         if (0..3).any(|d| periodic[d].is_none() && images[d] != 0) {
             continue;
         }
-        let way = Vec3::from_fn(|d, _| periodic[d].map_or(0.0, |[l, h]| f64::from(images[d]) * (h - l))) + back;
+        let way =
+            Vec3::from_fn(|d, _| periodic[d].map_or(0.0, |[l, h]| f64::from(images[d]) * (h - l))) + back;
         let region = BoxRegion { low: region.low - way, high: region.high - way };
         sum += volume_in(model, state, body, &region);
     }

@@ -271,6 +271,11 @@ fn stress_and_coordination_do_not_show_borders() {
     assert!(size > 100.0 && worst < 1e-6 * size, "{worst:e} of {size}");
 }
 
+fn triangle() -> TriangleSurface {
+    let vertices = vec![Vec3::zeros(), Vec3::x(), Vec3::y()];
+    TriangleSurface { vertices, triangles: vec![[0, 1, 2]], ..TriangleSurface::default() }
+}
+
 #[test]
 fn what_cannot_be_periodic_is_refused() {
     let refused = |change: &dyn Fn(&mut ModelInput)| {
@@ -289,7 +294,7 @@ fn what_cannot_be_periodic_is_refused() {
     has(refused(&|i| i.periodic[1] = Some([1.0, 1.0])), "y runs from 1 to 1");
     has(refused(&|i| i.periodic[2] = Some([0.0, f64::INFINITY])), "both must be finite");
     has(refused(&|i| i.planes.push(plane(Vec3::zeros(), Vec3::new(0.1, 0.0, 1.0)))), "normal of plane 0");
-    has(refused(&|i| i.triangles.push(TriangleSurface::default())), "triangle surfaces");
+    has(refused(&|i| i.triangles.push(triangle())), "triangle surfaces");
     has(refused(&|i| i.surface_material = Some(0)), "an external surface");
     has(
         refused(&|i| {

@@ -16,7 +16,11 @@ pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> 
         let Some([low, high]) = side.as_ref().map(|s| [s[0].si, s[1].si]) else { continue };
         if !(low.is_finite() && high.is_finite() && low < high) {
             let key = format!("periodic.{}", AXES[d]);
-            return Err(document.error(&key, format!("[{low}, {high}]"), "two lengths, the second the larger"));
+            return Err(document.error(
+                &key,
+                format!("[{low}, {high}]"),
+                "two lengths, the second the larger",
+            ));
         }
         part.periodic[d] = Some([low, high]);
         let slack = 1e-9 * (high - low);

@@ -307,7 +307,7 @@ fn periodic_axes_that_cannot_be() {
         ("x = [1, 0]", "periodic.x: found [1, 0], expected two lengths, the second the larger"),
         (
             "x = [0, 0.2]",
-            "periodic: found x is 0.2 m long; at least 0.33 m (three diameters of the largest body and three times the \
+            "periodic: found x is 0.2 m long; at least 3.300e-1 m (three diameters of the largest body and three times the \
              search skin) are needed, expected axes that the rest of the scene can be periodic along",
         ),
         (
@@ -320,7 +320,13 @@ fn periodic_axes_that_cannot_be() {
              the scene can be periodic along",
         ),
     ] {
-        let line = if words.starts_with("grains") { 10 } else if words.contains("periodic.x") { 23 } else { 22 };
+        let line = if words.starts_with("grains") {
+            10
+        } else if words.contains("periodic.x") {
+            23
+        } else {
+            22
+        };
         grains_scene()
             .scene(END, &format!("[periodic]\n{table}\n\n{END}"))
             .refused(&format!("scene.toml:{line}: {words}"));
