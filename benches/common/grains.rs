@@ -8,9 +8,16 @@ pub fn table(name: &str) -> Vec<Vec<f64>> {
     read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data").join(name))
 }
 
-/// The numbers of a table of the user's.
+/// The numbers of a table of the user's, plain or compressed (`.gz`).
 pub fn read(path: &Path) -> Vec<Vec<f64>> {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut text = String::new();
+    if path.extension().is_some_and(|e| e == "gz") {
+        let mut decoder = flate2::read::GzDecoder::new(bytes.as_slice());
+        std::io::Read::read_to_string(&mut decoder, &mut text).expect("a compressed table");
+    } else {
+        text = String::from_utf8(bytes).expect("a table of text");
+    }
     let row = |line: &str| line.split(',').map(|v| v.parse().ok()).collect::<Option<Vec<f64>>>();
     text.lines().filter(|l| !l.starts_with('#')).skip(1).map(|l| row(l).expect("a row of numbers")).collect()
 }
@@ -26,6 +33,12 @@ pub fn stone() -> Material {
         restitution: 0.5,
         ..Material::default()
     }
+}
+
+/// The grains of the peers' Hertz scene: E = 5e7 Pa, ν = 0.25.
+#[allow(dead_code)] // Not every benchmark uses every material.
+pub fn elastic() -> Material {
+    Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..stone() }
 }
 
 /// Four walls around x, y in [0, width].

@@ -2,7 +2,7 @@
 
 use crate::error::ModelError;
 use crate::input::{ModelInput, TimeStep};
-use crate::model::{Body, Kind};
+use crate::model::{Bodies, Kind};
 use crate::shape::Shape;
 
 const POSITIVE: &str = "be positive and finite";
@@ -100,6 +100,9 @@ fn shapes(input: &ModelInput) -> Result<(), ModelError> {
                 format!("half sides are {half:?}; each must {POSITIVE}")
             }
             Shape::Clump(c) if c.spheres.is_empty() => "a clump without spheres".to_string(),
+            Shape::Clump(c) if c.spheres.len() > 65_535 => {
+                format!("a clump of {} spheres; at most 65535", c.spheres.len())
+            }
             Shape::Clump(c) if !positive(c.volume) || !c.inertia.iter().all(|&i| positive(i)) => {
                 "volume and inertia of a clump must be positive".to_string()
             }
@@ -203,19 +206,19 @@ pub(crate) fn in_range(
 }
 
 /// Refuses contacts between two rigid partners that may come about.
-pub(crate) fn rigid_pairs(bodies: &[Body], input: &ModelInput) -> Result<(), ModelError> {
+pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelError> {
     let hard = |m: usize| input.materials[m].stiffness.is_infinite() && input.materials[m].young.is_none();
     let endless = |a: u32, b: usize| {
         let a = a as usize;
         let exception = input.contacts.iter().rfind(|e| (e.a, e.b) == (a, b) || (e.a, e.b) == (b, a));
         hard(a) && hard(b) && exception.is_none_or(|e| e.stiffness.is_none())
     };
-    let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies[k].material as usize)).collect();
+    let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies.get(k).material as usize)).collect();
     for (n, &i) in rigid.iter().enumerate() {
-        let a = &bodies[i];
+        let a = &bodies.get(i);
         let error = |b: String| Err(ModelError::RigidPair { a: format!("body {i}"), b });
         for &j in &rigid[n + 1..] {
-            let b = &bodies[j];
+            let b = &bodies.get(j);
             let still = a.inverse_mass == 0.0 && b.inverse_mass == 0.0;
             let boxes = a.kind == Kind::Box && b.kind == Kind::Box;
             if !still && !boxes && endless(a.material, b.material as usize) {
@@ -242,7 +245,7 @@ pub(crate) fn rigid_pairs(bodies: &[Body], input: &ModelInput) -> Result<(), Mod
     }
     for (w, wall) in input.walls.iter().enumerate().filter(|(_, w)| w.body.is_some()) {
         let error = |b: String| Err(ModelError::RigidPair { a: format!("the rigid body of wall {w}"), b });
-        if let Some(b) = rigid.iter().find(|&&b| endless(bodies[b].material, wall.material)) {
+        if let Some(b) = rigid.iter().find(|&&b| endless(bodies.get(b).material, wall.material)) {
             return error(format!("body {b}"));
         }
         if let Some(p) = input.planes.iter().position(|p| endless(wall.material as u32, p.material)) {

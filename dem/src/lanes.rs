@@ -122,6 +122,7 @@ pub(crate) trait Four: Real {
 
     /// The four numbers of a record as four lanes of each number: element k holds number k of the records `at`.
     #[inline(always)]
+    #[cfg_attr(not(test), allow(dead_code))]
     fn gather(records: &[[f64; 4]], at: &[u32; 4]) -> [Self; 4] {
         let [a, b, c, d] = *at;
         Self::transpose([
@@ -442,6 +443,24 @@ pub(crate) enum Simd {
 }
 
 impl Simd {
+    /// All that this processor has.
+    #[cfg(test)]
+    pub fn all() -> Vec<Simd> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let mut all = vec![Simd::Portable];
+            if Simd::best() != Simd::Portable {
+                all.push(Simd::Avx2);
+            }
+            if Simd::best() == Simd::Avx512 {
+                all.push(Simd::Avx512);
+            }
+            all
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        vec![Simd::Portable]
+    }
+
     /// The fastest that this processor has.
     pub fn best() -> Simd {
         #[cfg(target_arch = "x86_64")]

@@ -3,6 +3,7 @@
 //! A [`model::Model`] is what a run never changes, a [`state::State`] all that it changes, a [`work::Work`] its
 //! scratch; [`step::step`] advances the state. SI units throughout.
 
+mod bodies;
 pub mod bond;
 mod check;
 pub mod contact;
@@ -11,7 +12,6 @@ pub mod error;
 pub mod input;
 pub mod insert;
 pub mod integrate;
-#[allow(dead_code)] // Until all loops use it.
 pub mod lanes;
 pub mod ledger;
 pub mod material;

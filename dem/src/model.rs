@@ -1,53 +1,22 @@
 //! The checked, resolved and immutable model: what a run needs and never changes.
 
 use crate::Vec3;
+pub(crate) use crate::bodies::{Bodies, Body, Kind};
+use crate::check;
 use crate::contact::Laws;
 use crate::error::ModelError;
 use crate::input::{ModelInput, Plane, TimeStep};
-use crate::shape::{Shape, cuboid};
+use crate::shape::Shape;
 use crate::timestep::{self, DtLimit};
 use crate::wall::{WallInput, set::Walls};
-use crate::{check, input};
-use nalgebra::UnitQuaternion;
 
 /// Spheres that a block of bodies holds, about. Part of a scene's numbers (it orders sums), so a constant.
 const BLOCK_SPHERES: usize = 1024;
 
-/// What kind of shape a body has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Sphere,
-    Clump,
-    Box,
-}
-
-/// Constants of one body.
-#[derive(Clone, Debug)]
-pub(crate) struct Body {
-    pub kind: Kind,
-    pub shape: usize,
-    pub scale: f64,
-    pub material: u32,
-    pub part: u32,
-    pub mass: f64,
-    /// Zero when no translation is free: the partner then has the effective mass alone.
-    pub inverse_mass: f64,
-    /// Principal moments [kg m²].
-    pub inertia: Vec3,
-    /// Radius of a sphere about the centre that holds the body [m].
-    pub radius: f64,
-    /// Bits 0–2 translation, 3–5 rotation.
-    pub fixed: u8,
-    pub position: Vec3,
-    pub orientation: UnitQuaternion<f64>,
-    pub velocity: Vec3,
-    pub spin: Vec3,
-}
-
 /// The model. Build it with [`Model::new`].
 #[derive(Clone, Debug)]
 pub struct Model {
-    pub(crate) bodies: Vec<Body>,
+    pub(crate) bodies: Bodies,
     pub(crate) shapes: Vec<Shape>,
     /// Planes with unit normals.
     pub(crate) planes: Vec<Plane>,
@@ -79,8 +48,7 @@ impl Model {
     /// [`ModelError`] names the first thing that is out of range, points nowhere, or cannot work.
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
         check::input(&input)?;
-        let bodies: Vec<Body> =
-            input.bodies.iter().enumerate().map(|(k, b)| resolve(&input, k, b)).collect::<Result<_, _>>()?;
+        let bodies = Bodies::new(&input)?;
         let laws = Laws::new(&input.materials, &input.contacts);
         let walls: Vec<WallInput> = input.all_walls().collect();
         let walls = Walls::new(&walls, input.triangles.len())?;
@@ -88,7 +56,7 @@ impl Model {
 
         let mut radii = (f64::INFINITY, 0.0_f64);
         let (mut spheres, mut sum) = (0_usize, 0.0);
-        for body in &bodies {
+        for body in bodies.iter() {
             for_members(&input.shapes[body.shape], body.scale, |_, r| {
                 radii = (radii.0.min(r), radii.1.max(r));
                 spheres += 1;
@@ -100,8 +68,10 @@ impl Model {
             let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
             radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
         }
+        let largest = input.shapes.iter().map(|s| if let Shape::Clump(c) = s { c.spheres.len() } else { 1 });
+        let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
-        let round = bodies.iter().filter(|b| b.kind != Kind::Box).count();
+        let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
         let skin = input.skin.unwrap_or(0.2 * mean);
         crate::periodic::check(&input, &bodies, skin)?;
         let periodic = crate::periodic::Periodic::new(&input);
@@ -116,10 +86,15 @@ impl Model {
             }
             TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => dt,
         };
+        let rigid = bodies.iter().any(|b| b.kind != Kind::Sphere);
         let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
         Ok(Model {
-            rigid: bodies.iter().any(|b| b.kind != Kind::Sphere),
-            block: (BLOCK_SPHERES * round / spheres.max(1)).clamp(16, BLOCK_SPHERES),
+            rigid,
+            // Spheres of a block are numbered with 16 bits.
+            block: (BLOCK_SPHERES * round / spheres.max(1))
+                .clamp(16, BLOCK_SPHERES)
+                .min(65_535 / largest)
+                .max(1),
             bodies,
             shapes: input.shapes,
             planes,
@@ -148,6 +123,18 @@ impl Model {
         &self.limit
     }
 
+    /// Gives up the positions that the bodies start from, for a run that has its state: 24 bytes per body.
+    /// [`State::new`](crate::state::State::new) needs them and cannot be called afterwards.
+    pub fn forget_start(&mut self) {
+        self.bodies.forget_positions();
+    }
+
+    /// Constants of a body.
+    #[inline]
+    pub(crate) fn body(&self, body: usize) -> Body {
+        self.bodies.get(body)
+    }
+
     /// Number of bodies.
     pub fn body_count(&self) -> usize {
         self.bodies.len()
@@ -170,48 +157,48 @@ impl Model {
 
     /// Mass of a body [kg].
     pub fn mass(&self, body: usize) -> f64 {
-        self.bodies[body].mass
+        self.body(body).mass
     }
 
     /// Principal moments of inertia of a body [kg m²].
     pub fn inertia(&self, body: usize) -> Vec3 {
-        self.bodies[body].inertia
+        self.body(body).inertia
     }
 
     /// Radius of the smallest sphere about its centre of mass that is known to hold the body [m].
     pub fn radius(&self, body: usize) -> f64 {
-        self.bodies[body].radius
+        self.body(body).radius
     }
 
     /// Group number of a body.
     pub fn part(&self, body: usize) -> u32 {
-        self.bodies[body].part
+        self.body(body).part
     }
 
     /// Shape of a body (unscaled).
     pub fn shape(&self, body: usize) -> &Shape {
-        &self.shapes[self.bodies[body].shape]
+        &self.shapes[self.body(body).shape]
     }
 
     /// Number of a body's shape in the input.
     pub fn shape_number(&self, body: usize) -> usize {
-        self.bodies[body].shape
+        self.body(body).shape
     }
 
     /// Factor on the lengths of the body's shape.
     pub fn scale(&self, body: usize) -> f64 {
-        self.bodies[body].scale
+        self.body(body).scale
     }
 
     /// Volume of a body's shape [m³].
     pub fn volume(&self, body: usize) -> f64 {
-        volume(self.shape(body), self.bodies[body].scale)
+        volume(self.shape(body), self.body(body).scale)
     }
 
     /// Spheres of a body in its own frame: centre [m] and radius [m]. One for a sphere, none for a box.
     pub fn members(&self, body: usize) -> Vec<(Vec3, f64)> {
         let mut members = Vec::new();
-        for_members(self.shape(body), self.bodies[body].scale, |c, r| members.push((c, r)));
+        for_members(self.shape(body), self.body(body).scale, |c, r| members.push((c, r)));
         members
     }
 
@@ -242,7 +229,7 @@ impl Model {
     /// Half sides of a box body, scaled [m].
     pub(crate) fn half(&self, body: usize) -> Vec3 {
         match self.shape(body) {
-            Shape::Box { half } => Vec3::from(*half) * self.bodies[body].scale,
+            Shape::Box { half } => Vec3::from(*half) * self.body(body).scale,
             _ => Vec3::zeros(),
         }
     }
@@ -285,54 +272,11 @@ pub(crate) fn for_members(shape: &Shape, scale: f64, mut f: impl FnMut(Vec3, f64
     }
 }
 
-fn volume(shape: &Shape, scale: f64) -> f64 {
+pub(crate) fn volume(shape: &Shape, scale: f64) -> f64 {
     let unit = match shape {
         Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
         Shape::Clump(clump) => clump.volume,
         Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
     };
     unit * scale.powi(3)
-}
-
-fn resolve(input: &ModelInput, index: usize, b: &input::BodyInput) -> Result<Body, ModelError> {
-    let shape = &input.shapes[b.shape];
-    let volume = volume(shape, b.scale);
-    let mass = b.mass.unwrap_or(input.materials[b.material].density * volume);
-    let positive = |quantity, value: f64| {
-        let requirement = "be positive and finite";
-        let error = ModelError::Body { body: index, quantity, value, requirement };
-        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(error) }
-    };
-    positive("mass", mass)?;
-    let mut radius = 0.0_f64;
-    for_members(shape, b.scale, |c, r| radius = radius.max(c.norm() + r));
-    let (kind, inertia) = match shape {
-        Shape::Sphere { .. } => (Kind::Sphere, Vec3::repeat(0.4 * mass * radius * radius)),
-        Shape::Clump(clump) => {
-            (Kind::Clump, Vec3::from(clump.inertia) * (b.scale * b.scale * mass / clump.volume))
-        }
-        Shape::Box { half } => {
-            let half = Vec3::from(*half) * b.scale;
-            radius = half.norm();
-            (Kind::Box, cuboid::inertia(&half) * mass)
-        }
-    };
-    positive("moment of inertia", inertia.min())?;
-    let bits = b.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
-    Ok(Body {
-        kind,
-        shape: b.shape,
-        scale: b.scale,
-        material: b.material as u32,
-        part: b.part,
-        mass,
-        inverse_mass: if bits & 7 == 7 { 0.0 } else { 1.0 / mass },
-        inertia,
-        radius,
-        fixed: bits,
-        position: b.position,
-        orientation: b.orientation,
-        velocity: b.velocity,
-        spin: b.spin,
-    })
 }

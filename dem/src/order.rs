@@ -19,13 +19,13 @@ pub(crate) const EVERY: u64 = 5000;
 pub(crate) fn blocks(model: &Model, positions: &[Vec3]) -> Vec<Vec<u32>> {
     let of_kind = |boxes: bool| -> Vec<u32> {
         (0..positions.len() as u32)
-            .filter(|&b| (model.bodies[b as usize].kind == Kind::Box) == boxes)
+            .filter(|&b| (model.bodies.kind(b as usize) == Kind::Box) == boxes)
             .collect()
     };
     let mut round = of_kind(false);
     let mut out = Vec::new();
     if !round.is_empty() {
-        let size = round.iter().map(|&b| model.bodies[b as usize].radius).sum::<f64>() / round.len() as f64;
+        let size = round.iter().map(|&b| model.body(b as usize).radius).sum::<f64>() / round.len() as f64;
         halve(&mut round, positions, model.block, 2.0 * size, &mut out);
     }
     let boxes = of_kind(true);

@@ -10,11 +10,12 @@
 //! Limits: spheres and clumps, between planes along the periodic axes; no bonds, no other walls.
 
 use crate::Vec3;
+use crate::bodies::Bodies;
 use crate::contact::{ContactLaw, PairTable, pass::motion};
 use crate::detect;
 use crate::error::{ModelError, Partner};
 use crate::input::ModelInput;
-use crate::model::{Body, Model};
+use crate::model::Model;
 use crate::search::candidates::spheres;
 use crate::search::cells::Cells;
 use crate::shape::Shape;
@@ -70,7 +71,7 @@ impl Periodic {
 }
 
 /// Refuses what cannot be combined with periodic axes, and boxes so short that a body may meet itself or another twice.
-pub(crate) fn check(input: &ModelInput, bodies: &[Body], skin: f64) -> Result<(), ModelError> {
+pub(crate) fn check(input: &ModelInput, bodies: &Bodies, skin: f64) -> Result<(), ModelError> {
     let error = |problem: String| Err(ModelError::Periodic { problem });
     if input.periodic.iter().all(Option::is_none) {
         return Ok(());
@@ -175,7 +176,7 @@ pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = Image
 }
 
 /// Contacts of block `b`'s image pairs, one by one; their slots follow those of the spheres and boxes.
-pub(crate) fn contacts<L: ContactLaw, const RIGID: bool>(
+pub(crate) fn contacts<L: ContactLaw, const RIGID: bool, const ROLL: bool>(
     periodic: &Periodic,
     laws: &PairTable<L>,
     blocks: &[Block],
@@ -186,20 +187,21 @@ pub(crate) fn contacts<L: ContactLaw, const RIGID: bool>(
     dt: f64,
 ) {
     let first = lists.spheres.len() + lists.boxes.len();
+    let width = if RIGID || ROLL { 3 } else { 2 };
     let (mine, wa) = (&blocks[b], &works[b]);
     for (k, ImagePair { name, history }) in lists.images.iter_mut().enumerate() {
         let [i, block, j] = [name.i, name.block, name.j].map(|n| n as usize);
         let (other, wb) = (&blocks[block], &works[block]);
-        let (a, c) = (wa.owner[i] as usize, wb.owner[j] as usize);
+        let (a, c) = (wa.body(name.i) as usize, wb.body(name.j) as usize);
         let (p, q) = (&spheres(mine, wa, RIGID)[i], &spheres(other, wb, RIGID)[j]);
         let way = periodic.way(&name.shift);
         let law = laws.get(mine.spin[a][3] as u32, other.spin[c][3] as u32);
-        let slot = &mut out.slots[first + k];
+        let slot = &mut out.slots[(first + k) * width..][..width];
         let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + way), q[3]) else {
             if !history.is_fresh() {
                 out.friction += law.release(history);
             }
-            *slot = [Lanes::default(); 3];
+            slot.fill(Lanes::default());
             continue;
         };
         let (ma, mb) = (motion(mine, a, &g.point), motion(other, c, &(g.point - way)));
@@ -209,12 +211,15 @@ pub(crate) fn contacts<L: ContactLaw, const RIGID: bool>(
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         out.couple += way.cross(&f.force) * dt;
-        let lanes = |v: Vec3| Lanes([v.x, v.y, v.z, 0.0]);
-        *slot = [
-            lanes(f.force),
-            lanes(ma.arm.cross(&f.force) + f.moment),
-            lanes(-(mb.arm.cross(&f.force) + f.moment)),
-        ];
+        let lanes = |v: Vec3, last: f64| Lanes([v.x, v.y, v.z, last]);
+        if RIGID || ROLL {
+            slot[0] = lanes(f.force, 0.0);
+            slot[1] = lanes(ma.arm.cross(&f.force) + f.moment, 0.0);
+            slot[2] = lanes(-(mb.arm.cross(&f.force) + f.moment), 0.0);
+        } else {
+            slot[0] = lanes(f.force, -ma.arm.dot(&g.normal));
+            slot[1] = lanes(f.force.cross(&g.normal), mb.arm.dot(&g.normal));
+        }
         let bound = p[3].min(q[3]);
         if g.overlap > bound && out.failure.is_none() {
             let partner = Partner::Body(other.bodies[c] as usize);

@@ -229,17 +229,20 @@ impl State {
             lasted: 0,
             stale: true,
         };
-        let positions: Vec<Vec3> = model.bodies.iter().map(|b| b.position).collect();
-        for members in order::blocks(model, &positions) {
+        let positions = model.bodies.positions().expect("a model that has not given its start up");
+        for members in order::blocks(model, positions) {
             let mut block = Block::new(model.laws.rolls());
             for &body in &members {
-                let b = &model.bodies[body as usize];
-                let c = b.position;
+                let b = model.body(body as usize);
+                let c = positions[body as usize];
                 block.centre.push(Lanes([c.x, c.y, c.z, b.radius]));
                 block.velocity.push(Lanes([0.0, 0.0, 0.0, b.inverse_mass]));
                 block.spin.push(Lanes([0.0, 0.0, 0.0, f64::from(b.material)]));
                 if model.rigid {
-                    block.rotation.push(Rotation { orientation: b.orientation, momentum: Vec3::zeros() });
+                    block.rotation.push(Rotation {
+                        orientation: model.bodies.orientation(body as usize),
+                        momentum: Vec3::zeros(),
+                    });
                 }
             }
             block.bodies = members;
@@ -250,7 +253,8 @@ impl State {
         bond::store::start(model, &mut state);
         for (k, b) in model.bodies.iter().enumerate() {
             let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
-            state.set_velocity(model, k, b.velocity - kick * (0.5 * model.dt()), b.spin);
+            let velocity = model.bodies.velocity(k) - kick * (0.5 * model.dt());
+            state.set_velocity(model, k, velocity, model.bodies.spin(k));
         }
         state
     }
@@ -291,7 +295,7 @@ impl State {
     /// Orientation of a body (body frame to world). Single spheres do not track theirs: the starting one.
     pub fn orientation(&self, model: &Model, body: usize) -> UnitQuaternion<f64> {
         let (block, k) = self.place(body);
-        block.rotation.get(k).map_or(model.bodies[body].orientation, |r| r.orientation)
+        block.rotation.get(k).map_or_else(|| model.bodies.orientation(body), |r| r.orientation)
     }
 
     /// Sets a body's velocity [m/s] and spin [rad/s] as of half a step before `time`. Fixed rotations of clumps
@@ -304,7 +308,7 @@ impl State {
         set_xyz(&mut block.spin[k], &spin);
         if let Some(r) = block.rotation.get_mut(k) {
             let local = r.orientation.inverse_transform_vector(&spin);
-            r.momentum = r.orientation * local.component_mul(&model.bodies[body].inertia);
+            r.momentum = r.orientation * local.component_mul(&model.body(body).inertia);
         }
     }
 

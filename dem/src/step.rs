@@ -102,8 +102,18 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
     let dt = model.dt();
     let State { blocks, cross, planes: motions, walls: wall_states, bonds, drift, wall_drift, .. } = state;
     let Work {
-        blocks: works, cross: slots, applied, parallel, planes: plane_list, simd, bonds: bonded, ..
+        blocks: works,
+        cross: slots,
+        applied,
+        parallel,
+        planes,
+        simd,
+        buffers,
+        keep_forces,
+        bonds: bonded,
+        ..
     } = work;
+    let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
 
     // Contacts between blocks: they read any block, and write slots.
@@ -118,7 +128,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         }
         if let Some(periodic) = &model.periodic {
             out.couple = Vec3::zeros();
-            periodic::contacts::<_, RIGID>(periodic, laws, all, scratch, b, pairs, out, dt);
+            periodic::contacts::<_, RIGID, ROLL>(periodic, laws, all, scratch, b, pairs, out, dt);
         }
     };
     if *parallel {
@@ -136,8 +146,14 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.ledger = Ledger::default();
         w.failure = None;
         w.contacts.clear();
-        w.sums.fill(Sums::default());
-        pass::gather(w, slots);
+        w.sums = buffers.take();
+        w.sums.clear();
+        w.sums.resize(block.bodies.len(), Sums::default());
+        if RIGID || ROLL {
+            pass::gather::<true>(w, slots);
+        } else {
+            pass::gather::<false>(w, slots);
+        }
         if !model.bonds.is_empty() {
             bond::pass::within(model, b, block, w, bonded, bonds.fresh);
         }
@@ -196,7 +212,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         }
         let from = applied.partition_point(|a| (a.block as usize) < b);
         let to = applied.partition_point(|a| a.block as usize <= b);
-        lanes::run(simd, Advance::<RIGID> { model, block, w, applied: &applied[from..to], dt });
+        lanes::run(simd, Advance::<RIGID> { model, block, w: &mut *w, applied: &applied[from..to], dt });
+        if !*keep_forces {
+            buffers.give_back(std::mem::take(&mut w.sums));
+        }
     };
     if *parallel {
         blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().for_each(within);
@@ -285,56 +304,111 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 mod tests {
     use super::*;
     use crate::input::{BodyInput, ModelInput, Plane};
+    use crate::lanes::Simd;
     use crate::material::Material;
     use crate::shape::Shape;
+    use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
 
-    /// A tumbling heap, stepped serially and shared among threads: the same bits.
-    #[test]
-    fn shared_blocks_give_the_bits_of_serial_ones() {
-        let material = Material {
+    /// A tumbling heap of spheres, or of spheres and clumps, under either law.
+    fn heap(hertz: bool, clumps: bool) -> Model {
+        let soft = Material {
             density: 2600.0,
-            stiffness: 1e5,
             tangential_ratio: 0.5,
             tangential_damping_ratio: 0.1,
             friction: 0.5,
             restitution: 0.5,
             ..Material::RIGID
         };
+        let material = if hertz {
+            Material {
+                young: Some(5e7),
+                poisson: 0.25,
+                rolling_friction: 0.1,
+                twisting_friction: 0.1,
+                ..soft
+            }
+        } else {
+            Material { stiffness: 1e5, ..soft }
+        };
+        let twins = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.006, 0.0, 0.0], 0.008)]).unwrap();
         let mut input = ModelInput {
-            materials: vec![material],
-            shapes: vec![Shape::Sphere { radius: 0.01 }],
+            materials: vec![material, Material { friction: 0.3, ..material }],
+            shapes: vec![Shape::Sphere { radius: 0.01 }, Shape::Clump(twins)],
             ..ModelInput::default()
         };
+        if !clumps {
+            input.materials.truncate(1);
+        }
         input.planes.push(Plane {
             point: Vec3::zeros(),
             normal: Vec3::z(),
             material: 0,
             velocity: Vec3::zeros(),
         });
-        for k in 0..3000_u32 {
+        for k in 0..3001_u32 {
             let (x, y, z) = (f64::from(k % 15), f64::from(k / 15 % 15), f64::from(k / 225));
             let shift = 0.002 * (f64::from(k) * 1.7).sin();
             let position = Vec3::new(0.021 * x + shift, 0.021 * y - shift, 0.012 + 0.0205 * z);
+            let odd = usize::from(clumps && k % 3 == 0);
             input.bodies.push(BodyInput {
+                shape: odd,
+                material: odd,
                 position,
                 velocity: Vec3::new(shift, 0.0, -1.0),
                 ..BodyInput::default()
             });
         }
-        let model = Model::new(input).unwrap();
-        let run = |parallel: bool| {
-            let mut state = State::new(&model);
-            let mut work = Work::new(&model, &state);
-            assert!(work.blocks.len() > 2);
-            work.parallel = parallel;
-            for _ in 0..1500 {
-                step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
-            }
-            assert!(state.ledger.dissipated() > 0.1);
-            let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
-            (0..3000).flat_map(at).flat_map(|v| [v.x, v.y, v.z]).map(f64::to_bits).collect::<Vec<_>>()
-        };
+        Model::new(input).unwrap()
+    }
+
+    fn bits(model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
+        let mut state = State::new(model);
+        let mut work = Work::new(model, &state);
+        assert!(work.blocks.len() > 2);
+        (work.parallel, work.simd) = (parallel, simd);
+        for _ in 0..steps {
+            step(model, &mut state, &mut work, &NoSurface, &[]).unwrap();
+        }
+        assert!(state.ledger.dissipated() > 0.1);
+        let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
+        let l = &state.ledger;
+        let booked = [l.dissipated_dashpot, l.dissipated_friction, l.walls.angular.x];
+        let motion = (0..model.body_count()).flat_map(at).flat_map(|v| [v.x, v.y, v.z]);
+        motion.chain(booked).map(f64::to_bits).collect()
+    }
+
+    /// Stepped serially and shared among threads: the same bits.
+    #[test]
+    fn shared_blocks_give_the_bits_of_serial_ones() {
+        let model = heap(false, false);
+        let run = |parallel| bits(&model, 1500, parallel, Simd::best());
         assert!(run(false) == run(true));
+    }
+
+    /// Registers of either kind, and plain arrays: the same bits, for each law, with and without clumps.
+    #[test]
+    fn all_lanes_give_the_same_bits() {
+        for (hertz, clumps) in [(false, false), (false, true), (true, false), (true, true)] {
+            let model = heap(hertz, clumps);
+            let plain = bits(&model, 500, false, Simd::Portable);
+            for simd in Simd::all() {
+                assert!(bits(&model, 500, false, simd) == plain, "{simd:?}, hertz {hertz}, clumps {clumps}");
+            }
+        }
+    }
+
+    /// One, two, three and seven threads: the same bits, with memory of rolling and rebuilt lists.
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let model = heap(true, true);
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| bits(&model, 600, true, Simd::best()))
+        };
+        let one = run(1);
+        for threads in [2, 3, 7] {
+            assert!(run(threads) == one, "{threads} threads");
+        }
     }
 }

@@ -39,7 +39,7 @@ use crate::Vec3;
 use crate::bond;
 use crate::contact::Laws;
 use crate::input::ModelInput;
-use crate::model::{Body, Kind};
+use crate::model::{Bodies, Body, Kind};
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
 use std::fmt;
@@ -86,14 +86,14 @@ impl fmt::Display for DtLimit {
 
 /// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
 pub(crate) fn limit(
-    bodies: &[Body],
+    bodies: &Bodies,
     input: &ModelInput,
     laws: &Laws,
     expected: f64,
     bonds: &[bond::Constants],
     r_min: f64,
 ) -> DtLimit {
-    let bonded = bond::stiffest(bonds, bodies);
+    let bonded = bond::stiffest(bonds, bodies, &input.bodies);
     // A rolling spring counts as one more tangential spring on a lever.
     let levers = if laws.rolls() { 2.0 } else { 1.0 };
     let partners = partners(bodies, input);
@@ -111,7 +111,7 @@ pub(crate) fn limit(
             continue;
         }
         let shape = &input.shapes[body.shape];
-        let softness = compliance(body, shape);
+        let softness = compliance(&body, shape);
         let sides = match shape {
             Shape::Sphere { .. } => 12.0,
             Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
@@ -165,7 +165,7 @@ pub(crate) fn limit(
 }
 
 /// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.
-pub(crate) fn expected_overlap(bodies: &[Body], input: &ModelInput, laws: &Laws) -> f64 {
+pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
     let Laws::Hertz(table) = laws else { return 0.0 };
     let gravity = input.gravity.norm();
     let down = if gravity > 0.0 { input.gravity / gravity } else { Vec3::z() };
@@ -192,7 +192,7 @@ pub(crate) fn expected_overlap(bodies: &[Body], input: &ModelInput, laws: &Laws)
 }
 
 /// Materials that something to touch is made of, ascending.
-fn partners(bodies: &[Body], input: &ModelInput) -> Vec<usize> {
+fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     let mut used = vec![false; input.materials.len()];
     bodies.iter().for_each(|b| used[b.material as usize] = true);
     input.planes.iter().for_each(|p| used[p.material] = true);

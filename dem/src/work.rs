@@ -9,13 +9,10 @@ use crate::error::Partner;
 use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
-use crate::search::cells::Cells;
 use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
-
-/// A contact between blocks: force on the first partner, torque on the first, torque on the second.
-pub(crate) type Slot = [Lanes; 3];
+use std::sync::Mutex;
 
 /// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,9 +34,76 @@ impl Sums {
 pub(crate) struct Gather {
     pub place: u32,
     pub block: u32,
-    pub slot: u32,
-    /// Whether the body is the first partner.
-    pub first: bool,
+    /// Twice the slot's number, and one for the second partner.
+    slot: u32,
+}
+
+impl Gather {
+    pub fn new(place: u32, block: u32, slot: u32, first: bool) -> Gather {
+        Gather { place, block, slot: 2 * slot + u32::from(!first) }
+    }
+
+    /// The slot, and whether the body is the first partner.
+    #[inline(always)]
+    pub fn slot(&self) -> (usize, bool) {
+        ((self.slot >> 1) as usize, self.slot & 1 == 0)
+    }
+}
+
+/// Where spheres were, to single precision from one of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reference {
+    origin: Vec3,
+    offsets: Vec<[f32; 3]>,
+    /// Bound on the error of an offset [m].
+    error: f64,
+}
+
+impl Reference {
+    pub fn start(&mut self, origin: Option<&Lanes>) {
+        *self = Reference { origin: origin.map(xyz).unwrap_or_default(), ..Reference::default() };
+    }
+
+    pub fn push(&mut self, x: &Vec3) {
+        let offset = x - self.origin;
+        // Half a unit in the last place of each component, and room for the three together.
+        self.error = self.error.max(1.1e-7 * offset.amax());
+        self.offsets.push([offset.x as f32, offset.y as f32, offset.z as f32]);
+    }
+
+    pub fn len(&self) -> usize {
+        self.offsets.len()
+    }
+
+    /// A bound from above on the square of the way from the k-th place.
+    #[inline(always)]
+    pub fn moved2(&self, k: usize, x: &Vec3) -> f64 {
+        let [a, b, c] = self.offsets[k].map(f64::from);
+        let way = (x - self.origin - Vec3::new(a, b, c)).norm() + self.error;
+        way * way
+    }
+}
+
+/// Buffers for the forces of blocks, handed out to those in progress.
+#[derive(Debug, Default)]
+pub(crate) struct Buffers(Mutex<Vec<Vec<Sums>>>);
+
+impl Clone for Buffers {
+    fn clone(&self) -> Buffers {
+        Buffers::default()
+    }
+}
+
+impl Buffers {
+    pub fn take(&self) -> Vec<Sums> {
+        self.0.lock().map(|mut b| b.pop()).ok().flatten().unwrap_or_default()
+    }
+
+    pub fn give_back(&self, buffer: Vec<Sums>) {
+        if let Ok(mut buffers) = self.0.lock() {
+            buffers.push(buffer);
+        }
+    }
 }
 
 /// A failure that a block met; place is that of the body within the block.
@@ -54,7 +118,9 @@ pub(crate) enum Failure {
 /// Contacts of a block with others: their forces, what they dissipated, and the first failure.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CrossWork {
-    pub slots: Vec<Slot>,
+    /// As many records per contact as [`Work::slot_width`] says: of the force on the first partner and the torques on
+    /// both; or of single spheres the force and its lever on the first, the moment per lever and that on the second.
+    pub slots: Vec<Lanes>,
     pub dashpot: f64,
     pub friction: f64,
     /// Angular impulse about the origin that contacts across periodic borders give in this step.
@@ -69,25 +135,27 @@ pub(crate) struct BlockWork {
     /// Whether no motion is fixed and no body is a box.
     pub free: bool,
     pub mass_sum: f64,
+    /// Empty in scenes of single spheres only.
     pub kind: Vec<Kind>,
-    pub mass: Vec<f64>,
     pub inertia: Vec<Vec3>,
-    pub inverse_inertia: Vec<f64>,
     pub reach: Vec<f64>,
+    /// Empty where all motions are free.
     pub fixed: Vec<u8>,
     /// Half sides of boxes; empty in scenes without.
     pub half: Vec<Vec3>,
-    /// First sphere of each body, and one past the last.
+    /// First sphere of each body, and one past the last; empty in scenes of single spheres only.
     pub first: Vec<u32>,
+    /// Number of spheres.
+    pub count: usize,
 
-    // Spheres: place of the body, centre in the body frame and radius, and the same in the world.
+    // Spheres (empty in scenes of single spheres only): place of the body, centre in the body frame and radius, and the same in the world.
     pub owner: Vec<u32>,
     pub local: Vec<Lanes>,
     pub spheres: Vec<Lanes>,
 
     // Candidates, valid while no sphere has moved further than the skin allows.
-    pub reference: Vec<Vec3>,
-    pub candidates: Vec<[u32; 2]>,
+    pub reference: Reference,
+    pub candidates: Vec<[u16; 2]>,
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
     pub images: Vec<ImageName>,
@@ -97,6 +165,7 @@ pub(crate) struct BlockWork {
 
     // The step.
     pub gather: Vec<Gather>,
+    /// Empty between steps, unless they are to be kept.
     pub sums: Vec<Sums>,
     pub contacts: Vec<SurfaceContact>,
     pub ledger: Ledger,
@@ -130,9 +199,9 @@ pub struct Work {
     pub(crate) held: Held,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
-    pub(crate) cells: Cells,
-    pub(crate) points: Vec<Lanes>,
-    pub(crate) names: Vec<[u32; 2]>,
+    pub(crate) buffers: Buffers,
+    pub(crate) keep_forces: bool,
+    pub(crate) slot_width: usize,
     /// Whether the candidates exist, and where walls were when they were found.
     pub(crate) listed: bool,
     pub(crate) wall_reference: Vec<Vec3>,
@@ -160,9 +229,9 @@ impl Work {
             held: Held::default(),
             applied: Vec::new(),
             surface_contacts: Vec::new(),
-            cells: Cells::default(),
-            points: Vec::new(),
-            names: Vec::new(),
+            buffers: Buffers::default(),
+            keep_forces: false,
+            slot_width: if model.rigid || model.laws.rolls() { 3 } else { 2 },
             listed: false,
             wall_reference: Vec::new(),
             wall_places: Vec::new(),
@@ -200,13 +269,19 @@ impl Work {
         &self.surface_contacts
     }
 
-    /// Sum of the contact forces on a body in the last step [N].
+    /// Whether [`Work::contact_force`] and [`Work::contact_torque`] shall know the forces after a step; they take 64
+    /// bytes per body.
+    pub fn keep_forces(&mut self, keep: bool) {
+        self.keep_forces = keep;
+    }
+
+    /// Sum of the contact forces on a body in the last step, if kept; else zero [N].
     pub fn contact_force(&self, state: &State, body: usize) -> Vec3 {
         let [b, k] = state.places[body];
         self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(&s.force)).unwrap_or_default()
     }
 
-    /// Sum of the contact torques on a body about its centre in the last step [N m].
+    /// Sum of the contact torques on a body about its centre in the last step, if kept; else zero [N m].
     pub fn contact_torque(&self, state: &State, body: usize) -> Vec3 {
         let [b, k] = state.places[body];
         self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(&s.torque)).unwrap_or_default()
@@ -221,39 +296,47 @@ impl Work {
 impl BlockWork {
     fn arrange(&mut self, model: &Model, bodies: &[u32]) {
         self.kind.clear();
-        self.mass.clear();
         self.inertia.clear();
-        self.inverse_inertia.clear();
         self.reach.clear();
         self.fixed.clear();
         self.half.clear();
         self.first.clear();
         self.owner.clear();
         self.local.clear();
+        self.mass_sum = 0.0;
+        self.fixed.reserve_exact(bodies.len());
         for (k, &body) in bodies.iter().enumerate() {
-            let b = &model.bodies[body as usize];
-            self.kind.push(b.kind);
-            self.mass.push(b.mass);
-            self.inverse_inertia.push(1.0 / b.inertia.x);
+            let b = model.body(body as usize);
             self.fixed.push(b.fixed);
-            self.first.push(self.owner.len() as u32);
+            self.mass_sum += b.mass;
             if model.rigid {
+                self.first.push(self.owner.len() as u32);
+                self.kind.push(b.kind);
                 self.inertia.push(b.inertia);
                 self.reach.push(if b.kind == Kind::Sphere { 0.0 } else { b.radius });
                 self.half.push(model.half(body as usize));
-            }
-            for_members(&model.shapes[b.shape], b.scale, |c, r| {
-                self.owner.push(k as u32);
-                if model.rigid {
+                for_members(&model.shapes[b.shape], b.scale, |c, r| {
+                    self.owner.push(k as u32);
                     self.local.push(Lanes([c.x, c.y, c.z, r]));
-                }
-            });
+                });
+            }
         }
-        self.first.push(self.owner.len() as u32);
-        self.free = self.fixed.iter().all(|&f| f == 0) && self.kind.iter().all(|&k| k != Kind::Box);
-        self.mass_sum = self.mass.iter().sum();
-        self.sums.clear();
-        self.sums.resize(bodies.len(), Sums::default());
+        self.count = if model.rigid { self.owner.len() } else { bodies.len() };
+        if model.rigid {
+            self.first.push(self.owner.len() as u32);
+        }
+        let moving = self.fixed.iter().all(|&f| f == 0);
+        self.free = moving && self.kind.iter().all(|&k| k != Kind::Box);
+        if moving {
+            self.fixed = Vec::new();
+        }
+        self.sums = Vec::new();
+    }
+
+    /// The body of a sphere.
+    #[inline(always)]
+    pub(crate) fn body(&self, sphere: u32) -> u32 {
+        self.owner.get(sphere as usize).copied().unwrap_or(sphere)
     }
 
     /// Adds a force and a torque about the centre to a body's sums.

@@ -184,6 +184,7 @@ fn spheres(centres: impl Iterator<Item = dem::Vec3>) -> dem::ModelInput {
 /// result. One restart falls on a new order of the bodies.
 #[test]
 fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
+    const RESTARTS: [u64; 8] = [1, 331, 700, 1234, 4999, 5000, 5001, 5390];
     let place = |k: usize| {
         let wave = 0.002 * (k as f64 * 1.7).sin();
         dem::Vec3::new(
@@ -193,6 +194,8 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
         )
     };
     let mut input = spheres((0..288).map(place));
+    input.time_step = dem::TimeStep::Auto { fraction: 0.5 };
+    input.bodies.iter_mut().for_each(|b| b.velocity.z = -1.0);
     input.planes.push(dem::Plane {
         point: dem::Vec3::zeros(),
         normal: dem::Vec3::z(),
@@ -212,8 +215,13 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
         let mut slots = Slots::new(&dir, origin(SCENE, "5"));
         let mut state = dem::State::new(&model);
         let mut work = dem::Work::new(&model, &state);
+        let mut seen = Vec::new();
         while state.steps < 5400 {
             dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]).unwrap();
+            // Just after a restart too: later a new near list makes some of it the same again.
+            if RESTARTS.contains(&(state.steps - 1)) {
+                seen.push(postcard::to_stdvec(&state).unwrap());
+            }
             if restarts.contains(&state.steps) {
                 slots.save(moment(state.steps), |body| body.put(&state)).unwrap();
                 let (mut loaded, _) = Slots::new(&dir, origin(SCENE, "5")).load(&document(SCENE)).unwrap();
@@ -221,10 +229,11 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
                 work = dem::Work::new(&model, &state);
             }
         }
-        assert!(state.ledger.dissipated() > 0.0 && dem::measure::coordination(&model, &state) > 1.0);
-        postcard::to_stdvec(&state).unwrap()
+        assert!(state.ledger.dissipated() > 0.0 && dem::measure::coordination(&model, &state) > 0.1);
+        seen.push(postcard::to_stdvec(&state).unwrap());
+        seen
     };
-    assert!(run(&[]) == run(&[1, 331, 700, 1234, 4999, 5000, 5001, 5390]));
+    assert!(run(&[]) == run(&RESTARTS));
     fs::remove_dir_all(&dir).unwrap();
 }
 

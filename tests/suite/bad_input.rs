@@ -11,6 +11,7 @@ use std::fs;
 mod bonds;
 mod grains;
 mod lists;
+mod materials;
 mod scene;
 mod solid;
 mod walls;

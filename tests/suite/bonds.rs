@@ -71,11 +71,11 @@ fn breaks(folder: &Folder) -> Table {
 fn a_row_is_pulled_apart() {
     let folder = Folder::new("row");
     let (summary, history) = ran(&folder, &row(CEMENT, "6 ms"));
-    assert_eq!(
-        (summary["bonds"]["made"].as_u64(), summary["bonds"]["fragments"].as_u64()),
-        (Some(4), Some(2))
-    );
-    assert_eq!(summary["bonds"]["broken_by_tension"], 1);
+    // The row is symmetric: two of its bonds may break in the same step.
+    let broken = breaks(&folder).rows.len() as u64;
+    assert!((1..=2).contains(&broken) && summary["bonds"]["made"] == 4);
+    assert_eq!(summary["bonds"]["fragments"].as_u64(), Some(broken + 1));
+    assert_eq!(summary["bonds"]["broken_by_tension"].as_u64(), Some(broken));
     let strength = 2e5 * std::f64::consts::PI * 1e-4;
     let pull = history.column("head_force_z").iter().fold(0.0_f64, |m, f| m.max(-f));
     assert!((pull / strength - 1.0).abs() < 0.02, "{pull} {strength}");
@@ -89,8 +89,9 @@ fn a_row_is_pulled_apart() {
     let energy = breaks.column("energy")[0];
     let expected = 0.5 * strength * strength / (1e9 * std::f64::consts::PI * 1e-4 / 0.02);
     assert!((energy / expected - 1.0).abs() < 0.01, "{energy} {expected}");
-    assert_eq!(summary["bonds"]["energy_of_breaks"].as_f64(), Some(energy));
-    assert_eq!(history.column("released_by_breaks").last(), Some(&energy));
+    let all = summary["bonds"]["energy_of_breaks"].as_f64().unwrap();
+    assert!((all / (broken as f64 * energy) - 1.0).abs() < 0.01);
+    assert_eq!(history.column("released_by_breaks").last(), Some(&all));
     let error = summary["energy"]["largest_error"].as_f64().unwrap();
     assert!(error < 0.01 * 4.0 * expected, "{error}");
     assert_eq!(summary["energy"]["end"]["bonds"].as_f64(), history.column("bond_energy").last().copied());
@@ -173,7 +174,7 @@ fn kinds_of_bonds() {
     }
 }
 
-/// The mean place of the swinging tip is its deflection, from which a step before the first shows that it moves at all.
+/// The mean place of the swinging tip is its deflection.
 #[test]
 fn bonded_beam_sags_as_predicted() {
     let folder = Folder::new("beam");
@@ -203,7 +204,8 @@ fn a_stone_is_crushed() {
     let energy: f64 = breaks.column("energy").iter().sum();
     assert!((energy / bonds["energy_of_breaks"].as_f64().unwrap() - 1.0).abs() < 1e-9);
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 0.01, "{}", summary["energy"]);
-    assert!(fs::read_to_string(out.join("frames/grains_00002.vtp")).unwrap().contains("fragment"));
+    let frame = fs::read(out.join("frames/grains_00002.vtp")).unwrap();
+    assert!(frame.windows(8).any(|w| w == b"fragment"));
 }
 
 /// The first tenth of the rock test: all bonds made, both grips pressed alike, stiffness as in the guide.

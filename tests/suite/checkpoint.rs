@@ -172,7 +172,7 @@ fn grains_shared_among_threads_on_a_solid() {
         "output.frames=2",
     ];
     let scene = repository().join("inputs/track/cyclic/scene.toml");
-    broken(&scene, &set, &[0.2, 0.95, 0.98], &["cycles.csv", "tecplot/solid_00002.dat"]);
+    broken(&scene, &set, &[0.2, 0.992, 0.996, 1.0], &["cycles.csv", "tecplot/solid_00002.dat"]);
 }
 
 #[test]

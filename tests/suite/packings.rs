@@ -58,7 +58,7 @@ fn lattices_have_their_porosity_and_are_read_back() {
     }
 }
 
-/// Clumps scattered at a share of the volume: it is met, all are inside, and the packing is read back to the byte.
+/// Clumps scattered at a share of the volume: it is met, all are inside, and the packing is read back to rounding.
 #[test]
 fn scattered_clumps_are_read_back() {
     let folder = Folder::new("clumps");
@@ -77,7 +77,12 @@ fn scattered_clumps_are_read_back() {
     folder.write("bed.csv", &fs::read_to_string(&first).unwrap());
     let group = format!("shape = \"clump\"\nlibrary = \"{library}\"\npacking = \"bed.csv\"");
     ran(&folder, &scene(&group, measure), "second");
-    assert_eq!(fs::read(first).unwrap(), fs::read(folder.join("second/packing.csv")).unwrap());
+    // Orientations are normalised in every step, which costs a bit now and then.
+    let again = rows(&folder.join("second/packing.csv"));
+    assert_eq!(again.len(), stones.len());
+    for (a, b) in stones.iter().flatten().zip(again.iter().flatten()) {
+        assert!((a - b).abs() < 1e-13, "{a} {b}");
+    }
 }
 
 /// The inside of a closed surface from a file, turned over triangles and all, and that of a cone.
@@ -144,8 +149,8 @@ fn shipped(name: &str, edits: &[(&str, &str)]) -> (Folder, serde_json::Value) {
     (folder, summary)
 }
 
-/// Stones drawn to EN 13450 A, of which levelling takes some away: still within 2 % passing of the curve; the table has
-/// the limits of the standard.
+/// Stones drawn to EN 13450 A: within 1 % passing of the curve at the sieves, and within the share of the largest stone
+/// (2.5 % of the mass of 250) at every size; the table has the limits of the standard.
 #[test]
 fn gradation_of_the_shipped_bed() {
     let (folder, summary) = shipped(
@@ -156,13 +161,13 @@ fn gradation_of_the_shipped_bed() {
             ("high = [0.5, 0.5]", "high = [0.25, 0.25]"),
             ("point = [0.5, 0, 0]", "point = [0.25, 0, 0]"),
             ("point = [0, 0.5, 0]", "point = [0, 0.25, 0]"),
-            ("max_time = \"2 s\"", "max_time = \"0.4 s\""),
+            ("max_time = \"1 s\"", "max_time = \"0.5 s\""),
             ("[[0.06, 0.06, 0.06], [0.44, 0.44, 0.26]]", "[[0.04, 0.04, 0.04], [0.21, 0.21, 0.1]]"),
         ],
     );
     let graded = &summary["packing"]["gradations"][0];
     assert_eq!(graded["stones"], 250);
-    assert!(graded["largest_deviation"].as_f64().unwrap() < 0.02, "{graded}");
+    assert!(graded["largest_deviation"].as_f64().unwrap() < 0.025, "{graded}");
     for (a, b) in numbers(&graded["achieved"]).iter().zip(numbers(&graded["target"])) {
         assert!((a - b).abs() < 0.01, "{graded}");
     }
@@ -212,7 +217,7 @@ fn compaction_of_the_shipped_bed() {
 #[test]
 fn growth_of_the_shipped_funnel() {
     let (_, summary) =
-        shipped("growth.toml", &[("count = 800", "count = 250"), ("end = \"50 ms\"", "end = \"10 ms\"")]);
+        shipped("growth.toml", &[("count = 800", "count = 250"), ("end = \"0.4 s\"", "end = \"10 ms\"")]);
     let grown = &summary["growth"][0];
     assert!((grown["porosity"].as_f64().unwrap() - 0.42).abs() < 0.005, "{grown}");
 }

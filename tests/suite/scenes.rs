@@ -470,6 +470,7 @@ fn small_scenes_run() {
         ("solid/pulse", &["time.end=0.06"], Some(1e-10)),
         ("grains/box", &["time.end=0.15"], Some(0.02)),
         ("grains/chute", &["time.end=0.6"], Some(0.02)),
+        ("grains/rolling", &["time.end=0.5"], Some(0.02)),
     ] {
         let dir = out.join(scene.split('/').next_back().unwrap());
         run(&repository().join("inputs").join(format!("{scene}.toml")), &dir, set).good();

@@ -9,21 +9,23 @@
 use super::Constants;
 use super::kernel;
 use crate::Vec3;
-use crate::model::Body;
+use crate::bodies::Bodies;
+use crate::input::BodyInput;
 use nalgebra::{Matrix6, Vector6};
 
 /// Bounds λ [1/s²] and γ [1/s] for each body. Shape `[bodies]`.
-pub(crate) fn stiffest(bonds: &[Constants], bodies: &[Body]) -> Vec<[f64; 2]> {
+pub(crate) fn stiffest(bonds: &[Constants], bodies: &Bodies, places: &[BodyInput]) -> Vec<[f64; 2]> {
     let mut sums = vec![[Matrix6::<f64>::zeros(); 2]; if bonds.is_empty() { 0 } else { bodies.len() }];
     for bond in bonds {
         let [a, b] = bond.ends.map(|e| e as usize);
         let k = &bond.values;
-        let n = (bodies[a].position - bodies[b].position).normalize();
+        let n = (places[a].position - places[b].position).normalize();
         let helper = if n.x.abs() < 0.7 { Vec3::x() } else { Vec3::y() };
         let t = n.cross(&helper).normalize();
         let u = n.cross(&t);
         for (body, sign) in [(a, 1.0), (b, -1.0)] {
-            let (m, i) = (bodies[body].mass.sqrt(), bodies[body].inertia.x.sqrt());
+            let constants = bodies.get(body);
+            let (m, i) = (constants.mass.sqrt(), constants.inertia.x.sqrt());
             let arm = 0.5 * (k[kernel::LENGTH] + sign * k[kernel::OFFSET]);
             let mode = |translation: Vec3, rotation: Vec3| {
                 let (x, w) = (translation / m, rotation / i);

@@ -42,9 +42,9 @@ pub(crate) use measure::{each_touch, elastic};
 pub(crate) use store::{BondList, BondState, Held};
 
 use crate::Vec3;
+use crate::bodies::{Bodies, Body, Kind};
 use crate::error::ModelError;
 use crate::input::ModelInput;
-use crate::model::{Body, Kind};
 use serde::{Deserialize, Serialize};
 
 /// A kind of bond.
@@ -165,7 +165,7 @@ pub(crate) struct Constants {
 }
 
 /// Checks and resolves the bonds of an input.
-pub(crate) fn resolve(input: &ModelInput, bodies: &[Body]) -> Result<Vec<Constants>, ModelError> {
+pub(crate) fn resolve(input: &ModelInput, bodies: &Bodies) -> Result<Vec<Constants>, ModelError> {
     for (kind, bond) in input.bond_kinds.iter().enumerate() {
         let problem = match bond {
             Bond::Parallel(p) => p.problem(),
@@ -187,7 +187,7 @@ pub(crate) fn resolve(input: &ModelInput, bodies: &[Body]) -> Result<Vec<Constan
                 if body >= bodies.len() {
                     return Err(error(format!("there is no body {body}")));
                 }
-                if bodies[body].kind != Kind::Sphere {
+                if bodies.kind(body) != Kind::Sphere {
                     return Err(error(format!("body {body} is not a single sphere")));
                 }
             }
@@ -206,8 +206,8 @@ pub(crate) fn resolve(input: &ModelInput, bodies: &[Body]) -> Result<Vec<Constan
                     "its factors on strength and stiffness must be positive and finite".into(),
                 ));
             }
-            let (p, q) = (&bodies[b.a], &bodies[b.b]);
-            let length = (p.position - q.position).norm();
+            let (p, q) = (&bodies.get(b.a), &bodies.get(b.b));
+            let length = (input.bodies[b.a].position - input.bodies[b.b].position).norm();
             if length.is_nan() || length <= 0.0 {
                 return Err(error("its spheres have the same centre".into()));
             }

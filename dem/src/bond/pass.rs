@@ -511,7 +511,6 @@ fn part(
         remnant = Some(Remnant { number: e.number, i: e.i, block: e.block, j: e.j, reference, history });
     }
     state.bonds.broken[usize::from(broken.mode == BreakMode::Shear)] += 1;
-    state.bonds.released += energy;
     state.ledger.released_by_breaks += energy;
     state.bonds.breaks.push(Break {
         time: state.time,

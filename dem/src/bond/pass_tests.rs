@@ -32,23 +32,29 @@ fn cube(strength: f64) -> ModelInput {
         });
     }
     let spheres: Vec<_> = input.bodies.iter().map(|b| (b.position, 0.01)).collect();
-    input.bonds =
-        within_gap(&spheres, 1e-3, |_, _| true).iter().map(|p| BondInput::new(p[0], p[1], 0)).collect();
+    input.bonds = within_gap(&spheres, 1e-3, |_, _| true)
+        .iter()
+        .enumerate()
+        .map(|(k, p)| BondInput::new(p[0], p[1], k % 3))
+        .collect();
     assert_eq!(input.bonds.len(), 3 * 11 * 11 * 10);
-    input.bond_kinds.push(Bond::Direct(DirectBond {
-        stiffness: [1.5e7, 6e6, 390.0, 310.0],
-        strength: [strength; 4],
-        criterion: Criterion::Stress,
-        damping: BondDamping::Fraction(0.02),
-        contact: false,
-    }));
+    // Every third bond can break, so that some do and most stay whatever the step.
+    for strength in [strength, f64::INFINITY, f64::INFINITY] {
+        input.bond_kinds.push(Bond::Direct(DirectBond {
+            stiffness: [1.5e7, 6e6, 390.0, 310.0],
+            strength: [strength; 4],
+            criterion: Criterion::Stress,
+            damping: BondDamping::Fraction(0.02),
+            contact: false,
+        }));
+    }
     input
 }
 
 /// The lanes of any processor and those of this one, with bonds that break in all of them.
 #[test]
 fn portable_and_fast_lanes_give_the_same_bits() {
-    let model = Model::new(cube(40.0)).unwrap();
+    let model = Model::new(cube(20.0)).unwrap();
     let run = |simd: Simd| {
         let mut state = State::new(&model);
         let mut work = Work::new(&model, &state);
@@ -57,7 +63,7 @@ fn portable_and_fast_lanes_give_the_same_bits() {
             crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
         }
         let (tension, shear) = state.broken_bonds();
-        assert!(tension + shear > 20 && state.bond_count() > 100, "{tension} {shear}");
+        assert!(tension + shear > 10 && state.bond_count() > 100, "{tension} {shear}");
         let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
         let mut bits: Vec<_> =
             (0..1331).flat_map(at).flat_map(|v| [v.x, v.y, v.z]).map(f64::to_bits).collect();

@@ -54,8 +54,6 @@ pub(crate) struct BondState {
     pub power: f64,
     /// Bonds broken so far by tension and by shear.
     pub broken: [u64; 2],
-    /// Energy set free by all breaks so far [J].
-    pub released: f64,
     /// Breaks that nobody has taken yet.
     pub breaks: Vec<Break>,
 }

@@ -146,7 +146,7 @@ impl<const N: usize> TryFrom<Flat> for Groups<N> {
 
     fn try_from(flat: Flat) -> Result<Groups<N>, &'static str> {
         let width = if flat.turning { 8 } else { 4 };
-        if flat.names.len() % N != 0 || flat.memory.len() != flat.names.len() / N * width {
+        if !flat.names.len().is_multiple_of(N) || flat.memory.len() != flat.names.len() / N * width {
             return Err("a list of contacts with names and memory of unlike length");
         }
         let mut list = Groups::new(flat.turning);

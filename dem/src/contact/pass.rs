@@ -240,10 +240,16 @@ pub(crate) fn remember<R: Four, const N: usize, const ROLL: bool>(
 }
 
 /// Forces of four contacts: records of the force on a, the torque on a and the torque on b; and what to complain of.
-struct Outcome<R> {
+struct Outcome<R: Real> {
     force: [R; 4],
     torque_a: [R; 4],
     torque_b: [R; 4],
+    /// Of single spheres: force times normal, and the levers of both.
+    moment: V3<R>,
+    levers: (R, R),
+    /// The force in lanes.
+    push: V3<R>,
+    on: R::Mask,
     /// Lanes that overlap by more than the smaller radius.
     deep: u32,
     overlap: R,
@@ -321,12 +327,9 @@ fn contacts<L: ContactLaw, R: Four, const RIGID: bool, const ROLL: bool, const N
     taken.dashpot = taken.dashpot + dashpot.only(on);
     taken.friction = taken.friction + friction.only(on);
     let force = force.only(on);
-    let (mut torque_a, mut torque_b) = if RIGID {
-        (arm_a.cross(force), -arm_b.cross(force))
-    } else {
-        let lever = force.cross(normal).only(on);
-        (lever * la, lever * lb)
-    };
+    let lever = force.cross(normal).only(on);
+    let (mut torque_a, mut torque_b) =
+        if RIGID { (arm_a.cross(force), -arm_b.cross(force)) } else { (lever * la, lever * lb) };
     if RIGID || ROLL {
         let moment = moment.only(on);
         torque_a = (torque_a + moment).only(on);
@@ -337,6 +340,10 @@ fn contacts<L: ContactLaw, R: Four, const RIGID: bool, const ROLL: bool, const N
         force: records(force),
         torque_a: records(torque_a),
         torque_b: records(torque_b),
+        moment: lever,
+        levers: (la, lb),
+        push: force,
+        on,
         deep: R::bits(overlap.gt(bound) & on),
         overlap,
         bound,
@@ -445,14 +452,26 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
                 body: if RIGID { std::array::from_fn(|l| works[block[l]].owner[j[l]] as usize) } else { j },
             };
             let there = present::<R>(count);
-            let slots = &mut out.slots[4 * g..4 * g + count];
+            let width = if RIGID || ROLL { 3 } else { 2 };
+            let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
             match contacts::<L, R, RIGID, ROLL, 3>(&law, &a, &b, group, turn, there, &mut taken, dt) {
-                None => slots.fill([Lanes::default(); 3]),
+                None => slots.fill(Lanes::default()),
                 Some(o) => {
-                    for (l, slot) in slots.iter_mut().enumerate() {
-                        o.force[l].store(&mut slot[0]);
-                        o.torque_a[l].store(&mut slot[1]);
-                        o.torque_b[l].store(&mut slot[2]);
+                    if RIGID || ROLL {
+                        for (l, slot) in slots.chunks_exact_mut(3).enumerate() {
+                            o.force[l].store(&mut slot[0]);
+                            o.torque_a[l].store(&mut slot[1]);
+                            o.torque_b[l].store(&mut slot[2]);
+                        }
+                    } else {
+                        let (f, m, (la, lb)) = (o.push, o.moment, o.levers);
+                        let (la, lb) = (R::select(o.on, la, R::zero()), R::select(o.on, lb, R::zero()));
+                        let force = R::transpose([f.x, f.y, f.z, la]);
+                        let moment = R::transpose([m.x, m.y, m.z, lb]);
+                        for (l, slot) in slots.chunks_exact_mut(2).enumerate() {
+                            force[l].store(&mut slot[0]);
+                            moment[l].store(&mut slot[1]);
+                        }
                     }
                     if o.deep != 0 && out.failure.is_none() {
                         let l = o.deep.trailing_zeros() as usize;
@@ -488,13 +507,13 @@ pub(crate) fn boxes<L: ContactLaw>(
         let law = laws.get(mine.spin[a][3] as u32, other.spin[j][3] as u32);
         let mut history = lists.boxes.history(k);
         let (x, q) = (xyz(&other.centre[j]), &other.rotation[j].orientation);
-        let slot = &mut out.slots[first + k];
+        let slot = &mut out.slots[3 * (first + k)..][..3];
         let Some(g) = detect::sphere_box(&xyz(p), p[3], &x, q, &wb.half[j]) else {
             if !history.is_fresh() {
                 out.friction += law.release(&mut history);
                 lists.boxes.set_history(k, &history);
             }
-            *slot = [Lanes::default(); 3];
+            slot.fill(Lanes::default());
             continue;
         };
         let (ma, mb) = (motion(mine, a, &g.point), motion(other, j, &g.point));
@@ -505,11 +524,9 @@ pub(crate) fn boxes<L: ContactLaw>(
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         let lanes = |v: Vec3| Lanes([v.x, v.y, v.z, 0.0]);
-        *slot = [
-            lanes(f.force),
-            lanes(ma.arm.cross(&f.force) + f.moment),
-            lanes(-(mb.arm.cross(&f.force) + f.moment)),
-        ];
+        slot[0] = lanes(f.force);
+        slot[1] = lanes(ma.arm.cross(&f.force) + f.moment);
+        slot[2] = lanes(-(mb.arm.cross(&f.force) + f.moment));
         // The nearest face resolves a centre inside the box, up to one more radius.
         let bound = 2.0 * p[3];
         if g.overlap > bound && out.failure.is_none() {
@@ -519,15 +536,19 @@ pub(crate) fn boxes<L: ContactLaw>(
     }
 }
 
-/// Adds the slots of contacts with other blocks, in their fixed order.
-pub(crate) fn gather(w: &mut BlockWork, cross: &[CrossWork]) {
+/// Adds the slots of contacts with other blocks, in their fixed order. `WIDE`: slots hold both torques.
+pub(crate) fn gather<const WIDE: bool>(w: &mut BlockWork, cross: &[CrossWork]) {
+    let width = if WIDE { 3 } else { 2 };
     for entry in &w.gather {
-        let slot = &cross[entry.block as usize].slots[entry.slot as usize];
+        let (slot, first) = entry.slot();
+        let slot = &cross[entry.block as usize].slots[slot * width..][..width];
         let Sums { force, torque } = &mut w.sums[entry.place as usize];
-        let (sign, turn) = if entry.first { (1.0, &slot[1]) } else { (-1.0, &slot[2]) };
-        for d in 0..4 {
+        let sign = if first { 1.0 } else { -1.0 };
+        let lever = if first { slot[0][3] } else { slot[1][3] };
+        let turn = if first { &slot[1] } else { &slot[width - 1] };
+        for d in 0..3 {
             force[d] += sign * slot[0][d];
-            torque[d] += turn[d];
+            torque[d] += if WIDE { turn[d] } else { slot[1][d] * lever };
         }
     }
 }

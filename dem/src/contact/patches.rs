@@ -88,8 +88,8 @@ fn touches<S: Surface>(
         let straight = sharp && closest.feature == Feature::Face;
         let distance = if straight { along.abs() } else { offset.norm() };
         if distance >= r && !(behind && straight) {
-            // As much as the bound is sure of; the next step looks again if that is nothing.
-            pair.spare = gone + (distance * (1.0 - 1e-9) - r).max(0.0);
+            // Found as far only now: the bound told less. The next step looks again.
+            pair.spare = gone;
             continue;
         }
         pair.spare = -1.0;
@@ -261,8 +261,9 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
                 exchange.work += f.force.dot(&wall) * dt;
                 exchange.impulse.add(&g.point, &(f.force * dt));
                 exchange.impulse.angular += f.moment * dt;
+                let first = if RIGID { w.first[a] } else { sphere };
                 w.contacts.push(SurfaceContact {
-                    sphere: sphere - w.first[a],
+                    sphere: sphere - first,
                     body: block.bodies[a],
                     patch: t.patch,
                     local: t.closest.local,

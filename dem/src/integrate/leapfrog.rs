@@ -46,11 +46,12 @@ impl<const RIGID: bool> Kernel for Advance<'_, RIGID> {
         // A maximum does not show a velocity that is not a number.
         let mut too_fast = None;
         if !sums.sound || fastest2 > bound * bound {
-            too_fast =
-                (0..quick).map(|k| (k, speed2::<RIGID>(block, w, k))).find(|(_, v)| !(*v <= bound * bound));
+            too_fast = (0..quick)
+                .map(|k| (k, speed2::<RIGID>(block, w, k)))
+                .find(|(_, v)| v.is_nan() || *v > bound * bound);
         }
         for k in quick..n {
-            moment += xyz(&block.centre[k]) * w.mass[k];
+            moment += xyz(&block.centre[k]) * model.body(block.bodies[k] as usize).mass;
             let own = applied.iter().take_while(|a| a.place as usize == k).count();
             let (loads, rest) = applied.split_at(own);
             applied = rest;
@@ -223,7 +224,8 @@ fn general<const RIGID: bool>(
     dt: f64,
 ) -> f64 {
     let (x, v0, w0) = (xyz(&block.centre[k]), xyz(&block.velocity[k]), xyz(&block.spin[k]));
-    let (mass, fixed) = (w.mass[k], w.fixed[k]);
+    let body = model.body(block.bodies[k] as usize);
+    let (mass, fixed) = (body.mass, body.fixed);
     let load = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.force);
     let load_torque = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.torque);
     let mut force = xyz(&w.sums[k].force) + load + model.gravity * mass;
@@ -256,7 +258,7 @@ fn general<const RIGID: bool>(
         let spin = rotate(model, block, k, &w.inertia[k], &torque, fixed >> 3, dt, ledger);
         (spin, w.reach[k])
     } else {
-        let mut w1 = w0 + torque * (w.inverse_inertia[k] * dt);
+        let mut w1 = w0 + torque * (dt / body.inertia.x);
         for d in 0..3 {
             if fixed >> (d + 3) & 1 == 1 {
                 w1[d] = w0[d];
@@ -264,7 +266,7 @@ fn general<const RIGID: bool>(
         }
         let mean = (w0 + w1) * 0.5;
         if fixed >> 3 != 0 {
-            let hold = (w1 - w0) / w.inverse_inertia[k] - torque * dt;
+            let hold = (w1 - w0) * body.inertia.x - torque * dt;
             ledger.constraints.angular += hold;
             ledger.work_constraints += hold.dot(&mean);
         }
@@ -314,7 +316,7 @@ fn rotate(
         set_xyz(&mut block.spin[k], &spin);
         return (w0 + kicked) * 0.5;
     }
-    let kicked = hold(r, inertia, &kicked, &model.bodies[block.bodies[k] as usize].spin, fixed);
+    let kicked = hold(r, inertia, &kicked, &model.bodies.spin(block.bodies[k] as usize), fixed);
     r.orientation = rotation::steady(&r.orientation, &kicked, dt);
     let local = r.orientation.inverse_transform_vector(&kicked);
     r.momentum = r.orientation * local.component_mul(inertia);

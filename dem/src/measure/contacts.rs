@@ -195,7 +195,7 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
     for (name, history) in block.planes.iter() {
         let [i, k] = name.map(|n| n as usize);
         let (plane, wall) = (&model.planes[k], &state.planes[k]);
-        let boxes = model.bodies[block.bodies[0] as usize].kind == Kind::Box;
+        let boxes = model.bodies.kind(block.bodies[0] as usize) == Kind::Box;
         let (a, x, r, radius) = if boxes {
             let a = i / 8;
             let half = model.half(block.bodies[a] as usize);
@@ -282,7 +282,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
 /// Coordination number: contacts that carry a force, per body that is free to move; a contact between two bodies
 /// counts for both. Several contacts of one pair of clumps count as many. Zero without free bodies.
 pub fn coordination(model: &Model, state: &State) -> f64 {
-    let free = |body: usize| model.bodies[body].inverse_mass > 0.0;
+    let free = |body: usize| model.body(body).inverse_mass > 0.0;
     let count: usize = contacts(model, state)
         .iter()
         .filter(|c| c.normal_force > 0.0)

@@ -45,7 +45,7 @@ pub fn coordination_of(
     counted: impl Fn(usize) -> bool,
 ) -> Coordination {
     let counts = neighbours(model, contacts);
-    let free = |&body: &usize| model.bodies[body].inverse_mass > 0.0 && counted(body);
+    let free = |&body: &usize| model.body(body).inverse_mass > 0.0 && counted(body);
     let mut distribution = Vec::new();
     for n in (0..model.body_count()).filter(free).map(|body| counts[body] as usize) {
         if distribution.len() <= n {
@@ -122,7 +122,7 @@ pub fn unbalanced_ratio(model: &Model, contacts: &[ContactRecord]) -> f64 {
     }
     let mut sum = 0.0;
     let mut free = 0;
-    for (force, body) in net.iter().zip(&model.bodies) {
+    for (force, body) in net.iter().zip(model.bodies.iter()) {
         if body.inverse_mass > 0.0 {
             // What is held fixed is balanced by its support.
             let d = |k: usize| if body.fixed >> k & 1 == 1 { 0.0 } else { force[k] * force[k] };

@@ -48,7 +48,7 @@ pub fn energies(model: &Model, state: &State) -> Energies {
     let back = 0.5 * model.dt();
     for block in &state.blocks {
         for (k, &body) in block.bodies.iter().enumerate() {
-            let b = &model.bodies[body as usize];
+            let b = model.body(body as usize);
             let (v, w) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
             e.kinetic_translation += 0.5 * b.mass * v.norm_squared();
             e.kinetic_rotation += match block.rotation.get(k) {
@@ -97,7 +97,7 @@ pub fn momentum(model: &Model, state: &State) -> Impulse {
     let mut sum = Impulse::default();
     for block in &state.blocks {
         for (k, &body) in block.bodies.iter().enumerate() {
-            let b = &model.bodies[body as usize];
+            let b = model.body(body as usize);
             sum.add(&xyz(&block.centre[k]), &(xyz(&block.velocity[k]) * b.mass));
             sum.angular += match block.rotation.get(k) {
                 Some(r) if b.kind != crate::model::Kind::Sphere => r.momentum,

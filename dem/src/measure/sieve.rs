@@ -10,7 +10,7 @@ pub fn stones(model: &Model, counted: impl Fn(usize) -> bool) -> Vec<(f64, f64)>
     let unit: Vec<Option<f64>> = model.shapes.iter().map(size_of).collect();
     (0..model.body_count())
         .filter(|&b| counted(b))
-        .filter_map(|b| unit[model.bodies[b].shape].map(|size| (size * model.scale(b), model.mass(b))))
+        .filter_map(|b| unit[model.body(b).shape].map(|size| (size * model.scale(b), model.mass(b))))
         .collect()
 }
 

@@ -4,6 +4,7 @@
 use crate::Vec3;
 use crate::model::{Kind, Model};
 use crate::periodic::Space;
+use crate::search::cells::Cells;
 use crate::search::patches;
 use crate::shape::cuboid;
 use crate::state::{Block, ImageName, Lanes, State, xyz};
@@ -20,33 +21,33 @@ pub(crate) fn spheres<'a>(block: &'a Block, work: &'a BlockWork, rigid: bool) ->
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
     work.held.update(model, state);
-    let Work { blocks, points, names, cells, parallel, held, .. } = &mut *work;
-    points.clear();
-    names.clear();
+    // Needed for the search only, which is rare: not kept.
+    let (mut points, mut names, mut cells) = (Vec::new(), Vec::new(), Cells::default());
+    let Work { blocks, parallel, held, .. } = &mut *work;
     for (b, (block, w)) in state.blocks.iter().zip(blocks.iter()).enumerate() {
         let own = spheres(block, w, model.rigid);
-        points.extend_from_slice(&own[..w.owner.len()]);
-        names.extend((0..w.owner.len() as u32).map(|k| [b as u32, k]));
+        points.extend_from_slice(&own[..w.count]);
+        names.extend((0..w.count as u32).map(|k| [b as u32, k]));
     }
-    let space = model.periodic.map(|p| Space::new(p, points, model.radii.1));
-    cells.build(space.as_ref().map_or(points, |s| &s.points), model.radii, model.skin);
+    let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
+    cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
 
     let walls = model.walls.placed(&state.walls);
     let boxes = boxes(model, state);
-    let (points, names, cells, held) = (&*points, &*names, &*cells, &*held);
+    let (points, names, cells, held) = (&points[..], &names[..], &cells, &*held);
     // First sphere of each block among all points.
     let first: Vec<u32> = blocks
         .iter()
         .scan(0, |next, w| {
             let first = *next;
-            *next += w.owner.len() as u32;
+            *next += w.count as u32;
             Some(first)
         })
         .collect();
     let owners: Vec<u32> = blocks.iter().flat_map(|w| w.owner.iter().copied()).collect();
     let body = |point: u32| {
-        let [block, _] = names[point as usize];
-        (block, owners[point as usize])
+        let [block, sphere] = names[point as usize];
+        (block, if model.rigid { owners[point as usize] } else { sphere })
     };
     let number = |(block, place): (u32, u32)| state.blocks[block as usize].bodies[place as usize];
     let still = |(block, place): (u32, u32)| state.blocks[block as usize].velocity[place as usize][3] == 0.0;
@@ -58,11 +59,11 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         w.boxed.clear();
         w.images.clear();
         w.planes.clear();
-        w.reference.clear();
-        for i in 0..w.owner.len() as u32 {
+        w.reference.start((w.count > 0).then(|| &points[first[b] as usize]));
+        for i in 0..w.count as u32 {
             let global = first[b] + i;
             let p = &points[global as usize];
-            w.reference.push(xyz(p));
+            w.reference.push(&xyz(p));
             let me = body(global);
             let fixed = still(me);
             w.row.clear();
@@ -92,7 +93,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
             for &j in &w.row {
                 let [block_j, j] = names[j as usize];
                 if block_j == b as u32 {
-                    w.candidates.push([i, j]);
+                    w.candidates.push([i as u16, j as u16]);
                 } else {
                     w.cross.push([i, block_j, j]);
                 }
@@ -124,8 +125,15 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
                 }
             }
         }
-        let own = &points[first[b] as usize..first[b] as usize + w.owner.len()];
-        let free = |i: u32| block.velocity[w.owner[i as usize] as usize][3] > 0.0;
+        let own = &points[first[b] as usize..first[b] as usize + w.count];
+        let owner = &w.owner;
+        let free = |i: u32| {
+            let body = owner.get(i as usize).copied().unwrap_or(i);
+            block.velocity[body as usize][3] > 0.0
+        };
+        w.candidates.shrink_to_fit();
+        w.cross.shrink_to_fit();
+        w.planes.shrink_to_fit();
         patches::candidates(&walls, own, model.skin, free, &mut w.row, &mut w.walls);
         patches::candidates(surface, own, model.skin, free, &mut w.row, &mut w.surface);
     };
@@ -138,7 +146,9 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     // Corners of boxes count as points that move.
     for bx in &boxes {
         let w = &mut work.blocks[bx.block as usize];
-        w.reference.extend((0..8).map(|k| bx.centre + bx.orientation * cuboid::corner(&bx.half, k)));
+        for k in 0..8 {
+            w.reference.push(&(bx.centre + bx.orientation * cuboid::corner(&bx.half, k)));
+        }
     }
     work.wall_reference.clear();
     work.wall_reference.extend(state.planes.iter().map(|m| m.offset));
@@ -162,7 +172,7 @@ fn boxes(model: &Model, state: &State) -> Vec<BoxBody> {
     let mut out = Vec::new();
     for (b, block) in state.blocks.iter().enumerate() {
         for (k, &body) in block.bodies.iter().enumerate() {
-            if model.bodies[body as usize].kind == Kind::Box {
+            if model.bodies.kind(body as usize) == Kind::Box {
                 out.push(BoxBody {
                     block: b as u32,
                     place: k as u32,

@@ -12,7 +12,7 @@ use crate::periodic;
 use crate::search::candidates::{self, spheres};
 use crate::search::patches;
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, ImageName, ImagePair, State, xyz};
+use crate::state::{Block, Cross, ImageName, ImagePair, Lanes, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Gather, Work};
 use rayon::prelude::*;
@@ -27,7 +27,7 @@ pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
         // A reach that lasts for some ten steps costs least.
         if state.lasted < 6 {
             state.near = (1.5 * state.near).min(0.5 * model.skin);
-        } else if state.lasted > 60 {
+        } else if state.lasted > 40 {
             state.near = (state.near / 1.2).max(0.02 * model.skin);
         }
     }
@@ -47,13 +47,14 @@ pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
 fn candidates_hold(model: &Model, state: &State, work: &Work) -> bool {
     let moved2 = state.blocks.iter().zip(&work.blocks).map(|(block, w)| {
         let own = spheres(block, w, model.rigid);
-        let mut most =
-            own.iter().zip(&w.reference).map(|(p, x)| (xyz(p) - x).norm_squared()).fold(0.0, f64::max);
-        let corners = &w.reference[w.owner.len()..];
-        for (k, eight) in corners.chunks_exact(8).enumerate() {
+        let moved = own[..w.count].iter().enumerate().map(|(k, p)| w.reference.moved2(k, &xyz(p)));
+        let mut most = moved.fold(0.0, f64::max);
+        let boxes = (w.reference.len() - w.count) / 8;
+        for k in 0..boxes {
             let (x, q) = (xyz(&block.centre[k]), &block.rotation[k].orientation);
-            for (c, old) in eight.iter().enumerate() {
-                most = most.max((x + q * cuboid::corner(&w.half[k], c) - old).norm_squared());
+            for c in 0..8 {
+                let now = x + q * cuboid::corner(&w.half[k], c);
+                most = most.max(w.reference.moved2(w.count + 8 * k + c, &now));
             }
         }
         most
@@ -109,7 +110,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
             let reach = p[3] + q[3] + near;
             (xyz(p) - xyz(q)).norm_squared() < reach * reach
         };
-        merge(pairs, w.candidates.iter().filter(close).copied());
+        merge(pairs, w.candidates.iter().map(|c| c.map(u32::from)).filter(|c| close(&c)));
         let close = |c: &&[u32; 2]| {
             let plane = &model.planes[c[1] as usize];
             // Corners of boxes have no sphere here and are kept always.
@@ -153,28 +154,29 @@ pub(crate) fn link(state: &State, work: &mut Work) {
     work.blocks.iter_mut().for_each(|w| w.gather.clear());
     for b in 0..state.blocks.len() {
         let (cross, boxed) = (&state.cross[b].spheres, &state.cross[b].boxes);
-        work.cross[b].slots.clear();
-        work.cross[b].slots.resize(cross.len() + boxed.len(), Default::default());
-        for k in 0..cross.len() + boxed.len() {
+        let images = &state.cross[b].images;
+        let from = cross.len() + boxed.len();
+        let (count, slots) = ((from + images.len()) * work.slot_width, &mut work.cross[b].slots);
+        slots.clear();
+        slots.reserve_exact(count);
+        slots.resize(count, Lanes::default());
+        for k in 0..from {
             let (block, slot) = (b as u32, k as u32);
             let boxes = k >= cross.len();
             let [i, to, j] = if boxes { boxed.name(k - cross.len()) } else { cross.name(k) };
-            let place = work.blocks[b].owner[i as usize];
-            work.blocks[b].gather.push(Gather { place, block, slot, first: true });
+            let place = work.blocks[b].body(i);
+            work.blocks[b].gather.push(Gather::new(place, block, slot, true));
             let other = &mut work.blocks[to as usize];
-            let place = if boxes { j } else { other.owner[j as usize] };
-            other.gather.push(Gather { place, block, slot, first: false });
+            let place = if boxes { j } else { other.body(j) };
+            other.gather.push(Gather::new(place, block, slot, false));
         }
-        let images = &state.cross[b].images;
-        let from = work.cross[b].slots.len();
-        work.cross[b].slots.resize(from + images.len(), Default::default());
         for (k, ImagePair { name, .. }) in images.iter().enumerate() {
             let (block, slot) = (b as u32, (from + k) as u32);
-            let place = work.blocks[b].owner[name.i as usize];
-            work.blocks[b].gather.push(Gather { place, block, slot, first: true });
+            let place = work.blocks[b].body(name.i);
+            work.blocks[b].gather.push(Gather::new(place, block, slot, true));
             let other = &mut work.blocks[name.block as usize];
-            let place = other.owner[name.j as usize];
-            other.gather.push(Gather { place, block, slot, first: false });
+            let place = other.body(name.j);
+            other.gather.push(Gather::new(place, block, slot, false));
         }
     }
 }

@@ -22,6 +22,8 @@ pub(crate) enum Part {
     /// First or second rim.
     Rim(usize),
     Apex,
+    /// The wall itself is in between.
+    Hidden,
 }
 
 /// Closest point, outward unit normal there, and the part it lies on.
@@ -37,32 +39,31 @@ pub(crate) enum Round {
 }
 
 impl Round {
-    /// The closest point to `x`; `None` where the patch cannot be seen from there.
+    /// The closest point to `x`; its part is [`Part::Hidden`] where it cannot be seen from there.
     #[inline]
-    pub fn closest(&self, x: &Vec3) -> Option<Closest> {
+    pub fn closest(&self, x: &Vec3) -> Closest {
         match self {
-            Round::Plane { point, normal } => {
-                Some((x - normal * (x - point).dot(normal), *normal, Part::Inside))
-            }
+            Round::Plane { point, normal } => (x - normal * (x - point).dot(normal), *normal, Part::Inside),
             Round::Frustum { base, axis, height, radii, far } => {
-                frustum(&(x - base), axis, *height, radii, *far).map(|(p, n, part)| (p + base, n, part))
+                let (p, n, part) = frustum(&(x - base), axis, *height, radii, *far);
+                (p + base, n, part)
             }
             Round::Disc { centre, axis, radius } => {
                 let d = x - centre;
                 let along = d.dot(axis);
                 let across = d - axis * along;
                 let rho = across.norm();
-                Some(if rho <= *radius {
+                if rho <= *radius {
                     (x - axis * along, *axis, Part::Inside)
                 } else {
                     (centre + across * (radius / rho), *axis, Part::Rim(0))
-                })
+                }
             }
             Round::Sphere { centre, radius } => {
                 let d = x - centre;
                 let rho = d.norm();
                 let outward = if rho > ON_AXIS * radius { d / rho } else { Vec3::z() };
-                Some((centre + outward * *radius, outward, Part::Inside))
+                (centre + outward * *radius, outward, Part::Inside)
             }
         }
     }
@@ -110,7 +111,7 @@ impl Round {
 
 /// Closest point of a frustum whose base is at the origin.
 #[inline]
-fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> Option<Closest> {
+fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> Closest {
     let z = x.dot(axis);
     let across = x - axis * z;
     let rho = across.norm();
@@ -139,18 +140,17 @@ fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> O
         Part::Inside => side * r + axis * h,
         Part::Rim(k) => side * radii[k] + axis * if k == 0 { 0.0 } else { height },
         Part::Apex => axis * h,
+        Part::Hidden => side * r + axis * h,
     };
     let (r, h, part) = at(rho);
     if !far {
-        return Some((point(&outward, r, h, part), normal(&outward), part));
+        return (point(&outward, r, h, part), normal(&outward), part);
     }
     let outside = part == Part::Inside && (rho - r) * height - (z - h) * run > 0.0;
     let (r, h, part) = at(-rho);
-    if outside || rho >= r {
-        return None;
-    }
     let side = -outward;
-    Some((point(&side, r, h, part), normal(&side), part))
+    let seen = if outside || rho >= r { Part::Hidden } else { part };
+    (point(&side, r, h, part), normal(&side), seen)
 }
 
 #[cfg(test)]

@@ -145,7 +145,7 @@ impl Walls {
     pub(crate) fn limit_step(
         &self,
         limit: &mut DtLimit,
-        bodies: &[crate::model::Body],
+        bodies: &crate::bodies::Bodies,
         planes: &[Plane],
         laws: &Laws,
         expected: f64,
@@ -315,17 +315,15 @@ impl Surface for PlacedWalls<'_> {
                 };
                 (point, t.normal(), feature)
             }
-            Kind::Round(r) => match self.walls.rounds[r as usize].closest(&x) {
-                Some((point, normal, part)) => {
-                    let feature = match part {
-                        Part::Inside => Feature::Face,
-                        Part::Rim(k) => Feature::Edge(k as u32),
-                        Part::Apex => Feature::Vertex(0),
-                    };
-                    (point, normal, feature)
+            Kind::Round(r) => {
+                let (point, normal, part) = self.walls.rounds[r as usize].closest(&x);
+                match part {
+                    Part::Inside => (point, normal, Feature::Face),
+                    Part::Rim(k) => (point, normal, Feature::Edge(k as u32)),
+                    Part::Apex => (point, normal, Feature::Vertex(0)),
+                    Part::Hidden => (Vec3::repeat(FAR), normal, Feature::Face),
                 }
-                None => (Vec3::repeat(FAR), Vec3::z(), Feature::Face),
-            },
+            }
         };
         let point = if state.open { Vec3::repeat(FAR) } else { state.to_world(&wall.centre, &point) };
         PatchPoint {
@@ -348,7 +346,7 @@ impl Surface for PlacedWalls<'_> {
             Kind::Triangle(t) => self.walls.triangles[t as usize].clearance(&x),
             Kind::Round(r) => {
                 let round = &self.walls.rounds[r as usize];
-                let Some((point, normal, _)) = round.closest(&x) else { return 0.0 };
+                let (point, normal, _) = round.closest(&x);
                 let away = x - point;
                 if round.one_sided() && away.dot(&normal) < 0.0 { 0.0 } else { away.norm() * (1.0 - SLACK) }
             }

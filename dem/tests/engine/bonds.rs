@@ -247,6 +247,20 @@ fn free_pair_turns_without_shear_or_bending() {
     assert!(worst < 1e-6 && turned > 5.0);
 }
 
+/// A bond begins with the model: what its spheres did before the first step is no slip.
+#[test]
+fn motion_before_the_start_does_not_count() {
+    let mut input = weightless(stone());
+    input.bodies = vec![sphere(Vec3::x() * 0.02, Vec3::y() * 0.01), sphere(Vec3::zeros(), Vec3::zeros())];
+    input.bond_kinds.push(Bond::Parallel(cement()));
+    input.bonds.push(BondInput::new(0, 1, 0));
+    let mut run = Run::new(input);
+    assert_eq!(records(&run.model, &run.state)[0].shear, Vec3::zeros());
+    run.step();
+    let expected = 0.01 * run.model.dt() * 1e9 / 2.5 * PI * R * R / 0.02;
+    near(records(&run.model, &run.state)[0].shear.norm(), expected, 1e-6);
+}
+
 #[test]
 fn inputs_that_make_no_bond_are_refused() {
     let base = || {

@@ -191,7 +191,15 @@ fn breaking_gives_the_same_bits_for_any_number_of_threads() {
         pool.install(|| {
             let mut run = Run::new(crash());
             assert!(run.model.sphere_count() > 2500);
+            let momentum = |run: &Run| {
+                let (m, i) = (measure::momentum(&run.model, &run.state), run.state.ledger.impulse());
+                (m.linear - i.linear, m.angular - i.angular)
+            };
+            let before = momentum(&run);
             run.steps(700);
+            // Also across blocks.
+            let after = momentum(&run);
+            assert!((after.0 - before.0).norm() < 1e-10 && (after.1 - before.1).norm() < 1e-10);
             let (searches, lists) = run.work.rebuilds();
             let (tension, shear) = run.state.broken_bonds();
             println!("crash: {tension} + {shear} broken, {searches} searches, {lists} lists");

@@ -119,7 +119,7 @@ fn mill(n: usize) -> ModelInput {
         caps: [true, false],
     };
     let turning = Motion { angular_velocity: Vec3::z() * 5.0, ..Motion::default() };
-    let drum = frustum(2.0 * width, [0.75 * width, 0.8 * width]);
+    let drum = frustum(2.0 * width, [0.7 * width, 0.72 * width]);
     input.walls.push(WallInput { motion: turning, ..WallInput::fixed(drum, 0) });
     let (m, a) = (12, 1.6 * width);
     let at = |k: u32| a * (f64::from(k) / f64::from(m) - 0.5);
@@ -149,7 +149,7 @@ fn mill(n: usize) -> ModelInput {
         mass: 2.0,
         centre: None,
         inertia: None,
-        velocity: Vec3::zeros(),
+        velocity: Vec3::z() * -3.0,
         spin: Vec3::new(1.0, 2.0, 0.5),
         fixed: [false; 6],
     };
@@ -169,10 +169,14 @@ fn walls_of_all_kinds() {
             if threads == 2 {
                 run.work = Work::new(&run.model, &run.state);
             }
-            run.steps(800);
-            for wall in [0, 1, 3] {
-                assert!(run.state.wall_force(wall).0.norm() > 1.0, "wall {wall} must be touched");
+            let mut most = [0.0_f64; 4];
+            for _ in 0..80 {
+                run.steps(10);
+                for wall in [0, 1, 3] {
+                    most[wall] = most[wall].max(run.state.wall_force(wall).0.norm());
+                }
             }
+            assert!([0, 1, 3].iter().all(|&w| most[w] > 1.0), "every wall must be touched: {most:?}");
             bits(&run)
         })
     };
@@ -185,10 +189,28 @@ fn walls_of_all_kinds() {
 /// Nor do the skin and the time of a search show in contacts with walls.
 #[test]
 fn skin_changes_nothing_at_walls() {
-    let run_with = |skin: f64| {
-        let mut run = Run::new(ModelInput { skin: Some(skin), ..mill(5) });
+    let run_with = |skin: f64, kind: usize| {
+        let mut input = ModelInput { skin: Some(skin), ..mill(5) };
+        input.walls = input
+            .walls
+            .into_iter()
+            .enumerate()
+            .filter(|(k, _)| *k == kind || kind == 4)
+            .map(|w| w.1)
+            .collect();
+        let mut run = Run::new(input);
         run.steps(4000);
-        bits(&run)
+        // The sums of the ledger add up in the groups that contacts happen to lie in: their last bits may differ.
+        let l = run.state.ledger;
+        let sums = [l.dissipated_dashpot, l.dissipated_friction, l.work_walls, l.work_servo];
+        run.state.ledger = trackbed_dem::ledger::Ledger::default();
+        (bits(&run), sums)
     };
-    assert!(run_with(0.0005) == run_with(0.005), "the skin shows");
+    let mut seen = Vec::new();
+    for kind in 0..6 {
+        let (a, b) = (run_with(0.0005, kind), run_with(0.005, kind));
+        let close = a.1.iter().zip(b.1).all(|(x, y)| (x - y).abs() <= 1e-11 * x.abs());
+        seen.push((kind, a.0 == b.0, close));
+    }
+    assert!(seen.iter().all(|s| s.1 && s.2), "the skin shows: {seen:?}");
 }

@@ -134,8 +134,10 @@ fn coordination_and_fabric_of_lattices() {
         let mut input = weightless(stone());
         let at = |p: Vec3| BodyInput { scale: 1.0 + 1e-6, ..sphere(p, Vec3::zeros()) };
         input.bodies = lattice.block(Vec3::zeros(), 0.01, [n; 3]).into_iter().map(at).collect();
-        // A bystander without neighbours.
+        // A bystander without neighbours, and two that have each other.
         input.bodies.push(sphere(Vec3::repeat(-1.0), Vec3::zeros()));
+        input.bodies.push(sphere(Vec3::repeat(-2.0), Vec3::zeros()));
+        input.bodies.push(sphere(Vec3::repeat(-2.0) + Vec3::x() * 0.0199, Vec3::zeros()));
         let mut run = Run::new(input);
         trackbed_dem::find_contacts(
             &run.model,
@@ -146,18 +148,19 @@ fn coordination_and_fabric_of_lattices() {
         .unwrap();
         let contacts = measure::contacts(&run.model, &run.state);
         let all = measure::coordination_of(&run.model, &contacts, |_| true);
-        assert_eq!(all.distribution.iter().sum::<usize>(), 513);
-        assert_eq!(all.distribution[0], 1);
-        assert!((all.rattlers - 1.0 / 513.0).abs() < 1e-15);
-        assert!((all.mechanical * 512.0 - all.mean * 513.0).abs() < 1e-9);
+        assert_eq!(all.distribution.iter().sum::<usize>(), 515);
+        assert_eq!(all.distribution[..2], [1, 2]);
+        assert!((all.rattlers - 3.0 / 515.0).abs() < 1e-15);
+        // 512 carry all contacts but the one of the pair, which counts for both.
+        assert!((all.mechanical * 512.0 - (all.mean * 515.0 - 2.0)).abs() < 1e-9);
         let core = measure::coordination_of(&run.model, &contacts, |b| {
             b < 512 && [b % n, b / n % n, b / n / n].iter().all(|k| (1..n - 1).contains(k))
         });
         assert_eq!((core.mean, core.distribution.len()), (f64::from(inside), inside as usize + 1));
         if lattice == Lattice::Simple {
-            let expected = [1, 0, 0, 8, 12 * 6, 6 * 36, 216];
+            let expected = [1, 2, 0, 8, 12 * 6, 6 * 36, 216];
             assert_eq!(all.distribution, expected);
-            let fabric = measure::fabric(&contacts, |_| true);
+            let fabric = measure::fabric(&contacts, |c| c.a < 512);
             assert!(fabric[..3].iter().all(|f| (f - 1.0 / 3.0).abs() < 1e-12), "{fabric:?}");
         }
         let strong = measure::strong_network(&contacts);

@@ -58,7 +58,8 @@ impl Run {
     pub fn new(input: ModelInput) -> Run {
         let model = Model::new(input).expect("a good input");
         let state = State::new(&model);
-        let work = Work::new(&model, &state);
+        let mut work = Work::new(&model, &state);
+        work.keep_forces(true);
         Run { model, state, work }
     }
 

@@ -54,7 +54,9 @@ fn triangulated_floor_is_a_plane() {
         let prepare = |mut input: ModelInput| {
             input.shapes.push(Shape::Clump(crate::scene::clump()));
             input.gravity = Vec3::new(0.0, 0.0, -9.81);
-            Run::new(input)
+            let mut run = Run::new(input);
+            run.work.keep_forces(true);
+            run
         };
         let mut flat = on_triangles(&[], &[], body.clone());
         flat.triangles.clear();
@@ -86,6 +88,7 @@ fn triangulated_floor_is_a_plane() {
 
 fn contact_count(vertices: &[[f64; 3]], triangles: &[[u32; 3]], centre: Vec3) -> (usize, Vec3) {
     let mut run = Run::new(on_triangles(vertices, triangles, sphere(centre, Vec3::zeros())));
+    run.work.keep_forces(true);
     run.step();
     let contacts = measure::contacts(&run.model, &run.state);
     (contacts.len(), run.work.contact_force(&run.state, 0))

@@ -13,7 +13,7 @@ fn bonded() -> Good {
 #[test]
 fn bonds_that_join_nothing() {
     bonded().scene("gap = \"5 mm\"", "gap = \"0.1 mm\"").only_run_sees_it().refused(
-        "scene.toml:13: bond.0: found no pair for \"cement\", expected a bond that joins grains: a larger `gap`, or other \
+        "scene.toml:16: bond.0: found no pair for \"cement\", expected a bond that joins grains: a larger `gap`, or other \
          groups",
     );
 }
@@ -21,7 +21,7 @@ fn bonds_that_join_nothing() {
 #[test]
 fn two_kinds_of_bond() {
     bonded().scene("[bond.parallel]", "[bond.direct]\nstiffness = [1, 1, 1, 1]\n[bond.parallel]").refused(
-        "scene.toml:13: bond.0: found another number of kinds, expected exactly one of `parallel`, `contact_point` and `direct`",
+        "scene.toml:16: bond.0: found another number of kinds, expected exactly one of `parallel`, `contact_point` and `direct`",
     );
 }
 
@@ -29,14 +29,14 @@ fn two_kinds_of_bond() {
 fn strength_of_zero() {
     bonded()
         .scene("young = \"1 MPa\"", "young = \"1 MPa\"\ntensile_strength = 0")
-        .refused("scene.toml:18: bond.0.parallel.tensile_strength: found 0, expected above 0");
+        .refused("scene.toml:21: bond.0.parallel.tensile_strength: found 0, expected above 0");
 }
 
 #[test]
 fn bonds_between_unknown_groups() {
     bonded()
         .scene("gap = ", "between = [\"pair\", \"other\"]\ngap = ")
-        .refused("scene.toml:15: bond.0.between: found \"other\", expected the name of a [[grains]]: pair");
+        .refused("scene.toml:18: bond.0.between: found \"other\", expected the name of a [[grains]]: pair");
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn pair_of_one_grain() {
 #[test]
 fn spread_without_its_number() {
     bonded().scene("young = \"1 MPa\"", "young = \"1 MPa\"\n[bond.spread]\nkind = \"weibull\"\ndeviation = 0.1").refused(
-        "scene.toml:18: bond.0.spread: found other keys, expected `deviation` for `normal`, `modulus` for `weibull`",
+        "scene.toml:21: bond.0.spread: found other keys, expected `deviation` for `normal`, `modulus` for `weibull`",
     );
 }
 

@@ -175,7 +175,7 @@ fn size_without_a_fill() {
 #[test]
 fn two_sources_of_grains() {
     grains_scene().scene(SPHERES, &format!("{SPHERES}\n{LATTICE}")).refused(
-        "scene.toml:11: grains.0: found another number of sources, expected exactly one of `spheres`, `packing`, `fill`, \
+        "scene.toml:10: grains.0: found another number of sources, expected exactly one of `spheres`, `packing`, `fill`, \
          `lattice` and `region`",
     );
 }
@@ -250,14 +250,14 @@ fn clump_packing_with_an_unknown_stone() {
 fn ratio_of_forces_above_one() {
     grains_scene()
         .scene("[time]", "[deposition]\nmax_time = 1\nunbalanced_ratio = 2\n\n[time]")
-        .refused("scene.toml:23: deposition.unbalanced_ratio: found 2, expected above 0, below 1");
+        .refused("scene.toml:24: deposition.unbalanced_ratio: found 2, expected above 0, below 1");
 }
 
 #[test]
 fn no_layers() {
     grains_scene()
         .scene("[time]", "[deposition]\nmax_time = 1\nlayers = 0\n\n[time]")
-        .refused("scene.toml:23: deposition.layers: found 0, expected 1 to 1000");
+        .refused("scene.toml:24: deposition.layers: found 0, expected 1 to 1000");
 }
 
 const VIBRATION: &str = "[[compaction]]\nkind = \"vibration\"\nregion = [[0, 0, 0], [1, 1, 1]]\namplitude = 0.001\n\
@@ -266,7 +266,7 @@ const VIBRATION: &str = "[[compaction]]\nkind = \"vibration\"\nregion = [[0, 0, 
 #[test]
 fn vibration_of_a_wall_that_is_not_there() {
     grains_scene().scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nwalls = [0, 1]")).refused(
-        "scene.toml:27: compaction.0.walls: found 1, expected the number of a plane in [[walls]], counted from 0",
+        "scene.toml:28: compaction.0.walls: found 1, expected the number of a plane in [[walls]], counted from 0",
     );
 }
 
@@ -274,20 +274,20 @@ fn vibration_of_a_wall_that_is_not_there() {
 fn vibration_without_an_amplitude() {
     grains_scene()
         .scene("[time]", &VIBRATION.replace("amplitude = 0.001\n", ""))
-        .refused("scene.toml:21: compaction.0.amplitude: found nothing, expected an amplitude");
+        .refused("scene.toml:22: compaction.0.amplitude: found nothing, expected an amplitude");
 }
 
 #[test]
 fn plate_of_a_vibration() {
     grains_scene().scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nforce = 100")).refused(
-        "scene.toml:27: compaction.0.force: found a value, expected no such key for this kind of compaction",
+        "scene.toml:28: compaction.0.force: found a value, expected no such key for this kind of compaction",
     );
 }
 
 #[test]
 fn region_upside_down() {
     grains_scene().scene("[time]", &VIBRATION.replace("[1, 1, 1]", "[1, 1, -1]")).refused(
-        "scene.toml:23: compaction.0.region: found corners in another order, expected the lower corner, then the upper",
+        "scene.toml:24: compaction.0.region: found corners in another order, expected the lower corner, then the upper",
     );
 }
 
@@ -296,7 +296,7 @@ fn two_measures_of_one_name() {
     let measure = "[[measure]]\nname = \"core\"\nbox = [[0, 0, 0], [1, 1, 1]]\n\n";
     grains_scene()
         .scene("[time]", &format!("{measure}{measure}[time]"))
-        .refused("scene.toml:26: measure.1.name: found \"core\" again, expected each name once");
+        .refused("scene.toml:27: measure.1.name: found \"core\" again, expected each name once");
 }
 
 #[test]

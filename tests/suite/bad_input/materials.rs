@@ -1,0 +1,40 @@
+//! Broken input: contact materials and laws.
+
+use super::*;
+
+#[test]
+fn modulus_without_poisson() {
+    grains_scene()
+        .scene("stiffness = \"1 MN/m\"", "young = \"50 MPa\"")
+        .refused("scene.toml:3: material.0.poisson: found nothing, expected Poisson's ratio beside `young`");
+}
+
+#[test]
+fn poisson_without_modulus() {
+    grains_scene()
+        .scene("friction = 0.5", "friction = 0.5\npoisson = 0.3")
+        .refused("scene.toml:8: material.0.poisson: found a value, expected no such key without `young`");
+}
+
+#[test]
+fn two_laws_in_one_scene() {
+    grains_scene()
+        .scene("stiffness = \"1 MN/m\"", "stiffness = \"1 MN/m\"\nyoung = \"50 MPa\"\npoisson = 0.3")
+        .refused(
+            "scene.toml:6: material.0.stiffness: found a stiffness, expected no stiffness, as \"stone\" has a Young's modulus",
+        );
+}
+
+#[test]
+fn negative_rolling_friction() {
+    grains_scene()
+        .scene("friction = 0.5", "friction = 0.5\nrolling_friction = -1.0")
+        .refused("scene.toml:8: material.0.rolling_friction: found -1, expected 0 or more");
+}
+
+#[test]
+fn impact_speed_of_linear_contacts() {
+    grains_scene().scene("end = \"20 ms\"", "end = \"20 ms\"\nimpact_speed = 1.0").refused(
+        "scene.toml:24: time.impact_speed: found a value, expected no such key without a material with `young`",
+    );
+}
