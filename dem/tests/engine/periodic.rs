@@ -23,12 +23,15 @@ fn bed(n: usize, layers: usize) -> ModelInput {
     input.shapes.push(Shape::Clump(clump()));
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     for k in 0..n * n * layers {
-        let cell = Vec3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64);
+        // Every other layer lies over the gaps of the one below, so that grains wedge one another apart.
+        let layer = k / n / n;
+        let side = if layer % 2 == 0 { 0.25 } else { 0.75 };
+        let cell = Vec3::new((k % n) as f64 + side, (k / n % n) as f64 + side, 0.75 * layer as f64 + 0.55);
         let shape = usize::from(k % 4 == 3);
         input.bodies.push(BodyInput {
             shape,
             scale: if shape == 1 { 0.5 } else { 1.0 + 0.1 * random.unit() },
-            position: (cell + Vec3::repeat(0.5)) * PITCH + random.vector() * 0.0002,
+            position: cell * PITCH + random.vector() * 0.0002,
             orientation: UnitQuaternion::from_scaled_axis(random.vector() * 3.0),
             velocity: random.vector() * 0.3,
             spin: random.vector() * 5.0,
@@ -160,12 +163,18 @@ fn balances_close() {
         };
         let start = total(&run);
         run.state.steps = 2000;
-        let (mut crossing, mut worst) = (0, 0.0_f64);
+        let (mut crossing, mut worst, mut put_back) = (0, 0.0_f64, 0);
+        let places =
+            |run: &Run| (0..run.model.body_count()).map(|k| run.state.position(k)).collect::<Vec<_>>();
+        let mut last = places(&run);
         while run.state.steps < 5500 {
             run.step();
             if run.state.steps.is_multiple_of(50) {
                 crossing += across(&run);
                 worst = worst.max((total(&run) - start).abs());
+                let now = places(&run);
+                put_back += now.iter().zip(&last).filter(|(x, y)| (*x - *y).norm() > 2.0 * PITCH).count();
+                last = now;
             }
         }
         let l = run.state.ledger;
@@ -175,11 +184,17 @@ fn balances_close() {
         let linear = (after.linear - before.linear - given.linear).norm() / scale;
         let angular = (after.angular - before.angular - given.angular).norm() / scale;
         println!(
-            "linear {linear:.1e}, angular {angular:.1e} m, energy open {:.1e} of {:.3} J, {crossing} across",
+            "linear {linear:.1e}, angular {angular:.1e} of {:.1e} m, energy open {:.1e} of {:.3} J, {crossing} across, \
+             {put_back} put back",
+            l.periodic.angular.norm() / scale,
             worst / l.dissipated(),
             l.dissipated()
         );
-        assert!(crossing > 20 && l.periodic.angular.norm() > 1e-3 * scale && l.periodic.linear.norm() == 0.0);
+        assert!(crossing > 20, "{crossing}");
+        assert!(put_back > 10, "{put_back}");
+        // What borders give nearly cancels in a steady stream; it must be far more than the tolerance below.
+        assert!(l.periodic.angular.norm() > 1e-5 * scale, "{}", l.periodic.angular.norm() / scale);
+        assert_eq!(l.periodic.linear, Vec3::zeros());
         assert!(linear < 1e-12 && angular < 1e-12, "{linear:e} {angular:e}");
         assert!(worst < 1e-4 * l.dissipated(), "{worst:e} of {:e}", l.dissipated());
         if free {
@@ -213,7 +228,7 @@ fn threads_and_restarts_do_not_show() {
             assert!(run.model.sphere_count() > 2500);
             run.state.steps = 4600;
             run.steps(300);
-            assert!(across(&run) > 20);
+            assert!(across(&run) > 20, "{}", across(&run));
             if threads == 2 {
                 let bytes = postcard::to_stdvec(&run.state).expect("a checkpoint");
                 run.state = postcard::from_bytes::<State>(&bytes).expect("a state");
