@@ -18,8 +18,9 @@ pub enum Command {
     /// Run a scene: fill, settle, load, and write the results.
     Run(RunArgs),
     /// Validate a scene without running it, and say what a run would do and need.
-    #[command(alias = "explain")]
     Check(CheckArgs),
+    /// As `check`, with the stages, the loops, the memory per sphere and, from a short probe, the time a run may take.
+    Explain(CheckArgs),
     /// Natural frequencies and modes of the solid part of a scene.
     Modal(ModalArgs),
     /// Read a mesh: count and measure it, find its faults, or convert it.

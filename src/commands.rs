@@ -1,6 +1,7 @@
 //! What each command does.
 
 mod check;
+mod explain;
 mod mesh;
 mod modal;
 mod stone;
@@ -17,6 +18,9 @@ use std::io::Write;
 pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
+        Command::Explain(args) => {
+            print(&explain::explain(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
+        }
         Command::Check(args) => {
             print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
         }

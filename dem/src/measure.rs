@@ -9,6 +9,7 @@ mod clip;
 mod contacts;
 mod coordination;
 mod energy;
+mod footprint;
 mod porosity;
 mod region;
 mod sieve;
@@ -20,6 +21,7 @@ pub use coordination::{
     Coordination, StrongNetwork, coordination_of, fabric, neighbours, strong_network, unbalanced_ratio,
 };
 pub use energy::{Energies, energies, momentum};
+pub use footprint::{bytes, kernels};
 pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
 pub use region::BoxRegion;
 pub use sieve::{size_of, stones};

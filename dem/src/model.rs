@@ -51,7 +51,7 @@ impl Model {
         let bodies = Bodies::new(&input)?;
         let laws = Laws::new(&input.materials, &input.contacts);
         let walls: Vec<WallInput> = input.all_walls().collect();
-        let walls = Walls::new(&walls, input.triangles.len())?;
+        let mut walls = Walls::new(&walls, input.triangles.len())?;
         check::rigid_pairs(&bodies, &input)?;
 
         let mut radii = (f64::INFINITY, 0.0_f64);
@@ -78,7 +78,7 @@ impl Model {
         let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
-        walls.limit_step(&mut limit, &bodies, &input.planes, &laws, expected, radii);
+        walls.join(&mut limit, &bodies, &input.planes, &laws, expected, radii);
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
             TimeStep::Fixed(dt) if dt > limit.dt => {
@@ -237,21 +237,6 @@ impl Model {
     /// Number of walls: triangle surfaces, then walls.
     pub fn wall_count(&self) -> usize {
         self.walls.walls.len()
-    }
-
-    /// Largest damping ratio of contacts with a material [-].
-    pub(crate) fn wall_damping(&self, material: u32) -> f64 {
-        self.bodies
-            .iter()
-            .map(|b| b.material)
-            .fold((0.0_f64, u32::MAX), |(most, last), m| {
-                if m == last {
-                    (most, m)
-                } else {
-                    (most.max(self.contact_stiffness(m as usize, material as usize).1), m)
-                }
-            })
-            .0
     }
 
     /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that

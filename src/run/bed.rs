@@ -1,5 +1,6 @@
 //! A bed of grains on its way to the run proper: it settles, is shaken, pressed, squeezed.
 
+use super::keeper::Keeper;
 use crate::failure::Failure;
 use crate::model::grains::DepositionPlan;
 use trackbed_coupling::surface::SolidSurface;
@@ -17,21 +18,27 @@ pub struct Bed<'a> {
     pub state: dem::State,
     work: dem::Work,
     surface: Option<&'a SolidSurface>,
+    keeper: &'a Keeper,
     doing: &'static str,
 }
 
 impl<'a> Bed<'a> {
     /// The bed at the start of a stage; `doing` is said when a step fails.
-    pub fn new(model: dem::Model, surface: Option<&'a SolidSurface>, doing: &'static str) -> Bed<'a> {
+    pub fn new(
+        model: dem::Model,
+        surface: Option<&'a SolidSurface>,
+        keeper: &'a Keeper,
+        doing: &'static str,
+    ) -> Bed<'a> {
         let state = dem::State::new(&model);
         let work = dem::Work::new(&model, &state);
-        Bed { model, state, work, surface, doing }
+        Bed { model, state, work, surface, keeper, doing }
     }
 
     /// One step under forces.
     ///
     /// # Errors
-    /// Overlaps or speeds without meaning.
+    /// Overlaps or speeds without meaning; an interrupt.
     pub fn step(&mut self, applied: &[dem::AppliedForce]) -> Result<(), Failure> {
         match self.surface {
             Some(s) => dem::step(&self.model, &mut self.state, &mut self.work, s, applied),
@@ -39,7 +46,8 @@ impl<'a> Bed<'a> {
                 dem::step(&self.model, &mut self.state, &mut self.work, &dem::surface::NoSurface, applied)
             }
         }
-        .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))
+        .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
+        self.keeper.check(self.doing)
     }
 
     /// Steps in about a millisecond, the time between two looks at the bed.

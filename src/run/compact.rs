@@ -103,7 +103,7 @@ impl Stage<'_> {
 
     /// A bed of these bodies with the friction and damping of the stage.
     fn bed<'b>(
-        &self,
+        &'b self,
         grains: &GrainsPart,
         plan: &CompactionPlan,
         bodies: Vec<BodyInput>,
@@ -111,7 +111,7 @@ impl Stage<'_> {
     ) -> Result<Bed<'b>, Failure> {
         let input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-        Ok(Bed::new(model, surface, "being compacted"))
+        Ok(Bed::new(model, surface, &self.keeper, "being compacted"))
     }
 }
 

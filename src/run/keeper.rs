@@ -99,10 +99,7 @@ impl Keeper {
         moment: impl FnOnce() -> Moment,
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        self.steps.set(self.steps.get() + 1);
-        let stop = self.interrupt.stop.load(Ordering::Relaxed)
-            || self.interrupt.steps.is_some_and(|steps| self.steps.get() >= steps);
-        if stop {
+        if self.stopped() {
             let moment = moment();
             let place =
                 format!("stage \"{}\", step {}, t = {:.6e} s", moment.stage, moment.step, moment.time);
@@ -110,6 +107,30 @@ impl Keeper {
             return Err(Failure::Interrupted(format!("interrupted: {place}; go on with: {}", self.command)));
         }
         if self.due() { self.save(moment(), fill) } else { Ok(()) }
+    }
+
+    /// After a step of a stage that only starts again from its beginning, where a checkpoint was written.
+    ///
+    /// # Errors
+    /// [`Failure::Interrupted`] when an interrupt asks for it.
+    #[inline]
+    pub fn check(&self, stage: &str) -> Result<(), Failure> {
+        if !self.stopped() {
+            return Ok(());
+        }
+        let again = "the stage starts again from its beginning";
+        Err(Failure::Interrupted(format!(
+            "interrupted: stage \"{stage}\"; {again}; go on with: {}",
+            self.command
+        )))
+    }
+
+    /// Counts a step; whether the run is to stop after it.
+    #[inline]
+    fn stopped(&self) -> bool {
+        self.steps.set(self.steps.get() + 1);
+        self.interrupt.stop.load(Ordering::Relaxed)
+            || self.interrupt.steps.is_some_and(|steps| self.steps.get() >= steps)
     }
 
     /// Writes a checkpoint now.

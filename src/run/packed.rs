@@ -2,12 +2,14 @@
 
 use super::Stage;
 use super::bed::{Bed, rms_speed};
+use super::checkpoint::Moment;
 use super::packing::GrowthRecord;
-use super::settle::Settled;
+use super::settle::{SETTLING, Settled};
 use super::summary::StageRecord;
 use crate::failure::Failure;
 use crate::model::grains::{DepositionPlan, GrainsPart, refused};
 use crate::progress::Progress;
+use serde::{Deserialize, Serialize};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
@@ -16,28 +18,83 @@ use trackbed_dem::insert::grow::{GrowError, grow};
 /// Gap between a layer of grains and the bed that it falls on, as a share of the largest grain's radius.
 const GAP: f64 = 1e-3;
 
+/// Stage of a checkpoint between two stages of packing.
+const PACKING: &str = "packing";
+
+/// How far the packing has come; compaction counts its own stages.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+pub(super) enum Packed {
+    Nothing,
+    Grown,
+    Layered,
+    Settled,
+}
+
+/// The head of a checkpoint from within the packing.
+#[derive(Deserialize)]
+struct Packing {
+    done: Packed,
+    /// The grains that are to settle.
+    bodies: Vec<BodyInput>,
+    bed: Settled,
+}
+
+/// Points of the planes [m].
+pub(super) fn planes(grains: &GrainsPart) -> Vec<dem::Vec3> {
+    grains.planes().iter().map(|p| p.point).collect()
+}
+
 impl Stage<'_> {
-    /// Grows, settles and compacts.
+    /// Grows, settles and compacts. A checkpoint is written between these stages.
     pub(super) fn packed(
         &self,
         mut grains: GrainsPart,
         surface: Option<&SolidSurface>,
     ) -> Result<Settled, Failure> {
-        let mut bed = Settled::default();
-        self.grow(&mut grains, &mut bed)?;
-        if let Some(plan) = grains.deposition.clone() {
-            if plan.layers > 1 {
-                self.drop_layers(&mut grains, &plan, surface, &mut bed)?;
+        let mut resumed = self.resumed(PACKING).or_else(|| self.resumed(SETTLING));
+        let (mut bed, done) = match &mut resumed {
+            Some(loaded) => {
+                let Packing { done, bodies, bed } = loaded.take()?;
+                grains.bodies = bodies;
+                bed.planes.iter().enumerate().for_each(|(k, point)| grains.place_plane(k, *point));
+                (bed, done)
             }
-            self.settle(&grains, &plan, surface, &mut bed)?;
-        } else {
+            None => (Settled::default(), Packed::Nothing),
+        };
+        if done < Packed::Grown {
+            self.grow(&mut grains, &mut bed)?;
+        }
+        if let Some(plan) = grains.deposition.clone() {
+            if done < Packed::Layered && plan.layers > 1 {
+                self.keep(Packed::Grown, &grains, &mut bed)?;
+                self.keeper.begin();
+                self.drop_layers(&mut grains, &plan, surface, &mut bed)?;
+                self.keeper.end();
+                self.keep(Packed::Layered, &grains, &mut bed)?;
+            }
+            if done < Packed::Settled {
+                let resumed = resumed.filter(|loaded| loaded.moment.stage == SETTLING);
+                self.settle(&grains, &plan, surface, &mut bed, resumed)?;
+            }
+        } else if done < Packed::Settled {
             bed.bodies.clone_from(&grains.bodies);
         }
-        for index in 0..grains.compaction.len() {
+        for index in bed.compaction.len()..grains.compaction.len() {
+            self.keep(Packed::Settled, &grains, &mut bed)?;
+            self.keeper.begin();
             self.compact(&mut grains, index, surface, &mut bed)?;
+            self.keeper.end();
         }
-        bed.planes = grains.planes().iter().map(|p| p.point).collect();
+        bed.planes = planes(&grains);
         Ok(bed)
+    }
+
+    /// Writes the checkpoint between two stages.
+    fn keep(&self, done: Packed, grains: &GrainsPart, bed: &mut Settled) -> Result<(), Failure> {
+        bed.planes = planes(grains);
+        let step = bed.stages.iter().map(|s| s.grain_steps).sum();
+        let moment = Moment { stage: PACKING.into(), step, time: bed.time };
+        self.keeper.save(moment, |body| body.put(&(done, &grains.bodies, &*bed)))
     }
 
     /// Grows the groups that are to grow.
@@ -96,7 +153,7 @@ impl Stage<'_> {
             let mut input = grains.deposition_input(plan);
             input.bodies.clone_from(&inputs);
             let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-            let mut falling = Bed::new(model, surface, "settling in layers");
+            let mut falling = Bed::new(model, surface, &self.keeper, "settling in layers");
             if !falling.rest(plan)? {
                 let speed = rms_speed(&falling.model, &falling.state);
                 bed.warnings.push(format!(

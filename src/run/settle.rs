@@ -1,6 +1,7 @@
 //! Before the run proper: filled grains settle, the bed is levelled, the sleeper is set down.
 
 use super::checkpoint::{Loaded, Moment};
+use super::packed::Packed;
 use super::packing::{CompactionRecord, GrowthRecord};
 use super::summary::{StageRecord, Summary};
 use super::{Stage, bed};
@@ -16,7 +17,7 @@ use trackbed_dem::BodyInput;
 const START_OF_SETTLING: f64 = 0.05;
 
 /// Stage of a checkpoint from within the settling.
-const SETTLING: &str = "settling";
+pub(super) const SETTLING: &str = "settling";
 /// Stage of the checkpoint between settling and run proper.
 const SETTLED: &str = "settled";
 
@@ -71,17 +72,18 @@ impl Stage<'_> {
         Ok((grains, bodies))
     }
 
-    /// The settling itself; adds to what was done before.
+    /// The settling itself, from the start or from within a checkpoint; adds to what was done before.
     pub(super) fn settle(
         &self,
         grains: &GrainsPart,
         plan: &DepositionPlan,
         surface: Option<&SolidSurface>,
         bed: &mut Settled,
+        resumed: Option<Loaded>,
     ) -> Result<(), Failure> {
         let input = grains.deposition_input(plan);
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-        let (mut state, seconds) = match self.resumed(SETTLING) {
+        let (mut state, seconds) = match resumed {
             Some(mut loaded) => loaded.take()?,
             None => (dem::State::new(&model), 0.0),
         };
@@ -109,7 +111,10 @@ impl Stage<'_> {
             if going {
                 self.keeper.step(
                     || Moment { stage: SETTLING.into(), step: state.steps, time: state.time },
-                    |body| body.put(&(&state, progress.seconds())),
+                    |body| {
+                        body.put(&(Packed::Layered, &grains.bodies, &*bed))?;
+                        body.put(&(&state, progress.seconds()))
+                    },
                 )?;
             }
         }

@@ -175,6 +175,24 @@ fn grains_shared_among_threads_on_a_solid() {
     broken(&scene, &set, &[0.2, 0.992, 0.996, 1.0], &["cycles.csv", "tecplot/solid_00002.dat"]);
 }
 
+/// Breaks while the bed settles in layers, while it settles, within its compaction, and in the run proper.
+#[test]
+fn a_bed_that_is_compacted() {
+    let folder = Folder::new("compacted");
+    let mut text = fs::read_to_string(repository().join("inputs/grains/compaction.toml")).unwrap();
+    for (old, new) in [
+        ("low = \"20 mm\", high = \"30 mm\"", "low = \"42 mm\", high = \"52 mm\""),
+        ("cycles = 12", "cycles = 3"),
+        ("cycles = 20", "cycles = 3"),
+        ("layers = 3", "layers = 2"),
+    ] {
+        assert!(text.contains(old), "{old}");
+        text = text.replace(old, new);
+    }
+    let scene = folder.write("scene.toml", &text);
+    broken(&scene, &[], &[0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0], &["history.csv"]);
+}
+
 #[test]
 fn spheres_on_an_elastic_block() {
     let folder = scene_folder("coupled", COUPLED);

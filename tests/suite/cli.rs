@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[test]
 fn help_names_every_command_and_option() {
     let help = trackbed(["--help"]).good().stdout;
-    for word in ["run", "check", "mesh", "stone", "--help", "--version"] {
+    for word in ["run", "check", "explain", "mesh", "stone", "--help", "--version"] {
         assert!(help.contains(word), "{word} is missing in {help}");
     }
     let help = trackbed(["run", "--help"]).good().stdout;
@@ -21,6 +21,25 @@ fn help_names_every_command_and_option() {
     for word in ["info", "check", "convert"] {
         assert!(help.contains(word), "{word} is missing in {help}");
     }
+}
+
+/// `explain` says what `check` says, then the stages, the loops, the memory and the time of the grains.
+#[test]
+fn explain_says_more_than_check() {
+    let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
+    let (checked, explained) =
+        (trackbed(["check", &scene]).good().stdout, trackbed(["explain", &scene]).good().stdout);
+    let more = explained.strip_prefix(&checked).expect("explain begins as check does");
+    for word in ["stages: run", "Hertz-Mindlin", "rolling and twisting", " B per sphere", "M sphere-steps/s"]
+    {
+        assert!(more.contains(word), "{word} is missing in {more}");
+    }
+    let bytes = more
+        .split(" B per sphere")
+        .next()
+        .and_then(|t| t.rsplit(' ').next())
+        .and_then(|t| t.parse::<f64>().ok());
+    assert!(bytes.is_some_and(|b| (150.0..600.0).contains(&b)), "{more}");
 }
 
 #[test]

@@ -261,9 +261,9 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
                 exchange.work += f.force.dot(&wall) * dt;
                 exchange.impulse.add(&g.point, &(f.force * dt));
                 exchange.impulse.angular += f.moment * dt;
-                let first = if RIGID { w.first[a] } else { sphere };
+                let member = if RIGID { sphere - w.first[a] } else { 0 };
                 w.contacts.push(SurfaceContact {
-                    sphere: sphere - first,
+                    sphere: member,
                     body: block.bodies[a],
                     patch: t.patch,
                     local: t.closest.local,

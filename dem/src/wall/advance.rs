@@ -69,8 +69,7 @@ pub(crate) fn walls(
                 let centre = wall.centre + own.offset;
                 let mut speed = own.drive;
                 if let Some(servo) = wall.servo.as_ref().filter(|_| !own.open) {
-                    let impedance =
-                        sum.stiffness * dt + 2.0 * model.wall_damping(wall.material) * 2.0 * sum.damping;
+                    let impedance = sum.stiffness * dt + 2.0 * wall.damping * 2.0 * sum.damping;
                     speed =
                         servo.direction * servo.speed(state.time, sum.force.dot(&servo.direction), impedance);
                 }

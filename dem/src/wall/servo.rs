@@ -4,7 +4,7 @@
 //! target, g the gain and Z = Σ (K Δt + 2C) over the contacts of the wall, with K their stiffness and C the bound
 //! 2ζ√(mK) of their dashpots: with g = 1 an elastic contact would be set right within one step. Seen from the grains
 //! this is a dashpot of impedance Z/g in series with the force F*: it takes energy out of every disturbance, so it is
-//! stable for g ≤ 1, and at rest the force is exact. The plate has no mass and no weight. Without a contact it moves
+//! stable for g < 1 (at g = 1 a force may ring from step to step), and at rest the force is exact. The plate has no mass and no weight. Without a contact it moves
 //! towards the grains at its greatest speed.
 //!
 //! Source: the idea of a gain from the sum of contact stiffnesses is that of the servo walls of Cundall's programs

@@ -10,6 +10,7 @@ use super::servo::Servo;
 use super::state::WallState;
 use super::triangulated::{self, Triangle};
 use crate::Vec3;
+use crate::bodies::Bodies;
 use crate::contact::Laws;
 use crate::error::{ModelError, Partner};
 use crate::input::Plane;
@@ -18,6 +19,7 @@ use crate::shape::triangle::Region;
 use crate::surface::{Feature, PatchPoint, Surface};
 use crate::timestep::DtLimit;
 use nalgebra::UnitQuaternion;
+use std::collections::BTreeSet;
 
 /// Where a patch that cannot be touched is said to be [m]: out of reach of everything.
 const FAR: f64 = 1e30;
@@ -47,6 +49,8 @@ pub(crate) struct Wall {
     /// Point that moments refer to and that the wall turns about, at the start [m].
     pub centre: Vec3,
     pub servo: Option<Servo>,
+    /// Largest damping ratio of contacts with grains.
+    pub damping: f64,
     pub body: Option<Body>,
     /// Largest distance of a point of the wall from its centre [m]; zero where turning does not move the wall's shape.
     pub reach: f64,
@@ -134,33 +138,39 @@ impl Walls {
             motion: wall.motion,
             centre,
             servo: wall.servo.clone().map(|s| Servo { direction: s.direction.normalize(), ..s }),
+            damping: 0.0,
             body,
             reach,
         });
         Ok(())
     }
 
-    /// Lowers the limit of the time step where a rigid body of triangles needs it; `radii` are those of the smallest
-    /// and the largest sphere [m], `expected` the overlap expected over the radius.
-    pub(crate) fn limit_step(
-        &self,
+    /// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
+    /// where a rigid body of triangles needs it. `radii` are those of the smallest and the largest sphere [m], `expected`
+    /// the overlap expected over the radius.
+    pub(crate) fn join(
+        &mut self,
         limit: &mut DtLimit,
-        bodies: &crate::bodies::Bodies,
+        bodies: &Bodies,
         planes: &[Plane],
         laws: &Laws,
         expected: f64,
         radii: (f64, f64),
     ) {
-        let partners = || bodies.iter().map(|b| b.material).chain(planes.iter().map(|p| p.material as u32));
-        for (k, wall) in self.walls.iter().enumerate() {
+        if self.walls.is_empty() {
+            return;
+        }
+        let grains: BTreeSet<u32> = (0..bodies.len()).map(|b| bodies.get(b).material).collect();
+        let planes = planes.iter().map(|p| p.material as u32);
+        let all: BTreeSet<u32> = grains.iter().copied().chain(planes).collect();
+        for (k, wall) in self.walls.iter_mut().enumerate() {
+            wall.damping = grains.iter().map(|&m| laws.damping_ratio(wall.material, m)).fold(0.0, f64::max);
             let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
-            let mut tried = None;
-            for partner in partners() {
+            for &partner in &all {
                 let stiffness = laws.stiffness(wall.material, partner, expected * radii.1, radii.1);
-                if tried == Some(partner) || !stiffness.is_finite() {
+                if !stiffness.is_finite() {
                     continue;
                 }
-                tried = Some(partner);
                 let ratio =
                     laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
                 let zeta = laws.damping_ratio(wall.material, partner);

@@ -8,7 +8,7 @@ fn coplanar_triangles_share_their_plane() {
     let n = 12;
     let at = |i: usize, j: usize| {
         // Rows that nearly meet make slivers.
-        let y = if j % 2 == 0 { j as f64 } else { j as f64 - 1.0 + 1e-6 };
+        let y = if j.is_multiple_of(2) { j as f64 } else { j as f64 - 1.0 + 1e-6 };
         turn * Vec3::new(i as f64 * 0.1, y * 0.1, 0.0) + Vec3::new(5.0, -3.0, 2.0)
     };
     let (mut vertices, mut list) = (Vec::new(), Vec::new());

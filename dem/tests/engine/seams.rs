@@ -215,3 +215,15 @@ fn force_on_a_slope_equals_that_of_a_plane_at_every_step() {
     assert!(worst < 1e-10 && touching > 1000 && way > 0.1, "{worst:e} {touching} {way}");
     assert_eq!(seams, 0, "never more than one contact");
 }
+
+/// Just beside a seam, nearer than what counts as one point: the face goes before the edge of its lower neighbour.
+#[test]
+fn face_before_edge_beside_a_seam() {
+    let square = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
+    for (list, side) in [([[0, 1, 2], [0, 2, 3]], -1.0), ([[0, 2, 3], [0, 1, 2]], 1.0)] {
+        let off = 3e-9 * side;
+        let (count, force) = contact_count(&square, &list, Vec3::new(0.02 + off, 0.02 - off, 0.0099));
+        assert_eq!(count, 1);
+        assert!(force.xy().norm() < 1e-12 * force.z, "{force}");
+    }
+}

@@ -139,3 +139,37 @@ fn servo_holds_its_pressure() {
         assert!(error < 0.02 * ledger.work_servo, "{error:e} of {:e}", ledger.work_servo);
     }
 }
+
+/// A ball rides a table that swings with less than gravity: the energy error falls as dt², so the table's work is that of
+/// its mean velocity over each step.
+#[test]
+fn ball_rides_a_swinging_table() {
+    let error = |fraction: f64| {
+        let mut input = weightless(Material { restitution: 0.8, ..stone() });
+        input.gravity = Vec3::new(0.0, 0.0, -9.81);
+        input.time_step = TimeStep::Auto { fraction };
+        let swing = Oscillation { amplitude: Vec3::z() * 1e-4, frequency: 20.0, phase: -1.5 };
+        let motion = Motion { oscillation: Some(swing), ..Motion::default() };
+        let shape = WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() };
+        input.walls.push(WallInput { motion, ..WallInput::fixed(shape, 0) });
+        input.bodies.push(sphere(Vec3::new(0.0, 0.0, 0.01 - 1e-6), Vec3::zeros()));
+        let mut run = Run::new(input);
+        let total = |run: &Run| {
+            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
+                - run.state.ledger.work()
+        };
+        while run.state.time < 0.1 {
+            run.step();
+        }
+        let start = total(&run);
+        let mut worst = 0.0_f64;
+        while run.state.time < 0.2 {
+            run.step();
+            worst = worst.max((total(&run) - start).abs());
+        }
+        worst
+    };
+    let (coarse, fine) = (error(0.4), error(0.1));
+    eprintln!("energy error {coarse:e} and {fine:e} J");
+    assert!(fine < coarse / 8.0, "{coarse:e} {fine:e}");
+}
