@@ -1,14 +1,14 @@
 //! Four lanes of numbers at a time, and one source for them and for single numbers.
 //!
-//! [`Real`] is what a formula needs: arithmetic, roots, comparisons to a mask, choice by mask. It is implemented for
-//! `f64` (one lane), for [`Portable`] (an array of four that any processor can do) and for [`Avx2`] (a register of
-//! four). [`Four`] adds what only four lanes have: loading and storing, and the transposition between four records of
+//! `Real` is what a formula needs: arithmetic, roots, comparisons to a mask, choice by mask. It is implemented for
+//! `f64` (one lane), for `Portable` (an array of four that any processor can do) and for `Avx2` (a register of
+//! four). `Four` adds what only four lanes have: loading and storing, and the transposition between four records of
 //! four numbers and four lanes of each number. Every operation rounds as IEEE 754 says and products are never fused
 //! with sums, so all three give the same bits.
 //!
-//! A [`Kernel`] is a loop written once over `R: Four`; [`run`] picks the implementation, and compiles the whole loop
+//! A `Kernel` is a loop written once over `R: Four`; `run` picks the implementation, and compiles the whole loop
 //! with the processor's features on. Everything that a kernel calls must be `#[inline(always)]` as well: an operation
-//! on [`Avx2`] that is not inlined below that entry becomes a call per operation, ten times slower. That rules out
+//! on `Avx2` that is not inlined below that entry becomes a call per operation, ten times slower. That rules out
 //! closures with such operations in them, hence also `map` and `from_fn`.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

@@ -1,6 +1,6 @@
 //! Surfaces of triangles from files of other programs.
 //!
-//! Besides STL and OBJ ([`super::stl`], [`super::obj`]) the plain list that solvers of the field exchange: a line with
+//! Besides STL and OBJ (`stl.rs`, `obj.rs`) the plain list that solvers of the field exchange: a line with
 //! the number of vertices and of triangles, the vertices (`x y z`), then the triangles (three vertex numbers, counted
 //! from 1; from 0 where a 0 occurs). Comments, separators and number forms are those of the other lists
 //! (`table`). Triangles may be wound either way, and the surface may be closed or open.

@@ -70,7 +70,7 @@ pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R
     Turn { v: vector * scale, s: scalar * scale }
 }
 
-/// As [`free`], for one body.
+/// As `free`, for one body.
 pub fn free_one(
     orientation: &UnitQuaternion<f64>,
     momentum: &Vec3,

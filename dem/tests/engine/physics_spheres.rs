@@ -83,7 +83,7 @@ fn linear_bed_moves_as_in_lammps() {
 }
 
 /// Another law than the one it was settled with: the bed springs apart. Ours keeps the tangential force while the overlap
-/// grows, LAMMPS' `mindlin` the spring's length, which shows in the rotation (3 %).
+/// grows, LAMMPS' `mindlin` the spring's length, which may be why the rotation is 3 % off.
 #[test]
 fn hertzian_bed_moves_as_in_lammps() {
     let material = Material { young: Some(5e7), poisson: 0.25, restitution: restitution(), ..stone() };
