@@ -73,6 +73,7 @@ impl Model {
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
         let skin = input.skin.unwrap_or(0.2 * mean);
+        crate::contact::adhesion::check(&input)?;
         crate::periodic::check(&input, &bodies, skin)?;
         let periodic = crate::periodic::Periodic::new(&input);
         let bonds = crate::bond::resolve(&input, &bodies)?;

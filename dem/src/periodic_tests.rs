@@ -48,7 +48,8 @@ fn contacts_survive_the_way_back_into_the_box() {
         velocity: Vec3::new(0.3, 0.2, 0.0),
     });
     for k in 0..1500_usize {
-        let cell = Vec3::new((k % 11) as f64 + 0.5, (k / 11 % 11) as f64 - 5.0, (k / 121) as f64 * 0.85 + 0.6);
+        let cell =
+            Vec3::new((k % 11) as f64 + 0.5, (k / 11 % 11) as f64 - 5.0, (k / 121) as f64 * 0.85 + 0.6);
         let push = Vec3::new((k as f64 * 1.7).sin() + 1.0, (k as f64 * 2.9).cos() + 0.6, -1.0);
         let (position, velocity) = (cell * (L / 11.0), push * 0.5);
         input.bodies.push(BodyInput { shape: k % 2, position, velocity, ..BodyInput::default() });

@@ -305,7 +305,7 @@ mod tests {
     use super::*;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::lanes::Simd;
-    use crate::material::Material;
+    use crate::material::{Material, PairOverride};
     use crate::shape::Shape;
     use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
@@ -339,6 +339,8 @@ mod tests {
         };
         if !clumps {
             input.materials.truncate(1);
+        } else if hertz {
+            input.contacts.push(PairOverride { a: 0, b: 1, adhesion: Some(2.0), ..PairOverride::default() });
         }
         input.planes.push(Plane {
             point: Vec3::zeros(),

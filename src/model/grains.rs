@@ -16,11 +16,10 @@ use super::tables::Grading;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
-pub use compaction::{CompactionPlan, Press};
+pub use compaction::{CompactionPlan, Measure, Press, Radial};
 use trackbed_coupling::step::{self, Stability};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
-use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
@@ -67,8 +66,8 @@ pub struct GrainsPart {
     pub deposition: Option<DepositionPlan>,
     /// Compaction of the settled bed.
     pub compaction: Vec<CompactionPlan>,
-    /// Boxes that are measured, by name.
-    pub measures: Vec<(String, BoxRegion)>,
+    /// Boxes that are measured.
+    pub measures: Vec<Measure>,
     /// The sleeper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on it.
@@ -166,8 +165,7 @@ impl GrainsPart {
                             a,
                             b,
                             friction: Some(friction),
-                            restitution: None,
-                            stiffness: None,
+                            ..PairOverride::default()
                         });
                     }
                 }
@@ -323,6 +321,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
         check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
+        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
             let expected = "no stiffness where materials have a Young's modulus";
             return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
@@ -333,6 +332,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
+            adhesion: c.adhesion.map(|w| w.si),
         });
     }
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
@@ -456,6 +456,11 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
         }
+        ModelError::Adhesion { index, with } => document.error(
+            &format!("contact.{index}.adhesion"),
+            format!("adhesion beside {with}"),
+            "no adhesion in such a scene",
+        ),
         ModelError::Periodic { problem } => {
             document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
         }

@@ -1,5 +1,6 @@
 //! The engine against closed forms, balances, and itself.
 
+mod adhesion;
 mod balance;
 mod bonds;
 mod bonds_block;

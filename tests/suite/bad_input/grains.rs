@@ -332,3 +332,17 @@ fn periodic_axes_that_cannot_be() {
             .refused(&format!("scene.toml:{line}: {words}"));
     }
 }
+
+#[test]
+fn radial_distribution_without_room() {
+    let measure = "[[measure]]\nname = \"core\"\nbox = [[0, 0, 0], [1, 1, 0.5]]\n";
+    grains_scene()
+        .scene("[time]", &format!("{measure}radial = {{ reach = 0.3, bins = 10 }}\n[time]"))
+        .refused(
+            "scene.toml:25: measure.0.radial.reach: found 0.3, expected above 0, at most half the shortest side of the box, \
+             0.25",
+        );
+    grains_scene()
+        .scene("[time]", &format!("{measure}radial = {{ reach = 0.2, bins = 0 }}\n[time]"))
+        .refused("scene.toml:25: measure.0.radial.bins: found 0, expected 1 to 100000");
+}
