@@ -21,5 +21,6 @@ mod suite {
     mod stones;
     mod summary;
     pub mod support;
+    mod track;
     mod walls;
 }

@@ -52,8 +52,11 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
         let alone =
             dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
-        let sleeper = grains.sleeper.as_ref().map(|plan| grains.sleeper_body(plan, 0.0));
-        let bodies = grains.bodies.iter().cloned().chain(sleeper).collect();
+        let sleepers = grains
+            .sleeper
+            .iter()
+            .flat_map(|plan| plan.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
+        let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
         let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
         line(format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));

@@ -46,7 +46,7 @@ pub struct GrainsPart {
     periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
-    /// Names of the groups; the sleeper is the group after the last.
+    /// Names of the groups; the sleepers are the group after the last.
     pub parts: Vec<String>,
     /// First shape of each group; a stone's number in its library is its shape less that.
     pub first_shape: Vec<usize>,
@@ -68,9 +68,9 @@ pub struct GrainsPart {
     pub compaction: Vec<CompactionPlan>,
     /// Boxes that are measured.
     pub measures: Vec<Measure>,
-    /// The sleeper.
+    /// The sleepers, which are the last bodies of the run proper.
     pub sleeper: Option<SleeperPlan>,
-    /// The load on it.
+    /// The load on them.
     pub load: Option<CyclicLoad>,
 }
 
@@ -135,7 +135,7 @@ pub struct GrowthPlan {
     pub how: Growth,
 }
 
-/// A sleeper.
+/// Sleepers in a row.
 #[derive(Clone, Debug)]
 pub struct SleeperPlan {
     shape: usize,
@@ -144,8 +144,8 @@ pub struct SleeperPlan {
     fixed: [bool; 6],
     /// Half edge lengths [m].
     pub half: [f64; 3],
-    /// Place of the centre in x and y [m].
-    pub centre: [f64; 2],
+    /// Places of the centres in x and y [m], along the track.
+    pub centres: Vec<[f64; 2]>,
     /// Points of the top that share the load, in the sleeper's frame [m].
     pub seats: Vec<[f64; 3]>,
 }
@@ -285,13 +285,13 @@ impl GrainsPart {
         &self.recorded
     }
 
-    /// The sleeper as a body with its centre at height `z` [m].
-    pub fn sleeper_body(&self, plan: &SleeperPlan, z: f64) -> BodyInput {
+    /// A sleeper as a body with its centre above `centre` at height `z` [m].
+    pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
             shape: plan.shape,
             material: plan.material,
             part: self.parts.len() as u32 - 1,
-            position: Vec3::new(plan.centre[0], plan.centre[1], z),
+            position: Vec3::new(centre[0], centre[1], z),
             fixed: plan.fixed,
             mass: Some(plan.mass),
             ..BodyInput::default()

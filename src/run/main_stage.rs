@@ -4,9 +4,10 @@ use super::Stage;
 use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
 use super::cycles::Cycle;
-use super::record::{Recorder, Sleeper};
+use super::record::Recorder;
 use super::summary::{EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
 use super::system::System;
+use super::track::Track;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::progress::Progress;
@@ -91,29 +92,19 @@ impl Stage<'_> {
         let interval = job.output.history_interval;
         let every = ((interval / window).round() as u64).max(1);
 
-        let load = grains.and_then(|g| g.load.as_ref());
-        let sleeper = grains.and_then(|g| g.sleeper.as_ref());
-        let body = system.grains().map_or(0, |g| g.model.body_count()).saturating_sub(1);
+        let track = Track::new(grains, system.grains().map_or(0, |g| g.model.body_count()));
         let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            if let (Some(load), Some(plan)) = (load, sleeper) {
-                let share = load.force(t) / plan.seats.len() as f64;
-                let (x, q) = (state.position(body), state.orientation(model, body));
-                for seat in &plan.seats {
-                    let point = x + q * dem::Vec3::from(*seat);
-                    out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -share), point });
-                }
-            }
+            track.apply(t, model, state, out);
         };
-        let at = |t: f64| sleeper.map(|_| Sleeper { body, load: load.map_or(0.0, |l| l.force(t)) });
 
         let (mut recorder, from) = match resumed {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
-                (Recorder::resume(job, self.dir, system, at(0.0), &mut loaded)?, from)
+                (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
             }
             None => {
-                let mut recorder = Recorder::start(job, self.dir, system, at(0.0))?;
-                recorder.row(0.0, system, at(0.0))?;
+                let mut recorder = Recorder::start(job, self.dir, system, &track)?;
+                recorder.row(0.0, system, &track)?;
                 recorder.frame(0.0, system)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0 })
             }
@@ -126,7 +117,7 @@ impl Stage<'_> {
         let outcome = (from.done + 1..=windows).try_for_each(|k| -> Result<(), Failure> {
             let time = k as f64 * window;
             system.advance(&apply)?;
-            if let Some(cycle) = recorder.follow(time, system, at(time))? {
+            if let Some(cycle) = recorder.follow(time, system, &track)? {
                 progress.message(format!(
                     "cycle {}: settlement {:.3} mm",
                     cycle.number,
@@ -134,7 +125,7 @@ impl Stage<'_> {
                 ));
             }
             if k % every == 0 || k == windows {
-                recorder.row(time, system, at(time)).map_err(|e| e.at(time))?;
+                recorder.row(time, system, &track).map_err(|e| e.at(time))?;
             }
             if frames > 0 && k * frames >= next_frame * windows {
                 recorder.frame(time, system).map_err(|e| e.at(time))?;
@@ -167,7 +158,7 @@ impl Stage<'_> {
             && system.keeps_its_state()
             && let Some(time) = system.solid().map(|s| s.state.time)
         {
-            recorder.row(time, system, at(time))?;
+            recorder.row(time, system, &track)?;
             recorder.frame(time, system)?;
         }
         if let (Some(part), Some(view)) = (grains, system.grains())

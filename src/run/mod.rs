@@ -20,6 +20,7 @@ mod solid_alone;
 mod statics;
 mod summary;
 mod system;
+mod track;
 mod wall_output;
 
 pub use cycles::{Cycle, CycleRecorder};

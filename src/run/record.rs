@@ -6,6 +6,7 @@ use super::checkpoint::{Body, Loaded};
 use super::cycles::{Cycle, CycleRecorder};
 use super::frames;
 use super::system::System;
+use super::track::Track;
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::Job;
@@ -35,9 +36,9 @@ struct Course {
     balance: Balance,
     /// Largest |energy error| at any row [J].
     largest_error: f64,
-    /// Settlement of the sleeper since the run began against time, for the plot.
-    settlement: Vec<[f64; 2]>,
-    first_height: Option<f64>,
+    /// Settlement of each sleeper since the run began against time, for the plot.
+    settlement: Vec<Vec<[f64; 2]>>,
+    first_heights: Vec<f64>,
 }
 
 /// How far the files of a recorder have come.
@@ -46,15 +47,6 @@ struct Marks {
     history: Mark,
     cycles: Option<Mark>,
     series: usize,
-}
-
-/// Place, load and tilt of the sleeper at one moment.
-#[derive(Clone, Copy, Debug)]
-pub struct Sleeper {
-    /// Body of the sleeper.
-    pub body: usize,
-    /// Downward load [N].
-    pub load: f64,
 }
 
 impl<'a> Recorder<'a> {
@@ -66,9 +58,9 @@ impl<'a> Recorder<'a> {
         job: &'a Job,
         dir: &Path,
         system: &S,
-        sleeper: Option<Sleeper>,
+        track: &Track<'_>,
     ) -> Result<Self, Failure> {
-        let history = History::create(&dir.join("history.csv"), columns(job, system, sleeper))?;
+        let history = History::create(&dir.join("history.csv"), columns(job, system, track))?;
         let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
         let cycles_file =
             load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns())).transpose()?;
@@ -90,14 +82,14 @@ impl<'a> Recorder<'a> {
         job: &'a Job,
         dir: &Path,
         system: &S,
-        sleeper: Option<Sleeper>,
+        track: &Track<'_>,
         loaded: &mut Loaded,
     ) -> Result<Self, Failure> {
         let unfit = |e: write::WriteError| Failure::Input(format!("--resume: {e}"));
         let marks: Marks = loaded.take()?;
         let course: Course = loaded.take()?;
         let file = dir.join("history.csv");
-        let history = History::resume(&file, columns(job, system, sleeper), marks.history).map_err(unfit)?;
+        let history = History::resume(&file, columns(job, system, track), marks.history).map_err(unfit)?;
         let cycles_file = marks
             .cycles
             .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_columns(), mark))
@@ -147,14 +139,20 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// A value is not finite, or the disk refuses.
-    pub fn row<S: System>(&mut self, time: f64, system: &S, sleeper: Option<Sleeper>) -> Result<(), Failure> {
+    pub fn row<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let mut row = vec![time];
-        if let (Some(s), Some(g)) = (sleeper, system.grains()) {
-            let x = g.state.position(s.body);
-            let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
-            row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
-            let first = *self.course.first_height.get_or_insert(x.z);
-            self.course.settlement.push([time, 1e3 * (first - x.z)]);
+        if let Some(g) = system.grains() {
+            for (k, s) in track.sleepers(time).enumerate() {
+                let x = g.state.position(s.body);
+                let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
+                row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
+                let course = &mut self.course;
+                if course.first_heights.len() == k {
+                    course.first_heights.push(x.z);
+                    course.settlement.push(Vec::new());
+                }
+                course.settlement[k].push([time, 1e3 * (course.first_heights[k] - x.z)]);
+            }
         }
         if system.grains().is_some() && system.solid().is_some() {
             row.extend(system.contact_force());
@@ -210,9 +208,11 @@ impl<'a> Recorder<'a> {
         &mut self,
         time: f64,
         system: &S,
-        sleeper: Option<Sleeper>,
+        track: &Track<'_>,
     ) -> Result<Option<Cycle>, Failure> {
-        let (Some(cycles), Some(s), Some(g)) = (&mut self.course.cycles, sleeper, system.grains()) else {
+        let (Some(cycles), Some(s), Some(g)) =
+            (&mut self.course.cycles, track.observed(time), system.grains())
+        else {
             return Ok(None);
         };
         let height = g.state.position(s.body).z;
@@ -289,15 +289,19 @@ impl<'a> Recorder<'a> {
     /// The disk refuses.
     pub fn plot_settlement(&self) -> Result<(), Failure> {
         let cycles = self.cycles();
-        if !self.course.settlement.is_empty() {
+        let lowering = &self.course.settlement;
+        if !lowering.is_empty() {
+            let (several, whose) = if lowering.len() > 1 { (true, "sleepers") } else { (false, "sleeper") };
+            let name = |k: usize| if several { format!("sleeper {}", k + 1) } else { "sleeper".into() };
             write::svg::LinePlot {
-                title: format!("{}: lowering of the sleeper", self.job.title),
+                title: format!("{}: lowering of the {whose}", self.job.title),
                 x_label: "time [s]".into(),
                 y_label: "lowering [mm]".into(),
-                series: vec![write::svg::Series {
-                    name: "sleeper".into(),
-                    points: self.course.settlement.clone(),
-                }],
+                series: lowering
+                    .iter()
+                    .enumerate()
+                    .map(|(k, points)| write::svg::Series { name: name(k), points: points.clone() })
+                    .collect(),
             }
             .write(&self.dir.join("sleeper.svg"))?;
         }
@@ -322,18 +326,24 @@ impl<'a> Recorder<'a> {
     }
 }
 
+/// What is added to the name of a column of a sleeper: its number from 1, where there are several.
+fn numbered(track: &Track<'_>, k: usize) -> String {
+    if track.count() > 1 { format!("_{}", k + 1) } else { String::new() }
+}
+
 /// Columns of the history.
-fn columns<S: System>(job: &Job, system: &S, sleeper: Option<Sleeper>) -> Vec<Column> {
+fn columns<S: System>(job: &Job, system: &S, track: &Track<'_>) -> Vec<Column> {
     let mut columns = vec![Column::new("time", "s")];
     let vector = |columns: &mut Vec<Column>, name: &str, unit: &str| {
         for d in ["x", "y", "z"] {
             columns.push(Column::new(format!("{name}_{d}"), unit));
         }
     };
-    if sleeper.is_some() {
-        columns.push(Column::new("load", "N"));
-        vector(&mut columns, "sleeper", "m");
-        columns.push(Column::new("sleeper_tilt", "rad"));
+    for k in 0..track.count() {
+        let number = numbered(track, k);
+        columns.push(Column::new(format!("load{number}"), "N"));
+        vector(&mut columns, &format!("sleeper{number}"), "m");
+        columns.push(Column::new(format!("sleeper{number}_tilt"), "rad"));
     }
     if system.grains().is_some() && system.solid().is_some() {
         vector(&mut columns, "contact_force_on_solid", "N");

@@ -7,13 +7,13 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Track {
-    /// The sleeper.
+    /// The sleepers.
     pub sleeper: Sleeper,
     /// The load on its seat; without it the sleeper only rests.
     pub load: Option<SeatLoad>,
 }
 
-/// A sleeper as a rigid box, placed on the settled grains.
+/// Sleepers as rigid boxes, placed on the settled grains.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sleeper {
@@ -23,11 +23,44 @@ pub struct Sleeper {
     pub mass: Quantity<Mass>,
     /// Name of its material.
     pub material: String,
-    /// Place of its centre in x and y [m]; it is lowered onto the highest grain below it.
+    /// Place of its centre in x and y [m], of the first of several; it is lowered onto the highest grain below it.
     pub centre: [Quantity<Length>; 2],
+    /// Number of sleepers in a row; default 1.
+    #[serde(default = "one")]
+    pub count: u32,
+    /// Distance from centre to centre [m]; needed by several sleepers and by a rail.
+    pub spacing: Option<Quantity<Length>>,
+    /// Direction of the track, in which the row goes on and wheels roll; default y.
+    #[serde(default)]
+    pub along: Along,
     /// Motions that are held: any of "x", "y", "z", "rx", "ry", "rz"; default none.
     #[serde(default)]
     pub hold: Vec<Motion>,
+}
+
+fn one() -> u32 {
+    1
+}
+
+/// Direction of the track.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Along {
+    /// Along x.
+    X,
+    /// Along y.
+    #[default]
+    Y,
+}
+
+impl Along {
+    /// Number of the axis.
+    pub fn axis(self) -> usize {
+        match self {
+            Along::X => 0,
+            Along::Y => 1,
+        }
+    }
 }
 
 /// One rigid-body motion in world axes.

@@ -2,12 +2,12 @@
 
 use super::{GrainsPart, SleeperPlan, check};
 use crate::model::seat_load::CyclicLoad;
-use crate::scene::track::{Motion, Track};
+use crate::scene::track::{Motion, Sleeper, Track};
 use crate::scene::units::vector;
 use crate::scene::{Document, SceneError};
 use trackbed_dem::shape::Shape;
 
-/// Adds the sleeper and its load.
+/// Adds the sleepers and their load.
 pub(super) fn add(
     document: &Document,
     track: &Track,
@@ -64,8 +64,35 @@ pub(super) fn add(
         mass: s.mass.si,
         fixed,
         half,
-        centre: [s.centre[0].si, s.centre[1].si],
+        centres: row(document, s)?,
         seats,
     });
     Ok(())
+}
+
+/// Centres of the sleepers in plan [m].
+fn row(document: &Document, s: &Sleeper) -> Result<Vec<[f64; 2]>, SceneError> {
+    let (axis, spacing) = (s.along.axis(), s.spacing.map(|l| l.si));
+    check(
+        document,
+        "track.sleeper.count",
+        Some(f64::from(s.count)),
+        |n| (1.0..=1000.0).contains(&n),
+        "1 to 1000",
+    )?;
+    let width = s.size[axis].si;
+    if let Some(l) = spacing.filter(|l| !(l.is_finite() && *l > width)) {
+        let expected = format!("more than the sleeper's width of {width} m along the track");
+        return Err(document.error("track.sleeper.spacing", l.to_string(), expected));
+    }
+    if s.count > 1 && spacing.is_none() {
+        return Err(document.error("track.sleeper.spacing", "nothing", "the distance of the sleepers"));
+    }
+    let first = [s.centre[0].si, s.centre[1].si];
+    let place = |k: u32| {
+        let mut centre = first;
+        centre[axis] += f64::from(k) * spacing.unwrap_or(0.0);
+        centre
+    };
+    Ok((0..s.count).map(place).collect())
 }

@@ -143,6 +143,34 @@ fn load_with_maximum_below_minimum() {
 }
 
 #[test]
+fn sleepers_without_a_spacing() {
+    coupled().scene("mass = 400", "mass = 400\ncount = 2").refused(
+        "scene.toml:30: track.sleeper.spacing: found nothing, expected the distance of the sleepers",
+    );
+}
+
+#[test]
+fn sleepers_one_in_another() {
+    coupled().scene("mass = 400", "mass = 400\ncount = 2\nspacing = 0.9").refused(
+        "scene.toml:34: track.sleeper.spacing: found 0.9, expected more than the sleeper's width of 1 m along the track",
+    );
+}
+
+#[test]
+fn no_sleeper() {
+    coupled()
+        .scene("mass = 400", "mass = 400\ncount = 0")
+        .refused("scene.toml:33: track.sleeper.count: found 0, expected 1 to 1000");
+}
+
+#[test]
+fn a_track_upwards() {
+    coupled()
+        .scene("mass = 400", "mass = 400\nalong = \"z\"")
+        .refused("scene.toml:33: track.sleeper.along: found \"z\", expected \"x\" or \"y\"");
+}
+
+#[test]
 fn seat_beside_the_sleeper() {
     coupled()
         .scene("ramp = \"20 ms\"", "ramp = \"20 ms\"\nseats = [[2, 0]]")
