@@ -511,7 +511,8 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
         applied_work: ledger.work_applied,
-        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints,
+        // Grains put back at the upper end of a periodic slope have their potential energy anew.
+        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints + ledger.work_periodic,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
         bonds: ledger.dissipated_bonds,

@@ -1,5 +1,6 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::Vec3;
 use crate::bond;
 use crate::contact::pass::{Between, Interior};
 use crate::contact::planes::{self, Planes};
@@ -11,6 +12,7 @@ use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
+use crate::periodic;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
@@ -123,6 +125,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         lanes::run(simd, kernel);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
+        }
+        if let Some(periodic) = &model.periodic {
+            out.couple = Vec3::zeros();
+            periodic::contacts::<_, RIGID, ROLL>(periodic, laws, all, scratch, b, pairs, out, dt);
         }
     };
     if *parallel {
@@ -255,6 +261,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum += &w.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
+        sum.periodic.angular += cross.couple;
         fastest = fastest.max(w.fastest);
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
@@ -296,10 +303,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::lanes::Simd;
-    use crate::material::Material;
+    use crate::material::{Material, PairOverride};
     use crate::shape::Shape;
     use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
@@ -333,6 +339,8 @@ mod tests {
         };
         if !clumps {
             input.materials.truncate(1);
+        } else if hertz {
+            input.contacts.push(PairOverride { a: 0, b: 1, adhesion: Some(2.0), ..PairOverride::default() });
         }
         input.planes.push(Plane {
             point: Vec3::zeros(),

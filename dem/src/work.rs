@@ -9,7 +9,7 @@ use crate::error::Partner;
 use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
-use crate::state::{Lanes, PatchContact, PatchPair, State, xyz};
+use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
 use std::sync::Mutex;
@@ -123,6 +123,8 @@ pub(crate) struct CrossWork {
     pub slots: Vec<Lanes>,
     pub dashpot: f64,
     pub friction: f64,
+    /// Angular impulse about the origin that contacts across periodic borders give in this step.
+    pub couple: Vec3,
     pub failure: Option<Failure>,
 }
 
@@ -156,6 +158,7 @@ pub(crate) struct BlockWork {
     pub candidates: Vec<[u16; 2]>,
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
+    pub images: Vec<ImageName>,
     pub planes: Vec<[u32; 2]>,
     pub walls: Vec<[u32; 2]>,
     pub surface: Vec<[u32; 2]>,

@@ -5,6 +5,7 @@ mod bonds;
 mod compaction;
 mod groups;
 mod materials;
+mod periodic;
 mod regions;
 mod sizes;
 mod track;
@@ -15,10 +16,9 @@ use super::tables::Grading;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
-pub use compaction::{CompactionPlan, Press};
+pub use compaction::{CompactionPlan, Measure, Press, Radial};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
-use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
@@ -41,6 +41,7 @@ pub struct GrainsPart {
     gravity: Vec3,
     time_step: TimeStep,
     impact_speed: Option<f64>,
+    periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleepers are the group after the last.
@@ -64,8 +65,8 @@ pub struct GrainsPart {
     pub deposition: Option<DepositionPlan>,
     /// Compaction of the settled bed.
     pub compaction: Vec<CompactionPlan>,
-    /// Boxes that are measured, by name.
-    pub measures: Vec<(String, BoxRegion)>,
+    /// Boxes that are measured.
+    pub measures: Vec<Measure>,
     /// The sleepers, which are the last bodies of the run proper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on them.
@@ -163,8 +164,7 @@ impl GrainsPart {
                             a,
                             b,
                             friction: Some(friction),
-                            restitution: None,
-                            stiffness: None,
+                            ..PairOverride::default()
                         });
                     }
                 }
@@ -232,6 +232,7 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            periodic: self.periodic,
             ..ModelInput::default()
         };
         self.bonds.add_to(&mut input);
@@ -314,6 +315,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
         check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
+        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
             let expected = "no stiffness where materials have a Young's modulus";
             return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
@@ -324,6 +326,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
+            adhesion: c.adhesion.map(|w| w.si),
         });
     }
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
@@ -347,6 +350,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         impact_speed,
+        periodic: [None; 3],
         bodies: Vec::new(),
         parts: Vec::new(),
         first_shape: Vec::new(),
@@ -375,6 +379,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
     }
+    periodic::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();
@@ -445,6 +450,14 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         }
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
+        }
+        ModelError::Adhesion { index, with } => document.error(
+            &format!("contact.{index}.adhesion"),
+            format!("adhesion beside {with}"),
+            "no adhesion in such a scene",
+        ),
+        ModelError::Periodic { problem } => {
+            document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
         }
         ModelError::Bond { .. } | ModelError::BondKind { .. } => {
             document.error("bond", error.to_string(), "bonds that can be made")

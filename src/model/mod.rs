@@ -86,6 +86,7 @@ impl Job {
                 ("material", !scene.material.is_empty()),
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
+                ("periodic", scene.periodic.is_some()),
                 ("deposition", scene.deposition.is_some()),
                 ("compaction", !scene.compaction.is_empty()),
                 ("measure", !scene.measure.is_empty()),

@@ -12,6 +12,7 @@ mod document;
 pub mod grains;
 pub mod history;
 pub mod material;
+pub mod periodic;
 pub mod solid;
 pub mod track;
 pub mod units;
@@ -51,6 +52,8 @@ pub struct Scene {
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,
+    /// Axes along which the grains repeat themselves.
+    pub periodic: Option<periodic::Periodic>,
     /// Gravity deposition before the run proper.
     pub deposition: Option<deposition::Deposition>,
     /// Compaction after it, stage by stage.
