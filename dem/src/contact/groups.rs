@@ -16,7 +16,8 @@ pub(crate) struct Group<const N: usize> {
 }
 
 impl<const N: usize> Group<N> {
-    const EMPTY: Group<N> =
+    /// Contacts of body 0 with itself that have not begun.
+    pub const EMPTY: Group<N> =
         Group { names: [[0; 4]; N], spring: [Lanes([0.0; 4]); 3], rate: Lanes([FRESH; 4]) };
 }
 

@@ -26,7 +26,7 @@
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, harmonic};
+use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, each, harmonic};
 use crate::lanes::{Real, V3};
 use crate::material::{Material, PairOverride};
 
@@ -85,21 +85,15 @@ impl ContactLaw for Hertz {
     }
 
     #[inline(always)]
-    fn mixed<R: Real>(laws: [&Hertz; 4], join: fn(&[f64; 4]) -> R) -> Hertz<R> {
-        let [a, b, c, d] = laws;
+    fn mixed<R: Real>(laws: [&Hertz; 8], join: fn(&[f64; 8]) -> R) -> Hertz<R> {
         Hertz {
-            modulus: join(&[a.modulus, b.modulus, c.modulus, d.modulus]),
-            shear: join(&[a.shear, b.shear, c.shear, d.shear]),
-            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
-            tangential_damping: join(&[
-                a.tangential_damping,
-                b.tangential_damping,
-                c.tangential_damping,
-                d.tangential_damping,
-            ]),
-            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
-            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
-            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
+            modulus: join(&each(&laws, |l| l.modulus)),
+            shear: join(&each(&laws, |l| l.shear)),
+            damping_ratio: join(&each(&laws, |l| l.damping_ratio)),
+            tangential_damping: join(&each(&laws, |l| l.tangential_damping)),
+            friction: join(&each(&laws, |l| l.friction)),
+            rolling: join(&each(&laws, |l| l.rolling)),
+            twisting: join(&each(&laws, |l| l.twisting)),
         }
     }
 

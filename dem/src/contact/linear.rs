@@ -22,7 +22,7 @@
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, harmonic};
+use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, each, harmonic};
 use crate::lanes::{Real, V3};
 use crate::material::{Material, PairOverride};
 
@@ -82,22 +82,16 @@ impl ContactLaw for Linear {
     }
 
     #[inline(always)]
-    fn mixed<R: Real>(laws: [&Linear; 4], join: fn(&[f64; 4]) -> R) -> Linear<R> {
-        let [a, b, c, d] = laws;
+    fn mixed<R: Real>(laws: [&Linear; 8], join: fn(&[f64; 8]) -> R) -> Linear<R> {
         Linear {
-            normal: join(&[a.normal, b.normal, c.normal, d.normal]),
-            tangential: join(&[a.tangential, b.tangential, c.tangential, d.tangential]),
-            damping: join(&[a.damping, b.damping, c.damping, d.damping]),
-            tangential_damping: join(&[
-                a.tangential_damping,
-                b.tangential_damping,
-                c.tangential_damping,
-                d.tangential_damping,
-            ]),
-            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
-            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
-            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
-            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
+            normal: join(&each(&laws, |l| l.normal)),
+            tangential: join(&each(&laws, |l| l.tangential)),
+            damping: join(&each(&laws, |l| l.damping)),
+            tangential_damping: join(&each(&laws, |l| l.tangential_damping)),
+            friction: join(&each(&laws, |l| l.friction)),
+            rolling: join(&each(&laws, |l| l.rolling)),
+            twisting: join(&each(&laws, |l| l.twisting)),
+            damping_ratio: join(&each(&laws, |l| l.damping_ratio)),
         }
     }
 
