@@ -554,6 +554,12 @@ impl<R: Real> V3<R> {
         V3 { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
     }
 
+    /// The components.
+    #[inline(always)]
+    pub fn array(self) -> [R; 3] {
+        [self.x, self.y, self.z]
+    }
+
     /// Square of the length.
     #[inline(always)]
     pub fn norm2(self) -> R {

@@ -1,7 +1,7 @@
 //! One step of the grains: search when due, contacts, integration.
 
 use crate::bond;
-use crate::contact::pass::{Between, Interior};
+use crate::contact::pass::{Between, Gathering, Interior};
 use crate::contact::planes::{self, Planes};
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
@@ -148,9 +148,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.sums.clear();
         w.sums.resize(block.bodies.len(), Sums::default());
         if RIGID || ROLL {
-            pass::gather::<true>(w, slots);
+            lanes::run(simd, Gathering::<true> { w: &mut *w, cross: slots });
         } else {
-            pass::gather::<false>(w, slots);
+            lanes::run(simd, Gathering::<false> { w: &mut *w, cross: slots });
         }
         if !model.bonds.is_empty() {
             bond::pass::within(model, b, block, w, bonded, bonds.fresh);

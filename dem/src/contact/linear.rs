@@ -33,6 +33,8 @@ pub struct Linear<R = f64> {
     pub normal: R,
     /// Tangential stiffness Ks [N/m].
     pub tangential: R,
+    /// 1/Ks [m/N].
+    tangential_softness: R,
     /// C/√m* = 2ζ√K [√(N/m)].
     damping: R,
     /// Cs/C [-].
@@ -55,9 +57,11 @@ impl ContactLaw for Linear {
         let normal = given(|e| e.stiffness).unwrap_or(harmonic(a.stiffness, b.stiffness));
         let restitution = given(|e| e.restitution).unwrap_or(a.restitution.min(b.restitution));
         let zeta = damping_ratio(restitution);
+        let tangential = normal * harmonic(a.tangential_ratio, b.tangential_ratio);
         Linear {
             normal,
-            tangential: normal * harmonic(a.tangential_ratio, b.tangential_ratio),
+            tangential,
+            tangential_softness: 1.0 / tangential,
             damping: 2.0 * zeta * normal.sqrt(),
             tangential_damping: harmonic(a.tangential_damping_ratio, b.tangential_damping_ratio),
             friction: given(|e| e.friction).unwrap_or(a.friction.min(b.friction)),
@@ -72,6 +76,7 @@ impl ContactLaw for Linear {
         Linear {
             normal: R::splat(self.normal),
             tangential: R::splat(self.tangential),
+            tangential_softness: R::splat(self.tangential_softness),
             damping: R::splat(self.damping),
             tangential_damping: R::splat(self.tangential_damping),
             friction: R::splat(self.friction),
@@ -86,6 +91,7 @@ impl ContactLaw for Linear {
         Linear {
             normal: join(&each(&laws, |l| l.normal)),
             tangential: join(&each(&laws, |l| l.tangential)),
+            tangential_softness: join(&each(&laws, |l| l.tangential_softness)),
             damping: join(&each(&laws, |l| l.damping)),
             tangential_damping: join(&each(&laws, |l| l.tangential_damping)),
             friction: join(&each(&laws, |l| l.friction)),
@@ -132,8 +138,19 @@ impl ContactLaw for Linear {
         let cs = c * law.tangential_damping;
         let time = R::splat(dt) * part;
         let limit = law.friction * normal;
-        let slid =
-            slide::plane(&mut memory.spring, n, slip_velocity, law.tangential, cs, limit, time, dt, on);
+        let softness = Some(law.tangential_softness);
+        let slid = slide::plane(
+            &mut memory.spring,
+            n,
+            slip_velocity,
+            law.tangential,
+            softness,
+            cs,
+            limit,
+            time,
+            dt,
+            on,
+        );
         dashpot = dashpot + slid.dashpot;
         let mut friction = slid.friction;
         let mut moment = V3::zero();

@@ -2,15 +2,14 @@
 //! bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps and boxes, and in whether rolling
 //! is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
 
-use super::groups::{Group, Groups};
+use super::groups::{Group, Groups, Springs};
 use super::{Answer, ContactLaw, FRESH, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
 use crate::lanes::{Four, Kernel, Pack, Real, V3};
-use crate::search::candidates::spheres;
 use crate::state::{Block, Cross, Lanes, xyz};
-use crate::work::{BlockWork, CrossWork, Failure};
+use crate::work::{BlockWork, CrossWork, Failure, Sums};
 
 /// Motion of one body as a contact needs it.
 pub(crate) struct Motion<'a> {
@@ -50,31 +49,72 @@ pub(crate) trait End {
 }
 
 /// Bodies of one block.
-pub(crate) struct Own<'a> {
+pub(crate) struct Own<'a, const RIGID: bool> {
     spheres: &'a [Lanes],
     centre: &'a [Lanes],
     velocity: &'a [Lanes],
     spin: &'a [Lanes],
-    sphere: Names,
+    names: [&'a [u32; 4]; 2],
+    /// Of clumps and boxes only.
     body: Names,
 }
 
-impl End for Own<'_> {
+impl<'a, const RIGID: bool> Own<'a, RIGID> {
+    /// `names`: of spheres, by lane.
+    ///
+    /// # Safety
+    /// Single spheres (`RIGID = false`): every name is below the number of the block's bodies.
+    #[inline(always)]
+    pub unsafe fn new<R: Pack>(
+        block: &'a Block,
+        w: &'a BlockWork,
+        names: [&'a [u32; 4]; 2],
+    ) -> Own<'a, RIGID> {
+        let mut body = [0; 8];
+        if RIGID {
+            for l in 0..R::LANES {
+                body[l] = w.owner[names[l / 4][l % 4] as usize] as usize;
+            }
+        }
+        let Block { centre, velocity, spin, .. } = block;
+        Own { spheres: &w.spheres, centre, velocity, spin, names, body }
+    }
+
+    #[inline(always)]
+    pub fn body(&self, lane: usize) -> usize {
+        if RIGID { self.body[lane] } else { self.names[lane / 4][lane % 4] as usize }
+    }
+
+    #[inline(always)]
+    fn of_body(&self, list: &'a [Lanes], lane: usize) -> &'a Lanes {
+        let k = self.body(lane);
+        // SAFETY: as whoever called `new` has promised; the block's lists are of one length.
+        if RIGID { &list[k] } else { unsafe { list.get_unchecked(k) } }
+    }
+}
+
+/// Whether a block's lists of records and its sums are of one length, and `most` is below it.
+pub(crate) fn within(block: &Block, w: &BlockWork, most: u32) -> bool {
+    let n = block.centre.len();
+    block.velocity.len() == n && block.spin.len() == n && w.sums.len() == n && (most as usize) < n
+}
+
+impl<const RIGID: bool> End for Own<'_, RIGID> {
     #[inline(always)]
     fn sphere(&self, lane: usize) -> &Lanes {
-        &self.spheres[self.sphere[lane]]
+        if RIGID { &self.spheres[self.names[lane / 4][lane % 4] as usize] } else { self.centre(lane) }
     }
     #[inline(always)]
     fn centre(&self, lane: usize) -> &Lanes {
-        &self.centre[self.body[lane]]
+        self.of_body(self.centre, lane)
     }
     #[inline(always)]
     fn velocity(&self, lane: usize) -> &Lanes {
-        &self.velocity[self.body[lane]]
+        self.of_body(self.velocity, lane)
     }
     #[inline(always)]
     fn spin(&self, lane: usize) -> &Lanes {
-        &self.spin[self.body[lane]]
+        self.of_body(self.spin, lane)
     }
 }
 
@@ -83,73 +123,57 @@ struct Far<'a> {
     blocks: &'a [Block],
     works: &'a [BlockWork],
     rigid: bool,
-    block: Names,
-    sphere: Names,
+    block: [&'a [u32; 4]; 2],
+    sphere: [&'a [u32; 4]; 2],
     body: Names,
+}
+
+impl<'a> Far<'a> {
+    #[inline(always)]
+    fn block(&self, lane: usize) -> usize {
+        self.block[lane / 4][lane % 4] as usize
+    }
+    #[inline(always)]
+    fn body(&self, lane: usize) -> usize {
+        if self.rigid { self.body[lane] } else { self.sphere[lane / 4][lane % 4] as usize }
+    }
 }
 
 impl End for Far<'_> {
     #[inline(always)]
     fn sphere(&self, lane: usize) -> &Lanes {
-        let block = self.block[lane];
         if self.rigid {
-            &self.works[block].spheres[self.sphere[lane]]
+            &self.works[self.block(lane)].spheres[self.sphere[lane / 4][lane % 4] as usize]
         } else {
-            &self.blocks[block].centre[self.sphere[lane]]
+            self.centre(lane)
         }
     }
     #[inline(always)]
     fn centre(&self, lane: usize) -> &Lanes {
-        &self.blocks[self.block[lane]].centre[self.body[lane]]
+        &self.blocks[self.block(lane)].centre[self.body(lane)]
     }
     #[inline(always)]
     fn velocity(&self, lane: usize) -> &Lanes {
-        &self.blocks[self.block[lane]].velocity[self.body[lane]]
+        &self.blocks[self.block(lane)].velocity[self.body(lane)]
     }
     #[inline(always)]
     fn spin(&self, lane: usize) -> &Lanes {
-        &self.blocks[self.block[lane]].spin[self.body[lane]]
+        &self.blocks[self.block(lane)].spin[self.body(lane)]
     }
 }
 
-/// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` before.
+/// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` (1, 0 or −1) before.
 #[inline(always)]
 fn difference<R: Pack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
     let sign = R::record(&[1.0, 1.0, 1.0, last]);
-    R::columns([p[0] - q[0] * sign, p[1] - q[1] * sign, p[2] - q[2] * sign, p[3] - q[3] * sign])
+    R::columns([p[0].less(q[0], sign), p[1].less(q[1], sign), p[2].less(q[2], sign), p[3].less(q[3], sign)])
 }
 
-/// The numbers of as many groups as there are lanes for.
-#[inline(always)]
-pub(crate) fn wide<R: Pack>(first: &[u32; 4], second: &[u32; 4]) -> Names {
-    let mut out = [0; 8];
-    for l in 0..4 {
-        out[l] = first[l] as usize;
-        if R::GROUPS > 1 {
-            out[4 + l] = second[l] as usize;
-        }
-    }
-    out
-}
-
-/// Numbers of the bodies of spheres.
-#[inline(always)]
-pub(crate) fn bodies<R: Pack, const RIGID: bool>(owner: &[u32], spheres: &Names) -> Names {
-    let mut out = *spheres;
-    if RIGID {
-        for l in 0..R::LANES {
-            out[l] = owner[out[l]] as usize;
-        }
-    }
-    out
-}
-
-/// The groups for the lanes, from the first of `list`: the second, and where there is none the spare one.
+/// The groups for the lanes, from the first of `list`; where there is one only, the spare one as the second.
 #[inline(always)]
 pub(crate) fn side_by_side<'a, R: Pack, T>(list: &'a mut [T], spare: &'a mut T) -> (&'a mut T, &'a mut T) {
     let (first, rest) = list.split_at_mut(1);
-    let second = if R::GROUPS > 1 { rest.first_mut() } else { None };
-    (&mut first[0], second.unwrap_or(spare))
+    (&mut first[0], if R::GROUPS > 1 { &mut rest[0] } else { spare })
 }
 
 /// The law of the contacts in lanes: one for all, or mixed lane by lane.
@@ -176,12 +200,6 @@ impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
     }
 }
 
-/// Lanes below `count`.
-#[inline(always)]
-pub(crate) fn present<R: Pack>(count: usize) -> R::Mask {
-    R::of(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]).lt(R::splat(count as f64))
-}
-
 /// Energy that contacts took, by lane of a group.
 pub(crate) struct Taken<Q> {
     pub dashpot: Q,
@@ -197,11 +215,11 @@ impl<Q: Four> Taken<Q> {
 
 /// Reads the memory of groups.
 #[inline(always)]
-pub(crate) fn recall<R: Pack, const N: usize, const ROLL: bool>(
-    groups: &(&mut Group<N>, &mut Group<N>),
+pub(crate) fn recall<R: Pack, const ROLL: bool>(
+    springs: &(&mut Springs, &mut Springs),
     turns: &(&mut [Lanes; 4], &mut [Lanes; 4]),
 ) -> Memory<R> {
-    let (p, q) = groups;
+    let (p, q) = springs;
     let [x, y, z] = [0, 1, 2].map(|d| (&p.spring[d], &q.spring[d]));
     let spring = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
     let rate = R::join(&p.rate, &q.rate);
@@ -216,13 +234,13 @@ pub(crate) fn recall<R: Pack, const N: usize, const ROLL: bool>(
 
 /// Writes the memory of groups: that of the lanes `on`, nothing for the others.
 #[inline(always)]
-pub(crate) fn remember<R: Pack, const N: usize, const ROLL: bool>(
-    groups: &mut (&mut Group<N>, &mut Group<N>),
+pub(crate) fn remember<R: Pack, const ROLL: bool>(
+    springs: &mut (&mut Springs, &mut Springs),
     turns: &mut (&mut [Lanes; 4], &mut [Lanes; 4]),
     memory: &Memory<R>,
     on: R::Mask,
 ) {
-    let (p, q) = groups;
+    let (p, q) = springs;
     let spring = memory.spring.only(on);
     spring.x.split(&mut p.spring[0], &mut q.spring[0]);
     spring.y.split(&mut p.spring[1], &mut q.spring[1]);
@@ -253,13 +271,23 @@ struct Outcome<R: Real> {
     bound: R,
 }
 
+impl<R: Pack> Outcome<R> {
+    /// The first contact that is too deep: its number in a list where the lanes begin with group `g`, the overlap and
+    /// its bound.
+    #[cold]
+    fn too_deep(&self, g: usize) -> (usize, f64, f64) {
+        let l = self.deep.trailing_zeros() as usize;
+        (4 * g + l, self.overlap.numbers()[l], self.bound.numbers()[l])
+    }
+}
+
 /// Contacts between spheres. `None` when none of them touches. `law` mixes constants for materials in lanes.
 #[inline(always)]
-fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool, const N: usize>(
+fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
     law: &Mix<'_, L, R>,
     a: &impl End,
     b: &impl End,
-    mut groups: (&mut Group<N>, &mut Group<N>),
+    mut springs: (&mut Springs, &mut Springs),
     mut turns: (&mut [Lanes; 4], &mut [Lanes; 4]),
     present: R::Mask,
     taken: &mut Taken<R::Quad>,
@@ -271,17 +299,19 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool, const N
     let between = V3::new(dx, dy, dz);
     let distance2 = between.norm2();
     let on = distance2.lt(reach * reach) & present;
-    let mut memory = recall::<R, N, ROLL>(&groups, &turns);
+    let mut memory = recall::<R, ROLL>(&springs, &turns);
     let ended = !on & memory.rate.lt(R::splat(FRESH));
     if R::any(ended) {
         let (ma, mb) = (R::columns(R::rows(|l| a.spin(l)))[3], R::columns(R::rows(|l| b.spin(l)))[3]);
         let left = L::left::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
         taken.friction = left.add_to(taken.friction);
-        remember::<R, N, ROLL>(&mut groups, &mut turns, &memory, on);
+        remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
     }
     if !R::any(on) {
         return None;
     }
+    let (va, wa) = R::two_rows(|l| (a.velocity(l), a.spin(l)));
+    let (vb, wb) = R::two_rows(|l| (b.velocity(l), b.spin(l)));
     let distance = distance2.sqrt();
     // distance/distance² rather than 1/distance: the division need not wait for the root.
     let mut normal = between * (distance * (R::splat(1.0) / distance2));
@@ -296,10 +326,9 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool, const N
     let la = ra - R::splat(0.5) * overlap;
     let lb = distance - la;
 
-    let (va, vb) = (R::rows(|l| a.velocity(l)), R::rows(|l| b.velocity(l)));
     let [ux, uy, uz, softness] = difference(va, vb, -1.0);
-    let [wax, way, waz, ma] = R::columns(R::rows(|l| a.spin(l)));
-    let [wbx, wby, wbz, mb] = R::columns(R::rows(|l| b.spin(l)));
+    let [wax, way, waz, ma] = R::columns(wa);
+    let [wbx, wby, wbz, mb] = R::columns(wb);
     let (wa, wb) = (V3::new(wax, way, waz), V3::new(wbx, wby, wbz));
     let translation = V3::new(ux, uy, uz);
     let (mut arm_a, mut arm_b) = (V3::zero(), V3::zero());
@@ -322,7 +351,7 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool, const N
     };
     let Answer { force, moment, dashpot, friction, .. } =
         L::answer::<R, ROLL>(&law.of(ma, mb), &touch, &mut memory, on, dt);
-    remember::<R, N, ROLL>(&mut groups, &mut turns, &memory, on);
+    remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
     taken.dashpot = dashpot.only(on).add_to(taken.dashpot);
     taken.friction = friction.only(on).add_to(taken.friction);
     let force = force.only(on);
@@ -360,6 +389,17 @@ pub(crate) fn records<R: Pack>(force: V3<R>, torque: V3<R>) -> [R::Record; 8] {
     R::records(four(force, R::zero()), four(torque, R::zero()))
 }
 
+/// Adds force and torque to the sums of a body.
+///
+/// # Safety
+/// Single spheres (`RIGID = false`): `body` is below the number of sums.
+#[inline(always)]
+unsafe fn give<R: Pack, const RIGID: bool>(record: R::Record, sums: &mut [Sums], body: usize) {
+    // SAFETY: as the caller has promised.
+    let sum = if RIGID { &mut sums[body] } else { unsafe { sums.get_unchecked_mut(body) } };
+    R::give(record, &mut sum.0);
+}
+
 /// Contacts between spheres of one block.
 pub(crate) struct Interior<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
@@ -375,51 +415,53 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
     #[inline(always)]
     fn run<R: Pack>(self) {
         let Interior { laws, block, pairs, w, dt } = self;
-        let n = block.centre.len();
-        let (centre, velocity, spin) = (&block.centre[..n], &block.velocity[..n], &block.spin[..n]);
-        let sums = &mut w.sums[..n];
-        let spheres = if RIGID { &w.spheres[..] } else { centre };
-        let owner = &w.owner[..];
-        let law = Mix::<L, R>::new(laws, w.material, w.material);
+        let [i, j] = pairs.most();
+        assert!(RIGID || within(block, w, i.max(j)), "names of contacts are places of bodies");
+        let mut sums = std::mem::take(&mut w.sums);
+        let own = &*w;
+        let law = Mix::<L, R>::new(laws, own.material, own.material);
         let mut taken = Taken::new();
-        let mut failure = None;
+        let mut deepest = None;
         let len = pairs.len();
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
-        for g in (0..pairs.groups.len()).step_by(R::GROUPS) {
-            let groups = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
             let turns = if ROLL {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
             } else {
                 (&mut no_turn, &mut spare_turn)
             };
-            let (p, q) = (groups.0.names, groups.1.names);
-            let [i, j] = [wide::<R>(&p[0], &q[0]), wide::<R>(&p[1], &q[1])];
-            let (body_a, body_b) = (bodies::<R, RIGID>(owner, &i), bodies::<R, RIGID>(owner, &j));
-            let a = Own { spheres, centre, velocity, spin, sphere: i, body: body_a };
-            let b = Own { spheres, centre, velocity, spin, sphere: j, body: body_b };
-            let there = present::<R>(len - 4 * g);
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            // SAFETY: compared above.
+            let a = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[0], &q[0]]) };
+            let b = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[1], &q[1]]) };
+            let (there, springs) = (R::below(len - 4 * g), (first, second));
             let Some(out) =
-                contacts::<L, R, RIGID, ROLL, 2>(&law, &a, &b, groups, turns, there, &mut taken, dt)
+                contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt)
             else {
                 continue;
             };
-            let (on_a, on_b) =
-                (records::<R>(out.force, out.torque_a), records::<R>(-out.force, out.torque_b));
+            let (on_a, on_b) = R::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
             for l in 0..R::LANES {
-                R::give(on_a[l], &mut sums[a.body[l]].0);
-                R::give(on_b[l], &mut sums[b.body[l]].0);
+                // SAFETY: compared above.
+                unsafe {
+                    give::<R, RIGID>(on_a[l], &mut sums, a.body(l));
+                    give::<R, RIGID>(on_b[l], &mut sums, b.body(l));
+                }
             }
-            if out.deep != 0 && failure.is_none() {
-                let l = out.deep.trailing_zeros() as usize;
-                let partner = Partner::Body(block.bodies[b.body[l]] as usize);
-                let (overlap, bound) = (out.overlap.numbers()[l], out.bound.numbers()[l]);
-                failure = Some(Failure::Overlap { body: block.bodies[a.body[l]], partner, overlap, bound });
+            if out.deep != 0 && deepest.is_none() {
+                deepest = Some(out.too_deep(g));
             }
         }
+        w.sums = sums;
         w.ledger.dissipated_dashpot += taken.dashpot.sum();
         w.ledger.dissipated_friction += taken.friction.sum();
-        w.failure = w.failure.or(failure);
+        if let (Some((k, overlap, bound)), None) = (deepest, w.failure) {
+            let [i, j] = pairs.name(k).map(|sphere| block.bodies[w.body(sphere) as usize]);
+            w.failure =
+                Some(Failure::Overlap { body: i, partner: Partner::Body(j as usize), overlap, bound });
+        }
     }
 }
 
@@ -449,36 +491,32 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
         let mut taken = Taken::new();
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
-        for g in (0..pairs.groups.len()).step_by(R::GROUPS) {
-            let groups = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+        let n = mine.centre.len();
+        let even = mine.velocity.len() == n && mine.spin.len() == n;
+        assert!(RIGID || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
+        let mut deepest = None;
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
             let turns = if ROLL {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
             } else {
                 (&mut no_turn, &mut spare_turn)
             };
-            let (p, q) = (groups.0.names, groups.1.names);
-            let (i, block) = (wide::<R>(&p[0], &q[0]), wide::<R>(&p[1], &q[1]));
-            let j = wide::<R>(&p[2], &q[2]);
             let count = (len - 4 * g).min(R::LANES);
-            let a = Own {
-                spheres: spheres(mine, wa, RIGID),
-                centre: &mine.centre,
-                velocity: &mine.velocity,
-                spin: &mine.spin,
-                sphere: i,
-                body: bodies::<R, RIGID>(&wa.owner, &i),
-            };
-            let mut body = j;
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            // SAFETY: compared above.
+            let a = unsafe { Own::<RIGID>::new::<R>(mine, wa, [&p[0], &q[0]]) };
+            let (block, sphere) = ([&p[1], &q[1]], [&p[2], &q[2]]);
+            let mut b = Far { blocks, works, rigid: RIGID, block, sphere, body: [0; 8] };
             if RIGID {
                 for l in 0..count {
-                    body[l] = works[block[l]].owner[j[l]] as usize;
+                    b.body[l] = works[b.block(l)].owner[sphere[l / 4][l % 4] as usize] as usize;
                 }
             }
-            let b = Far { blocks, works, rigid: RIGID, block, sphere: j, body };
-            let there = present::<R>(count);
+            let (there, springs) = (R::below(count), (first, second));
             let width = if RIGID || ROLL { 3 } else { 2 };
             let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
-            match contacts::<L, R, RIGID, ROLL, 3>(&law, &a, &b, groups, turns, there, &mut taken, dt) {
+            match contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt) {
                 None => slots.fill(Lanes::default()),
                 Some(o) => {
                     if RIGID || ROLL {
@@ -499,15 +537,18 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
                             R::put(rows[l], slot);
                         }
                     }
-                    if o.deep != 0 && out.failure.is_none() {
-                        let l = o.deep.trailing_zeros() as usize;
-                        let partner = Partner::Body(blocks[block[l]].bodies[b.body[l]] as usize);
-                        let (overlap, bound) = (o.overlap.numbers()[l], o.bound.numbers()[l]);
-                        let body = mine.bodies[a.body[l]];
-                        out.failure = Some(Failure::Overlap { body, partner, overlap, bound });
+                    if o.deep != 0 && deepest.is_none() {
+                        deepest = Some(o.too_deep(g));
                     }
                 }
             }
+        }
+        if let (Some((k, overlap, bound)), None) = (deepest, out.failure) {
+            let [i, block, j] = pairs.name(k);
+            let (other, there) = (&blocks[block as usize], works[block as usize].body(j));
+            let (body, partner) = (mine.bodies[wa.body(i) as usize], other.bodies[there as usize]);
+            let partner = Partner::Body(partner as usize);
+            out.failure = Some(Failure::Overlap { body, partner, overlap, bound });
         }
         out.dashpot += taken.dashpot.sum();
         out.friction += taken.friction.sum();
@@ -563,18 +604,33 @@ pub(crate) fn boxes<L: ContactLaw>(
 }
 
 /// Adds the slots of contacts with other blocks, in their fixed order. `WIDE`: slots hold both torques.
-pub(crate) fn gather<const WIDE: bool>(w: &mut BlockWork, cross: &[CrossWork]) {
-    let width = if WIDE { 3 } else { 2 };
-    for entry in &w.gather {
-        let (slot, first) = entry.slot();
-        let slot = &cross[entry.block as usize].slots[slot * width..][..width];
-        let (force, torque) = w.sums[entry.place as usize].both();
-        let sign = if first { 1.0 } else { -1.0 };
-        let lever = if first { slot[0][3] } else { slot[1][3] };
-        let turn = if first { &slot[1] } else { &slot[width - 1] };
-        for d in 0..3 {
-            force[d] += sign * slot[0][d];
-            torque[d] += if WIDE { turn[d] } else { slot[1][d] * lever };
+pub(crate) struct Gathering<'a, const WIDE: bool> {
+    pub w: &'a mut BlockWork,
+    pub cross: &'a [CrossWork],
+}
+
+impl<const WIDE: bool> Kernel for Gathering<'_, WIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Pack>(self) {
+        let Gathering { w, cross } = self;
+        let width = if WIDE { 3 } else { 2 };
+        let three = R::Quad::load(&[1.0, 1.0, 1.0, 0.0]);
+        for entry in &w.gather {
+            let (slot, first) = entry.slot();
+            let slot = &cross[entry.block as usize].slots[slot * width..][..width];
+            let sums = &mut w.sums[entry.place as usize].0;
+            let sign = three * R::Quad::splat(if first { 1.0 } else { -1.0 });
+            let force = R::Quad::load(&slot[0]) * sign;
+            let torque = if WIDE {
+                R::Quad::load(&slot[if first { 1 } else { 2 }])
+            } else {
+                let lever = slot[usize::from(!first)][3];
+                R::Quad::load(&slot[1]) * (three * R::Quad::splat(lever))
+            };
+            (R::Quad::load(&sums[0]) + force).store(&mut sums[0]);
+            (R::Quad::load(&sums[1]) + torque).store(&mut sums[1]);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Contacts with planes: spheres by lanes of four, corners of boxes one by one.
 
 use super::groups::{Group, Groups};
-use super::pass::{Mix, Taken, bodies, motion, present, recall, records, remember, side_by_side, wide};
+use super::pass::{End, Mix, Own, Taken, motion, recall, records, remember, side_by_side, within};
 use super::{Answer, ContactGeometry, ContactLaw, FRESH, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
@@ -50,48 +50,52 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
     #[inline(always)]
     fn run<R: Pack>(self) {
         let Planes { laws, planes, material, block, pairs, w, dt } = self;
-        let mix = Mix::<L, R>::new(laws, w.material, material);
+        assert!(RIGID || within(block, w, pairs.most()[0]), "names of contacts are places of bodies");
+        let mut sums = std::mem::take(&mut w.sums);
+        let own = &*w;
+        let mut failure = None;
+        let mix = Mix::<L, R>::new(laws, own.material, material);
         let len = pairs.len();
         let mut taken = Taken::<R::Quad>::new();
         let zero = R::Quad::zero();
         let (mut work, mut linear, mut angular) = (zero, V3::<R::Quad>::zero(), V3::<R::Quad>::zero());
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
-        let spheres = if RIGID { &w.spheres[..] } else { &block.centre[..] };
-        for g in (0..pairs.groups.len()).step_by(R::GROUPS) {
-            let mut groups = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
             let mut turns = if ROLL {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
             } else {
                 (&mut no_turn, &mut spare_turn)
             };
-            let (p, q) = (groups.0.names, groups.1.names);
-            let [i, plane] = [wide::<R>(&p[0], &q[0]), wide::<R>(&p[1], &q[1])];
-            let body = bodies::<R, RIGID>(&w.owner, &i);
-            let there = present::<R>(len - 4 * g);
-            let [x, y, z, r] = R::columns(R::rows(|l| &spheres[i[l]]));
-            let [nx, ny, nz, from] = R::columns(R::rows(|l| &planes[plane[l]].face));
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            let plane = |l: usize| if l < 4 { p[1][l] as usize } else { q[1][l - 4] as usize };
+            // SAFETY: compared above.
+            let body = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[0], &q[0]]) };
+            let (there, mut springs) = (R::below(len - 4 * g), (first, second));
+            let [x, y, z, r] = R::columns(R::rows(|l| body.sphere(l)));
+            let [nx, ny, nz, from] = R::columns(R::rows(|l| &planes[plane(l)].face));
             let (position, normal) = (V3::new(x, y, z), V3::new(nx, ny, nz));
             let height = position.dot(normal) - from;
             let on = height.lt(r) & there;
-            let mut memory = recall::<R, 2, ROLL>(&groups, &turns);
+            let mut memory = recall::<R, ROLL>(&springs, &turns);
             let ended = !on & memory.rate.lt(R::splat(FRESH));
-            let [vx, vy, vz, material] = R::columns(R::rows(|l| &planes[plane[l]].motion));
-            let [wx, wy, wz, own] = R::columns(R::rows(|l| &block.spin[body[l]]));
-            let law = mix.of(own, material);
+            let [vx, vy, vz, material] = R::columns(R::rows(|l| &planes[plane(l)].motion));
+            let [wx, wy, wz, material_a] = R::columns(R::rows(|l| body.spin(l)));
+            let law = mix.of(material_a, material);
             if R::any(ended) {
                 let left = L::left::<R, ROLL>(&law, &memory).only(ended);
                 taken.friction = left.add_to(taken.friction);
-                remember::<R, 2, ROLL>(&mut groups, &mut turns, &memory, on);
+                remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
             }
             if !R::any(on) {
                 continue;
             }
-            let [ux, uy, uz, softness] = R::columns(R::rows(|l| &block.velocity[body[l]]));
+            let [ux, uy, uz, softness] = R::columns(R::rows(|l| body.velocity(l)));
             let spin = V3::new(wx, wy, wz);
             let to_point = -(normal * height);
             let arm = if RIGID {
-                let [cx, cy, cz, _] = R::columns(R::rows(|l| &block.centre[body[l]]));
+                let [cx, cy, cz, _] = R::columns(R::rows(|l| body.centre(l)));
                 position - V3::new(cx, cy, cz) + to_point
             } else {
                 to_point
@@ -102,7 +106,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             let touch = Touch { mass, radius: r, overlap: r - height, normal, velocity, spin };
             let Answer { force, moment, dashpot, friction, .. } =
                 L::answer::<R, ROLL>(&law, &touch, &mut memory, on, dt);
-            remember::<R, 2, ROLL>(&mut groups, &mut turns, &memory, on);
+            remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
             taken.dashpot = dashpot.only(on).add_to(taken.dashpot);
             taken.friction = friction.only(on).add_to(taken.friction);
             let force = force.only(on);
@@ -117,18 +121,19 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             angular = add(about_origin, angular);
             let records = records::<R>(force, torque);
             for l in 0..R::LANES {
-                R::give(records[l], &mut w.sums[body[l]].0);
+                R::give(records[l], &mut sums[body.body(l)].0);
             }
             let deep = R::mask_bits((touch.overlap).gt(r) & on);
-            if deep != 0 && w.failure.is_none() {
+            if deep != 0 && failure.is_none() {
                 let l = deep.trailing_zeros() as usize;
-                w.failure = Some(Failure::Overlap {
-                    body: block.bodies[body[l]],
-                    partner: Partner::Plane(plane[l]),
-                    overlap: touch.overlap.numbers()[l],
-                    bound: r.numbers()[l],
-                });
+                failure = Some((4 * g + l, touch.overlap.numbers()[l], r.numbers()[l]));
             }
+        }
+        w.sums = sums;
+        if let (Some((k, overlap, bound)), None) = (failure, w.failure) {
+            let [sphere, plane] = pairs.name(k);
+            let (body, partner) = (block.bodies[w.body(sphere) as usize], Partner::Plane(plane as usize));
+            w.failure = Some(Failure::Overlap { body, partner, overlap, bound });
         }
         let ledger = &mut w.ledger;
         ledger.dissipated_dashpot += taken.dashpot.sum();

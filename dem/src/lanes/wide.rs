@@ -33,14 +33,35 @@ pub(crate) trait Pack: Real {
     fn mask_bits(mask: Self::Mask) -> u32;
     /// Loads a record for each lane, in the order that [`Pack::columns`] wants.
     fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [Self; 4];
+    /// As [`Pack::rows`], two records for each lane.
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([Self; 4], [Self; 4]);
+    /// The lanes below `count`.
+    fn below(count: usize) -> Self::Mask;
     /// Number k of each lane's record from the rows that hold the records.
     fn columns(rows: [Self; 4]) -> [Self; 4];
     /// The eight numbers of each lane; nothing of meaning beyond the last lane.
     fn records(first: [Self; 4], second: [Self; 4]) -> [Self::Record; 8];
+    /// Per lane a record of `force` and `torque_a`, and one of −`force` and `torque_b`; the fourth numbers are zero.
+    #[inline(always)]
+    fn opposed(
+        force: [Self; 3],
+        torque_a: [Self; 3],
+        torque_b: [Self; 3],
+    ) -> ([Self::Record; 8], [Self::Record; 8]) {
+        let zero = Self::zero();
+        let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
+        (Self::records([x, y, z, zero], [a, b, c, zero]), Self::records([-x, -y, -z, zero], [d, e, f, zero]))
+    }
     /// Adds a record to eight numbers.
     fn give(record: Self::Record, to: &mut [Lanes; 2]);
     /// Stores a record.
     fn put(record: Self::Record, to: &mut [Lanes; 2]);
+
+    /// `self − o sign` for signs that are 1, 0 or −1, whose product is exact.
+    #[inline(always)]
+    fn less(self, o: Self, sign: Self) -> Self {
+        self - o * sign
+    }
 
     /// The same record in every row.
     #[inline(always)]
@@ -86,6 +107,18 @@ impl<F: Four> Pack for F {
     #[inline(always)]
     fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [F; 4] {
         [F::load(record(0)), F::load(record(1)), F::load(record(2)), F::load(record(3))]
+    }
+    #[inline(always)]
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([F; 4], [F; 4]) {
+        let (p, q, r, s) = (records(0), records(1), records(2), records(3));
+        (
+            [F::load(p.0), F::load(q.0), F::load(r.0), F::load(s.0)],
+            [F::load(p.1), F::load(q.1), F::load(r.1), F::load(s.1)],
+        )
+    }
+    #[inline(always)]
+    fn below(count: usize) -> F::Mask {
+        F::load(&[0.0, 1.0, 2.0, 3.0]).lt(F::splat(count as f64))
     }
     #[inline(always)]
     fn columns(rows: [F; 4]) -> [F; 4] {
@@ -235,6 +268,39 @@ mod avx512 {
         })
     }
 
+    /// Four numbers of each lane: first those of lanes 0 and 2, 1 and 3, 4 and 6, 5 and 7, each as two pairs of the first
+    /// numbers and then two of the last.
+    #[inline(always)]
+    fn halves([Avx512(a), Avx512(b), Avx512(c), Avx512(d)]: [Avx512; 4]) -> [Avx512; 4] {
+        unsafe {
+            let (ab_even, ab_odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+            let (cd_even, cd_odd) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+            [
+                Avx512(_mm512_shuffle_f64x2::<0x44>(ab_even, cd_even)),
+                Avx512(_mm512_shuffle_f64x2::<0x44>(ab_odd, cd_odd)),
+                Avx512(_mm512_shuffle_f64x2::<0xee>(ab_even, cd_even)),
+                Avx512(_mm512_shuffle_f64x2::<0xee>(ab_odd, cd_odd)),
+            ]
+        }
+    }
+
+    /// Eight numbers of each lane from two results of [`halves`].
+    #[inline(always)]
+    fn join(p: [Avx512; 4], q: [Avx512; 4]) -> [Avx512; 8] {
+        unsafe {
+            [
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[0].0, q[0].0)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[1].0, q[1].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[0].0, q[0].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[1].0, q[1].0)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[2].0, q[2].0)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[3].0, q[3].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[2].0, q[2].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[3].0, q[3].0)),
+            ]
+        }
+    }
+
     impl Pack for Avx512 {
         type Quad = Avx2;
         type Record = Avx512;
@@ -243,6 +309,11 @@ mod avx512 {
         #[inline(always)]
         fn join(first: &[f64; 4], second: &[f64; 4]) -> Avx512 {
             both(first, second)
+        }
+        #[inline(always)]
+        fn less(self, o: Avx512, sign: Avx512) -> Avx512 {
+            // One rounding, as the product has none.
+            Avx512(unsafe { _mm512_fnmadd_pd(o.0, sign.0, self.0) })
         }
         #[inline(always)]
         fn split(self, first: &mut [f64; 4], second: &mut [f64; 4]) {
@@ -286,6 +357,22 @@ mod avx512 {
             ]
         }
         #[inline(always)]
+        fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([Avx512; 4], [Avx512; 4]) {
+            let (a, c) = (records(0), records(2));
+            let (p, x) = (both(a.0, c.0), both(a.1, c.1));
+            let (b, d) = (records(1), records(3));
+            let (q, y) = (both(b.0, d.0), both(b.1, d.1));
+            let (e, g) = (records(4), records(6));
+            let (r, z) = (both(e.0, g.0), both(e.1, g.1));
+            let (f, h) = (records(5), records(7));
+            let (s, w) = (both(f.0, h.0), both(f.1, h.1));
+            ([p, q, r, s], [x, y, z, w])
+        }
+        #[inline(always)]
+        fn below(count: usize) -> Avx512Mask {
+            Avx512Mask(if count < 8 { (1 << count) - 1 } else { 255 })
+        }
+        #[inline(always)]
         fn columns(rows: [Avx512; 4]) -> [Avx512; 4] {
             let [Avx512(a), Avx512(b), Avx512(c), Avx512(d)] = rows;
             unsafe {
@@ -301,38 +388,20 @@ mod avx512 {
         }
         #[inline(always)]
         fn records(first: [Avx512; 4], second: [Avx512; 4]) -> [Avx512; 8] {
-            // Even and odd lanes apart; each a transposition of 4 × 4 pairs of numbers.
-            #[inline(always)]
-            fn pairs(x: [__m512d; 4]) -> [Avx512; 4] {
-                unsafe {
-                    let (p, q) =
-                        (_mm512_shuffle_f64x2::<0x44>(x[0], x[1]), _mm512_shuffle_f64x2::<0xee>(x[0], x[1]));
-                    let (r, s) =
-                        (_mm512_shuffle_f64x2::<0x44>(x[2], x[3]), _mm512_shuffle_f64x2::<0xee>(x[2], x[3]));
-                    [
-                        Avx512(_mm512_shuffle_f64x2::<0x88>(p, r)),
-                        Avx512(_mm512_shuffle_f64x2::<0xdd>(p, r)),
-                        Avx512(_mm512_shuffle_f64x2::<0x88>(q, s)),
-                        Avx512(_mm512_shuffle_f64x2::<0xdd>(q, s)),
-                    ]
-                }
-            }
-            let ([a, b, c, d], [e, f, g, h]) = (first, second);
-            unsafe {
-                let even = pairs([
-                    _mm512_unpacklo_pd(a.0, b.0),
-                    _mm512_unpacklo_pd(c.0, d.0),
-                    _mm512_unpacklo_pd(e.0, f.0),
-                    _mm512_unpacklo_pd(g.0, h.0),
-                ]);
-                let odd = pairs([
-                    _mm512_unpackhi_pd(a.0, b.0),
-                    _mm512_unpackhi_pd(c.0, d.0),
-                    _mm512_unpackhi_pd(e.0, f.0),
-                    _mm512_unpackhi_pd(g.0, h.0),
-                ]);
-                [even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3]]
-            }
+            join(halves(first), halves(second))
+        }
+        #[inline(always)]
+        fn opposed(
+            force: [Avx512; 3],
+            torque_a: [Avx512; 3],
+            torque_b: [Avx512; 3],
+        ) -> ([Avx512; 8], [Avx512; 8]) {
+            let zero = Avx512::zero();
+            let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
+            let [p, q, r, s] = halves([x, y, z, zero]);
+            // The fourth numbers become −0, which a sum does not feel.
+            let back = [-p, -q, -r, -s];
+            (join([p, q, r, s], halves([a, b, c, zero])), join(back, halves([d, e, f, zero])))
         }
         #[inline(always)]
         fn give(record: Avx512, to: &mut [Lanes; 2]) {
