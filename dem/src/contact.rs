@@ -14,7 +14,7 @@ pub mod restitution;
 pub(crate) mod slide;
 
 use crate::Vec3;
-use crate::lanes::{Four, Real, V3};
+use crate::lanes::{Pack, Real, V3};
 use crate::material::{Material, PairOverride};
 use serde::{Deserialize, Serialize};
 
@@ -132,9 +132,8 @@ macro_rules! law_lanes {
         }
 
         #[inline(always)]
-        fn mixed<R: Real>(laws: [&$law; 4], join: fn(&[f64; 4]) -> R) -> $law<R> {
-            let [a, b, c, d] = laws;
-            $law { $($field: join(&[a.$field, b.$field, c.$field, d.$field])),+ }
+        fn mixed<R: Real>(laws: [&$law; 8], join: fn(&[f64; 8]) -> R) -> $law<R> {
+            $law { $($field: join(&laws.map(|l| l.$field))),+ }
         }
     };
 }
@@ -151,8 +150,8 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// The same constants in every lane.
     fn splat<R: Real>(&self) -> Self::Lanes<R>;
 
-    /// Constants of four laws in lanes, put together by `join`.
-    fn mixed<R: Real>(laws: [&Self; 4], join: fn(&[f64; 4]) -> R) -> Self::Lanes<R>;
+    /// Constants of a law per lane (of as many as there are), put together by `join`.
+    fn mixed<R: Real>(laws: [&Self; 8], join: fn(&[f64; 8]) -> R) -> Self::Lanes<R>;
 
     /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
     /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and
@@ -272,22 +271,15 @@ impl<L: ContactLaw> PairTable<L> {
         &self.pairs[a as usize * self.count + b as usize]
     }
 
-    /// Number of materials.
-    pub(crate) fn count(&self) -> usize {
-        self.count
-    }
-
-    /// Constants of four pairs of materials, given as numbers in lanes.
+    /// Constants of a pair of materials per lane, given as numbers in lanes.
     #[inline(always)]
-    pub(crate) fn lanes<R: Four>(&self, a: R, b: R) -> L::Lanes<R> {
-        let (a, b) = (a.array(), b.array());
-        let laws = [
-            self.get(a[0] as u32, b[0] as u32),
-            self.get(a[1] as u32, b[1] as u32),
-            self.get(a[2] as u32, b[2] as u32),
-            self.get(a[3] as u32, b[3] as u32),
-        ];
-        L::mixed(laws, R::load)
+    pub(crate) fn lanes<R: Pack>(&self, a: R, b: R) -> L::Lanes<R> {
+        let (a, b) = (a.numbers(), b.numbers());
+        let mut laws = [&self.pairs[0]; 8];
+        for l in 0..R::LANES {
+            laws[l] = self.get(a[l] as u32, b[l] as u32);
+        }
+        L::mixed(laws, R::of)
     }
 
     /// Whether any pair resists rolling or twisting, or adheres.

@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::bond;
-use crate::contact::pass::{Between, Interior};
+use crate::contact::pass::{Between, Gathering, Interior};
 use crate::contact::planes::{self, Planes};
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
@@ -111,17 +111,21 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         buffers,
         keep_forces,
         bonds: bonded,
+        material,
+        plane_material,
         ..
     } = work;
     let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
+    let (material, plane_material) = (*material, *plane_material);
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossWork))| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
         let (lists, out) = (&mut *pairs, &mut *out);
-        let kernel = Between::<L, RIGID, ROLL> { laws, blocks: all, works: scratch, b, lists, out, dt };
+        let kernel =
+            Between::<L, RIGID, ROLL> { laws, blocks: all, works: scratch, material, b, lists, out, dt };
         lanes::run(simd, kernel);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
@@ -150,9 +154,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.sums.clear();
         w.sums.resize(block.bodies.len(), Sums::default());
         if RIGID || ROLL {
-            pass::gather::<true>(w, slots);
+            lanes::run(simd, Gathering::<true> { w: &mut *w, cross: slots });
         } else {
-            pass::gather::<false>(w, slots);
+            lanes::run(simd, Gathering::<false> { w: &mut *w, cross: slots });
         }
         if !model.bonds.is_empty() {
             bond::pass::within(model, b, block, w, bonded, bonds.fresh);
@@ -167,7 +171,8 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
             planes::corners(model, laws, motions, block, &mut plane_pairs, w, dt);
         } else if !plane_pairs.is_empty() {
             let (block, pairs, planes) = (&*block, &mut plane_pairs, plane_list);
-            lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, block, pairs, w: &mut *w, dt });
+            let (material, w) = (plane_material, &mut *w);
+            lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, material, block, pairs, w, dt });
         }
         (block.pairs, block.planes) = (pairs, plane_pairs);
         w.wall_sums.clear();

@@ -136,7 +136,8 @@ impl ContactLaw for Hertz {
 
         let cs = c * law.tangential_damping;
         let limit = law.friction * normal;
-        let slid = slide::plane(&mut memory.spring, n, slip_velocity, stiffness, cs, limit, time, dt, on);
+        let slid =
+            slide::plane(&mut memory.spring, n, slip_velocity, stiffness, None, cs, limit, time, dt, on);
         dashpot = dashpot + slid.dashpot;
         friction = friction + slid.friction;
         let (mut moment, mut net) = (V3::zero(), normal);

@@ -35,6 +35,8 @@ pub struct Linear<R = f64> {
     pub normal: R,
     /// Tangential stiffness Ks [N/m].
     pub tangential: R,
+    /// 1/Ks [m/N].
+    tangential_softness: R,
     /// C/√m* = 2ζ√K [√(N/m)].
     damping: R,
     /// Cs/C [-].
@@ -59,9 +61,11 @@ impl ContactLaw for Linear {
         let normal = given(|e| e.stiffness).unwrap_or(harmonic(a.stiffness, b.stiffness));
         let restitution = given(|e| e.restitution).unwrap_or(a.restitution.min(b.restitution));
         let zeta = damping_ratio(restitution);
+        let tangential = normal * harmonic(a.tangential_ratio, b.tangential_ratio);
         Linear {
             normal,
-            tangential: normal * harmonic(a.tangential_ratio, b.tangential_ratio),
+            tangential,
+            tangential_softness: 1.0 / tangential,
             damping: 2.0 * zeta * normal.sqrt(),
             tangential_damping: harmonic(a.tangential_damping_ratio, b.tangential_damping_ratio),
             friction: given(|e| e.friction).unwrap_or(a.friction.min(b.friction)),
@@ -75,6 +79,7 @@ impl ContactLaw for Linear {
     law_lanes!(Linear {
         normal,
         tangential,
+        tangential_softness,
         damping,
         tangential_damping,
         friction,
@@ -121,8 +126,19 @@ impl ContactLaw for Linear {
         let cs = c * law.tangential_damping;
         let time = R::splat(dt) * part;
         let limit = law.friction * normal;
-        let slid =
-            slide::plane(&mut memory.spring, n, slip_velocity, law.tangential, cs, limit, time, dt, on);
+        let softness = Some(law.tangential_softness);
+        let slid = slide::plane(
+            &mut memory.spring,
+            n,
+            slip_velocity,
+            law.tangential,
+            softness,
+            cs,
+            limit,
+            time,
+            dt,
+            on,
+        );
         dashpot = dashpot + slid.dashpot;
         let mut friction = slid.friction;
         let (mut moment, mut net) = (V3::zero(), normal);
