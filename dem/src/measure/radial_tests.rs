@@ -65,7 +65,7 @@ fn an_ideal_gas_has_none() {
     let (reach, bins) = (0.15, 15);
     for periodic in [true, false] {
         let (model, state) = scene(points.iter().copied(), periodic.then_some(1.0));
-        let counted = |b: usize| b % 3 != 0;
+        let counted = |b: usize| !b.is_multiple_of(3);
         let g = radial_distribution(&model, &state, &cube(1.0), counted, reach, bins).unwrap();
         let centres = 8000.0 * if periodic { 1.0 } else { 0.7_f64.powi(3) };
         let width = reach / bins as f64;

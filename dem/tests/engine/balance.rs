@@ -170,7 +170,7 @@ fn unlike_spheres_of_several_blocks_keep_their_angular_momentum() {
     for k in 0..2744_usize {
         let cell = Vec3::new((k % 14) as f64, (k / 14 % 14) as f64, (k / 196) as f64) - Vec3::repeat(6.5);
         // As on a chessboard, so that neighbours are unlike.
-        let scale = if (k + k / 14 + k / 196) % 2 == 0 { 1.0 } else { 0.4 };
+        let scale = if (k + k / 14 + k / 196).is_multiple_of(2) { 1.0 } else { 0.4 };
         let velocity = random.vector() * 0.5 - cell * 0.1;
         let spin = random.vector() * 50.0;
         input.bodies.push(BodyInput { scale, spin, ..sphere(cell * 0.0165, velocity) });

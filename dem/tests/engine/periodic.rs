@@ -25,7 +25,7 @@ fn bed(n: usize, layers: usize) -> ModelInput {
     for k in 0..n * n * layers {
         // Every other layer lies over the gaps of the one below, so that grains wedge one another apart.
         let layer = k / n / n;
-        let side = if layer % 2 == 0 { 0.25 } else { 0.75 };
+        let side = if layer.is_multiple_of(2) { 0.25 } else { 0.75 };
         let cell = Vec3::new((k % n) as f64 + side, (k / n % n) as f64 + side, 0.75 * layer as f64 + 0.55);
         let shape = usize::from(k % 4 == 3);
         input.bodies.push(BodyInput {
