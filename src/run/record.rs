@@ -480,7 +480,7 @@ fn cycle_values(job: &Job, cycle: &Cycle) -> Vec<f64> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 15] = [
+const FILES: [&str; 16] = [
     "push.csv",
     "breaks.csv",
     "summary.json",
@@ -495,6 +495,7 @@ const FILES: [&str; 15] = [
     "sleeper.svg",
     "gradation.csv",
     "gradation.svg",
+    "radial.csv",
     "packing.csv",
 ];
 
