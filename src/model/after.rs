@@ -103,6 +103,10 @@ fn jump(document: &Document, j: &CycleJump, part: &GrainsPart) -> Result<JumpPla
         let expected = "\"account\": grains that are bonded are not moved";
         return Err(document.error(&key("method"), "\"grains\"", expected));
     }
+    if grains && part.is_periodic() {
+        let expected = "\"account\": grains that cross a periodic border are not moved";
+        return Err(document.error(&key("method"), "\"grains\"", expected));
+    }
     check(document, &key("measure"), Some(f64::from(j.measure)), |n| n >= 2.0, "2 or more")?;
     let least = f64::from(j.measure) + 2.0;
     check(

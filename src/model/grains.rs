@@ -256,6 +256,11 @@ impl GrainsPart {
         input
     }
 
+    /// Whether the box is periodic along an axis.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic.iter().any(Option::is_some)
+    }
+
     /// Density of a material [kg/m³].
     fn density(&self, material: usize) -> f64 {
         self.materials[material].density
