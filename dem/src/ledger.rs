@@ -106,8 +106,7 @@ impl Ledger {
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
         let own = [self.walls, self.surface, self.applied, self.constraints];
-        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps])
-        {
+        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps]) {
             sum += &part;
         }
         sum

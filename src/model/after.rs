@@ -6,6 +6,9 @@ use crate::scene::track::Track;
 use crate::scene::{Document, SceneError};
 use trackbed_dem::Vec3;
 
+/// Share of its time at full speed in which the ram of a push gets going.
+const START: f64 = 0.05;
+
 /// What goes on about the load cycles.
 #[derive(Clone, Debug, Default)]
 pub struct AfterPlan {
@@ -58,7 +61,18 @@ pub struct PushPlan {
 impl PushPlan {
     /// Time that the push takes with the rest before it [s].
     pub fn duration(&self) -> f64 {
-        self.rest + self.displacement / self.speed
+        self.rest + (1.0 + 0.5 * START) * self.displacement / self.speed
+    }
+
+    /// Way [m] and speed [m/s] of the ram a time after it started [s]: it gets going evenly.
+    pub fn ram(&self, since: f64) -> (f64, f64) {
+        let start = START * self.displacement / self.speed;
+        if since < start {
+            let share = since.max(0.0) / start;
+            (0.5 * self.speed * share * share * start, share * self.speed)
+        } else {
+            (self.speed * (since - 0.5 * start), self.speed)
+        }
     }
 }
 

@@ -99,21 +99,21 @@ impl<'a> Push<'a> {
         state.begun.get_or_insert((t, load));
     }
 
-    /// Vertical load on the sleeper [N] and way of the ram [m] at time `t`; none before the cycles are over.
+    /// Vertical load on the sleeper [N] and time since the ram started [s] at time `t`; none before the cycles are over.
     fn at(&self, state: &PushState, t: f64) -> Option<(f64, f64)> {
         let (begun, before) = state.begun?;
         let since = t - begun;
         let share = if self.plan.rest > 0.0 { (since / self.plan.rest).clamp(0.0, 1.0) } else { 1.0 };
-        Some((before + share * (self.plan.load - before), self.plan.speed * (since - self.plan.rest)))
+        Some((before + share * (self.plan.load - before), since - self.plan.rest))
     }
 
     /// Force of the ram on the sleeper [N], and how far that has come [m].
     fn ram(&self, state: &PushState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
-        let (_, ram) = self.at(state, t)?;
+        let (ram, ram_speed) = self.plan.ram(self.at(state, t)?.1);
         let way = (grains.position(self.body) - state.origin?).dot(&self.plan.direction);
         let speed = grains.velocity(self.body).dot(&self.plan.direction);
         let dashpot = 2.0 * DAMPING * (self.plan.stiffness * self.mass).sqrt();
-        let force = self.plan.stiffness * (ram - way) + dashpot * (self.plan.speed - speed);
+        let force = self.plan.stiffness * (ram - way) + dashpot * (ram_speed - speed);
         // A ram does not pull.
         Some((force.max(0.0), way))
     }
@@ -143,9 +143,9 @@ impl<'a> Push<'a> {
 
     /// After a window that ended at time `t` [s]: takes the force into the curve.
     pub fn follow<S: System>(&self, state: &mut PushState, t: f64, system: &S) {
-        let (Some((_, ram)), Some(g)) = (self.at(state, t), system.grains()) else { return };
-        let x = g.state.position(self.body);
-        if ram < 0.0 || state.rows.len() as f64 >= ROWS {
+        let (Some((_, since)), Some(g)) = (self.at(state, t), system.grains()) else { return };
+        let (x, ram) = (g.state.position(self.body), self.plan.ram(since).0);
+        if since < 0.0 || state.rows.len() as f64 >= ROWS {
             return;
         }
         let origin = *state.origin.get_or_insert(x);
