@@ -204,11 +204,9 @@ fn spheres_on_an_elastic_block() {
 #[test]
 fn spheres_on_an_elastic_block_by_other_schemes() {
     let folder = scene_folder("coupled_schemes", COUPLED);
-    for (scheme, transfer) in [
-        ("lagged", "\"point\""),
-        ("stiffened", "{ spread = 0.3 }"),
-        ("iterated", "{ spread_factor = 2 }"),
-    ] {
+    for (scheme, transfer) in
+        [("lagged", "\"point\""), ("stiffened", "{ spread = 0.3 }"), ("iterated", "{ spread_factor = 2 }")]
+    {
         let scheme = format!("coupling.scheme={scheme}");
         let transfer = format!("coupling.transfer={transfer}");
         let set = [scheme.as_str(), transfer.as_str(), "coupling.substeps=5", "track.load.cycles=1"];

@@ -50,10 +50,15 @@ fn heap() -> dem::ModelInput {
 /// have with those two as well, the repeated window included: nothing of the other side enters.
 #[test]
 fn sides_that_do_not_touch_have_the_bits_of_each_alone() {
-    let solid = block([3, 3, 2], [1.0, 1.0, 0.5], 5e6, 0.3, 2000.0, Held::Base, fem::Rayleigh {
-        alpha_m: 1.0,
-        beta_k: 1e-4,
-    });
+    let solid = block(
+        [3, 3, 2],
+        [1.0, 1.0, 0.5],
+        5e6,
+        0.3,
+        2000.0,
+        Held::Base,
+        fem::Rayleigh { alpha_m: 1.0, beta_k: 1e-4 },
+    );
     let load = solid.gravity_load().len();
     let push = |load: &mut [f64]| load[load.len() - 1] -= 1e3;
     const WINDOWS: usize = 300;

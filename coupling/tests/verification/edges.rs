@@ -16,10 +16,7 @@ fn resting(solid: &fem::Model, substeps: u32, scheme: Scheme, restitution: f64) 
         dem::ModelInput {
             materials: vec![material(2650.0, 1e5, 0.3, restitution)],
             shapes: vec![dem::Shape::Sphere { radius: RADIUS }],
-            bodies: vec![dem::BodyInput {
-                position: Vec3::new(0.47, 0.52, RADIUS),
-                ..Default::default()
-            }],
+            bodies: vec![dem::BodyInput { position: Vec3::new(0.47, 0.52, RADIUS), ..Default::default() }],
             surface_material: Some(0),
             time_step: dem::TimeStep::Fixed(4e-5),
             ..Default::default()
@@ -31,10 +28,15 @@ fn resting(solid: &fem::Model, substeps: u32, scheme: Scheme, restitution: f64) 
 }
 
 fn soft() -> fem::Model {
-    block([4, 4, 2], [1.0, 1.0, 0.5], 5e6, 0.3, 2000.0, Held::Base, fem::Rayleigh {
-        alpha_m: 100.0,
-        beta_k: 1e-3,
-    })
+    block(
+        [4, 4, 2],
+        [1.0, 1.0, 0.5],
+        5e6,
+        0.3,
+        2000.0,
+        Held::Base,
+        fem::Rayleigh { alpha_m: 100.0, beta_k: 1e-3 },
+    )
 }
 
 /// A body at rest is pulled up with three times its weight for 30 ms and comes down again, in every scheme: it touches,
@@ -48,7 +50,7 @@ fn a_body_that_is_lifted_off_comes_back() {
         let mut c = resting(&solid, 5, scheme, 0.5);
         let weight = c.model.grains.mass(0) * 9.81;
         let window = c.model.window();
-        let mut run = |c: &mut Coupled, time: f64, pull: f64| {
+        let run = |c: &mut Coupled, time: f64, pull: f64| {
             let mut seen = (f64::INFINITY, 0.0_f64, 0);
             for _ in 0..(time / window).round() as usize {
                 c.step(&[(0, [0.0, 0.0, pull])]);
@@ -70,7 +72,8 @@ fn a_body_that_is_lifted_off_comes_back() {
         let end = run(&mut c, 0.6, 0.0);
         let now = step::spent(&c.state);
         let work = now.work() - spent.work();
-        let error = step::stored(&c.model, &c.state).total() - start + now.dissipated() - spent.dissipated() - work;
+        let error =
+            step::stored(&c.model, &c.state).total() - start + now.dissipated() - spent.dissipated() - work;
         println!(
             "{scheme:?}: landing {:.1} weights, in the end {:.6} to {:.6}, account {:.1e} of the work, {:?}",
             landing.1 / weight,
@@ -103,7 +106,8 @@ fn iterated_windows_agree_on_the_interface() {
             c.step(&[]);
         }
         let spent = step::spent(&c.state);
-        let error = (step::stored(&c.model, &c.state).total() - start + spent.dissipated() - spent.work()) / kinetic;
+        let error =
+            (step::stored(&c.model, &c.state).total() - start + spent.dissipated() - spent.work()) / kinetic;
         let interface = spent.interface() / kinetic;
         println!("{scheme:?}: interface {interface:.1e}, account {error:.1e}, {:?}", c.state.passes);
         assert!(spent.dashpot > 0.1 * kinetic, "they met");

@@ -228,9 +228,9 @@ fn substeps_in_words() {
 
 #[test]
 fn substeps_that_are_no_whole_number() {
-    coupled()
-        .scene("substeps = 10", "substeps = 2.5")
-        .refused("scene.toml:46: coupling.substeps: found floating point `2.5`, expected 1 to 1000, or \"auto\"");
+    coupled().scene("substeps = 10", "substeps = 2.5").refused(
+        "scene.toml:46: coupling.substeps: found floating point `2.5`, expected 1 to 1000, or \"auto\"",
+    );
 }
 
 #[test]
