@@ -72,7 +72,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
             let s = exchange::stability(&classes);
             line(format!(
-                "coupling: {} faces, {:?}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
+                "coupling: {} faces, scheme {}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
                  {:.3}",
                 coupling.faces.len(),
                 coupling.scheme,

@@ -379,7 +379,7 @@ impl Summary {
         }
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; {:?}, {} sub-steps, \
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; scheme {}, {} sub-steps, \
                  transfer {}",
                 c.transfer.force,
                 c.transfer.moment,
