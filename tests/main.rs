@@ -3,6 +3,7 @@
 
 mod suite {
     mod bad_input;
+    mod ballast;
     mod bonds;
     mod checkpoint;
     mod checkpoint_kill;

@@ -79,12 +79,15 @@ pub struct Spent {
     pub surface_on_grains: f64,
     /// Work that the contacts did on the solid, as the solid saw it.
     pub contacts_on_solid: f64,
+    /// Brought in by cycle jumps, which set grains elsewhere.
+    #[serde(default)]
+    pub jumps: f64,
 }
 
 impl Spent {
     /// Work done on the system from outside [J].
     pub fn work(&self) -> f64 {
-        self.applied_work + self.wall_work + self.solid_load_work
+        self.applied_work + self.wall_work + self.solid_load_work + self.jumps
     }
 
     /// Energy dissipated [J].

@@ -77,6 +77,9 @@ pub struct Ledger {
     pub periodic: Impulse,
     /// Impulse of local damping.
     pub local_damping: Impulse,
+    /// Change of momentum by bodies that were set elsewhere.
+    #[serde(default)]
+    pub jumps: Impulse,
 }
 
 impl Ledger {
@@ -102,9 +105,8 @@ impl Ledger {
     /// Sum of all impulses: the change of momentum since the start.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
-        for part in
-            [self.walls, self.surface, self.applied, self.constraints, self.local_damping, self.periodic]
-        {
+        let own = [self.walls, self.surface, self.applied, self.constraints];
+        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps]) {
             sum += &part;
         }
         sum
@@ -131,5 +133,6 @@ impl AddAssign<&Ledger> for Ledger {
         self.constraints += &other.constraints;
         self.periodic += &other.periodic;
         self.local_damping += &other.local_damping;
+        self.jumps += &other.jumps;
     }
 }

@@ -312,6 +312,30 @@ impl State {
         }
     }
 
+    /// Sets a body elsewhere: shifts its centre [m] and turns it by a rotation in world axes. Velocity, angular momentum and
+    /// contact memory stay as they are; fixed motions are left out (all rotations where one is fixed), and single spheres
+    /// do not turn. The change of momentum about the origin goes to the ledger, that of energy does not. Call
+    /// [`State::forget_neighbours`] afterwards.
+    pub fn shift(&mut self, model: &Model, body: usize, shift: &Vec3, turn: &UnitQuaternion<f64>) {
+        let [b, k] = self.places[body];
+        let (block, k) = (&mut self.blocks[b as usize], k as usize);
+        let constants = model.body(body);
+        let fixed = |d: usize| constants.fixed >> d & 1 == 1;
+        let shift = Vec3::from_fn(|d, _| if fixed(d) { 0.0 } else { shift[d] });
+        let place = xyz(&block.centre[k]) + shift;
+        set_xyz(&mut block.centre[k], &place);
+        if let Some(r) = block.rotation.get_mut(k)
+            && constants.kind != crate::model::Kind::Sphere
+            && !(3..6).any(fixed)
+        {
+            r.orientation = turn * r.orientation;
+            let spin = spin_of(r, &constants.inertia);
+            set_xyz(&mut block.spin[k], &spin);
+        }
+        let momentum = xyz(&block.velocity[k]) * constants.mass;
+        self.ledger.jumps.angular += shift.cross(&momentum);
+    }
+
     /// Spheres of a body in the world: centre [m] and radius [m]. One for a sphere, none for a box.
     pub fn spheres(&self, model: &Model, body: usize) -> Vec<(Vec3, f64)> {
         let (x, q) = (self.position(body), self.orientation(model, body));

@@ -11,6 +11,7 @@ mod sizes;
 mod track;
 pub mod walls;
 
+use super::after::{self, AfterPlan};
 use super::seat_load::CyclicLoad;
 use super::tables::Grading;
 use crate::failure::Failure;
@@ -56,6 +57,8 @@ pub struct GrainsPart {
     pub bonds: BondPart,
     /// Groups of prescribed motion.
     pub moving: Vec<Moving>,
+    /// Groups that foul the bed.
+    pub fouling: Vec<u32>,
     /// Groups whose mean place and force are recorded.
     pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
@@ -71,6 +74,8 @@ pub struct GrainsPart {
     pub sleeper: Option<SleeperPlan>,
     /// The load on them.
     pub load: Option<CyclicLoad>,
+    /// Jumps over cycles, push at the end.
+    pub after: AfterPlan,
 }
 
 /// A group of prescribed motion.
@@ -147,6 +152,18 @@ pub struct SleeperPlan {
     pub centres: Vec<[f64; 2]>,
     /// Points of the top that share the load, in the sleeper's frame [m].
     pub seats: Vec<[f64; 3]>,
+}
+
+impl SleeperPlan {
+    /// Motions that are held: along x, y, z, about x, y, z.
+    pub fn held(&self) -> [bool; 6] {
+        self.fixed
+    }
+
+    /// Mass of a sleeper [kg].
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
 }
 
 impl GrainsPart {
@@ -237,6 +254,11 @@ impl GrainsPart {
         };
         self.bonds.add_to(&mut input);
         input
+    }
+
+    /// Whether the box is periodic along an axis.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic.iter().any(Option::is_some)
     }
 
     /// Density of a material [kg/m³].
@@ -358,6 +380,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         growths: Vec::new(),
         bonds: bonds::kinds(document, scene)?,
         moving: Vec::new(),
+        fouling: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
         material_names: names.iter().map(|n| n.to_string()).collect(),
@@ -366,6 +389,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         measures: Vec::new(),
         sleeper: None,
         load: None,
+        after: AfterPlan::default(),
     };
     for (i, group) in scene.grains.iter().enumerate() {
         let material = find(&format!("grains.{i}.material"), &group.material)?;
@@ -376,8 +400,15 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         if !part.grain_materials.contains(&material) {
             part.grain_materials.push(material);
         }
+        if group.fouling {
+            part.fouling.push(part.parts.len() as u32);
+        }
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
+    }
+    if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
+        let expected = "a group of grains beside it that is fouled";
+        return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
     }
     periodic::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
@@ -432,6 +463,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;
+        part.after = after::build(document, track, &part)?;
     }
     Ok(part)
 }
@@ -466,7 +498,7 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
     }
 }
 
-fn check(
+pub(super) fn check(
     document: &Document,
     key: &str,
     value: Option<f64>,

@@ -61,6 +61,11 @@ impl CyclicLoad {
         self.cycles_begin() + f64::from(self.cycles) / self.frequency
     }
 
+    /// Smallest and largest force [N].
+    pub fn range(&self) -> [f64; 2] {
+        [self.minimum, self.maximum]
+    }
+
     /// Number of cycles.
     pub fn cycles(&self) -> u32 {
         self.cycles

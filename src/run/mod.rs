@@ -6,14 +6,17 @@ mod checkpoint;
 mod compact;
 mod cycles;
 mod failure_factor;
+mod fit;
 mod frames;
 mod initial;
+mod jump;
 mod keeper;
 mod main_stage;
 mod memory;
 mod packed;
 mod packing;
 mod plastic;
+mod push;
 mod record;
 mod settle;
 mod solid_alone;
@@ -393,6 +396,7 @@ impl Stage<'_> {
             summary.sources.extend(BOND_SOURCES);
         }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
+        push::check(self.document, grains, model.dt())?;
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());

@@ -1,6 +1,9 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
+use super::fit::Fit;
+use super::jump::JumpSummary;
 use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
+use super::push::PushSummary;
 use crate::failure::Failure;
 use crate::model::exchange::ContactClass;
 use crate::write::WriteError;
@@ -57,6 +60,9 @@ pub struct Summary {
     /// Search for the factor of safety.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safety: Option<SafetyRecord>,
+    /// Lateral push of a sleeper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub push: Option<PushSummary>,
     /// Settlement per load cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
@@ -280,6 +286,25 @@ pub struct SettlementRecord {
     pub increments: Vec<f64>,
     /// Mean increment of the second half of the cycles over that of the first half.
     pub slowing: Option<f64>,
+    /// Settlement laws fitted to the cycles from the tenth on.
+    pub fits: Vec<Fit>,
+    /// Slope of the loading branch between two loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bed_stiffness: Option<BedStiffness>,
+    /// Cycle jumps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jump: Option<JumpSummary>,
+}
+
+/// Stiffness of the bed under a sleeper.
+#[derive(Debug, Serialize)]
+pub struct BedStiffness {
+    /// The two loads [N].
+    pub between: [f64; 2],
+    /// In the last cycle [N/m].
+    pub last: f64,
+    /// Mean of the last ten cycles [N/m].
+    pub mean_of_last_ten: f64,
 }
 
 impl Summary {
@@ -402,7 +427,46 @@ impl Summary {
         }
         if let Some(s) = &self.settlement {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
-            lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
+            if list.len() <= 20 {
+                lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
+            } else {
+                let last = list.len() - 1;
+                lines.push(format!(
+                    "settlement [mm]: {} after the first cycle, {} after the last",
+                    list[0], list[last]
+                ));
+            }
+            for fit in &s.fits {
+                let p: Vec<String> = fit.parameters.iter().map(|(n, v)| format!("{n} = {v:.4e}")).collect();
+                lines.push(format!("{}: s = {}, {}, R2 = {:.4}", fit.law, fit.form, p.join(", "), fit.r2));
+            }
+            if let Some(b) = &s.bed_stiffness {
+                let [low, high] = b.between.map(|f| 1e-3 * f);
+                lines.push(format!(
+                    "bed stiffness between {low:.1} and {high:.1} kN: {:.3} kN/mm",
+                    1e-6 * b.mean_of_last_ten
+                ));
+            }
+            if let Some(j) = &s.jump {
+                lines.push(format!(
+                    "cycle jumps ({}): {} cycles simulated, {} jumped over; error of the settlement estimated {:.3} mm ({:.1} %)",
+                    j.method,
+                    j.simulated,
+                    j.skipped,
+                    1e3 * j.error_estimate,
+                    100.0 * j.relative_error_estimate
+                ));
+            }
+        }
+        if let Some(p) = &self.push {
+            let at_two =
+                p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
+            lines.push(format!(
+                "lateral push: {at_two}peak {:.3} kN at {:.2} mm, under {:.3} kN",
+                1e-3 * p.peak,
+                1e3 * p.displacement_at_peak,
+                1e-3 * p.vertical_force
+            ));
         }
         lines.extend(packing::report(self));
         for warning in &self.warnings {

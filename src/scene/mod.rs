@@ -4,6 +4,7 @@
 //! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
+pub mod after;
 pub mod bonds;
 pub mod compaction;
 pub mod coupling;

@@ -1,5 +1,6 @@
 //! Sleeper and its load as written in a scene.
 
+use super::after::{CycleJump, Push};
 use super::units::{Force, Frequency, Length, Mass, Quantity, Time};
 use serde::Deserialize;
 
@@ -11,6 +12,13 @@ pub struct Track {
     pub sleeper: Sleeper,
     /// The load on its seat; without it the sleeper only rests.
     pub load: Option<SeatLoad>,
+    /// Cycles that are not simulated one by one.
+    pub jump: Option<CycleJump>,
+    /// Lateral push at the end.
+    pub push: Option<Push>,
+    /// Two loads between which the stiffness of the bed is taken in each cycle [N]; default a quarter and three quarters
+    /// of the range.
+    pub bed_stiffness: Option<[Quantity<Force>; 2]>,
 }
 
 /// Sleepers as rigid boxes, placed on the settled grains.
