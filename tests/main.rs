@@ -14,6 +14,7 @@ mod suite {
     mod mesh_forms_files;
     mod mesh_orders;
     mod packings;
+    mod rail;
     mod scenes;
     mod solid_keys;
     mod solid_runs;

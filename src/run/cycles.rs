@@ -106,27 +106,18 @@ impl CycleRecorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::track::{SeatLoad, SeatLoadKind};
-    use crate::scene::units::Quantity;
+    use crate::model::seat_load::Course;
 
     #[test]
     fn a_spring_with_drift_yields_its_own_stiffness_and_settlement() {
-        let load = CyclicLoad::new(&SeatLoad {
-            kind: SeatLoadKind::Haversine,
-            minimum: Quantity::new(0.0),
-            maximum: Quantity::new(100.0),
-            frequency: Quantity::new(10.0),
-            cycles: 3,
-            rest: Quantity::new(0.1),
-            ramp: Quantity::new(0.1),
-            seats: vec![],
-        });
+        let course = Course::Wave { sine: false, minimum: 0.0, maximum: 100.0, frequency: 10.0 };
+        let load = CyclicLoad { course, cycles: 3, rest: 0.1, ramp: 0.1, places: vec![0.0] };
         let mut recorder = CycleRecorder::new(&load);
         // Height 1 − F/k − drift·(t − 0.2): k = 10 kN/m, drift 1 mm per cycle.
         let (dt, k, drift) = (1e-4, 1e4, 0.01);
         for step in 1..=5000 {
             let t = f64::from(step) * dt;
-            let f = load.force(t);
+            let f = load.on(0, t);
             let height = 1.0 - f / k - drift * (t - 0.2).max(0.0);
             recorder.record(t, dt, height, f, 2.0 * t, 7.0 * f);
         }

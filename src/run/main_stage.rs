@@ -92,22 +92,22 @@ impl Stage<'_> {
         let interval = job.output.history_interval;
         let every = ((interval / window).round() as u64).max(1);
 
-        let track = Track::new(grains, system.grains().map_or(0, |g| g.model.body_count()));
-        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            track.apply(t, model, state, out);
-        };
-
+        let mut track = Track::new(grains, system.grains());
         let (mut recorder, from) = match resumed {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
+                track = track.resume(&mut loaded)?;
                 (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
             }
             None => {
                 let mut recorder = Recorder::start(job, self.dir, system, &track)?;
                 recorder.row(0.0, system, &track)?;
-                recorder.frame(0.0, system)?;
+                recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0 })
             }
+        };
+        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            track.apply(t, model, state, out);
         };
         let progress =
             Progress::start("running", windows as f64, self.quiet).resumed(from.done as f64, from.seconds);
@@ -116,7 +116,9 @@ impl Stage<'_> {
         self.keeper.begin();
         let outcome = (from.done + 1..=windows).try_for_each(|k| -> Result<(), Failure> {
             let time = k as f64 * window;
+            track.begin_window();
             system.advance(&apply)?;
+            track.follow(time, system);
             if let Some(cycle) = recorder.follow(time, system, &track)? {
                 progress.message(format!(
                     "cycle {}: settlement {:.3} mm",
@@ -128,7 +130,7 @@ impl Stage<'_> {
                 recorder.row(time, system, &track).map_err(|e| e.at(time))?;
             }
             if frames > 0 && k * frames >= next_frame * windows {
-                recorder.frame(time, system).map_err(|e| e.at(time))?;
+                recorder.frame(time, system, &track).map_err(|e| e.at(time))?;
                 next_frame += 1;
             }
             progress.at(k as f64);
@@ -148,6 +150,7 @@ impl Stage<'_> {
                         body.put(start)?;
                     }
                     body.put(&Place { done, next_frame, seconds: progress.seconds() })?;
+                    track.save(body)?;
                     recorder.save(body)
                 },
             )
@@ -159,7 +162,7 @@ impl Stage<'_> {
             && let Some(time) = system.solid().map(|s| s.state.time)
         {
             recorder.row(time, system, &track)?;
-            recorder.frame(time, system)?;
+            recorder.frame(time, system, &track)?;
         }
         if let (Some(part), Some(view)) = (grains, system.grains())
             && !part.bonds.is_empty()
@@ -176,6 +179,7 @@ impl Stage<'_> {
             solid_steps: done * solid_steps,
         });
         summary.settlement = settlement(recorder.cycles());
+        summary.track = track.record();
         let balance = recorder.balance();
         let work = balance.spent.work();
         let turnover = work.abs().max(balance.spent.dissipated());
