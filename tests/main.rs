@@ -23,5 +23,6 @@ mod suite {
     mod summary;
     pub mod support;
     mod track;
+    mod train;
     mod walls;
 }
