@@ -8,6 +8,7 @@ mod suite {
     mod checkpoint_kill;
     mod cli;
     mod determinism;
+    mod exchange;
     mod fem_cases;
     mod grain_limits;
     mod mesh_forms;

@@ -54,6 +54,32 @@ pub(crate) struct Cross {
     pub spheres: Groups<3>,
     /// Sphere of this block, block of the box, its place there.
     pub boxes: Groups<3>,
+    /// Sphere of this block and the image of one of any block across a periodic border.
+    #[serde(default)]
+    pub images: Vec<ImagePair>,
+}
+
+/// Sphere of a block, other block, sphere there, and how many box lengths the image is away from that sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(crate) struct ImageName {
+    pub i: u32,
+    pub block: u32,
+    pub j: u32,
+    pub shift: [i32; 3],
+}
+
+/// Two spheres that touch across a periodic border or nearly do.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct ImagePair {
+    pub name: ImageName,
+    pub history: History,
+}
+
+impl ImagePair {
+    /// A pair that has not touched.
+    pub fn new(name: ImageName) -> ImagePair {
+        ImagePair { name, history: History::NONE }
+    }
 }
 
 /// A sphere that touches a patch of a surface or nearly does.
@@ -128,7 +154,7 @@ impl Block {
 impl Cross {
     /// No contacts; `turning` as in [`Block::new`].
     pub fn new(turning: bool) -> Cross {
-        Cross { spheres: Groups::new(turning), boxes: Groups::new(turning) }
+        Cross { spheres: Groups::new(turning), boxes: Groups::new(turning), images: Vec::new() }
     }
 }
 
@@ -248,7 +274,7 @@ impl State {
         (&self.blocks[b as usize], k as usize)
     }
 
-    /// Centre of mass of a body [m].
+    /// Centre of mass of a body [m]. Along periodic axes it may have run on beyond the borders: see [`Model::wrap`].
     pub fn position(&self, body: usize) -> Vec3 {
         let (block, k) = self.place(body);
         xyz(&block.centre[k])
@@ -358,9 +384,18 @@ impl State {
         self.stale = true;
     }
 
+    /// Allows for a way [m] that the external surface may have made between two steps, beyond what its
+    /// [`max_speed`](crate::surface::Surface::max_speed) told: neighbours stay known that much longer.
+    pub fn allow_for_jump(&mut self, way: f64) {
+        self.wall_drift += way;
+    }
+
     /// Puts the bodies into blocks of present neighbours and carries the contacts along. Done every
     /// `order::EVERY` steps: by count, so that a restart does not change when.
     pub(crate) fn reorder(&mut self, model: &Model) {
+        if let Some(periodic) = &model.periodic {
+            crate::periodic::wrap(periodic, model, self);
+        }
         let positions: Vec<Vec3> = (0..self.places.len()).map(|b| self.position(b)).collect();
         order::reorder(self, model, &positions);
     }

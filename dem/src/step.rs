@@ -1,7 +1,8 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::Vec3;
 use crate::bond;
-use crate::contact::pass::{Between, Interior};
+use crate::contact::pass::{Between, Gathering, Interior};
 use crate::contact::planes::{self, Planes};
 use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
 use crate::error::{Partner, StepError};
@@ -11,6 +12,7 @@ use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
+use crate::periodic;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
@@ -109,20 +111,28 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         buffers,
         keep_forces,
         bonds: bonded,
+        material,
+        plane_material,
         ..
     } = work;
     let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
+    let (material, plane_material) = (*material, *plane_material);
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossWork))| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
         let (lists, out) = (&mut *pairs, &mut *out);
-        let kernel = Between::<L, RIGID, ROLL> { laws, blocks: all, works: scratch, b, lists, out, dt };
+        let kernel =
+            Between::<L, RIGID, ROLL> { laws, blocks: all, works: scratch, material, b, lists, out, dt };
         lanes::run(simd, kernel);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
+        }
+        if let Some(periodic) = &model.periodic {
+            out.couple = Vec3::zeros();
+            periodic::contacts::<_, RIGID, ROLL>(periodic, laws, all, scratch, b, pairs, out, dt);
         }
     };
     if *parallel {
@@ -144,9 +154,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.sums.clear();
         w.sums.resize(block.bodies.len(), Sums::default());
         if RIGID || ROLL {
-            pass::gather::<true>(w, slots);
+            lanes::run(simd, Gathering::<true> { w: &mut *w, cross: slots });
         } else {
-            pass::gather::<false>(w, slots);
+            lanes::run(simd, Gathering::<false> { w: &mut *w, cross: slots });
         }
         if !model.bonds.is_empty() {
             bond::pass::within(model, b, block, w, bonded, bonds.fresh);
@@ -161,7 +171,8 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
             planes::corners(model, laws, motions, block, &mut plane_pairs, w, dt);
         } else if !plane_pairs.is_empty() {
             let (block, pairs, planes) = (&*block, &mut plane_pairs, plane_list);
-            lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, block, pairs, w: &mut *w, dt });
+            let (material, w) = (plane_material, &mut *w);
+            lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, material, block, pairs, w, dt });
         }
         (block.pairs, block.planes) = (pairs, plane_pairs);
         w.wall_sums.clear();
@@ -255,6 +266,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum += &w.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
+        sum.periodic.angular += cross.couple;
         fastest = fastest.max(w.fastest);
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
@@ -296,10 +308,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::lanes::Simd;
-    use crate::material::Material;
+    use crate::material::{Material, PairOverride};
     use crate::shape::Shape;
     use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
@@ -333,6 +344,8 @@ mod tests {
         };
         if !clumps {
             input.materials.truncate(1);
+        } else if hertz {
+            input.contacts.push(PairOverride { a: 0, b: 1, adhesion: Some(2.0), ..PairOverride::default() });
         }
         input.planes.push(Plane {
             point: Vec3::zeros(),

@@ -1,9 +1,9 @@
 //! `trackbed check`: reads and resolves everything that a run would, runs nothing, and says what would happen.
 
 use crate::failure::Failure;
-use crate::model::Job;
 use crate::model::grains::refused;
 use crate::model::solid::Analysis;
+use crate::model::{Job, exchange};
 use crate::run;
 use crate::scene::{Document, Scene};
 use std::fmt::Write;
@@ -66,16 +66,27 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         }
         line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
         if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-            let window = model.dt() * f64::from(coupling.substeps);
-            let s = grains.stability(&model, window, &solid.model, &coupling.faces);
+            let surface = coupling.surface(solid, grains);
+            let classes = coupling.classes(grains, &model, solid, &surface);
+            let substeps = coupling.substeps(&classes, model.dt());
+            let window = model.dt() * f64::from(substeps);
+            let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
+            let s = exchange::stability(&classes);
             line(format!(
-                "coupling: {} faces, {} grain steps per window of {window:.4e} s; stability W = {:.3}, D = {:.3} (both \
-                 should be below 1)",
+                "coupling: {} faces, {:?}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
+                 {:.3}",
                 coupling.faces.len(),
-                coupling.substeps,
+                coupling.scheme,
+                coupling.transfer_kind(&surface),
+                substeps,
+                if coupling.automatic() { " (automatic)" } else { "" },
                 s.stiffness,
                 s.damping,
             ));
+            classes.iter().for_each(|c| line(format!("  {}", c.line())));
+            for remark in exchange::remarks(&classes, coupling.scheme, substeps) {
+                line(format!("  note: {remark}"));
+            }
         }
     } else if let Some(solid) = &job.solid {
         let steps = |step: f64| format!("{} s in {:.0} steps of {step} s", job.end, job.end / step);

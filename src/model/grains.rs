@@ -5,6 +5,7 @@ mod bonds;
 mod compaction;
 mod groups;
 mod materials;
+mod periodic;
 mod regions;
 mod sizes;
 mod track;
@@ -16,17 +17,14 @@ use super::track::rail::RailInput;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
-pub use compaction::{CompactionPlan, Press};
-use trackbed_coupling::step::{self, Stability};
+pub use compaction::{CompactionPlan, Measure, Press, Radial};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
-use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
     WallInput, WallShape,
 };
-use trackbed_fem::Face;
 
 /// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
 const SETTLED_SPEED: f64 = 5e-3;
@@ -44,6 +42,7 @@ pub struct GrainsPart {
     gravity: Vec3,
     time_step: TimeStep,
     impact_speed: Option<f64>,
+    periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleepers are the group after the last.
@@ -62,12 +61,13 @@ pub struct GrainsPart {
     pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
+    material_names: Vec<String>,
     /// Settling before the run proper.
     pub deposition: Option<DepositionPlan>,
     /// Compaction of the settled bed.
     pub compaction: Vec<CompactionPlan>,
-    /// Boxes that are measured, by name.
-    pub measures: Vec<(String, BoxRegion)>,
+    /// Boxes that are measured.
+    pub measures: Vec<Measure>,
     /// The sleepers, which are the last bodies of the run proper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on them.
@@ -169,8 +169,7 @@ impl GrainsPart {
                             a,
                             b,
                             friction: Some(friction),
-                            restitution: None,
-                            stiffness: None,
+                            ..PairOverride::default()
                         });
                     }
                 }
@@ -238,6 +237,7 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            periodic: self.periodic,
             ..ModelInput::default()
         };
         self.bonds.add_to(&mut input);
@@ -249,29 +249,24 @@ impl GrainsPart {
         self.materials[material].density
     }
 
-    /// Stability of the exchange with a solid in windows of `window` [s], for the stiffest contact and the heaviest
-    /// grain.
-    pub fn stability(
-        &self,
-        model: &Model,
-        window: f64,
-        solid: &trackbed_fem::Model,
-        faces: &[Face],
-    ) -> Stability {
-        let Some(surface) = self.surface_material else { return Stability::default() };
-        let (mut stiffness, mut damping) = (0.0_f64, 0.0_f64);
-        // The sleeper touches grains only.
+    /// Materials of grains that may touch a solid, with their names. The sleeper touches grains only.
+    pub fn touching_materials(&self) -> impl Iterator<Item = (usize, String)> {
+        self.grain_materials.iter().map(|&m| (m, self.material_names[m].clone()))
+    }
+
+    /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
+    pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
         let grains = self.parts.len() as u32 - u32::from(self.sleeper.is_some());
-        let heaviest = (0..model.body_count())
-            .filter(|&b| model.part(b) < grains)
-            .map(|b| model.mass(b))
-            .fold(0.0, f64::max);
-        for &material in &self.grain_materials {
-            let (k, ratio) = model.contact_stiffness(material, surface);
-            stiffness = stiffness.max(k);
-            damping = damping.max(2.0 * ratio * (heaviest * k).sqrt());
-        }
-        step::stability(window, stiffness, damping, step::face_masses(solid, faces))
+        let own = (0..model.body_count())
+            .filter(|&b| model.part(b) < grains && model.material(b) == material)
+            .map(|b| model.mass(b));
+        let ends = own.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], m| [low.min(m), high.max(m)]);
+        (ends[1] > 0.0).then_some(ends)
+    }
+
+    /// Mean bounding radius of the grains [m].
+    pub fn mean_reach(&self) -> f64 {
+        self.bodies.iter().map(|b| self.reach(b)).sum::<f64>() / self.bodies.len().max(1) as f64
     }
 
     /// Planes, for the pictures of the walls.
@@ -353,6 +348,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
         check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
+        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
             let expected = "no stiffness where materials have a Young's modulus";
             return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
@@ -363,6 +359,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
+            adhesion: c.adhesion.map(|w| w.si),
         });
     }
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
@@ -386,6 +383,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         impact_speed,
+        periodic: [None; 3],
         bodies: Vec::new(),
         parts: Vec::new(),
         first_shape: Vec::new(),
@@ -395,6 +393,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         moving: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
+        material_names: names.iter().map(|n| n.to_string()).collect(),
         deposition: None,
         compaction: Vec::new(),
         measures: Vec::new(),
@@ -414,6 +413,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
     }
+    periodic::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();
@@ -484,6 +484,14 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         }
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
+        }
+        ModelError::Adhesion { index, with } => document.error(
+            &format!("contact.{index}.adhesion"),
+            format!("adhesion beside {with}"),
+            "no adhesion in such a scene",
+        ),
+        ModelError::Periodic { problem } => {
+            document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
         }
         ModelError::Bond { .. } | ModelError::BondKind { .. } => {
             document.error("bond", error.to_string(), "bonds that can be made")

@@ -1,6 +1,7 @@
 //! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
 //! key of the scene was set.
 
+pub mod exchange;
 pub mod grains;
 pub mod seat_load;
 pub mod solid;
@@ -12,7 +13,7 @@ use crate::scene::units::vector;
 use crate::scene::{Chains, Document, Scene, SceneError};
 use std::time::Duration;
 use trackbed_fem as fem;
-use trackbed_fem::mesh::{Face, Mesh};
+use trackbed_fem::mesh::Mesh;
 
 /// Time by the clock between two checkpoints, unless the scene says otherwise [s].
 const CHECKPOINT: f64 = 600.0;
@@ -26,7 +27,7 @@ pub struct Job {
     /// The grains.
     pub grains: Option<grains::GrainsPart>,
     /// The exchange between them.
-    pub coupling: Option<CouplingPart>,
+    pub coupling: Option<exchange::CouplingPart>,
     /// Physical time of the run proper [s]; 0 for a static solid.
     pub end: f64,
     /// Step of a solid that runs alone [s].
@@ -58,16 +59,6 @@ pub struct OutputPlan {
     pub strong_chains: bool,
 }
 
-/// The exchange, resolved.
-pub struct CouplingPart {
-    /// Steps of the grains per step of the solid.
-    pub substeps: u32,
-    /// Implicitness of the solid's step.
-    pub theta: f64,
-    /// Faces that grains may touch.
-    pub faces: Vec<Face>,
-}
-
 impl Job {
     /// Resolves a scene.
     ///
@@ -96,6 +87,7 @@ impl Job {
                 ("material", !scene.material.is_empty()),
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
+                ("periodic", scene.periodic.is_some()),
                 ("deposition", scene.deposition.is_some()),
                 ("compaction", !scene.compaction.is_empty()),
                 ("measure", !scene.measure.is_empty()),
@@ -109,7 +101,7 @@ impl Job {
             }
         }
         let coupling = match (&scene.coupling, &solid, &grains) {
-            (Some(c), Some(s), Some(_)) => Some(coupling(document, c, s.model.mesh())?),
+            (Some(c), Some(s), Some(_)) => Some(exchange::build(document, c, s)?),
             (Some(_), _, _) => {
                 return Err(document
                     .error("coupling", "only one side", "both [solid] and [[grains]]")
@@ -229,34 +221,6 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
         packing: o.packing.unwrap_or(false),
         strong_chains: o.chains == Some(Chains::Strong),
     })
-}
-
-fn coupling(
-    document: &Document,
-    c: &crate::scene::Coupling,
-    mesh: &Mesh,
-) -> Result<CouplingPart, SceneError> {
-    if !(1..=1000).contains(&c.substeps) {
-        return Err(document.error("coupling.substeps", c.substeps.to_string(), "1 to 1000"));
-    }
-    if !(0.5..=1.0).contains(&c.theta) {
-        return Err(document.error("coupling.theta", c.theta.to_string(), "0.5 to 1"));
-    }
-    if c.direction.iter().map(|d| d * d).sum::<f64>() <= 0.0 {
-        return Err(document.error("coupling.direction", "the null vector", "a direction"));
-    }
-    if !(c.max_angle.si > 0.0 && c.max_angle.si <= std::f64::consts::PI) {
-        return Err(document.error("coupling.max_angle", c.max_angle.si.to_string(), "above 0, at most pi"));
-    }
-    let faces = trackbed_coupling::surface::SolidSurface::facing(mesh, c.direction, c.max_angle.si);
-    if faces.is_empty() {
-        return Err(document.error(
-            "coupling.direction",
-            "no boundary face that looks this way",
-            "at least one",
-        ));
-    }
-    Ok(CouplingPart { substeps: c.substeps, theta: c.theta, faces })
 }
 
 fn end_time(

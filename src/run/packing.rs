@@ -1,11 +1,11 @@
 //! What the grains are like at the end of a run: porosity, coordination, fabric, stress, sieve curves; and the files that
-//! hold it: `gradation.csv`, `gradation.svg`, `packing.csv`.
+//! hold it: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
 
 use super::Stage;
 use super::summary::Summary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
-use crate::model::grains::{GradedGroup, GrainsPart};
+use crate::model::grains::{GradedGroup, GrainsPart, Measure, Radial};
 use crate::write::csv::{Column, History};
 use crate::write::svg::{LinePlot, Series};
 use crate::write::{WriteError, atomic};
@@ -128,8 +128,8 @@ impl Stage<'_> {
         let ratio = measure::unbalanced_ratio(model, &contacts);
         let between =
             |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
-        let measures = grains.measures.iter().map(|(name, region)| {
-            let inside = |b: usize| is_grain(b) && region.holds(&state.position(b));
+        let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
+            let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
             let own = measure::coordination_of(model, &contacts, inside);
             MeasureRecord {
                 name: name.clone(),
@@ -144,6 +144,9 @@ impl Stage<'_> {
         let gradations = grains.graded.iter().map(|g| graded(model, g)).collect::<Vec<_>>();
         if !gradations.is_empty() {
             write_gradations(self.dir, &self.job.title, model, &grains.graded)?;
+        }
+        if grains.measures.iter().any(|m| m.radial.is_some()) {
+            write_radial(self.dir, view, &grains.measures, is_grain)?;
         }
         if self.job.output.packing {
             write_packings(self.dir, view, grains)?;
@@ -197,6 +200,26 @@ fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
 
 /// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
 /// same drawn.
+/// Radial distribution functions of the boxes that ask for one: distance at the middle of each shell, and g.
+fn write_radial(
+    dir: &Path,
+    view: GrainsView<'_>,
+    measures: &[Measure],
+    is_grain: impl Fn(usize) -> bool,
+) -> Result<(), Failure> {
+    let columns = [("measure", ""), ("distance", "m"), ("g", "")];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let mut file = History::create(&dir.join("radial.csv"), columns)?;
+    for (i, m) in measures.iter().enumerate() {
+        let Some(Radial { reach, bins }) = m.radial else { continue };
+        let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins);
+        for (k, g) in g.iter().flatten().enumerate() {
+            file.row(&[i as f64, (k as f64 + 0.5) * reach / bins as f64, *g])?;
+        }
+    }
+    Ok(())
+}
+
 fn write_gradations(
     dir: &Path,
     title: &str,
@@ -271,7 +294,7 @@ fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
     };
     let spheres = own().all(single);
     for b in own() {
-        let x = state.position(b);
+        let x = model.wrap(&state.position(b));
         if spheres {
             line(&[x.x, x.y, x.z, model.radius(b)]);
         } else {

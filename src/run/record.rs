@@ -411,7 +411,7 @@ fn cycle_columns() -> Vec<Column> {
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 14] = [
+const FILES: [&str; 15] = [
     "breaks.csv",
     "summary.json",
     "log.txt",
@@ -425,6 +425,7 @@ const FILES: [&str; 14] = [
     "sleeper.svg",
     "gradation.csv",
     "gradation.svg",
+    "radial.csv",
     "packing.csv",
 ];
 

@@ -2,11 +2,13 @@
 
 use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
+use crate::model::exchange::ContactClass;
 use crate::write::WriteError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
-use trackbed_coupling::step::Stability;
+use trackbed_coupling::scheme::{Passes, Scheme};
+use trackbed_coupling::stability::Stability;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
 
@@ -110,6 +112,9 @@ pub struct ModelRecord {
     pub grain_step_set_by: Option<String>,
     /// Step of the solid [s].
     pub solid_step: Option<f64>,
+    /// Shapes and errors of a reduced solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<trackbed_fem::reduction::Estimate>,
     /// Memory that the solid was predicted to need [bytes].
     pub predicted_memory: Option<u64>,
     /// Mean number of touching partners per grain at the start of the run proper.
@@ -166,14 +171,20 @@ pub struct BondSummary {
 pub struct CouplingRecord {
     /// Largest relative errors of force and moment over all exchanges.
     pub transfer: TransferAudit,
+    /// Order of the exchange.
+    pub scheme: Scheme,
     /// Steps of the grains per step of the solid.
     pub substeps: u32,
-    /// Stability of the exchange: both numbers should be below about 1.
+    /// Stability of the exchange: the largest numbers of all classes of contacts.
     pub stability: Stability,
+    /// Every class of contacts with its numbers and limits.
+    pub classes: Vec<ContactClass>,
+    /// Windows, and how often they were repeated.
+    pub passes: Passes,
     /// Interface work seen by grains plus that seen by the solid [J], which should vanish.
     pub interface_work_error: f64,
     /// How contact forces are transferred.
-    pub transfer_kind: &'static str,
+    pub transfer_kind: String,
 }
 
 /// Static equilibrium.
@@ -335,6 +346,9 @@ impl Summary {
     /// What a user wants to see when a run has ended.
     pub fn report(&self) -> String {
         let mut lines = Vec::new();
+        if let Some(r) = &self.model.reduction {
+            lines.push(format!("solid reduced: {r}"));
+        }
         for stage in &self.stages {
             lines.push(format!(
                 "{}: {:.1} s, {} grain steps, {} solid steps",
@@ -398,9 +412,26 @@ impl Summary {
         }
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}",
-                c.transfer.force, c.transfer.moment, c.stability.stiffness, c.stability.damping
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; {:?}, {} sub-steps, \
+                 transfer {}",
+                c.transfer.force,
+                c.transfer.moment,
+                c.stability.stiffness,
+                c.stability.damping,
+                c.scheme,
+                c.substeps,
+                c.transfer_kind
             ));
+            for class in &c.classes {
+                lines.push(format!("  {}", class.line()));
+            }
+            if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
+                lines.push(format!(
+                    "  {:.2} passes per window, {} windows not converged",
+                    c.passes.passes as f64 / c.passes.windows as f64,
+                    c.passes.unconverged
+                ));
+            }
         }
         if let Some(s) = &self.settlement {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();

@@ -74,6 +74,8 @@ dimensions! {
     Force: "a force in N, such as 5e4 or \"50 kN\"", [("N", 1.0), ("kN", 1e3), ("MN", 1e6)];
     /// Stiffness [N/m].
     Stiffness: "a stiffness in N/m, such as 2e6 or \"2 MN/m\"", [("N/m", 1.0), ("kN/m", 1e3), ("MN/m", 1e6), ("N/mm", 1e3), ("kN/mm", 1e6), ("GN/m", 1e9)];
+    /// Energy over area [J/m²].
+    Adhesion: "a work of adhesion in J/m2, such as 0.05 or \"50 mJ/m2\"", [("J/m2", 1.0), ("mJ/m2", 1e-3), ("N/m", 1.0)];
     /// Velocity [m/s].
     Velocity: "a velocity in m/s, such as 0.1 or \"10 cm/s\"", [("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("km/h", 1.0 / 3.6)];
     /// Acceleration [m/s²].

@@ -10,7 +10,7 @@
 
 use super::rotation::{self, Turn};
 use crate::Vec3;
-use crate::lanes::{Four, Kernel, V3};
+use crate::lanes::{Four, Kernel, Pack, V3};
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::state::{Block, Lanes, Rotation, set_xyz, spin_of, xyz};
@@ -31,7 +31,14 @@ impl<const RIGID: bool> Kernel for Advance<'_, RIGID> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Four>(self) {
+    fn run<P: Pack>(self) {
+        self.by_four::<P::Quad>();
+    }
+}
+
+impl<const RIGID: bool> Advance<'_, RIGID> {
+    #[inline(always)]
+    fn by_four<R: Four>(self) {
         let Advance { model, block, w, mut applied, dt } = self;
         let bound = 0.5 * model.radii.0 / dt;
         let n = block.bodies.len();
@@ -110,7 +117,7 @@ fn four<R: Four, const RIGID: bool>(
     let (spin, force) = (&mut block.spin[k..k + 4], &w.sums[k..k + 4]);
     for l in 0..4 {
         let (x, v) = (R::load(&centre[l]), R::load(&velocity[l]));
-        let kicked = v + (R::load(&force[l].force) * R::splat(velocity[l][3]) + gravity) * step;
+        let kicked = v + (R::load(force[l].force()) * R::splat(velocity[l][3]) + gravity) * step;
         kicked.store(&mut velocity[l]);
         (x + kicked * step).store(&mut centre[l]);
         (before[l], after[l]) = (x, kicked);
@@ -127,7 +134,7 @@ fn four<R: Four, const RIGID: bool>(
         // A sphere's moment of inertia is 2/5 m r².
         let kick = (R::splat(2.5 * dt) * softness / (r * r)).array();
         for l in 0..4 {
-            (R::load(&spin[l]) + R::load(&force[l].torque) * R::splat(kick[l])).store(&mut spin[l]);
+            (R::load(&spin[l]) + R::load(force[l].torque()) * R::splat(kick[l])).store(&mut spin[l]);
         }
     }
     sums.sound &= R::all(speed2.le(R::splat(f64::MAX)));
@@ -156,10 +163,10 @@ fn turn_four<R: Four>(block: &mut Block, w: &BlockWork, k: usize, dt: f64, speed
     let inertia = V3::new(R::load(&ix), R::load(&iy), R::load(&iz));
     let reach = R::load(&[w.reach[k], w.reach[k + 1], w.reach[k + 2], w.reach[k + 3]]);
     let [tx, ty, tz, _] = R::transpose([
-        R::load(&force[0].torque),
-        R::load(&force[1].torque),
-        R::load(&force[2].torque),
-        R::load(&force[3].torque),
+        R::load(force[0].torque()),
+        R::load(force[1].torque()),
+        R::load(force[2].torque()),
+        R::load(force[3].torque()),
     ]);
     let [wx, wy, wz, material] =
         R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
@@ -228,8 +235,8 @@ fn general<const RIGID: bool>(
     let (mass, fixed) = (body.mass, body.fixed);
     let load = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.force);
     let load_torque = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.torque);
-    let mut force = xyz(&w.sums[k].force) + load + model.gravity * mass;
-    let mut torque = xyz(&w.sums[k].torque) + load_torque;
+    let mut force = xyz(w.sums[k].force()) + load + model.gravity * mass;
+    let mut torque = xyz(w.sums[k].torque()) + load_torque;
     let held = |v: &Vec3| Vec3::from_fn(|d, _| -model.damping * v[d].abs());
     let damping = held(&force).component_mul(&v0.map(sign));
     let damping_torque = held(&torque).component_mul(&w0.map(sign));

@@ -188,6 +188,29 @@ fn unstable_newmark_constants() {
 }
 
 #[test]
+fn reduction_without_modes() {
+    let key = "reduction = { kind = \"modes\", modes = 0 }\n\n[[solid.material]]";
+    coupled()
+        .scene("\n[[solid.material]]", key)
+        .refused("scene.toml:8: solid.reduction.modes: found 0, expected 1 or more");
+}
+
+#[test]
+fn reduction_of_a_stressed_solid() {
+    let keys = "reduction = { kind = \"surface\" }\ninitial_stress = { method = \"k0\", k0 = 0.5 }\n\n[[solid.material]]";
+    coupled().scene("\n[[solid.material]]", keys).refused(
+        "scene.toml:8: solid.reduction: found initial stress, expected no such key beside solid.initial_stress",
+    );
+}
+
+#[test]
+fn reduction_of_a_solid_alone() {
+    solid()
+        .scene("[[solid.material]]", "reduction = { kind = \"surface\" }\n\n[[solid.material]]")
+        .refused("scene.toml:8: solid.reduction: found a value, expected no such key without [[grains]]");
+}
+
+#[test]
 fn mixed_rayleigh_damping() {
     coupled().scene("damping_ratio = 0.05, ", "damping_ratio = 0.05, alpha_m = 3, ").refused(
         "scene.toml:7: solid.rayleigh: found a mixture of keys, expected either alpha_m and beta_k, or damping_ratio \
@@ -216,7 +239,97 @@ fn grain_step_above_the_limit_under_a_sleeper() {
 fn no_substeps() {
     coupled()
         .scene("substeps = 10", "substeps = 0")
-        .refused("scene.toml:46: coupling.substeps: found 0, expected 1 to 1000");
+        .refused("scene.toml:46: coupling.substeps: found 0, expected 1 to 1000, or \"auto\"");
+}
+
+#[test]
+fn substeps_in_words() {
+    coupled()
+        .scene("substeps = 10", "substeps = \"many\"")
+        .refused("scene.toml:46: coupling.substeps: found string \"many\", expected 1 to 1000, or \"auto\"");
+}
+
+#[test]
+fn substeps_that_are_no_whole_number() {
+    coupled().scene("substeps = 10", "substeps = 2.5").refused(
+        "scene.toml:46: coupling.substeps: found floating point `2.5`, expected 1 to 1000, or \"auto\"",
+    );
+}
+
+#[test]
+fn scheme_that_is_none() {
+    coupled().scene("substeps = 10", "substeps = 10\nscheme = \"strong\"").refused(
+        "scene.toml:47: coupling.scheme: found unknown variant `strong`, expected one of `predicted`, `lagged`, `stiffened`, \
+         `iterated`",
+    );
+}
+
+#[test]
+fn tolerance_without_iteration() {
+    coupled().scene("substeps = 10", "substeps = 10\ntolerance = 1e-3").refused(
+        "scene.toml:47: coupling.tolerance: found a value, expected no such key but with scheme = \"iterated\"",
+    );
+}
+
+#[test]
+fn passes_without_iteration() {
+    coupled().scene("substeps = 10", "substeps = 10\nmax_passes = 3").refused(
+        "scene.toml:47: coupling.max_passes: found a value, expected no such key but with scheme = \"iterated\"",
+    );
+}
+
+#[test]
+fn tolerance_of_nothing() {
+    coupled()
+        .scene("substeps = 10", "scheme = \"iterated\"\ntolerance = 0")
+        .refused("scene.toml:47: coupling.tolerance: found 0, expected above 0, below 1");
+}
+
+#[test]
+fn a_single_pass() {
+    coupled()
+        .scene("substeps = 10", "scheme = \"iterated\"\nmax_passes = 1")
+        .refused("scene.toml:47: coupling.max_passes: found 1, expected 2 to 1000");
+}
+
+#[test]
+fn stiffened_exchange_with_a_plastic_solid() {
+    coupled()
+        .scene("substeps = 10", "scheme = \"stiffened\"")
+        .scene("density = 2000", "density = 2000\nmodel = \"mohr_coulomb\"\ncohesion = 2000\nfriction = 0.6")
+        .refused(
+            "scene.toml:49: coupling.scheme: found \"stiffened\", expected another scheme for a plastic solid or one with \
+             initial stress: this one needs a constant matrix",
+        );
+}
+
+#[test]
+fn transfer_that_is_none() {
+    coupled().scene("substeps = 10", "transfer = \"disc\"").refused(
+        "scene.toml:46: coupling.transfer: found string \"disc\", expected \"point\", or a table with `spread` or \
+         `spread_factor`",
+    );
+}
+
+#[test]
+fn transfer_with_two_sizes() {
+    coupled().scene("substeps = 10", "transfer = { spread = 0.1, spread_factor = 2 }").refused(
+        "scene.toml:46: coupling.transfer: found both or none of `spread` and `spread_factor`, expected one of them",
+    );
+}
+
+#[test]
+fn spread_over_nothing() {
+    coupled()
+        .scene("substeps = 10", "transfer = { spread = \"0 mm\" }")
+        .refused("scene.toml:46: coupling.transfer.spread: found 0 m, expected a radius above 0");
+}
+
+#[test]
+fn spread_factor_below_zero() {
+    coupled()
+        .scene("substeps = 10", "transfer = { spread_factor = -1 }")
+        .refused("scene.toml:46: coupling.transfer.spread_factor: found -1, expected above 0, at most 100");
 }
 
 #[test]
