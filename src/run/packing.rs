@@ -199,7 +199,7 @@ fn fouling(
         (0..model.body_count()).filter(|&b| is_grain(b) && fine(b) == fines).map(|b| of(model, b)).sum()
     };
     let [stones, fines] = [false, true].map(|f| sum(dem::Model::mass, f));
-    let boxes = grains.measures.iter().map(|(name, region)| {
+    let boxes = grains.measures.iter().map(|Measure { name, region, .. }| {
         let skeleton = porosity(view, region, |b| is_grain(b) && !fine(b));
         let both = porosity(view, region, &is_grain);
         let share = if skeleton > 0.0 { (skeleton - both) / skeleton } else { 0.0 };
