@@ -207,7 +207,7 @@ fn broken_loads_are_refused() {
     of(
         "speed = \"200 km/h\"",
         "speed = \"2 kg\"",
-        "track.load.speed: found \"2 kg\", expected a velocity in m/s",
+        "track.load.speed: found string \"2 kg\", expected a velocity in m/s",
     );
     of("rest = \"30 ms\"", "rest = -1", "track.load.rest: found -1, expected 0 or more");
     of("ramp = \"100 ms\"", "ramp = -1", "track.load.ramp: found -1, expected 0 or more");
