@@ -20,6 +20,8 @@
 //! 8 × 8 × 4 cells of six 4-node tetrahedra (405 nodes), 10 grain steps per step of the solid, one thread, processor
 //! time.
 
+#[path = "common/boxes.rs"]
+mod boxes;
 #[path = "common/grains.rs"]
 mod grains;
 #[path = "common/remarks.rs"]
@@ -54,7 +56,7 @@ fn settling(bencher: Bencher<'_, '_>) {
     let input = ModelInput {
         materials: vec![Material { density: 2650.0, stiffness: 3e5, restitution: 0.3, ..grains::stone() }],
         shapes: vec![Shape::Sphere { radius: 1.0 }],
-        bodies: grains::spheres("falling_1k.csv"),
+        bodies: grains::spheres(&grains::table("falling_1k.csv")),
         ..ModelInput::default()
     };
     run(bencher, "settling", 1, input, [1.0, 0.5], [0, 2500]);
@@ -62,7 +64,7 @@ fn settling(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
-    let (shape, bodies) = grains::clumps();
+    let (shape, bodies) = boxes::clumps(&grains::table("s2_1k.csv"));
     let input =
         ModelInput { materials: vec![grains::stone()], shapes: vec![shape], bodies, ..ModelInput::default() };
     run(bencher, "clumps", threads, input, [0.4, 0.2], [50, 20]);
@@ -155,7 +157,7 @@ fn run(
     [before, windows]: [u32; 2],
 ) {
     let solid = block(size);
-    input.planes = grains::walls(size[0]);
+    input.planes = boxes::walls(size[0]);
     input.surface_material = Some(0);
     input.time_step = TimeStep::Fixed(2e-5);
     let zero = vec![0.0; solid.dof_count()];

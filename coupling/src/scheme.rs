@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 /// Order of the exchange.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Scheme {
     /// Grains first on the predicted motion of the surface (B).
     #[default]
@@ -34,6 +35,19 @@ pub enum Scheme {
         /// Passes at most.
         passes: u32,
     },
+}
+
+impl std::fmt::Display for Scheme {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Scheme::Predicted => f.write_str("predicted"),
+            Scheme::Lagged => f.write_str("lagged"),
+            Scheme::Stiffened => f.write_str("stiffened"),
+            Scheme::Iterated { tolerance, passes } => {
+                write!(f, "iterated to {tolerance:e}, at most {passes} passes")
+            }
+        }
+    }
 }
 
 /// How often windows were repeated.

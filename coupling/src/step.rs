@@ -489,6 +489,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
         solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
+        ..Stored::default()
     }
 }
 

@@ -18,7 +18,8 @@ pub struct TransferAudit {
     pub exchanges: u64,
     /// Largest |Σ nodal load − Σ contact force| / Σ |contact force|.
     pub force: f64,
-    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| / Σ |p||contact force|, about the origin of coordinates.
+    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| about the origin of coordinates, over the sum of the moments'
+    /// sizes, |p||contact force| and |xᵢ||nodal loadᵢ|.
     pub moment: f64,
 }
 
@@ -89,7 +90,9 @@ impl Transfer {
         // The nodal loads' own sums, independent of how they came about.
         for &node in &self.loaded {
             let load = std::mem::take(&mut self.load[node as usize]);
-            let arm = cross(surface.position(node), load);
+            let x = surface.position(node);
+            let arm = cross(x, load);
+            moment_scale += norm(x) * norm(load);
             for d in 0..3 {
                 force[d] -= load[d];
                 moment[d] -= arm[d];

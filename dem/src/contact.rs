@@ -8,6 +8,7 @@ pub(crate) mod groups;
 pub mod hertz;
 pub mod linear;
 pub(crate) mod pass;
+pub(crate) mod passes;
 pub(crate) mod patches;
 pub(crate) mod planes;
 pub mod restitution;

@@ -87,6 +87,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
             }
         }
         block.bodies = bodies;
+        block.fit();
         state.blocks.push(block);
     }
     state.cross.resize_with(state.blocks.len(), || Cross::new(turning));

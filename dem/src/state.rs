@@ -149,6 +149,15 @@ impl Block {
     pub fn new(turning: bool) -> Block {
         Block { pairs: Groups::new(turning), planes: Groups::new(turning), ..Block::default() }
     }
+
+    /// Gives up memory that the bodies do not need.
+    pub fn fit(&mut self) {
+        self.bodies.shrink_to_fit();
+        self.centre.shrink_to_fit();
+        self.velocity.shrink_to_fit();
+        self.spin.shrink_to_fit();
+        self.rotation.shrink_to_fit();
+    }
 }
 
 impl Cross {
@@ -246,6 +255,7 @@ impl State {
                 }
             }
             block.bodies = members;
+            block.fit();
             state.blocks.push(block);
         }
         state.cross.resize_with(state.blocks.len(), || Cross::new(model.laws.rolls()));

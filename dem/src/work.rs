@@ -9,6 +9,7 @@ use crate::error::Partner;
 use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
+use crate::search::near::Merging;
 use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
@@ -92,22 +93,28 @@ impl Reference {
     }
 }
 
-/// Buffers for the forces of blocks, handed out to those in progress.
-#[derive(Debug, Default)]
-pub(crate) struct Buffers(Mutex<Vec<Vec<Sums>>>);
+/// Buffers handed out to blocks in progress.
+#[derive(Debug)]
+pub(crate) struct Buffers<T>(Mutex<Vec<T>>);
 
-impl Clone for Buffers {
-    fn clone(&self) -> Buffers {
+impl<T> Default for Buffers<T> {
+    fn default() -> Buffers<T> {
+        Buffers(Mutex::new(Vec::new()))
+    }
+}
+
+impl<T> Clone for Buffers<T> {
+    fn clone(&self) -> Buffers<T> {
         Buffers::default()
     }
 }
 
-impl Buffers {
-    pub fn take(&self) -> Vec<Sums> {
+impl<T: Default> Buffers<T> {
+    pub fn take(&self) -> T {
         self.0.lock().map(|mut b| b.pop()).ok().flatten().unwrap_or_default()
     }
 
-    pub fn give_back(&self, buffer: Vec<Sums>) {
+    pub fn give_back(&self, buffer: T) {
         if let Ok(mut buffers) = self.0.lock() {
             buffers.push(buffer);
         }
@@ -209,7 +216,8 @@ pub struct Work {
     pub(crate) held: Held,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
-    pub(crate) buffers: Buffers,
+    pub(crate) buffers: Buffers<Vec<Sums>>,
+    pub(crate) merging: Buffers<Merging>,
     pub(crate) keep_forces: bool,
     pub(crate) slot_width: usize,
     /// Whether the candidates exist, and where walls were when they were found.
@@ -249,6 +257,7 @@ impl Work {
             applied: Vec::new(),
             surface_contacts: Vec::new(),
             buffers: Buffers::default(),
+            merging: Buffers::default(),
             keep_forces: false,
             slot_width: if model.rigid || model.laws.rolls() { 3 } else { 2 },
             listed: false,

@@ -58,6 +58,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             .flat_map(|plan| plan.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
         let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
         let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
+        grains.check_pads(&document, model.dt())?;
         line(format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
         if let Some(d) = &grains.deposition {
@@ -72,7 +73,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
             let s = exchange::stability(&classes);
             line(format!(
-                "coupling: {} faces, {:?}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
+                "coupling: {} faces, scheme {}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
                  {:.3}",
                 coupling.faces.len(),
                 coupling.scheme,

@@ -1,6 +1,7 @@
 //! `[track.jump]`, `[track.push]` and `track.bed_stiffness` resolved.
 
 use super::grains::{GrainsPart, check};
+use super::seat_load::CyclicLoad;
 use crate::scene::after::{CycleJump, JumpMethod, Push};
 use crate::scene::track::Track;
 use crate::scene::{Document, SceneError};
@@ -83,7 +84,7 @@ impl PushPlan {
 pub fn build(document: &Document, track: &Track, part: &GrainsPart) -> Result<AfterPlan, SceneError> {
     let jump = track.jump.as_ref().map(|j| jump(document, j, part)).transpose()?;
     let push = track.push.as_ref().map(|p| push(document, p, part)).transpose()?;
-    let range = track.load.as_ref().map(|l| [l.minimum.si, l.maximum.si]);
+    let range = part.load.as_ref().map(CyclicLoad::range);
     let between = match (track.bed_stiffness, range) {
         (Some(_), None) => {
             let expected = "a [track.load] with cycles, or no such key";
@@ -155,6 +156,9 @@ fn push(document: &Document, p: &Push, part: &GrainsPart) -> Result<PushPlan, Sc
     let Some(direction) = direction.try_normalize(0.0).filter(|d| d.iter().all(|x| x.is_finite())) else {
         return Err(document.error(&key("direction"), found, "a direction"));
     };
+    if part.rail.is_some() {
+        return Err(document.error("track.push", "a push", "no such table beside a rail with mass"));
+    }
     let held = part.sleeper.as_ref().map_or([false; 6], |s| s.held());
     if let Some(d) = (0..2).find(|&d| held[d] && direction[d] != 0.0) {
         let expected = format!("a direction that track.sleeper.hold leaves free, not {}", ["x", "y"][d]);

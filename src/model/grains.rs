@@ -14,6 +14,7 @@ pub mod walls;
 use super::after::{self, AfterPlan};
 use super::seat_load::CyclicLoad;
 use super::tables::Grading;
+use super::track::rail::RailInput;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
@@ -76,6 +77,8 @@ pub struct GrainsPart {
     pub load: Option<CyclicLoad>,
     /// Jumps over cycles, push at the end.
     pub after: AfterPlan,
+    /// The rail, where it is a beam; one on each seat.
+    pub rail: Option<RailInput>,
 }
 
 /// A group of prescribed motion.
@@ -148,6 +151,8 @@ pub struct SleeperPlan {
     fixed: [bool; 6],
     /// Half edge lengths [m].
     pub half: [f64; 3],
+    /// Direction of the track: 0 or 1.
+    pub axis: usize,
     /// Places of the centres in x and y [m], along the track.
     pub centres: Vec<[f64; 2]>,
     /// Points of the top that share the load, in the sleeper's frame [m].
@@ -301,6 +306,34 @@ impl GrainsPart {
         &self.recorded
     }
 
+    /// Refuses pads that are too stiff or too strongly damped for sleepers that move in steps of `dt` [s] under the pads'
+    /// force at the start of each step.
+    ///
+    /// # Errors
+    /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
+    /// damping.
+    pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
+        let (Some(rail), Some(sleeper)) = (&self.rail, &self.sleeper) else { return Ok(()) };
+        let [a, b, c] = sleeper.half;
+        // 1/m of a seat, turning about both level axes included: a bound for all modes.
+        let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
+        let lightness: f64 = sleeper
+            .seats
+            .iter()
+            .map(|s| 1.0 / sleeper.mass + s[0] * s[0] * third(a, c) + s[1] * s[1] * third(b, c))
+            .sum();
+        for (key, value, most) in [
+            ("pad_stiffness", rail.pad[0], 0.25 / (dt * dt * lightness)),
+            ("pad_damping", rail.pad[1], 0.5 / (dt * lightness)),
+        ] {
+            if value > most {
+                let expected = format!("at most {most:.4e} with grain steps of {dt:.4e} s");
+                return Err(document.error(&format!("track.rail.{key}"), value.to_string(), expected));
+            }
+        }
+        Ok(())
+    }
+
     /// A sleeper as a body with its centre above `centre` at height `z` [m].
     pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
@@ -390,6 +423,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         sleeper: None,
         load: None,
         after: AfterPlan::default(),
+        rail: None,
     };
     for (i, group) in scene.grains.iter().enumerate() {
         let material = find(&format!("grains.{i}.material"), &group.material)?;

@@ -7,6 +7,7 @@ pub mod grains;
 pub mod seat_load;
 pub mod solid;
 mod tables;
+pub mod track;
 
 use crate::failure::Failure;
 use crate::scene::units::vector;

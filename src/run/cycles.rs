@@ -222,32 +222,23 @@ impl CycleRecorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::track::{SeatLoad, SeatLoadKind};
-    use crate::scene::units::Quantity;
+    use crate::model::seat_load::Course;
 
-    fn load(kind: SeatLoadKind) -> CyclicLoad {
-        CyclicLoad::new(&SeatLoad {
-            kind,
-            minimum: Quantity::new(0.0),
-            maximum: Quantity::new(100.0),
-            frequency: Quantity::new(10.0),
-            cycles: 3,
-            rest: Quantity::new(0.1),
-            ramp: Quantity::new(0.1),
-            seats: vec![],
-        })
+    fn load(sine: bool) -> CyclicLoad {
+        let course = Course::Wave { sine, minimum: 0.0, maximum: 100.0, frequency: 10.0 };
+        CyclicLoad { course, cycles: 3, rest: 0.1, ramp: 0.1, places: vec![0.0] }
     }
 
     #[test]
     fn a_spring_with_drift_yields_its_own_stiffness_and_settlement() {
-        let load = load(SeatLoadKind::Haversine);
+        let load = load(false);
         let column = Column { area: 0.5, below: -0.8 };
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], column);
         // Height 1 − F/k − drift·(t − 0.2): k = 10 kN/m, drift 1 mm per cycle.
         let (dt, k, drift) = (1e-4, 1e4, 0.01);
         for step in 1..=5000 {
             let t = f64::from(step) * dt;
-            let f = load.force(t);
+            let f = load.on(0, t);
             let height = 1.0 - f / k - drift * (t - 0.2).max(0.0);
             recorder.record(t, dt, height, f, 2.0 * t, 7.0 * f);
         }
@@ -269,11 +260,11 @@ mod tests {
 
     #[test]
     fn a_sine_that_starts_at_the_mean_has_a_loading_branch_as_well() {
-        let load = load(SeatLoadKind::Sine);
+        let load = load(true);
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], Column::default());
         for step in 1..=5000 {
             let t = f64::from(step) * 1e-4;
-            let f = load.force(t);
+            let f = load.on(0, t);
             recorder.record(t, 1e-4, 1.0 - f / 1e4, f, 0.0, 0.0);
         }
         // The first cycle passes the lower load only at its end; on a spring every branch has its stiffness.
@@ -282,14 +273,14 @@ mod tests {
 
     #[test]
     fn an_account_that_jumps_goes_on_along_the_logarithm() {
-        let load = load(SeatLoadKind::Haversine);
+        let load = load(false);
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], Column::default());
         recorder.total = 1000;
         let mut jumped = false;
         for step in 1..=6000 {
             let t = f64::from(step) * 1e-4;
             let age = ((t - 0.2) * 10.0).max(0.0);
-            recorder.record(t, 1e-4, 1.0 - 0.01 * (1.0 + age).ln(), load.force(t), 0.0, 0.0);
+            recorder.record(t, 1e-4, 1.0 - 0.01 * (1.0 + age).ln(), load.on(0, t), 0.0, 0.0);
             if recorder.simulated() == 2 && !jumped {
                 recorder.skip(500, 0.01);
                 jumped = true;

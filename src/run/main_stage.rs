@@ -96,30 +96,30 @@ impl Stage<'_> {
         let interval = job.output.history_interval;
         let every = ((interval / window).round() as u64).max(1);
 
-        let track = Track::new(grains, system.grains().map_or(0, |g| g.model.body_count()));
+        let mut track = Track::new(grains, system.grains());
         let push = Push::new(grains, &track, system);
         let pushed = RefCell::new(PushState::default());
         let load = grains.and_then(|g| g.load.as_ref());
         // What follows the cycles, whenever they end.
         let tail = load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows));
-        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            if !push.as_ref().is_some_and(|p| p.apply(&pushed.borrow(), t, model, state, out)) {
-                track.apply(t, model, state, out);
-            }
-        };
-
         let (mut recorder, from) = match resumed {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
                 *pushed.borrow_mut() = loaded.take()?;
+                track = track.resume(&mut loaded)?;
                 windows = from.windows;
                 (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
             }
             None => {
                 let mut recorder = Recorder::start(job, self.dir, system, &track)?;
                 recorder.row(0.0, system, &track)?;
-                recorder.frame(0.0, system)?;
+                recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
+            }
+        };
+        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            if !push.as_ref().is_some_and(|p| p.apply(&pushed.borrow(), t, model, state, out)) {
+                track.apply(t, model, state, out);
             }
         };
         // With jumps neither time nor steps tell how far a run is.
@@ -142,7 +142,9 @@ impl Stage<'_> {
             outcome = (|| -> Result<(), Failure> {
                 let k = done + 1;
                 let time = k as f64 * window;
+                track.begin_window();
                 system.advance(&apply)?;
+                track.follow(time, system);
                 if let Some(cycle) = recorder.follow(time, system, &track)? {
                     progress.message(format!(
                         "cycle {}: settlement {:.3} mm",
@@ -151,7 +153,7 @@ impl Stage<'_> {
                     ));
                     if recorder.progress().is_some_and(|(number, total)| number >= total) {
                         if let (Some(push), Some(load)) = (&push, load) {
-                            push.begin(&mut pushed.borrow_mut(), time, load.force(time));
+                            push.begin(&mut pushed.borrow_mut(), time, load.on(track.count() / 2, time));
                         }
                         if jumps {
                             windows = (k + tail).min(windows);
@@ -166,7 +168,7 @@ impl Stage<'_> {
                 }
                 let (come, whole) = share(k, windows, &recorder);
                 if frames > 0 && come * frames >= next_frame * whole && next_frame <= frames {
-                    recorder.frame(time, system).map_err(|e| e.at(time))?;
+                    recorder.frame(time, system, &track).map_err(|e| e.at(time))?;
                     next_frame = come * frames / whole + 1;
                 }
                 progress.at(come as f64);
@@ -187,6 +189,7 @@ impl Stage<'_> {
                         }
                         body.put(&Place { done, next_frame, seconds: progress.seconds(), windows })?;
                         body.put(&*pushed.borrow())?;
+                        track.save(body)?;
                         recorder.save(body)
                     },
                 )
@@ -199,7 +202,7 @@ impl Stage<'_> {
             && let Some(time) = system.solid().map(|s| s.state.time)
         {
             recorder.row(time, system, &track)?;
-            recorder.frame(time, system)?;
+            recorder.frame(time, system, &track)?;
         }
         if let (Some(part), Some(view)) = (grains, system.grains())
             && !part.bonds.is_empty()
@@ -219,6 +222,7 @@ impl Stage<'_> {
             push.finish(&pushed.borrow(), self.dir, summary)?;
         }
         summary.settlement = settlement(recorder.cycles(), grains, &recorder);
+        summary.track = track.record();
         let balance = recorder.balance();
         let work = balance.spent.work();
         let turnover = work.abs().max(balance.spent.dissipated());

@@ -17,6 +17,7 @@ mod packed;
 mod packing;
 mod plastic;
 mod push;
+mod rail;
 mod record;
 mod settle;
 mod solid_alone;
@@ -258,6 +259,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
         files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
+    files.extend(scene.track.iter().filter_map(|t| t.load.as_ref()?.file.as_deref()));
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
     files
@@ -397,6 +399,10 @@ impl Stage<'_> {
         }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
         push::check(self.document, grains, model.dt())?;
+        grains.check_pads(self.document, model.dt())?;
+        if grains.rail.is_some() {
+            summary.sources.extend(RAIL_SOURCES);
+        }
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());
@@ -544,6 +550,11 @@ fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     }
     sources
 }
+
+const RAIL_SOURCES: [&str; 2] = [
+    "rail: Euler-Bernoulli beam of cubic elements, Przemieniecki, Theory of Matrix Structural Analysis, 1968",
+    "rail in time: average acceleration, Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959",
+];
 
 const BOND_SOURCES: [&str; 1] =
     ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];

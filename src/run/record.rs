@@ -151,7 +151,7 @@ impl<'a> Recorder<'a> {
     pub fn row<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let mut row = vec![time];
         if let Some(g) = system.grains() {
-            for (k, s) in track.sleepers(time).enumerate() {
+            for (k, s) in (0..track.count()).map(|k| (k, track.sleeper(k, time))) {
                 let x = g.state.position(s.body);
                 let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
                 row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
@@ -171,6 +171,7 @@ impl<'a> Recorder<'a> {
         course.balance.now = system.stored();
         course.balance.spent = system.spent();
         course.balance.spent.jumps = course.jump_energy;
+        track.account(&mut course.balance.now, &mut course.balance.spent);
         let (now, spent) = (&course.balance.now, &course.balance.spent);
         let error = course.balance.error();
         course.largest_error = course.largest_error.max(error.abs());
@@ -188,6 +189,10 @@ impl<'a> Recorder<'a> {
             spent.interface(),
             error,
         ]);
+        if track.has_rails() {
+            (0..track.count()).for_each(|k| row.push(track.rail(k)));
+            row.extend([now.rail, spent.wheels, spent.pads + spent.track_beyond]);
+        }
         if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
             bond_output::values(part, view, now, spent, &mut row);
         }
@@ -282,7 +287,7 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// A field is not finite, or the disk refuses.
-    pub fn frame<S: System>(&mut self, time: f64, system: &S) -> Result<(), Failure> {
+    pub fn frame<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let k = self.course.frame;
         let vtk = self.job.output.vtk;
         if let Some(solid) = system.solid() {
@@ -302,7 +307,8 @@ impl<'a> Recorder<'a> {
             )?;
             self.series.push(time, 1, "grains", &name("grains"));
             self.series.push(time, 2, "force chains", &name("chains"));
-            let walls = frames::walls(view, part);
+            let mut walls = frames::walls(view, part);
+            track.draw(&mut walls);
             if !walls.polygons.is_empty() {
                 write::vtp::write_walls(&self.dir.join(name("walls")), &walls)?;
                 self.series.push(time, 3, "walls and sleeper", &name("walls"));
@@ -398,6 +404,12 @@ fn columns<S: System>(job: &Job, system: &S, track: &Track<'_>) -> Vec<Column> {
     }
     for name in ENERGY_COLUMNS {
         columns.push(Column::new(name, "J"));
+    }
+    if track.has_rails() {
+        for k in 0..track.count() {
+            columns.push(Column::new(format!("rail{}", numbered(track, k)), "m"));
+        }
+        columns.extend(["rail_energy", "wheels_work", "dissipated_track"].map(|name| Column::new(name, "J")));
     }
     if system.grains().is_some() {
         columns.extend(job.grains.iter().flat_map(bond_output::columns));

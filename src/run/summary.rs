@@ -66,6 +66,9 @@ pub struct Summary {
     /// Settlement per load cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
+    /// Sleepers under load.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub track: Option<TrackRecord>,
     /// Groups that have grown to their size.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthRecord>,
@@ -307,6 +310,36 @@ pub struct BedStiffness {
     pub mean_of_last_ten: f64,
 }
 
+/// Sleepers while the load cycles last.
+#[derive(Clone, Debug, Serialize)]
+pub struct TrackRecord {
+    /// In their order along the track.
+    pub sleepers: Vec<SleeperRecord>,
+}
+
+/// One sleeper while the load cycles last.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SleeperRecord {
+    /// Largest downward force on its seats together [N], at the end of any window.
+    pub largest_force: f64,
+    /// Smallest one; negative where it was lifted.
+    pub smallest_force: f64,
+    /// Largest lowering since the cycles began [m].
+    pub lowering: f64,
+    /// Largest force over the load of one axle, where there are axles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_share: Option<f64>,
+    /// Largest downward deflection of the rail over it since the rail was laid [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rail_deflection: Option<f64>,
+    /// Largest force when the wheels stand still, on a bed of the scene's `foundation` under every sleeper [N].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub static_force: Option<f64>,
+    /// Largest force over that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dynamic_amplification: Option<f64>,
+}
+
 impl Summary {
     /// Writes the summary as `summary.json` in `dir`.
     ///
@@ -404,7 +437,7 @@ impl Summary {
         }
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; {:?}, {} sub-steps, \
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; scheme {}, {} sub-steps, \
                  transfer {}",
                 c.transfer.force,
                 c.transfer.moment,
@@ -466,6 +499,18 @@ impl Summary {
                 1e-3 * p.peak,
                 1e3 * p.displacement_at_peak,
                 1e-3 * p.vertical_force
+            ));
+        }
+        for (k, s) in self.track.iter().flat_map(|t| t.sleepers.iter().enumerate()) {
+            let share = s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of an axle)", 100.0 * p));
+            let factor =
+                s.dynamic_amplification.map_or(String::new(), |f| format!(", {f:.3} times the static force"));
+            lines.push(format!(
+                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, lowered by {:.3} mm",
+                k + 1,
+                1e-3 * s.smallest_force,
+                1e-3 * s.largest_force,
+                1e3 * s.lowering
             ));
         }
         lines.extend(packing::report(self));

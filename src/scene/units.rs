@@ -84,6 +84,12 @@ dimensions! {
     Spin: "an angular velocity in rad/s, such as 1.5", [("rad/s", 1.0), ("1/s", 1.0)];
     /// Angle [rad].
     Angle: "an angle in rad, or with its unit such as \"60 deg\"", [("rad", 1.0), ("deg", std::f64::consts::PI / 180.0)];
+    /// Mass per length [kg/m].
+    LineMass: "a mass per length in kg/m, such as 60", [("kg/m", 1.0), ("t/m", 1e3)];
+    /// Bending stiffness [N m²].
+    Bending: "a bending stiffness in N m2, such as 6.4e6 or \"6.4 MN m2\"", [("N m2", 1.0), ("kN m2", 1e3), ("MN m2", 1e6)];
+    /// Damping of a dashpot [N s/m].
+    Dashpot: "a damping in N s/m, such as 4e4 or \"40 kN s/m\"", [("N s/m", 1.0), ("kN s/m", 1e3), ("MN s/m", 1e6)];
     /// Rate [1/s].
     Rate: "a rate in 1/s, such as 4.2", [("1/s", 1.0)];
 }

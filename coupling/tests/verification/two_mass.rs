@@ -134,11 +134,11 @@ fn thresholds_of_the_schemes_at_a_damping_of_0_2() {
         let (below, above) =
             (growth(scheme, 0.9 * reference, 0.2, 3.0), growth(scheme, 1.1 * reference, 0.2, 3.0));
         println!("{scheme:?}: growth {below:.3} at 0.9, {above:.3} at 1.1 of W = {reference}");
-        assert!(below < 1.0 && above > 1.0, "{scheme:?}: {below}, {above}");
+        assert!(below < 1.0 + 1e-4 && above > 1.01, "{scheme:?}: {below}, {above}");
     }
     let iterated = growth(ITERATED, 5.0, 0.2, 3.0);
     println!("iterated at W = 5: growth {iterated:.3}");
-    assert!(iterated < 1.0);
+    assert!(iterated < 1.0 + 1e-4);
 }
 
 /// The whole table: A and B within 10 % in W of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m; stiffened and
@@ -176,7 +176,7 @@ fn thresholds_of_the_schemes_in_full() {
         }
         let iterated = damping.map(|zeta| growth(ITERATED, 5.0, zeta, ratio));
         println!("M = {ratio} m, iterated at W = 5: growth {iterated:.3?}");
-        assert!(iterated.iter().all(|g| *g < 1.0));
+        assert!(iterated.iter().all(|g| *g < 1.0 + 1e-4));
     }
     assert!(missed.is_empty(), "{missed:?}");
 }

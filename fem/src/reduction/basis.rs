@@ -154,7 +154,7 @@ impl<'m> Span<'m> {
             }
         }
         let after = norm(self.model, &shape, &mut momentum);
-        if !(after > DEPENDENT * before) {
+        if after <= DEPENDENT * before {
             return;
         }
         shape.iter_mut().for_each(|x| *x /= after);
