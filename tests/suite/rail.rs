@@ -327,6 +327,14 @@ fn broken_loads_on_sleepers_are_refused() {
         "[time]\nend = 1",
         "track.rail: found a rail, expected [track.load] with wheels on it",
     );
+    let push = "\n[track.push]\ndirection = [1, 0]\nspeed = 0.1\ndisplacement = 0.01\n";
+    let pushed = springs(2, &(bogie("10") + BEAM + push));
+    refused(
+        &pushed,
+        "displacement = 0.01",
+        "displacement = 0.02",
+        "track.push: found a push, expected no such table beside a rail with mass",
+    );
     let single = springs(1, &(bogie("10") + BEAM)).replace("spacing = \"0.6 m\"\n", "");
     refused(
         &single,
