@@ -10,6 +10,8 @@ linear map; a spectral radius above 1 means that the exchange gains energy and g
     A   solid first, under the contact force of the last window; then stone on the interpolated motion of the node
     A'  as A, with the force filtered: 0.4 of the new and 0.6 of the old one
     B   stone first, on the predicted motion x + v t of the node; then solid, under the mean force of the same window
+    S   as B, the node's mean velocity predicted by a solve with the contact's spring and dashpot in the matrix
+    I   window repeated until the stone moves on the node's own mean velocity
 
 Printed: the largest W = dt sqrt(K/m) up to which the radius stays at or below 1 + 1e-6, and the growth per window
 without damping.
@@ -39,13 +41,33 @@ def window(z, scheme, dt, substeps, mass, stone, damping):
     def stone_steps(place, speed):
         h, impulse = dt / substeps, 0.0
         place_of_stone, speed_of_stone = y, w
-        for k in range(1, substeps + 1):
+        # Force, place of the stone and place of the node are of one instant, as in the program.
+        for k in range(substeps):
             force = -(place(k * h) - place_of_stone) - damping * (speed(k * h) - speed_of_stone)
             impulse += force * h
             speed_of_stone -= force * h / stone
             place_of_stone += speed_of_stone * h
         return place_of_stone, speed_of_stone, impulse / dt
 
+    if scheme == "S":
+        half = dt / 2 + damping
+        now = y - x + damping * (w - v) + (w - v) * dt / 2
+        # mass (v1 - v)/dt + GROUND (x + dt (v + v1)/4) = now - half (v1 - v)/2
+        v1 = (mass * v / dt + now - GROUND * (x + dt * v / 4) + half * v / 2) / (
+            mass / dt + GROUND * dt / 4 + half / 2
+        )
+        mean_speed = (v + v1) / 2
+        y1, w1, mean = stone_steps(lambda t: x + mean_speed * t, lambda t: mean_speed)
+        return [*solid_mean_force(mean), y1, w1, mean]
+    if scheme == "I":
+        # The map from the node's mean velocity to itself is linear: two passes tell its fixed point.
+        def again(speed):
+            y1, w1, mean = stone_steps(lambda t: x + speed * t, lambda t: speed)
+            solid = solid_mean_force(mean)
+            return (v + solid[1]) / 2, [*solid, y1, w1, mean]
+
+        at_0, at_1 = again(0.0)[0], again(1.0)[0]
+        return again(at_0 / (1 - at_1 + at_0))[1]
     if scheme == "B":
         y1, w1, mean = stone_steps(lambda t: x + v * t, lambda t: v)
         return [*solid_mean_force(mean), y1, w1, mean]
@@ -63,7 +85,7 @@ def radius(scheme, w, stone, zeta):
 
 def largest_stable(scheme, stone, zeta):
     stable = 0.0
-    for w in np.concatenate([np.arange(0.02, 0.3, 0.02), np.arange(0.3, 3.5, 0.05)]):
+    for w in np.concatenate([np.arange(0.02, 0.3, 0.02), np.arange(0.3, 6.0, 0.05)]):
         if radius(scheme, w, stone, zeta) > 1 + 1e-6:
             break
         stable = w
@@ -73,12 +95,12 @@ def largest_stable(scheme, stone, zeta):
 def main():
     stones = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
     print("largest stable W; M/m =", " ".join(f"{s:6g}" for s in stones))
-    for scheme in ("A", "A'", "B"):
+    for scheme in ("A", "A'", "B", "S", "I"):
         for zeta in (0.0, 0.05, 0.1, 0.2, 0.3):
             row = " ".join(f"{largest_stable(scheme, s, zeta):6.2f}" for s in stones)
             print(f"{scheme:2} zeta = {zeta:4.2f}          {row}")
     print("growth per window without damping, M = m")
-    for scheme in ("A", "A'", "B"):
+    for scheme in ("A", "A'", "B", "S", "I"):
         print(f"{scheme:2}", "  ".join(f"W = {w:g}: {radius(scheme, w, 1.0, 0.0):.5f}" for w in (0.05, 0.2, 0.5)))
 
 

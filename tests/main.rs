@@ -3,17 +3,20 @@
 
 mod suite {
     mod bad_input;
+    mod ballast;
     mod bonds;
     mod checkpoint;
     mod checkpoint_kill;
     mod cli;
     mod determinism;
+    mod exchange;
     mod fem_cases;
     mod grain_limits;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
     mod packings;
+    mod rail;
     mod scenes;
     mod solid_keys;
     mod solid_runs;
@@ -21,5 +24,7 @@ mod suite {
     mod stones;
     mod summary;
     pub mod support;
+    mod track;
+    mod train;
     mod walls;
 }

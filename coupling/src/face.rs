@@ -61,42 +61,114 @@ pub fn interpolate(values: &[[f64; 3]; 8], natural: [f64; 2]) -> [f64; 3] {
 /// Closest point of the face with node coordinates `x` [m], shape `[8][3]`, to `centre`, starting from the
 /// natural coordinates `start` (last step's result converges in one or two iterations).
 pub fn closest_point(x: &[[f64; 3]; 8], centre: [f64; 3], start: [f64; 2]) -> Closest {
-    let mut xi = [start[0].clamp(-1.0, 1.0), start[1].clamp(-1.0, 1.0)];
-    let mut iterations = 0;
-    let mut here = Local::at(x, centre, xi);
-    while iterations < MAX_ITERATIONS {
-        iterations += 1;
-        let step = here.projected_step(xi);
-        let mut scale = 1.0;
-        let mut moved = [0.0; 2];
-        loop {
-            let next =
-                [(xi[0] + scale * step[0]).clamp(-1.0, 1.0), (xi[1] + scale * step[1]).clamp(-1.0, 1.0)];
-            let there = Local::at(x, centre, next);
-            // Rounding may raise g by a few ulps at the minimum itself: that still counts as no worse.
-            if there.distance2 <= here.distance2 * (1.0 + 1e-14) {
-                moved = [next[0] - xi[0], next[1] - xi[1]];
-                xi = next;
-                here = there;
-                break;
-            }
-            scale *= 0.5;
-            if scale < 1e-6 {
-                break;
-            }
+    Form::new(x).closest_point(centre, start)
+}
+
+/// A face in powers of its natural coordinates,
+/// x(ξ, η) = c₀ + c₁ ξ + c₂ η + c₃ ξ² + c₄ η² + c₅ ξη + c₆ ξ²η + c₇ ξη²: the same field as Σ Nᵢ xᵢ with an eighth of the
+/// work per evaluation.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Form([[f64; 3]; 8]);
+
+impl Form {
+    /// The field with the nodal values `q`, shape `[8][3]`.
+    pub fn new(q: &[[f64; 3]; 8]) -> Form {
+        let mut c = [[0.0; 3]; 8];
+        for d in 0..3 {
+            let [q0, q1, q2, q3, m4, m5, m6, m7] = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| q[i][d]);
+            let quarter = 0.25 * (q0 + q1 + q2 + q3);
+            c[0][d] = 0.5 * (m4 + m5 + m6 + m7) - quarter;
+            c[1][d] = 0.5 * (m5 - m7);
+            c[2][d] = 0.5 * (m6 - m4);
+            c[3][d] = quarter - 0.5 * (m4 + m6);
+            c[4][d] = quarter - 0.5 * (m5 + m7);
+            c[5][d] = 0.25 * (q0 - q1 + q2 - q3);
+            c[6][d] = 0.25 * (q2 + q3 - q0 - q1) + 0.5 * (m4 - m6);
+            c[7][d] = 0.25 * (q1 + q2 - q0 - q3) + 0.5 * (m7 - m5);
         }
-        if moved[0].abs().max(moved[1].abs()) < STEP {
-            break;
-        }
+        Form(c)
     }
-    let n = cross(here.tangent[0], here.tangent[1]);
-    let length = dot(n, n).sqrt();
-    Closest {
-        natural: xi,
-        point: here.point,
-        normal: n.map(|c| c / length),
-        location: locate(xi),
-        iterations,
+
+    /// This field plus `factor` times another.
+    #[inline]
+    pub fn plus(&self, factor: f64, other: &Form) -> Form {
+        let mut c = self.0;
+        for k in 0..8 {
+            for d in 0..3 {
+                c[k][d] += factor * other.0[k][d];
+            }
+        }
+        Form(c)
+    }
+
+    /// The field at a natural point.
+    #[inline]
+    pub fn at(&self, [a, b]: [f64; 2]) -> [f64; 3] {
+        let c = &self.0;
+        [0, 1, 2].map(|d| {
+            c[0][d]
+                + a * (c[1][d] + a * (c[3][d] + b * c[6][d]) + b * c[5][d])
+                + b * (c[2][d] + b * (c[4][d] + a * c[7][d]))
+        })
+    }
+
+    /// ∂x/∂ξ × ∂x/∂η at a natural point: the normal, outward for faces ordered as [`trackbed_fem::mesh::Face`], not of
+    /// unit length.
+    pub fn area(&self, natural: [f64; 2]) -> [f64; 3] {
+        let tangent = self.tangents(natural);
+        cross(tangent[0], tangent[1])
+    }
+
+    #[inline]
+    fn tangents(&self, [a, b]: [f64; 2]) -> [[f64; 3]; 2] {
+        let c = &self.0;
+        [
+            [0, 1, 2]
+                .map(|d| c[1][d] + a * (2.0 * c[3][d] + 2.0 * b * c[6][d]) + b * (c[5][d] + b * c[7][d])),
+            [0, 1, 2]
+                .map(|d| c[2][d] + b * (2.0 * c[4][d] + 2.0 * a * c[7][d]) + a * (c[5][d] + a * c[6][d])),
+        ]
+    }
+
+    /// Closest point of the face to `centre`, starting from the natural coordinates `start`.
+    pub fn closest_point(&self, centre: [f64; 3], start: [f64; 2]) -> Closest {
+        let mut xi = [start[0].clamp(-1.0, 1.0), start[1].clamp(-1.0, 1.0)];
+        let mut iterations = 0;
+        let mut here = Local::at(self, centre, xi);
+        while iterations < MAX_ITERATIONS {
+            iterations += 1;
+            let step = here.projected_step(xi);
+            let mut scale = 1.0;
+            let mut moved = [0.0; 2];
+            loop {
+                let next =
+                    [(xi[0] + scale * step[0]).clamp(-1.0, 1.0), (xi[1] + scale * step[1]).clamp(-1.0, 1.0)];
+                let there = Local::at(self, centre, next);
+                // Rounding may raise g by a few ulps at the minimum itself: that still counts as no worse.
+                if there.distance2 <= here.distance2 * (1.0 + 1e-14) {
+                    moved = [next[0] - xi[0], next[1] - xi[1]];
+                    xi = next;
+                    here = there;
+                    break;
+                }
+                scale *= 0.5;
+                if scale < 1e-6 {
+                    break;
+                }
+            }
+            if moved[0].abs().max(moved[1].abs()) < STEP {
+                break;
+            }
+        }
+        let n = cross(here.tangent[0], here.tangent[1]);
+        let length = dot(n, n).sqrt();
+        Closest {
+            natural: xi,
+            point: here.point,
+            normal: n.map(|c| c / length),
+            location: locate(xi),
+            iterations,
+        }
     }
 }
 
@@ -128,23 +200,14 @@ struct Local {
 }
 
 impl Local {
-    fn at(x: &[[f64; 3]; 8], centre: [f64; 3], xi: [f64; 2]) -> Local {
-        let n = quad8::shape_functions(xi);
-        let d1 = quad8::gradients(xi);
-        let d2 = quad8::second_gradients(xi);
-        let mut point = [0.0; 3];
-        let mut tangent = [[0.0; 3]; 2];
-        let mut second = [[0.0; 3]; 3];
-        for i in 0..8 {
-            for d in 0..3 {
-                point[d] += n[i] * x[i][d];
-                tangent[0][d] += d1[i][0] * x[i][d];
-                tangent[1][d] += d1[i][1] * x[i][d];
-                for k in 0..3 {
-                    second[k][d] += d2[i][k] * x[i][d];
-                }
-            }
-        }
+    #[inline]
+    fn at(form: &Form, centre: [f64; 3], xi: [f64; 2]) -> Local {
+        let (c, point, tangent) = (&form.0, form.at(xi), form.tangents(xi));
+        let second = [
+            [0, 1, 2].map(|d| 2.0 * (c[3][d] + xi[1] * c[6][d])),
+            [0, 1, 2].map(|d| 2.0 * (c[4][d] + xi[0] * c[7][d])),
+            [0, 1, 2].map(|d| c[5][d] + 2.0 * (xi[0] * c[6][d] + xi[1] * c[7][d])),
+        ];
         let r = [point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]];
         Local {
             point,
@@ -200,6 +263,32 @@ mod tests {
     fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         dot(r, r).sqrt()
+    }
+
+    /// The powers of the natural coordinates are the field of the shape functions, and their derivatives its derivatives.
+    #[test]
+    fn powers_give_the_field_of_the_shape_functions() {
+        let mut random = Random::new(29);
+        for _ in 0..100 {
+            let x = curved_face(&mut random);
+            let form = Form::new(&x);
+            let xi = [random.symmetric(), random.symmetric()];
+            assert!(distance(form.at(xi), interpolate(&x, xi)) < 1e-15 * 8.0);
+            let here = Local::at(&form, [0.0; 3], xi);
+            let (d1, d2) = (quad8::gradients(xi), quad8::second_gradients(xi));
+            let sum = |w: &dyn Fn(usize) -> f64, d: usize| (0..8).map(|i| w(i) * x[i][d]).sum::<f64>();
+            for d in 0..3 {
+                for a in 0..2 {
+                    assert!((here.tangent[a][d] - sum(&|i| d1[i][a], d)).abs() < 1e-14);
+                }
+            }
+            for k in 0..3 {
+                let second = [0, 1, 2].map(|d| sum(&|i| d2[i][k], d));
+                assert!((here.curvature[k] - dot(here.point, second)).abs() < 1e-13);
+            }
+            let moved = form.plus(0.5, &form);
+            assert!(distance(moved.at(xi), form.at(xi).map(|c| 1.5 * c)) < 1e-14);
+        }
     }
 
     /// V0.4: points 0.02 edges off the face, some beyond its border, against a fine scan with local refinement.

@@ -1,13 +1,19 @@
 //! Exchange of force and motion between the grains and the solid: the only crate that sees both sides.
 //!
 //! [`face`] finds the closest point on a curved 8-node face, [`surface`] shows the solid's moving faces to the
-//! grains, [`transfer`] turns contact forces into nodal loads, [`step`] is the coupled step, and [`ledger`] keeps
+//! grains, [`transfer`] turns contact forces into nodal loads, [`spread`] takes them to discs, [`step`] is the coupled
+//! step in the order that [`scheme`] tells, [`stability`] says how long its windows may be, and [`ledger`] keeps
 //! the energy of the whole system. [`inverse_map`] is the three-dimensional map of a point into an element.
 
+mod accelerate;
 pub mod face;
 pub mod inverse_map;
 pub mod ledger;
+pub mod scheme;
+pub mod spread;
+pub mod stability;
 pub mod step;
+mod stiffened;
 pub mod surface;
 #[cfg(test)]
 mod testing;

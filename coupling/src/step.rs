@@ -1,7 +1,7 @@
-//! The coupled step, scheme B: grains first on the predicted motion of the surface, then the solid under the
-//! impulse that it received.
+//! The coupled step: one window of the grains' steps and one step of the solid, in the order that a
+//! [scheme](crate::scheme) tells.
 //!
-//! One window of length Δt = m·dt:
+//! One window of length Δt = m·dt, as scheme B has it:
 //!
 //! 1. the surface nodes take position and velocity of the solid at the start of the window and go on with that
 //!    velocity;
@@ -14,13 +14,18 @@
 //! W = Δt √(Kₙ/m) of about 1 with damping and nearly neutral without, where the reverse order (solid first, with
 //! the last window's force) gains energy at every step size.
 
+use crate::accelerate::Accelerator;
 use crate::ledger::{Spent, Stored};
-use crate::surface::SolidSurface;
+use crate::scheme::{Passes, Scheme};
+use crate::stiffened::{Held, Stiffened};
+use crate::surface::{Motion, SolidSurface};
 use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::nonlinear::{Memory, NewtonOptions, PlasticWindowSolver, Statistics};
+use trackbed_fem::reduction::{Estimate, Reduced, ReducedWindowSolver};
 use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::StepAudit;
 use trackbed_fem::window::WindowSolver;
@@ -33,6 +38,8 @@ pub struct Model<'a> {
     pub grains: dem::Model,
     /// Steps of the grains per window.
     pub substeps: u32,
+    /// Order of the exchange.
+    pub scheme: Scheme,
     /// Implicitness of the solid's step, ½–1.
     pub theta: f64,
     /// How a plastic solid finds the end of its step; not used for an elastic one.
@@ -61,6 +68,12 @@ pub struct State {
     pub audit: TransferAudit,
     /// Work and dissipation on the solid's side; the grains keep their own account.
     spent: Spent,
+    /// Repeated windows.
+    pub passes: Passes,
+    /// Mean contact load of the last window and of the one before [N], shape `[3·nodes]`; empty but for the lagged scheme.
+    lagged: [Vec<f64>; 2],
+    /// Contacts of the last grain step, for the stiffened scheme.
+    held: Vec<Held>,
 }
 
 /// Scratch memory and factors.
@@ -74,8 +87,11 @@ pub struct Work {
     load: Vec<f64>,
     contact_load: Vec<f64>,
     other_load: Vec<f64>,
-    before: Vec<f64>,
+    before: fem::state::State,
+    rate: Vec<f64>,
     applied: Vec<dem::AppliedForce>,
+    accelerator: Accelerator,
+    stiffened: Stiffened,
 }
 
 /// The solid's step over a window.
@@ -84,6 +100,8 @@ enum SolidSolver {
     Elastic(Box<WindowSolver>),
     /// Newton's iteration on the stresses of the Gauss points.
     Plastic(Box<PlasticWindowSolver>),
+    /// The equations of a few shapes.
+    Reduced(Box<ReducedWindowSolver>),
 }
 
 impl SolidSolver {
@@ -91,6 +109,9 @@ impl SolidSolver {
         let (solid, theta, window) = (model.solid, model.theta, model.window());
         if solid.is_linear() && without_stresses {
             return Ok(SolidSolver::Elastic(Box::new(WindowSolver::new(solid, theta, window)?)));
+        }
+        if model.scheme == Scheme::Stiffened {
+            return Err(not_constant(model));
         }
         Ok(SolidSolver::Plastic(Box::new(PlasticWindowSolver::new(solid, theta, window, model.newton)?)))
     }
@@ -104,6 +125,7 @@ impl SolidSolver {
         match self {
             SolidSolver::Elastic(solver) => solver.step(solid, state, mean_load),
             SolidSolver::Plastic(solver) => solver.step(solid, state, mean_load),
+            SolidSolver::Reduced(solver) => solver.step(solid, state, mean_load),
         }
     }
 }
@@ -122,12 +144,37 @@ pub enum StepError {
         /// What failed.
         source: SolveError,
     },
+    /// The surface turned over.
+    #[error(
+        "the surface of the solid has folded at element {element} at t = {time:.6e} s: a face there has turned over or \
+         collapsed; the load is beyond what a solid of small strains can bear, or the exchange is unstable"
+    )]
+    Folded {
+        /// Number of the element in the mesh's file.
+        element: u32,
+        /// Time [s].
+        time: f64,
+    },
 }
 
 impl State {
     /// The start of a run: solid and grains as given.
     pub fn new(solid: fem::state::State, grains: dem::State) -> State {
-        State { solid, grains, audit: TransferAudit::default(), spent: Spent::default() }
+        State {
+            solid,
+            grains,
+            audit: TransferAudit::default(),
+            spent: Spent::default(),
+            passes: Passes::default(),
+            lagged: Default::default(),
+            held: Vec::new(),
+        }
+    }
+
+    /// The same with a contact load [N], shape `[3·nodes]`, that the solid carries from the start: the lagged scheme begins
+    /// with it.
+    pub fn carrying(self, load: Vec<f64>) -> State {
+        State { lagged: [load.clone(), load], ..self }
     }
 }
 
@@ -135,7 +182,7 @@ impl Work {
     /// Scratch memory and the factor of the solid's window matrix.
     ///
     /// # Errors
-    /// The matrix cannot be factored.
+    /// The matrix cannot be factored, or the solid is plastic and the scheme needs a constant matrix.
     pub fn new(model: &Model<'_>, state: &State, surface: SolidSurface) -> Result<Work, SolveError> {
         let n = 3 * model.solid.mesh().node_count();
         Ok(Work {
@@ -146,15 +193,36 @@ impl Work {
             load: vec![0.0; n],
             contact_load: vec![0.0; n],
             other_load: vec![0.0; n],
-            before: vec![0.0; n],
+            before: state.solid.clone(),
+            rate: vec![0.0; n],
             applied: Vec::new(),
+            accelerator: Accelerator::default(),
+            stiffened: Stiffened::default(),
         })
+    }
+
+    /// Takes the steps of the solid in the span of a reduction from now on.
+    ///
+    /// # Errors
+    /// A solid with plasticity or stresses at its Gauss points, or another one than was reduced.
+    pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<Reduced>) -> Result<(), SolveError> {
+        let solver = ReducedWindowSolver::new(model.solid, reduced, model.theta, model.window())?;
+        self.solver = SolidSolver::Reduced(Box::new(solver));
+        Ok(())
+    }
+
+    /// What the reduction of the solid costs in accuracy; none without one.
+    pub fn reduction(&self) -> Option<Estimate> {
+        match &self.solver {
+            SolidSolver::Reduced(solver) => Some(*solver.reduced().estimate()),
+            SolidSolver::Elastic(_) | SolidSolver::Plastic(_) => None,
+        }
     }
 
     /// Counts of the iteration of a plastic solid.
     pub fn newton(&self) -> Option<Statistics> {
         match &self.solver {
-            SolidSolver::Elastic(_) => None,
+            SolidSolver::Elastic(_) | SolidSolver::Reduced(_) => None,
             SolidSolver::Plastic(solver) => Some(solver.statistics()),
         }
     }
@@ -162,7 +230,7 @@ impl Work {
     /// What the solver of a plastic solid remembers beside the state, for a checkpoint.
     pub fn memory(&self) -> Option<Memory> {
         match &self.solver {
-            SolidSolver::Elastic(_) => None,
+            SolidSolver::Elastic(_) | SolidSolver::Reduced(_) => None,
             SolidSolver::Plastic(solver) => Some(solver.memory()),
         }
     }
@@ -194,8 +262,12 @@ impl Work {
     }
 }
 
+/// Speed below which changes of the surface's motion are rounding [m/s].
+const STILL: f64 = 1e-12;
+
 /// Advances the system by one window. `applied` fills in the forces on bodies at a given time; `solid_load` adds
 /// loads on the solid other than gravity and contact at a given time, which are taken at the middle of the window.
+/// Both may be asked more than once for the same time.
 ///
 /// # Errors
 /// The grains or the solid cannot make the step; `state` is then not fit to go on from.
@@ -207,10 +279,143 @@ pub fn step(
     solid_load: impl Fn(f64, &mut [f64]),
 ) -> Result<(), StepError> {
     let window = model.window();
-    let dt = model.grains.dt();
-    let solid = &mut state.solid;
+    work.other_load.fill(0.0);
+    solid_load(state.solid.time + 0.5 * window, &mut work.other_load);
+    copy(&state.solid, &mut work.before);
+    work.rate.copy_from_slice(&state.solid.v);
+    let mut passes = 1;
+    let audit = match model.scheme {
+        Scheme::Predicted => {
+            grains(model, state, work, &mut applied)?;
+            solid(model, state, work)?
+        }
+        Scheme::Stiffened => {
+            // The contacts of the start are not known: the first window goes on with the present velocity.
+            if state.passes.windows > 0 {
+                begin(model, state, work)?;
+                state.passes.solves += u64::from(predict(model, state, work)?);
+            }
+            grains(model, state, work, &mut applied)?;
+            state.held.clear();
+            state.held.extend(work.grains.surface_contacts().iter().map(Held::from));
+            solid(model, state, work)?
+        }
+        Scheme::Lagged => {
+            let n = work.contact_load.len();
+            state.lagged.iter_mut().for_each(|l| l.resize(n, 0.0));
+            for (load, (a, b)) in
+                work.contact_load.iter_mut().zip(state.lagged[0].iter().zip(&state.lagged[1]))
+            {
+                *load = 0.5 * (a + b);
+            }
+            let audit = solid(model, state, work)?;
+            mean_velocity(&state.solid, work, window);
+            // What the grains do in this window loads the solid in the next; what did so now is still in the account.
+            book(state, work, &audit);
+            grains(model, state, work, &mut applied)?;
+            state.lagged.swap(0, 1);
+            state.lagged[0].copy_from_slice(&work.contact_load);
+            state.passes.windows += 1;
+            state.passes.passes += 1;
+            return Ok(());
+        }
+        Scheme::Iterated { tolerance, passes: most } => {
+            let start = (state.grains.clone(), state.audit);
+            work.accelerator.start();
+            let nodes = work.surface.nodes().to_vec();
+            let gather = |from: &[f64]| -> Vec<f64> {
+                nodes.iter().flat_map(|&n| [0, 1, 2].map(|d| from[3 * n as usize + d])).collect()
+            };
+            let mut at = gather(&work.rate);
+            loop {
+                grains(model, state, work, &mut applied)?;
+                let audit = solid(model, state, work)?;
+                let found: Vec<f64> = nodes
+                    .iter()
+                    .flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d))
+                    .map(|i| (state.solid.u[i] - work.before.u[i]) / window)
+                    .collect();
+                let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let change = found.iter().zip(&at).fold(0.0_f64, |m, (f, a)| m.max((f - a).abs()));
+                let there = change <= tolerance * largest(&found).max(largest(&at)) + STILL;
+                if there || passes >= most {
+                    state.passes.unconverged += u64::from(!there);
+                    break audit;
+                }
+                work.accelerator.next(&mut at, &found);
+                for (i, a) in nodes.iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)).zip(&at) {
+                    work.rate[i] = *a;
+                }
+                copy(&work.before, &mut state.solid);
+                (state.grains, state.audit) = start.clone();
+                work.grains.follow(&model.grains, &state.grains);
+                passes += 1;
+            }
+        }
+    };
+    state.passes.windows += 1;
+    state.passes.passes += u64::from(passes);
+    book(state, work, &audit);
+    // The surface of the next window begins where the solid is, not where this window left it.
+    let (u, before, rate) = (&state.solid.u, &work.before.u, &work.rate);
+    let jump = work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
+    let jump = jump.fold(0.0_f64, |m, i| m.max((u[i] - before[i] - rate[i] * window).abs()));
+    state.grains.allow_for_jump(work.surface.reach_of(2.0 * jump));
+    Ok(())
+}
 
-    work.surface.begin_window(model.solid.mesh(), &solid.u, &model.reference, &solid.v, window);
+/// The stiffened scheme needs a solid with a constant matrix.
+fn not_constant(model: &Model<'_>) -> SolveError {
+    SolveError::Plastic { material: model.solid.plastic_material().unwrap_or_default() }
+}
+
+/// Copies a state without new memory.
+fn copy(from: &fem::state::State, to: &mut fem::state::State) {
+    to.time = from.time;
+    to.u.copy_from_slice(&from.u);
+    to.v.copy_from_slice(&from.v);
+    to.a.copy_from_slice(&from.a);
+    to.points.clone_from(&from.points);
+}
+
+/// The mean velocity of the window just made by the solid.
+fn mean_velocity(solid: &fem::state::State, work: &mut Work, window: f64) {
+    for ((rate, u), before) in work.rate.iter_mut().zip(&solid.u).zip(&work.before.u) {
+        *rate = (u - before) / window;
+    }
+}
+
+/// Puts the surface at the start of the window, to move with [`Work::rate`].
+fn begin(model: &Model<'_>, state: &State, work: &mut Work) -> Result<(), StepError> {
+    let velocity =
+        (model.scheme == Scheme::Lagged).then_some([work.before.v.as_slice(), state.solid.v.as_slice()]);
+    let motion = Motion {
+        start: &work.before.u,
+        reference: &model.reference,
+        rate: &work.rate,
+        velocity,
+        duration: model.window(),
+    };
+    work.surface.begin(model.solid.mesh(), &motion);
+    match work.surface.folded() {
+        None => Ok(()),
+        Some(face) => {
+            let element = work.surface.faces()[face].element as usize;
+            let element = model.solid.mesh().element_ids[element];
+            Err(StepError::Folded { element, time: work.before.time })
+        }
+    }
+}
+
+/// The grains' steps of a window; their mean load on the solid is then in [`Work::contact_load`].
+fn grains(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
+) -> Result<(), StepError> {
+    let dt = model.grains.dt();
+    begin(model, state, work)?;
     work.transfer.begin_window();
     for k in 0..model.substeps {
         work.surface.advance(f64::from(k) * dt);
@@ -219,33 +424,58 @@ pub fn step(
         dem::step(&model.grains, &mut state.grains, &mut work.grains, &work.surface, &work.applied)?;
         work.transfer.add(&work.surface, work.grains.surface_contacts(), dt, &mut state.audit);
     }
-
     work.contact_load.fill(0.0);
-    work.transfer.add_mean_load(&work.surface, window, &mut work.contact_load);
-    work.load.fill(0.0);
-    solid_load(solid.time + 0.5 * window, &mut work.load);
-    // Work of each kind of load on this window's displacement, which the solver does not split.
-    work.before.copy_from_slice(&solid.u);
-    let other = work.other_load.as_mut_slice();
-    other.copy_from_slice(&work.load);
-    for ((load, contact), dead) in work.load.iter_mut().zip(&work.contact_load).zip(&model.dead_load) {
-        *load += contact + dead;
+    work.transfer.add_mean_load(&work.surface, model.window(), &mut work.contact_load);
+    work.transfer.audit_spread(&work.surface, model.window(), &work.contact_load, &mut state.audit);
+    Ok(())
+}
+
+/// The solid's step of a window, under [`Work::contact_load`], the other loads and its weight.
+fn solid(model: &Model<'_>, state: &mut State, work: &mut Work) -> Result<StepAudit, StepError> {
+    let loads = work.contact_load.iter().zip(&work.other_load).zip(&model.dead_load);
+    for (load, ((contact, other), dead)) in work.load.iter_mut().zip(loads) {
+        *load = other + (contact + dead);
     }
-    let time = solid.time;
-    let step = work
-        .solver
-        .step(model.solid, solid, &work.load)
-        .map_err(|source| StepError::Solid { time, source })?;
-    for i in 0..other.len() {
-        let du = solid.u[i] - work.before[i];
+    let time = state.solid.time;
+    work.solver
+        .step(model.solid, &mut state.solid, &work.load)
+        .map_err(|source| StepError::Solid { time, source })
+}
+
+/// The velocity that the surface goes on with in the stiffened scheme.
+fn predict(model: &Model<'_>, state: &State, work: &mut Work) -> Result<u32, StepError> {
+    let time = state.solid.time;
+    let SolidSolver::Elastic(solver) = &mut work.solver else {
+        return Err(StepError::Solid { time, source: not_constant(model) });
+    };
+    for ((load, other), dead) in work.load.iter_mut().zip(&work.other_load).zip(&model.dead_load) {
+        *load = other + dead;
+    }
+    work.stiffened
+        .predict(
+            model,
+            &state.grains,
+            &state.held,
+            &work.surface,
+            solver,
+            &state.solid,
+            &mut work.load,
+            &mut work.rate,
+        )
+        .map_err(|source| StepError::Solid { time, source })
+}
+
+/// Work of each kind of load on the window's displacement, which the solver does not split, and what was dissipated.
+fn book(state: &mut State, work: &Work, step: &StepAudit) {
+    for (i, u) in state.solid.u.iter().enumerate() {
+        let du = u - work.before.u[i];
         state.spent.contacts_on_solid += work.contact_load[i] * du;
-        state.spent.solid_load_work += other[i] * du;
+        state.spent.solid_load_work += work.other_load[i] * du;
     }
     state.spent.rayleigh += step.damping_dissipation;
     state.spent.absorbed += step.boundary_dissipation;
     state.spent.plastic += step.plastic_dissipation;
     state.spent.numerical += step.numerical_dissipation;
-    Ok(())
 }
 
 /// Energy stored in the system now.
@@ -259,6 +489,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
         solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
+        ..Stored::default()
     }
 }
 
@@ -281,7 +512,8 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
         applied_work: ledger.work_applied,
-        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints,
+        // Grains put back at the upper end of a periodic slope have their potential energy anew.
+        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints + ledger.work_periodic,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
         bonds: ledger.dissipated_bonds,
@@ -312,44 +544,4 @@ pub fn resting_load(
     let mut load = zero;
     transfer.add_mean_load(surface, grains.dt(), &mut load);
     Ok((load, state))
-}
-
-/// Masses of the elements that `faces` belong to [kg].
-pub fn face_masses(solid: &fem::model::Model, faces: &[fem::mesh::Face]) -> impl Iterator<Item = f64> {
-    faces.iter().map(|f| {
-        let element = f.element as usize;
-        solid.elastic(element).density * solid.mesh().element_volume(element)
-    })
-}
-
-/// The two numbers that decide whether an exchange is stable; both should stay below about 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Stability {
-    /// W = Δt √(Kₙ/m): window Δt, stiffest contact Kₙ of a grain with the surface, mass m of the lightest surface
-    /// node.
-    pub stiffness: f64,
-    /// D = C Δt/m: the dashpot C of that contact on the same node.
-    pub damping: f64,
-}
-
-/// Stability of an exchange with windows of `window` [s] and contacts of `stiffness` [N/m] and dashpot `damping`
-/// [N s/m]. The lightest surface node is a corner with the share 0.018 of the lightest of the touched elements'
-/// `masses` [kg] (consistent mass; two-mass study).
-pub fn stability(window: f64, stiffness: f64, damping: f64, masses: impl Iterator<Item = f64>) -> Stability {
-    const CORNER_SHARE: f64 = 0.018;
-    let lightest = CORNER_SHARE * masses.fold(f64::INFINITY, f64::min);
-    Stability { stiffness: window * (stiffness / lightest).sqrt(), damping: damping * window / lightest }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// W = Δt √(K/m) and D = C Δt/m on the corner node, 0.018 of the lighter element: m = 2 kg here.
-    #[test]
-    fn stability_takes_the_corner_of_the_lightest_element() {
-        let s = stability(1e-3, 1e6, 100.0, [500.0, 2.0 / 0.018].into_iter());
-        assert!((s.stiffness - 0.5_f64.sqrt()).abs() < 1e-12, "{s:?}");
-        assert!((s.damping - 0.05).abs() < 1e-12, "{s:?}");
-    }
 }

@@ -1,14 +1,19 @@
 //! The solid's surface as the grains see it: curved 8-node faces moving with the nodes.
 //!
-//! Within one exchange window the nodes move on straight lines, x(τ) = x₀ + v τ, with the position and the
-//! velocity that the solid has at the start of the window (scheme B of the two-mass study in the guide:
-//! displacement **and** velocity go back, so that damping and friction see the surface move).
+//! Within one exchange window the nodes move on straight lines, x(τ) = x₀ + v τ, from where the solid is at the start of
+//! the window, with a velocity that the scheme of the exchange tells ([`crate::scheme`]): displacement **and** velocity
+//! go to the grains, so that damping and friction see the surface move. With a [`Spread`] it is the discs' mean motion
+//! that they see.
 
-use crate::face::{self, Location};
+use crate::face::{self, Form, Location};
+use crate::spread::Spread;
 use trackbed_dem::search::bvh::Bvh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
 use trackbed_fem::FaceShape;
 use trackbed_fem::mesh::{Face, Mesh};
+
+/// Where a face is looked at to see whether it has folded: its middle and its corners.
+const PLACES: [[f64; 2]; 5] = [[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// Part of the solid's boundary that grains may touch.
 pub struct SolidSurface {
@@ -17,12 +22,44 @@ pub struct SolidSurface {
     nodes: Vec<u32>,
     /// Surface nodes of each face. Shape `[faces][8]`.
     face_nodes: Vec<[u32; 8]>,
+    /// The nodes in the mesh's own shape.
+    shape: Vec<[f64; 3]>,
     start: Vec<[f64; 3]>,
-    velocity: Vec<[f64; 3]>,
-    current: Vec<[f64; 3]>,
+    /// Rate of the positions over the window.
+    rate: Vec<[f64; 3]>,
+    /// Velocity at the start of the window and its change over it, where it is not the rate.
+    velocity: Option<[Vec<[f64; 3]>; 2]>,
+    /// The faces at the start of the window, and their rates.
+    forms: Vec<[Form; 2]>,
+    moving: bool,
+    tau: f64,
+    duration: f64,
     max_speed: f64,
     tree: Bvh,
     boxes: Vec<([f64; 3], [f64; 3])>,
+    spread: Option<Spread>,
+    /// Pairs of faces that share a side.
+    seams: Vec<[u32; 2]>,
+    /// Whether each side of a face is that face's alone.
+    border: Vec<[bool; 4]>,
+    /// Normals of the faces in the mesh's own shape at [`PLACES`].
+    areas: Vec<[[f64; 3]; 5]>,
+    scratch: Vec<[f64; 3]>,
+}
+
+/// How the nodes of the solid move over a window. All arrays have shape `[3·nodes]` of the solid.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    /// Displacement at the start [m].
+    pub start: &'a [f64],
+    /// Displacement in the shape that the mesh file describes [m].
+    pub reference: &'a [f64],
+    /// Rate of the displacement over the window [m/s].
+    pub rate: &'a [f64],
+    /// Velocity at the start and at the end that damping and friction see [m/s]; the rate where it is none.
+    pub velocity: Option<[&'a [f64]; 2]>,
+    /// Length of the window [s].
+    pub duration: f64,
 }
 
 impl SolidSurface {
@@ -34,18 +71,57 @@ impl SolidSurface {
         let local = |node: u32| nodes.binary_search(&node).expect("node of a face is a surface node") as u32;
         let face_nodes: Vec<[u32; 8]> = faces.iter().map(|f| f.nodes.map(local)).collect();
         let start: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.coordinates[n as usize]).collect();
-        let boxes: Vec<_> = face_nodes.iter().map(|f| bounds(&f.map(|n| start[n as usize]))).collect();
+        let coordinates = |f: &[u32; 8]| f.map(|n| start[n as usize]);
+        let boxes: Vec<_> = face_nodes.iter().map(|f| bounds(&coordinates(f))).collect();
+        let forms = face_nodes.iter().map(|f| [Form::new(&coordinates(f)), Form::default()]).collect();
+        // A mid-side node belongs to the faces that share its side.
+        let mut sides: Vec<[u32; 3]> = face_nodes
+            .iter()
+            .zip(0..)
+            .flat_map(|(f, k)| [0, 1, 2, 3].map(|s| [f[4 + s], k, s as u32]))
+            .collect();
+        sides.sort_unstable();
+        let mut border = vec![[true; 4]; faces.len()];
+        let mut seams = Vec::new();
+        for pair in sides.windows(2).filter(|w| w[0][0] == w[1][0]) {
+            seams.push([pair[0][1], pair[1][1]]);
+            pair.iter().for_each(|s| border[s[1] as usize][s[2] as usize] = false);
+        }
+        let areas = face_nodes.iter().map(|f| PLACES.map(|p| Form::new(&coordinates(f)).area(p))).collect();
         SolidSurface {
             tree: Bvh::new(&boxes),
             boxes,
-            current: start.clone(),
-            velocity: vec![[0.0; 3]; start.len()],
+            shape: start.clone(),
+            rate: vec![[0.0; 3]; start.len()],
+            velocity: None,
+            forms,
+            moving: false,
+            tau: 0.0,
+            duration: 0.0,
+            scratch: vec![[0.0; 3]; start.len()],
             start,
             nodes,
             face_nodes,
             faces,
             max_speed: 0.0,
+            spread: None,
+            seams,
+            border,
+            areas,
         }
+    }
+
+    /// The same surface with each contact force spread over a disc of `radius` [m], see [`Spread`]. Zero: not spread.
+    ///
+    /// The surface must be in the mesh's own shape.
+    pub fn spread_over(mut self, radius: f64) -> SolidSurface {
+        self.spread = (radius > 0.0).then(|| Spread::new(&self, radius));
+        self
+    }
+
+    /// How contact forces are spread, if they are.
+    pub fn spread(&self) -> Option<&Spread> {
+        self.spread.as_ref()
     }
 
     /// The 8-node boundary faces of `mesh` whose outward area vector makes an angle of at most `max_angle` [rad] with
@@ -82,43 +158,87 @@ impl SolidSurface {
 
     /// Present position of surface node `node` [m].
     pub fn position(&self, node: u32) -> [f64; 3] {
-        self.current[node as usize]
+        let (x, v) = (self.start[node as usize], self.rate[node as usize]);
+        [x[0] + v[0] * self.tau, x[1] + v[1] * self.tau, x[2] + v[2] * self.tau]
+    }
+
+    /// Position of surface node `node` in the mesh's own shape [m].
+    pub fn mesh_position(&self, node: u32) -> [f64; 3] {
+        self.shape[node as usize]
     }
 
     /// Height of the highest node [m].
     pub fn highest(&self) -> f64 {
-        self.current.iter().map(|x| x[2]).fold(f64::NEG_INFINITY, f64::max)
+        (0..self.nodes.len() as u32).map(|n| self.position(n)[2]).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Height of the lowest node [m].
+    pub fn lowest(&self) -> f64 {
+        (0..self.nodes.len() as u32).map(|n| self.position(n)[2]).fold(f64::INFINITY, f64::min)
     }
 
     /// Area vector of face `patch` in its present shape, by its corners: outward normal times area [m²].
     pub fn area_vector(&self, patch: u32) -> [f64; 3] {
-        let x = |k: usize| self.current[self.face_nodes[patch as usize][k] as usize];
+        let x = |k: usize| self.position(self.face_nodes[patch as usize][k]);
         let diagonal = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         face::cross(diagonal(x(0), x(2)), diagonal(x(1), x(3))).map(|c| 0.5 * c)
+    }
+
+    /// Outward unit normal at a point of face `patch` at the start of the window.
+    pub fn normal(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
+        let n = self.forms[patch as usize][0].area(natural);
+        n.map(|c| c / face::dot(n, n).sqrt())
+    }
+
+    /// Rate of the position of a point of face `patch` over the window [m/s].
+    pub fn velocity(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
+        self.forms[patch as usize][1].at(natural)
     }
 
     /// Begins a window of `duration` [s]: nodes at X + (u − reference), moving with `v`. All arrays have shape
     /// `[3·nodes]` of the solid; `reference` is the displacement in the shape that the mesh file describes.
     pub fn begin_window(&mut self, mesh: &Mesh, u: &[f64], reference: &[f64], v: &[f64], duration: f64) {
-        let mut fastest = 0.0_f64;
-        for (k, &node) in self.nodes.iter().enumerate() {
-            let n = node as usize;
-            for d in 0..3 {
-                self.start[k][d] = mesh.coordinates[n][d] + (u[3 * n + d] - reference[3 * n + d]);
-                self.velocity[k][d] = v[3 * n + d];
-            }
-            fastest = fastest.max(face::dot(self.velocity[k], self.velocity[k]));
+        self.begin(mesh, &Motion { start: u, reference, rate: v, velocity: None, duration });
+    }
+
+    /// Begins a window in which the nodes of the solid move as told.
+    pub fn begin(&mut self, mesh: &Mesh, motion: &Motion<'_>) {
+        debug_assert_eq!(mesh.node_count() * 3, motion.start.len());
+        let at = |values: &[f64], node: u32| [0, 1, 2].map(|d| values[3 * node as usize + d]);
+        for (s, &n) in self.scratch.iter_mut().zip(&self.nodes) {
+            let (u, r) = (at(motion.start, n), at(motion.reference, n));
+            *s = [0, 1, 2].map(|d| u[d] - r[d]);
         }
+        smooth(self.spread.as_ref(), &self.scratch, &mut self.start);
+        for (x, shape) in self.start.iter_mut().zip(&self.shape) {
+            *x = [0, 1, 2].map(|d| shape[d] + x[d]);
+        }
+        self.scratch.iter_mut().zip(&self.nodes).for_each(|(s, &n)| *s = at(motion.rate, n));
+        smooth(self.spread.as_ref(), &self.scratch, &mut self.rate);
+        let fastest = |v: &[[f64; 3]]| v.iter().map(|v| face::dot(*v, *v)).fold(0.0, f64::max).sqrt();
+        let speed = fastest(&self.rate);
+        self.velocity = motion.velocity.map(|ends| {
+            let [first, last] = ends.map(|v| {
+                let mut out = vec![[0.0; 3]; self.nodes.len()];
+                self.scratch.iter_mut().zip(&self.nodes).for_each(|(s, &n)| *s = at(v, n));
+                smooth(self.spread.as_ref(), &self.scratch, &mut out);
+                out
+            });
+            let change = last.iter().zip(&first).map(|(b, a)| [0, 1, 2].map(|d| b[d] - a[d])).collect();
+            [first, change]
+        });
         // The absolute sum of the eight functions is at most 3 (at the centre: 4 × ¼ + 4 × ½).
-        self.max_speed = 3.0 * fastest.sqrt();
-        self.current.copy_from_slice(&self.start);
+        self.max_speed = 3.0 * speed;
+        self.moving = speed > 0.0;
+        (self.tau, self.duration) = (0.0, motion.duration);
         // The boxes hold the faces over the whole window: motion is linear in time, so both ends suffice.
-        for (b, f) in self.boxes.iter_mut().zip(&self.face_nodes) {
-            let first = bounds(&f.map(|n| self.start[n as usize]));
-            let last = bounds(&f.map(|n| {
-                let (x, v) = (self.start[n as usize], self.velocity[n as usize]);
-                [x[0] + v[0] * duration, x[1] + v[1] * duration, x[2] + v[2] * duration]
-            }));
+        for ((b, f), form) in self.boxes.iter_mut().zip(&self.face_nodes).zip(&mut self.forms) {
+            let start = f.map(|n| self.start[n as usize]);
+            let rate = f.map(|n| self.rate[n as usize]);
+            *form = [Form::new(&start), Form::new(&rate)];
+            let (x, v, t) = (start, rate, motion.duration);
+            let first = bounds(&x);
+            let last = bounds(&[0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|d| x[k][d] + v[k][d] * t)));
             for d in 0..3 {
                 b.0[d] = first.0[d].min(last.0[d]);
                 b.1[d] = first.1[d].max(last.1[d]);
@@ -129,15 +249,63 @@ impl SolidSurface {
 
     /// Moves the nodes to time `tau` [s] after the start of the window.
     pub fn advance(&mut self, tau: f64) {
-        for ((x, x0), v) in self.current.iter_mut().zip(&self.start).zip(&self.velocity) {
-            for d in 0..3 {
-                x[d] = x0[d] + v[d] * tau;
-            }
-        }
+        self.tau = tau;
     }
 
-    fn coordinates(&self, patch: u32) -> [[f64; 3]; 8] {
-        self.face_nodes[patch as usize].map(|n| self.current[n as usize])
+    /// A bound on the way [m] that any point of the surface makes when the nodes of the solid move by at most `way` [m].
+    pub fn reach_of(&self, way: f64) -> f64 {
+        // Both the disc's points and the contact point are sums with weights of absolute sum 3 at most.
+        if self.spread.is_some() { 18.0 * way } else { 3.0 * way }
+    }
+
+    /// The face that has folded since the mesh's own shape, if there is one: its normal at a corner or in the middle has
+    /// turned by 90 degrees or its area there is a twentieth, or two faces that share a side look away from each other
+    /// and did not. Looks at the start of the window.
+    pub fn folded(&self) -> Option<usize> {
+        let bad = (0..self.faces.len()).find(|&k| {
+            PLACES.iter().zip(&self.areas[k]).any(|(&place, before)| {
+                // A number that is none is bad, too.
+                let part = face::dot(*before, self.forms[k][0].area(place)) / face::dot(*before, *before);
+                part.is_nan() || part < 0.05
+            })
+        });
+        let turned = |&[a, b]: &[u32; 2]| {
+            let (a, b) = (a as usize, b as usize);
+            let now = face::dot(self.forms[a][0].area(PLACES[0]), self.forms[b][0].area(PLACES[0]));
+            now <= 0.0 && face::dot(self.areas[a][0], self.areas[b][0]) > 0.0
+        };
+        bad.or_else(|| self.seams.iter().find(|s| turned(s)).map(|s| s[0] as usize))
+    }
+
+    /// Whether side `side` of face `patch` belongs to that face alone.
+    pub(crate) fn on_border(&self, patch: u32, side: usize) -> bool {
+        self.border[patch as usize][side]
+    }
+
+    /// The patch nearest to a point and the closest point on it, among those whose boxes come within `reach` [m] of it.
+    pub(crate) fn nearest(&self, point: [f64; 3], reach: f64) -> Option<(u32, face::Closest)> {
+        let mut patches = Vec::new();
+        self.tree.query(point.map(|c| c - reach), point.map(|c| c + reach), &mut patches);
+        let found = patches.iter().map(|&k| (k, self.form(k).closest_point(point, [0.0; 2])));
+        let way = |c: &face::Closest| {
+            let r = [0, 1, 2].map(|d| c.point[d] - point[d]);
+            face::dot(r, r)
+        };
+        found.min_by(|a, b| way(&a.1).total_cmp(&way(&b.1)))
+    }
+
+    #[inline]
+    fn form(&self, patch: u32) -> Form {
+        let [start, rate] = &self.forms[patch as usize];
+        if self.moving && self.tau != 0.0 { start.plus(self.tau, rate) } else { *start }
+    }
+}
+
+/// What the surface shows of a nodal field: the field itself, or its mean over discs.
+fn smooth(spread: Option<&Spread>, field: &[[f64; 3]], out: &mut [[f64; 3]]) {
+    match spread {
+        None => out.copy_from_slice(field),
+        Some(spread) => spread.mean(field, out),
     }
 }
 
@@ -166,9 +334,17 @@ impl Surface for SolidSurface {
     }
 
     fn closest_point(&self, patch: u32, centre: [f64; 3], local: [f64; 2]) -> PatchPoint {
-        let closest = face::closest_point(&self.coordinates(patch), centre, local);
+        let closest = self.form(patch).closest_point(centre, local);
         let nodes = &self.face_nodes[patch as usize];
-        let velocity = face::interpolate(&nodes.map(|n| self.velocity[n as usize]), closest.natural);
+        let velocity = match &self.velocity {
+            None if self.moving => self.forms[patch as usize][1].at(closest.natural),
+            None => [0.0; 3],
+            Some([first, change]) => {
+                let share = self.tau / self.duration;
+                let at = |n: u32| [0, 1, 2].map(|d| first[n as usize][d] + share * change[n as usize][d]);
+                face::interpolate(&nodes.map(at), closest.natural)
+            }
+        };
         // A mid-side node names its edge and a corner node its vertex, whichever face they are seen from.
         let feature = match closest.location {
             Location::Inside => Feature::Face,
@@ -180,6 +356,13 @@ impl Surface for SolidSurface {
 
     fn max_speed(&self) -> f64 {
         self.max_speed
+    }
+
+    /// The distance from the box that holds the face over the whole window.
+    fn clearance(&self, patch: u32, centre: [f64; 3]) -> f64 {
+        let (low, high) = &self.boxes[patch as usize];
+        let beyond = [0, 1, 2].map(|d| (low[d] - centre[d]).max(centre[d] - high[d]).max(0.0));
+        face::dot(beyond, beyond).sqrt()
     }
 
     fn one_sided(&self) -> bool {

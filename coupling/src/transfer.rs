@@ -18,7 +18,8 @@ pub struct TransferAudit {
     pub exchanges: u64,
     /// Largest |Σ nodal load − Σ contact force| / Σ |contact force|.
     pub force: f64,
-    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| / Σ |p||contact force|, about the origin of coordinates.
+    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| about the origin of coordinates, over the sum of the moments'
+    /// sizes, |p||contact force| and |xᵢ||nodal loadᵢ|.
     pub moment: f64,
 }
 
@@ -89,7 +90,9 @@ impl Transfer {
         // The nodal loads' own sums, independent of how they came about.
         for &node in &self.loaded {
             let load = std::mem::take(&mut self.load[node as usize]);
-            let arm = cross(surface.position(node), load);
+            let x = surface.position(node);
+            let arm = cross(x, load);
+            moment_scale += norm(x) * norm(load);
             for d in 0..3 {
                 force[d] -= load[d];
                 moment[d] -= arm[d];
@@ -126,10 +129,41 @@ impl Transfer {
 
     /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.
     pub fn add_mean_load(&self, surface: &SolidSurface, window: f64, load: &mut [f64]) {
-        for (impulse, &node) in self.impulse.iter().zip(surface.nodes()) {
+        let nodes = surface.nodes();
+        let mut add = |node: u32, impulse: [f64; 3]| {
             for d in 0..3 {
-                load[3 * node as usize + d] += impulse[d] / window;
+                load[3 * nodes[node as usize] as usize + d] += impulse[d] / window;
             }
+        };
+        match surface.spread() {
+            None => self.impulse.iter().zip(0..).for_each(|(impulse, node)| add(node, *impulse)),
+            Some(spread) => spread.distribute(&self.impulse, add),
+        }
+    }
+
+    /// Audits the mean nodal load of a window, shape `[3·nodes]` of the solid, after it was spread: sums of force and
+    /// moment in the mesh's own shape, where the solid's equations have their loads, against those before. Nothing to do
+    /// without a spread.
+    pub fn audit_spread(&self, surface: &SolidSurface, window: f64, load: &[f64], audit: &mut TransferAudit) {
+        if surface.spread().is_none() {
+            return;
+        }
+        let (mut force, mut moment, mut scales) = ([0.0; 3], [0.0; 3], [0.0; 2]);
+        for ((impulse, &node), k) in self.impulse.iter().zip(surface.nodes()).zip(0..) {
+            let given = impulse.map(|i| i / window);
+            let x = surface.mesh_position(k);
+            let put = [0, 1, 2].map(|d| load[3 * node as usize + d]);
+            let (arm, taken) = (cross(x, given), cross(x, put));
+            for d in 0..3 {
+                force[d] += given[d] - put[d];
+                moment[d] += arm[d] - taken[d];
+            }
+            scales[0] += norm(given);
+            scales[1] += norm(x) * norm(given);
+        }
+        if scales[0] > 0.0 {
+            audit.force = audit.force.max(norm(force) / scales[0]);
+            audit.moment = audit.moment.max(norm(moment) / scales[1].max(f64::MIN_POSITIVE));
         }
     }
 }

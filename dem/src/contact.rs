@@ -3,6 +3,7 @@
 //! A law is written once, over [`Real`]: the loops over many pairs ask it for four contacts at a time
 //! ([`ContactLaw::answer`]), walls, boxes and measures for one ([`ContactLaw::respond`]). Both give the same bits.
 
+pub mod adhesion;
 pub(crate) mod groups;
 pub mod hertz;
 pub mod linear;
@@ -68,7 +69,7 @@ impl History {
 pub struct ContactForce {
     /// Force on a [N]; b takes the opposite.
     pub force: Vec3,
-    /// Its normal part, pressure positive [N].
+    /// Its normal part, pressure positive [N]; adhesion taken off.
     pub normal: f64,
     /// Moment of rolling and twisting resistance on a [N m]; b takes the opposite.
     pub moment: Vec3,
@@ -123,6 +124,22 @@ pub struct Answer<R> {
     pub friction: R,
 }
 
+/// Constants of a law, field by field, in lanes: all alike, or of four laws.
+macro_rules! law_lanes {
+    ($law:ident { $($field:ident),+ $(,)? }) => {
+        #[inline(always)]
+        fn splat<R: Real>(&self) -> $law<R> {
+            $law { $($field: R::splat(self.$field)),+ }
+        }
+
+        #[inline(always)]
+        fn mixed<R: Real>(laws: [&$law; 8], join: fn(&[f64; 8]) -> R) -> $law<R> {
+            $law { $($field: join(&laws.map(|l| l.$field))),+ }
+        }
+    };
+}
+pub(crate) use law_lanes;
+
 /// A law of contact: constants of one pair of materials, and the force.
 pub trait ContactLaw: Copy + Send + Sync {
     /// The constants in lanes.
@@ -138,7 +155,8 @@ pub trait ContactLaw: Copy + Send + Sync {
     fn mixed<R: Real>(laws: [&Self; 8], join: fn(&[f64; 8]) -> R) -> Self::Lanes<R>;
 
     /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
-    /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance.
+    /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and
+    /// with adhesion.
     fn answer<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,
         touch: &Touch<R>,
@@ -163,7 +181,7 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// Damping ratio ζ of the contact [-].
     fn damping_ratio(&self) -> f64;
 
-    /// Whether the contact resists rolling or twisting.
+    /// Whether the contact resists rolling or twisting, or adheres.
     fn rolls(&self) -> bool;
 
     /// The force on one contact, given the effective mass m* = m₁m₂/(m₁ + m₂) of the bodies [kg], the velocity of a
@@ -265,20 +283,10 @@ impl<L: ContactLaw> PairTable<L> {
         L::mixed(laws, R::of)
     }
 
-    /// Whether any pair resists rolling or twisting.
+    /// Whether any pair resists rolling or twisting, or adheres.
     pub(crate) fn rolls(&self) -> bool {
         self.pairs.iter().any(L::rolls)
     }
-}
-
-/// One number of each of some laws.
-#[inline(always)]
-pub(crate) fn each<L>(laws: &[&L; 8], pick: impl Fn(&L) -> f64) -> [f64; 8] {
-    let mut out = [0.0; 8];
-    for (x, law) in out.iter_mut().zip(laws) {
-        *x = pick(law);
-    }
-    out
 }
 
 /// 2xy/(x + y), also for infinite values.

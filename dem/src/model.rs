@@ -36,6 +36,7 @@ pub struct Model {
     pub(crate) block: usize,
     /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
+    pub(crate) periodic: Option<crate::periodic::Periodic>,
     dt: f64,
     limit: DtLimit,
 }
@@ -71,6 +72,10 @@ impl Model {
         let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
+        let skin = input.skin.unwrap_or(0.2 * mean);
+        crate::contact::adhesion::check(&input)?;
+        crate::periodic::check(&input, &bodies, skin)?;
+        let periodic = crate::periodic::Periodic::new(&input);
         let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
@@ -100,7 +105,8 @@ impl Model {
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
-            skin: input.skin.unwrap_or(0.2 * mean),
+            skin,
+            periodic,
             bonds,
             radii,
             dt,
@@ -240,6 +246,30 @@ impl Model {
         let (a, b) = (a as u32, b as u32);
         let radius = self.radii.1;
         (self.laws.stiffness(a, b, self.expected * radius, radius), self.laws.damping_ratio(a, b))
+    }
+
+    /// Force of the normal spring [N] and its stiffness [N/m] between two materials at an overlap and an effective radius
+    /// [m].
+    pub fn contact_spring(&self, a: usize, b: usize, overlap: f64, radius: f64) -> (f64, f64) {
+        let stiffness = self.laws.stiffness(a as u32, b as u32, overlap, radius);
+        // Hertz's force grows with the power 3/2.
+        let part = if matches!(self.laws, Laws::Hertz(_)) { 2.0 / 3.0 } else { 1.0 };
+        (part * stiffness * overlap, stiffness)
+    }
+
+    /// Tangential over normal stiffness of a contact between two materials.
+    pub fn tangential_ratio(&self, a: usize, b: usize) -> f64 {
+        self.laws.tangential_ratio(a as u32, b as u32)
+    }
+
+    /// Material that an external surface counts as.
+    pub fn surface_material(&self) -> Option<usize> {
+        self.surface_material.map(|m| m as usize)
+    }
+
+    /// Material of a body.
+    pub fn material(&self, body: usize) -> usize {
+        self.body(body).material as usize
     }
 }
 

@@ -1,5 +1,6 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::Vec3;
 use crate::bond;
 use crate::contact::{ContactLaw, PairTable, pass, passes, patches, planes, with_law};
 use crate::error::{Partner, StepError};
@@ -7,6 +8,7 @@ use crate::input::AppliedForce;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
+use crate::periodic;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
@@ -106,11 +108,12 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         bonds: bonded,
         material,
         plane_material,
+        slot_width,
         ..
     } = work;
     let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
-    let (material, plane_material) = (*material, *plane_material);
+    let (material, plane_material, slot_width) = (*material, *plane_material, *slot_width);
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
@@ -120,6 +123,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         passes::between(model, simd, (all, scratch), material, b, lists, out);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
+        }
+        if let Some(periodic) = &model.periodic {
+            out.couple = Vec3::zeros();
+            periodic::contacts::<_, RIGID>(periodic, laws, all, scratch, b, pairs, out, slot_width, dt);
         }
     };
     if *parallel {
@@ -248,6 +255,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum += &w.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
+        sum.periodic.angular += cross.couple;
         fastest = fastest.max(w.fastest);
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
@@ -289,10 +297,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::lanes::Simd;
-    use crate::material::Material;
+    use crate::material::{Material, PairOverride};
     use crate::shape::Shape;
     use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
@@ -326,6 +333,8 @@ mod tests {
         };
         if !clumps {
             input.materials.truncate(1);
+        } else if hertz {
+            input.contacts.push(PairOverride { a: 0, b: 1, adhesion: Some(2.0), ..PairOverride::default() });
         }
         input.planes.push(Plane {
             point: Vec3::zeros(),

@@ -10,7 +10,7 @@ use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::near::Merging;
-use crate::state::{Lanes, PatchContact, PatchPair, State, xyz};
+use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
 use std::sync::Mutex;
@@ -145,6 +145,8 @@ pub(crate) struct CrossWork {
     pub slots: Vec<Lanes>,
     pub dashpot: f64,
     pub friction: f64,
+    /// Angular impulse about the origin that contacts across periodic borders give in this step.
+    pub couple: Vec3,
     pub failure: Option<Failure>,
 }
 
@@ -180,6 +182,7 @@ pub(crate) struct BlockWork {
     pub candidates: Vec<[u16; 2]>,
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
+    pub images: Vec<ImageName>,
     pub planes: Vec<[u32; 2]>,
     pub walls: Vec<[u32; 2]>,
     pub surface: Vec<[u32; 2]>,
@@ -278,6 +281,12 @@ impl Work {
         };
         work.arrange(model, state);
         work
+    }
+
+    /// Follows another state of the same model from now on, such as an earlier one that is taken up again. What comes
+    /// then has the bits that new scratch gives.
+    pub fn follow(&mut self, model: &Model, state: &State) {
+        self.arrange(model, state);
     }
 
     /// Lays the constants out in the state's present order.

@@ -172,6 +172,91 @@ impl WindowSolver {
         Ok(audit)
     }
 
+    /// The mean velocity vt [m/s] that a step would have if the load fell by `contacts(w)` as the velocity vt exceeds the
+    /// present one by w: a linearized contact on the body. `contacts` adds a symmetric, not negative product to its second
+    /// argument, shapes `[3 * nodes]`. The state stays as it is. Returns the iterations.
+    ///
+    /// Conjugate gradients with the factor of the window as preconditioner: they need no product with the matrix, since
+    /// A z = r where z is the preconditioned residual r, and as many iterations as contacts are stiff against it.
+    ///
+    /// # Errors
+    /// A load or a result that is not finite.
+    pub fn predict(
+        &mut self,
+        model: &Model,
+        state: &State,
+        mean_load: &[f64],
+        mut contacts: impl FnMut(&[f64], &mut [f64]),
+        rate: &mut [f64],
+    ) -> Result<u32, SolveError> {
+        const TOLERANCE: f64 = 1e-8;
+        const ITERATIONS: u32 = 100;
+        check_load(model, mean_load, state.time + self.dt)?;
+        let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
+        let (n, supports) = (state.u.len(), model.supports());
+        let gather = |from: &[f64], to: &mut [f64]| {
+            to.iter_mut().zip(supports.free()).for_each(|(t, &d)| *t = from[d as usize]);
+        };
+        for d in 0..n {
+            self.work[d] = state.u[d] + (theta * dt + c.beta_k) * state.v[d];
+        }
+        model.stiffness_times(&self.work, &mut self.product);
+        let mut force: Vec<f64> = (0..n).map(|d| mean_load[d] - self.product[d]).collect();
+        if c.alpha_m > 0.0 {
+            model.mass_times(&state.v, &mut self.product);
+            (0..n).for_each(|d| force[d] -= c.alpha_m * self.product[d]);
+        }
+        if !model.matrices().dashpots().is_empty() {
+            self.product.fill(0.0);
+            model.dashpot_times(&state.v, &mut self.product);
+            (0..n).for_each(|d| force[d] -= self.product[d]);
+        }
+        let size = self.equations.len();
+        let mut r = vec![0.0; size];
+        gather(&force, &mut r);
+        r.iter_mut().for_each(|r| *r *= theta * dt);
+        let (mut x, mut p, mut ap, mut q) =
+            (vec![0.0; size], vec![0.0; size], vec![0.0; size], vec![0.0; size]);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (mut last, mut first, mut iterations) = (0.0, 0.0, 0);
+        while iterations < ITERATIONS {
+            let z = &mut self.equations;
+            z.copy_from_slice(&r);
+            self.factor.solve_in_place(z);
+            let rz = dot(&r, z);
+            if iterations == 0 {
+                first = rz;
+            }
+            if rz <= TOLERANCE * TOLERANCE * first {
+                break;
+            }
+            let beta = if iterations == 0 { 0.0 } else { rz / last };
+            for i in 0..size {
+                p[i] = z[i] + beta * p[i];
+                ap[i] = r[i] + beta * ap[i];
+            }
+            self.work.fill(0.0);
+            supports.scatter(&p, &mut self.work);
+            self.product.fill(0.0);
+            contacts(&self.work, &mut self.product);
+            gather(&self.product, &mut q);
+            (0..size).for_each(|i| q[i] = ap[i] + theta * dt * q[i]);
+            let alpha = rz / dot(&p, &q);
+            for i in 0..size {
+                x[i] += alpha * p[i];
+                r[i] -= alpha * q[i];
+            }
+            last = rz;
+            iterations += 1;
+        }
+        rate.copy_from_slice(&state.v);
+        for (x, &d) in x.iter().zip(supports.free()) {
+            rate[d as usize] += x;
+        }
+        check_finite(model, "the velocity", rate, state.time + dt)?;
+        Ok(iterations)
+    }
+
     /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` under the mean load,
     /// 0 at free dofs. Shape `[3 * nodes]`. With the mean load they are the change of momentum exactly.
     pub fn mean_reactions(

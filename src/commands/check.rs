@@ -1,9 +1,9 @@
 //! `trackbed check`: reads and resolves everything that a run would, runs nothing, and says what would happen.
 
 use crate::failure::Failure;
-use crate::model::Job;
 use crate::model::grains::refused;
 use crate::model::solid::Analysis;
+use crate::model::{Job, exchange};
 use crate::run;
 use crate::scene::{Document, Scene};
 use std::fmt::Write;
@@ -52,9 +52,13 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
         let alone =
             dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
-        let sleeper = grains.sleeper.as_ref().map(|plan| grains.sleeper_body(plan, 0.0));
-        let bodies = grains.bodies.iter().cloned().chain(sleeper).collect();
+        let sleepers = grains
+            .sleeper
+            .iter()
+            .flat_map(|plan| plan.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
+        let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
         let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
+        grains.check_pads(&document, model.dt())?;
         line(format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
         if let Some(d) = &grains.deposition {
@@ -62,16 +66,27 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         }
         line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
         if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-            let window = model.dt() * f64::from(coupling.substeps);
-            let s = grains.stability(&model, window, &solid.model, &coupling.faces);
+            let surface = coupling.surface(solid, grains);
+            let classes = coupling.classes(grains, &model, solid, &surface);
+            let substeps = coupling.substeps(&classes, model.dt());
+            let window = model.dt() * f64::from(substeps);
+            let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
+            let s = exchange::stability(&classes);
             line(format!(
-                "coupling: {} faces, {} grain steps per window of {window:.4e} s; stability W = {:.3}, D = {:.3} (both \
-                 should be below 1)",
+                "coupling: {} faces, scheme {}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
+                 {:.3}",
                 coupling.faces.len(),
-                coupling.substeps,
+                coupling.scheme,
+                coupling.transfer_kind(&surface),
+                substeps,
+                if coupling.automatic() { " (automatic)" } else { "" },
                 s.stiffness,
                 s.damping,
             ));
+            classes.iter().for_each(|c| line(format!("  {}", c.line())));
+            for remark in exchange::remarks(&classes, coupling.scheme, substeps) {
+                line(format!("  note: {remark}"));
+            }
         }
     } else if let Some(solid) = &job.solid {
         let steps = |step: f64| format!("{} s in {:.0} steps of {step} s", job.end, job.end / step);

@@ -5,27 +5,27 @@ mod bonds;
 mod compaction;
 mod groups;
 mod materials;
+mod periodic;
 mod regions;
 mod sizes;
 mod track;
 pub mod walls;
 
+use super::after::{self, AfterPlan};
 use super::seat_load::CyclicLoad;
 use super::tables::Grading;
+use super::track::rail::RailInput;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
-pub use compaction::{CompactionPlan, Press};
-use trackbed_coupling::step::{self, Stability};
+pub use compaction::{CompactionPlan, Measure, Press, Radial};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
-use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
     WallInput, WallShape,
 };
-use trackbed_fem::Face;
 
 /// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
 const SETTLED_SPEED: f64 = 5e-3;
@@ -43,9 +43,10 @@ pub struct GrainsPart {
     gravity: Vec3,
     time_step: TimeStep,
     impact_speed: Option<f64>,
+    periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
-    /// Names of the groups; the sleeper is the group after the last.
+    /// Names of the groups; the sleepers are the group after the last.
     pub parts: Vec<String>,
     /// First shape of each group; a stone's number in its library is its shape less that.
     pub first_shape: Vec<usize>,
@@ -57,20 +58,27 @@ pub struct GrainsPart {
     pub bonds: BondPart,
     /// Groups of prescribed motion.
     pub moving: Vec<Moving>,
+    /// Groups that foul the bed.
+    pub fouling: Vec<u32>,
     /// Groups whose mean place and force are recorded.
     pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
     grain_materials: Vec<usize>,
+    material_names: Vec<String>,
     /// Settling before the run proper.
     pub deposition: Option<DepositionPlan>,
     /// Compaction of the settled bed.
     pub compaction: Vec<CompactionPlan>,
-    /// Boxes that are measured, by name.
-    pub measures: Vec<(String, BoxRegion)>,
-    /// The sleeper.
+    /// Boxes that are measured.
+    pub measures: Vec<Measure>,
+    /// The sleepers, which are the last bodies of the run proper.
     pub sleeper: Option<SleeperPlan>,
-    /// The load on it.
+    /// The load on them.
     pub load: Option<CyclicLoad>,
+    /// Jumps over cycles, push at the end.
+    pub after: AfterPlan,
+    /// The rail, where it is a beam; one on each seat.
+    pub rail: Option<RailInput>,
 }
 
 /// A group of prescribed motion.
@@ -134,7 +142,7 @@ pub struct GrowthPlan {
     pub how: Growth,
 }
 
-/// A sleeper.
+/// Sleepers in a row.
 #[derive(Clone, Debug)]
 pub struct SleeperPlan {
     shape: usize,
@@ -143,10 +151,24 @@ pub struct SleeperPlan {
     fixed: [bool; 6],
     /// Half edge lengths [m].
     pub half: [f64; 3],
-    /// Place of the centre in x and y [m].
-    pub centre: [f64; 2],
+    /// Direction of the track: 0 or 1.
+    pub axis: usize,
+    /// Places of the centres in x and y [m], along the track.
+    pub centres: Vec<[f64; 2]>,
     /// Points of the top that share the load, in the sleeper's frame [m].
     pub seats: Vec<[f64; 3]>,
+}
+
+impl SleeperPlan {
+    /// Motions that are held: along x, y, z, about x, y, z.
+    pub fn held(&self) -> [bool; 6] {
+        self.fixed
+    }
+
+    /// Mass of a sleeper [kg].
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
 }
 
 impl GrainsPart {
@@ -164,8 +186,7 @@ impl GrainsPart {
                             a,
                             b,
                             friction: Some(friction),
-                            restitution: None,
-                            stiffness: None,
+                            ..PairOverride::default()
                         });
                     }
                 }
@@ -233,10 +254,16 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            periodic: self.periodic,
             ..ModelInput::default()
         };
         self.bonds.add_to(&mut input);
         input
+    }
+
+    /// Whether the box is periodic along an axis.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic.iter().any(Option::is_some)
     }
 
     /// Density of a material [kg/m³].
@@ -244,29 +271,24 @@ impl GrainsPart {
         self.materials[material].density
     }
 
-    /// Stability of the exchange with a solid in windows of `window` [s], for the stiffest contact and the heaviest
-    /// grain.
-    pub fn stability(
-        &self,
-        model: &Model,
-        window: f64,
-        solid: &trackbed_fem::Model,
-        faces: &[Face],
-    ) -> Stability {
-        let Some(surface) = self.surface_material else { return Stability::default() };
-        let (mut stiffness, mut damping) = (0.0_f64, 0.0_f64);
-        // The sleeper touches grains only.
+    /// Materials of grains that may touch a solid, with their names. The sleeper touches grains only.
+    pub fn touching_materials(&self) -> impl Iterator<Item = (usize, String)> {
+        self.grain_materials.iter().map(|&m| (m, self.material_names[m].clone()))
+    }
+
+    /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
+    pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
         let grains = self.parts.len() as u32 - u32::from(self.sleeper.is_some());
-        let heaviest = (0..model.body_count())
-            .filter(|&b| model.part(b) < grains)
-            .map(|b| model.mass(b))
-            .fold(0.0, f64::max);
-        for &material in &self.grain_materials {
-            let (k, ratio) = model.contact_stiffness(material, surface);
-            stiffness = stiffness.max(k);
-            damping = damping.max(2.0 * ratio * (heaviest * k).sqrt());
-        }
-        step::stability(window, stiffness, damping, step::face_masses(solid, faces))
+        let own = (0..model.body_count())
+            .filter(|&b| model.part(b) < grains && model.material(b) == material)
+            .map(|b| model.mass(b));
+        let ends = own.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], m| [low.min(m), high.max(m)]);
+        (ends[1] > 0.0).then_some(ends)
+    }
+
+    /// Mean bounding radius of the grains [m].
+    pub fn mean_reach(&self) -> f64 {
+        self.bodies.iter().map(|b| self.reach(b)).sum::<f64>() / self.bodies.len().max(1) as f64
     }
 
     /// Planes, for the pictures of the walls.
@@ -284,13 +306,41 @@ impl GrainsPart {
         &self.recorded
     }
 
-    /// The sleeper as a body with its centre at height `z` [m].
-    pub fn sleeper_body(&self, plan: &SleeperPlan, z: f64) -> BodyInput {
+    /// Refuses pads that are too stiff or too strongly damped for sleepers that move in steps of `dt` [s] under the pads'
+    /// force at the start of each step.
+    ///
+    /// # Errors
+    /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
+    /// damping.
+    pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
+        let (Some(rail), Some(sleeper)) = (&self.rail, &self.sleeper) else { return Ok(()) };
+        let [a, b, c] = sleeper.half;
+        // 1/m of a seat, turning about both level axes included: a bound for all modes.
+        let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
+        let lightness: f64 = sleeper
+            .seats
+            .iter()
+            .map(|s| 1.0 / sleeper.mass + s[0] * s[0] * third(a, c) + s[1] * s[1] * third(b, c))
+            .sum();
+        for (key, value, most) in [
+            ("pad_stiffness", rail.pad[0], 0.25 / (dt * dt * lightness)),
+            ("pad_damping", rail.pad[1], 0.5 / (dt * lightness)),
+        ] {
+            if value > most {
+                let expected = format!("at most {most:.4e} with grain steps of {dt:.4e} s");
+                return Err(document.error(&format!("track.rail.{key}"), value.to_string(), expected));
+            }
+        }
+        Ok(())
+    }
+
+    /// A sleeper as a body with its centre above `centre` at height `z` [m].
+    pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
             shape: plan.shape,
             material: plan.material,
             part: self.parts.len() as u32 - 1,
-            position: Vec3::new(plan.centre[0], plan.centre[1], z),
+            position: Vec3::new(centre[0], centre[1], z),
             fixed: plan.fixed,
             mass: Some(plan.mass),
             ..BodyInput::default()
@@ -320,6 +370,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
         check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
+        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
             let expected = "no stiffness where materials have a Young's modulus";
             return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
@@ -330,6 +381,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
+            adhesion: c.adhesion.map(|w| w.si),
         });
     }
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
@@ -353,6 +405,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         impact_speed,
+        periodic: [None; 3],
         bodies: Vec::new(),
         parts: Vec::new(),
         first_shape: Vec::new(),
@@ -360,13 +413,17 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         growths: Vec::new(),
         bonds: bonds::kinds(document, scene)?,
         moving: Vec::new(),
+        fouling: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
+        material_names: names.iter().map(|n| n.to_string()).collect(),
         deposition: None,
         compaction: Vec::new(),
         measures: Vec::new(),
         sleeper: None,
         load: None,
+        after: AfterPlan::default(),
+        rail: None,
     };
     for (i, group) in scene.grains.iter().enumerate() {
         let material = find(&format!("grains.{i}.material"), &group.material)?;
@@ -377,9 +434,17 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         if !part.grain_materials.contains(&material) {
             part.grain_materials.push(material);
         }
+        if group.fouling {
+            part.fouling.push(part.parts.len() as u32);
+        }
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
     }
+    if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
+        let expected = "a group of grains beside it that is fouled";
+        return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
+    }
+    periodic::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();
@@ -432,6 +497,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;
+        part.after = after::build(document, track, &part)?;
     }
     Ok(part)
 }
@@ -451,6 +517,14 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
         }
+        ModelError::Adhesion { index, with } => document.error(
+            &format!("contact.{index}.adhesion"),
+            format!("adhesion beside {with}"),
+            "no adhesion in such a scene",
+        ),
+        ModelError::Periodic { problem } => {
+            document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
+        }
         ModelError::Bond { .. } | ModelError::BondKind { .. } => {
             document.error("bond", error.to_string(), "bonds that can be made")
         }
@@ -458,7 +532,7 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
     }
 }
 
-fn check(
+pub(super) fn check(
     document: &Document,
     key: &str,
     value: Option<f64>,

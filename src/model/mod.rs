@@ -1,17 +1,20 @@
 //! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
 //! key of the scene was set.
 
+pub mod after;
+pub mod exchange;
 pub mod grains;
 pub mod seat_load;
 pub mod solid;
 mod tables;
+pub mod track;
 
 use crate::failure::Failure;
 use crate::scene::units::vector;
 use crate::scene::{Chains, Document, Scene, SceneError};
 use std::time::Duration;
 use trackbed_fem as fem;
-use trackbed_fem::mesh::{Face, Mesh};
+use trackbed_fem::mesh::Mesh;
 
 /// Time by the clock between two checkpoints, unless the scene says otherwise [s].
 const CHECKPOINT: f64 = 600.0;
@@ -25,7 +28,7 @@ pub struct Job {
     /// The grains.
     pub grains: Option<grains::GrainsPart>,
     /// The exchange between them.
-    pub coupling: Option<CouplingPart>,
+    pub coupling: Option<exchange::CouplingPart>,
     /// Physical time of the run proper [s]; 0 for a static solid.
     pub end: f64,
     /// Step of a solid that runs alone [s].
@@ -57,16 +60,6 @@ pub struct OutputPlan {
     pub strong_chains: bool,
 }
 
-/// The exchange, resolved.
-pub struct CouplingPart {
-    /// Steps of the grains per step of the solid.
-    pub substeps: u32,
-    /// Implicitness of the solid's step.
-    pub theta: f64,
-    /// Faces that grains may touch.
-    pub faces: Vec<Face>,
-}
-
 impl Job {
     /// Resolves a scene.
     ///
@@ -95,6 +88,7 @@ impl Job {
                 ("material", !scene.material.is_empty()),
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
+                ("periodic", scene.periodic.is_some()),
                 ("deposition", scene.deposition.is_some()),
                 ("compaction", !scene.compaction.is_empty()),
                 ("measure", !scene.measure.is_empty()),
@@ -108,7 +102,7 @@ impl Job {
             }
         }
         let coupling = match (&scene.coupling, &solid, &grains) {
-            (Some(c), Some(s), Some(_)) => Some(coupling(document, c, s.model.mesh())?),
+            (Some(c), Some(s), Some(_)) => Some(exchange::build(document, c, s)?),
             (Some(_), _, _) => {
                 return Err(document
                     .error("coupling", "only one side", "both [solid] and [[grains]]")
@@ -121,6 +115,11 @@ impl Job {
             }
             (None, _, _) => None,
         };
+        let jumps = grains.as_ref().and_then(|g| g.after.jump).is_some_and(|j| j.grains);
+        if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
+            let expected = "\"account\": the state of a plastic solid is not extrapolated";
+            return Err(document.error("track.jump.method", "\"grains\"", expected).into());
+        }
         let end = end_time(document, scene, grains.as_ref())?;
         let solid_step = solid_step(document, scene, end)?;
         let probes = scene
@@ -230,40 +229,18 @@ fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, Sc
     })
 }
 
-fn coupling(
-    document: &Document,
-    c: &crate::scene::Coupling,
-    mesh: &Mesh,
-) -> Result<CouplingPart, SceneError> {
-    if !(1..=1000).contains(&c.substeps) {
-        return Err(document.error("coupling.substeps", c.substeps.to_string(), "1 to 1000"));
-    }
-    if !(0.5..=1.0).contains(&c.theta) {
-        return Err(document.error("coupling.theta", c.theta.to_string(), "0.5 to 1"));
-    }
-    if c.direction.iter().map(|d| d * d).sum::<f64>() <= 0.0 {
-        return Err(document.error("coupling.direction", "the null vector", "a direction"));
-    }
-    if !(c.max_angle.si > 0.0 && c.max_angle.si <= std::f64::consts::PI) {
-        return Err(document.error("coupling.max_angle", c.max_angle.si.to_string(), "above 0, at most pi"));
-    }
-    let faces = trackbed_coupling::surface::SolidSurface::facing(mesh, c.direction, c.max_angle.si);
-    if faces.is_empty() {
-        return Err(document.error(
-            "coupling.direction",
-            "no boundary face that looks this way",
-            "at least one",
-        ));
-    }
-    Ok(CouplingPart { substeps: c.substeps, theta: c.theta, faces })
-}
-
 fn end_time(
     document: &Document,
     scene: &Scene,
     grains: Option<&grains::GrainsPart>,
 ) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.load.as_ref()).map(seat_load::CyclicLoad::end);
+    // A push comes after the cycles, or stands for itself.
+    let push = grains.and_then(|g| g.after.push).map(|p| p.duration());
+    let counted = match (counted, push) {
+        (Some(cycles), Some(push)) => Some(cycles + push),
+        (counted, push) => counted.or(push),
+    };
     let steps = |s: &crate::scene::solid::Solid| s.dynamics.is_some() || s.quasi_static.is_some();
     let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
     match (scene.time.end, counted, dynamic) {
@@ -273,7 +250,7 @@ fn end_time(
         (Some(end), Some(counted), _) if end.si < counted => Err(document.error(
             "time.end",
             format!("{} s", end.si),
-            format!("at least {counted} s, when the last load cycle ends"),
+            format!("at least {counted} s, when the last load cycle, or the push after it, ends"),
         )),
         (Some(_), None, false) => Err(document.error(
             "time.end",

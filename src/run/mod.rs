@@ -6,20 +6,25 @@ mod checkpoint;
 mod compact;
 mod cycles;
 mod failure_factor;
+mod fit;
 mod frames;
 mod initial;
+mod jump;
 mod keeper;
 mod main_stage;
 mod memory;
 mod packed;
 mod packing;
 mod plastic;
+mod push;
+mod rail;
 mod record;
 mod settle;
 mod solid_alone;
 mod statics;
 mod summary;
 mod system;
+mod track;
 mod wall_output;
 
 pub use cycles::{Cycle, CycleRecorder};
@@ -28,9 +33,10 @@ pub use memory::{Prediction, parse_size, size};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::exchange::{self, CouplingPart};
 use crate::model::grains::{GrainsPart, check_joined, refused};
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
-use crate::model::{CouplingPart, Job};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Origin, Slots};
@@ -39,9 +45,11 @@ use main_stage::RUN;
 use settle::Settled;
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use summary::{CouplingRecord, Hash, NewtonRecord};
 use system::{CoupledSystem, GrainsSystem, System};
 use trackbed_coupling as coupling;
+use trackbed_coupling::scheme::{Passes, Scheme};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
@@ -251,6 +259,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
         files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
+    files.extend(scene.track.iter().filter_map(|t| t.load.as_ref()?.file.as_deref()));
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
     files
@@ -307,28 +316,47 @@ impl Stage<'_> {
                 self.record_packing(&system, grains, summary)
             }
             (Some(solid), Some(grains), Some(plan)) => {
-                let surface = SolidSurface::new(solid.model.mesh(), plan.faces.clone());
+                let surface = plan.surface(solid, grains);
+                let transfer_kind = plan.transfer_kind(&surface);
                 let mut resumed = self.resumed(RUN);
                 let (grains, deposited) = self.deposit(grains, Some(&surface), resumed.as_mut(), summary)?;
                 let grains = &grains;
                 let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
                 let model = self.grain_model(grains, bodies, summary)?;
-                let mut system = self.couple(solid, model, plan, surface, resumed.as_mut(), summary)?;
-                let stability = grains.stability(
-                    &system.model.grains,
-                    system.model.window(),
-                    system.model.solid,
-                    &plan.faces,
-                );
-                if stability.stiffness.max(stability.damping) > 1.0 {
-                    summary.warnings.push(format!(
-                        "the exchange may be unstable: W = {:.2}, D = {:.2}, both should be below 1; use fewer \
-                         coupling.substeps or softer contacts",
-                        stability.stiffness, stability.damping
-                    ));
+                let classes = plan.classes(grains, &model, solid, &surface);
+                let substeps = plan.substeps(&classes, model.dt());
+                let mut system =
+                    self.couple(solid, model, plan, substeps, surface, resumed.as_mut(), summary)?;
+                let window = system.model.window();
+                let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
+                let substeps = system.model.substeps;
+                let remarks = exchange::remarks(&classes, plan.scheme, substeps);
+                if !self.quiet {
+                    // Before anything can blow up.
+                    remarks.iter().for_each(|r| eprintln!("note: {r}"));
                 }
+                summary.warnings.extend(remarks);
+                let lowest = system.work.surface.lowest();
+                summary.coupling = Some(CouplingRecord {
+                    transfer: Default::default(),
+                    scheme: plan.scheme,
+                    substeps,
+                    stability: exchange::stability(&classes),
+                    classes,
+                    passes: Default::default(),
+                    interface_work_error: 0.0,
+                    transfer_kind,
+                });
                 self.prepare()?;
-                self.grain_stage(&mut system, grains, resumed, summary)?;
+                let outcome = self.grain_stage(&mut system, grains, resumed, summary);
+                if let Some(record) = &mut summary.coupling {
+                    record.transfer = system.state.audit;
+                    record.passes = system.state.passes;
+                    record.interface_work_error = system.spent().interface();
+                }
+                summary.warnings.extend(unconverged(&system.state.passes));
+                summary.warnings.extend(fallen(&system, lowest));
+                outcome?;
                 self.record_packing(&system, grains, summary)?;
                 if self.job.output.tables {
                     let moved = &system.state.solid;
@@ -336,13 +364,6 @@ impl Stage<'_> {
                     statics::write_tables(&solid.model, moved, &reactions, self.dir)?;
                 }
                 summary.newton = system.work.newton().map(|s| NewtonRecord::of(&s));
-                summary.coupling = Some(CouplingRecord {
-                    transfer: system.state.audit,
-                    substeps: plan.substeps,
-                    stability,
-                    interface_work_error: system.spent().interface(),
-                    transfer_kind: "point, through the shape functions of the touched face",
-                });
                 Ok(())
             }
             _ => unreachable!("a job has a solid or grains, and both only with a coupling"),
@@ -377,6 +398,11 @@ impl Stage<'_> {
             summary.sources.extend(BOND_SOURCES);
         }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
+        push::check(self.document, grains, model.dt())?;
+        grains.check_pads(self.document, model.dt())?;
+        if grains.rail.is_some() {
+            summary.sources.extend(RAIL_SOURCES);
+        }
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());
@@ -392,6 +418,7 @@ impl Stage<'_> {
         solid: &'b crate::model::solid::SolidPart,
         grains: dem::Model,
         plan: &CouplingPart,
+        substeps: u32,
         mut surface: SolidSurface,
         resumed: Option<&mut Loaded>,
         summary: &mut Summary,
@@ -401,35 +428,76 @@ impl Stage<'_> {
         let (reference, memory, state) = match resumed {
             Some(loaded) => loaded.take()?,
             None => {
-                let (state, resting) = equilibrium(solid, &grains, &mut surface, &dead_load)?;
-                (state.u.clone(), None, coupling::step::State::new(state, resting))
+                let (state, resting, contacts) = equilibrium(solid, &grains, &mut surface, &dead_load)?;
+                let reference = state.u.clone();
+                let start = coupling::step::State::new(state, resting);
+                // Only the lagged scheme goes on with the load of before.
+                let lagged = plan.scheme == Scheme::Lagged;
+                (reference, None, if lagged { start.carrying(contacts) } else { start })
             }
         };
         let model = coupling::step::Model {
             solid: &solid.model,
             dead_load,
             reference,
-            substeps: plan.substeps,
+            substeps,
+            scheme: plan.scheme,
             theta: plan.theta,
             newton: solid.newton,
             grains,
         };
-        let work = coupling::step::Work::new(&model, &state, surface)
+        let mut work = coupling::step::Work::new(&model, &state, surface)
             .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
             .map_err(|e| solid.failure(&e))?;
+        if let Some(reduction) = solid.reduction {
+            let reduced = fem::reduction::Reduced::new(&solid.model, work.surface.faces(), reduction)
+                .map_err(|e| {
+                    Failure::from(self.document.error("solid.reduction", e.to_string(), "another choice"))
+                })?;
+            work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
+            summary.model.reduction = work.reduction();
+        }
         summary.model.solid_step = Some(model.window());
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
         Ok(CoupledSystem { model, state, work, loads: &solid.loads })
     }
 }
 
-/// The solid in equilibrium with its weight, its loads and the grains that lie on it, and the grains with their contacts.
+/// A remark on windows of the iterated scheme that found no end.
+fn unconverged(passes: &Passes) -> Option<String> {
+    (passes.unconverged > 0).then(|| {
+        format!(
+            "{} of {} windows had not converged after the last pass allowed: raise coupling.max_passes, or take fewer \
+             coupling.substeps",
+            passes.unconverged, passes.windows
+        )
+    })
+}
+
+/// A remark on grains that have left the solid and lie or fall below its surface, whose lowest point was at `lowest` [m].
+fn fallen(system: &CoupledSystem<'_>, lowest: f64) -> Option<String> {
+    let (model, state) = (&system.model.grains, &system.state.grains);
+    let mut below = (0..model.body_count()).filter(|&b| state.position(b).z < lowest - model.radius(b));
+    let first = below.next()?;
+    let x = state.position(first);
+    Some(format!(
+        "{} bodies have left the solid and are below its surface, first body {first} at ({:.4}, {:.4}, {:.4}) m: enlarge the \
+         mesh, or put walls at its borders",
+        1 + below.count(),
+        x.x,
+        x.y,
+        x.z
+    ))
+}
+
+/// The solid in equilibrium with its weight, its loads and the grains that lie on it, the grains with their contacts, and
+/// the load of these [N].
 fn equilibrium(
     solid: &SolidPart,
     grains: &dem::Model,
     surface: &mut SolidSurface,
     dead_load: &[f64],
-) -> Result<(fem::State, dem::State), Failure> {
+) -> Result<(fem::State, dem::State, Vec<f64>), Failure> {
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
     let (contacts, resting) = coupling::step::resting_load(grains, surface, solid.model.mesh())
@@ -445,7 +513,7 @@ fn equilibrium(
     } else {
         initial::under_load(solid, dead_load, &load)?
     };
-    Ok((state, resting))
+    Ok((state, resting, contacts))
 }
 
 /// Sources of the methods that a solid uses.
@@ -482,6 +550,11 @@ fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     }
     sources
 }
+
+const RAIL_SOURCES: [&str; 2] = [
+    "rail: Euler-Bernoulli beam of cubic elements, Przemieniecki, Theory of Matrix Structural Analysis, 1968",
+    "rail in time: average acceleration, Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959",
+];
 
 const BOND_SOURCES: [&str; 1] =
     ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];

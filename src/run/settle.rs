@@ -1,4 +1,4 @@
-//! Before the run proper: filled grains settle, the bed is levelled, the sleeper is set down.
+//! Before the run proper: filled grains settle, the bed is levelled, the sleepers are set down.
 
 use super::checkpoint::{Loaded, Moment};
 use super::packed::Packed;
@@ -146,7 +146,7 @@ impl Stage<'_> {
         Ok(())
     }
 
-    /// Adds the sleeper, just above the highest grain below it.
+    /// Adds the sleepers, each just above the highest grain below it.
     pub(super) fn with_sleeper(
         &self,
         grains: &GrainsPart,
@@ -156,8 +156,10 @@ impl Stage<'_> {
         let Some(plan) = &grains.sleeper else { return Ok(bodies) };
         let model = dem::Model::new(grains.input(bodies.clone())).map_err(|e| refused(self.document, &e))?;
         let state = dem::State::new(&model);
-        let top = bed::top_below(&model, &state, plan.centre, &plan.half, surface);
-        bodies.push(grains.sleeper_body(plan, top + plan.half[2]));
+        for &centre in &plan.centres {
+            let top = bed::top_below(&model, &state, centre, &plan.half, surface);
+            bodies.push(grains.sleeper_body(plan, centre, top + plan.half[2]));
+        }
         Ok(bodies)
     }
 }
@@ -171,7 +173,7 @@ fn at_rest(
 ) -> (Vec<BodyInput>, usize) {
     let mut bodies = Vec::with_capacity(inputs.len());
     for (b, input) in inputs.iter().enumerate() {
-        let position = state.position(b);
+        let position = model.wrap(&state.position(b));
         if plan.level.is_some_and(|level| position.z > level) {
             continue;
         }

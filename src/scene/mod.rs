@@ -4,13 +4,16 @@
 //! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
+pub mod after;
 pub mod bonds;
 pub mod compaction;
+pub mod coupling;
 pub mod deposition;
 mod document;
 pub mod grains;
 pub mod history;
 pub mod material;
+pub mod periodic;
 pub mod solid;
 pub mod track;
 pub mod units;
@@ -21,7 +24,7 @@ pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 
 use serde::Deserialize;
-use units::{Acceleration, Angle, Length, Quantity, Time, Velocity};
+use units::{Acceleration, Length, Quantity, Time, Velocity};
 
 /// A whole scene.
 #[derive(Clone, Debug, Deserialize)]
@@ -50,6 +53,8 @@ pub struct Scene {
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,
+    /// Axes along which the grains repeat themselves.
+    pub periodic: Option<periodic::Periodic>,
     /// Gravity deposition before the run proper.
     pub deposition: Option<deposition::Deposition>,
     /// Compaction after it, stage by stage.
@@ -61,7 +66,7 @@ pub struct Scene {
     /// Sleeper and its load.
     pub track: Option<track::Track>,
     /// Exchange between grains and solid; needed when a scene has both.
-    pub coupling: Option<Coupling>,
+    pub coupling: Option<coupling::Coupling>,
     /// Time steps and duration.
     #[serde(default)]
     pub time: TimeControl,
@@ -75,39 +80,6 @@ pub struct Scene {
 
 fn earth() -> [Quantity<Acceleration>; 3] {
     [Quantity::new(0.0), Quantity::new(0.0), Quantity::new(-9.81)]
-}
-
-/// Exchange between grains and solid.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Coupling {
-    /// Steps of the grains per step of the solid, 1–1000; default 10.
-    #[serde(default = "ten")]
-    pub substeps: u32,
-    /// Implicitness of the solid's window step, 0.5–1; 0.5 (default) is Newmark ¼, ½ and conserves energy.
-    #[serde(default = "half")]
-    pub theta: f64,
-    /// Name of the `[[material]]` that grains feel when they touch the solid.
-    pub material: String,
-    /// Direction that the touched faces look to; default up (0, 0, 1).
-    #[serde(default = "up")]
-    pub direction: [f64; 3],
-    /// Largest angle between a face's normal and `direction` [rad]; default 75 degrees.
-    #[serde(default = "steep")]
-    pub max_angle: Quantity<Angle>,
-}
-
-fn ten() -> u32 {
-    10
-}
-fn half() -> f64 {
-    0.5
-}
-fn up() -> [f64; 3] {
-    [0.0, 0.0, 1.0]
-}
-fn steep() -> Quantity<Angle> {
-    Quantity::new(75.0_f64.to_radians())
 }
 
 /// Time steps and duration.

@@ -200,6 +200,20 @@ fn spheres_on_an_elastic_block() {
     broken(&folder.join("scene.toml"), &set, &[0.0, 0.3, 0.5, 0.8, 1.0], &["cycles.csv", "gauss.csv"]);
 }
 
+/// What the schemes remember from window to window is in the checkpoint.
+#[test]
+fn spheres_on_an_elastic_block_by_other_schemes() {
+    let folder = scene_folder("coupled_schemes", COUPLED);
+    for (scheme, transfer) in
+        [("lagged", "\"point\""), ("stiffened", "{ spread = 0.3 }"), ("iterated", "{ spread_factor = 2 }")]
+    {
+        let scheme = format!("coupling.scheme={scheme}");
+        let transfer = format!("coupling.transfer={transfer}");
+        let set = [scheme.as_str(), transfer.as_str(), "coupling.substeps=5", "track.load.cycles=1"];
+        broken(&folder.join("scene.toml"), &set, &[0.3, 0.6, 1.0], &["cycles.csv", "history.csv"]);
+    }
+}
+
 #[test]
 fn spheres_on_a_plastic_block() {
     let folder = scene_folder("coupled_plastic", COUPLED);

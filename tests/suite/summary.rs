@@ -73,7 +73,17 @@ fn a_coupled_run_tells_everything_and_its_accounts_close() {
     println!("momentum {:.1e}, angular momentum {:.1e}", momentum[0], momentum[1]);
     assert!(momentum.iter().all(|e| *e < 1e-9), "{momentum:?}");
     let coupling = &summary["coupling"];
-    expect_keys(coupling, &["transfer", "substeps", "stability", "interface_work_error", "transfer_kind"]);
+    let keys = [
+        "transfer",
+        "scheme",
+        "substeps",
+        "stability",
+        "classes",
+        "passes",
+        "interface_work_error",
+        "transfer_kind",
+    ];
+    expect_keys(coupling, &keys);
     let audit = ["force", "moment"].map(|k| coupling["transfer"][k].as_f64().unwrap());
     println!("interface: force {:.1e}, moment {:.1e}", audit[0], audit[1]);
     assert!(audit.iter().all(|e| *e <= 1e-12), "{audit:?}");

@@ -161,23 +161,39 @@ pub struct Coupled<'a> {
 
 impl<'a> Coupled<'a> {
     pub fn new(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) -> Coupled<'a> {
+        Coupled::with_surface(solid, grains, substeps, top(solid))
+    }
+
+    /// The same with a surface of its own.
+    pub fn with_surface(
+        solid: &'a fem::Model,
+        grains: dem::ModelInput,
+        substeps: u32,
+        surface: SolidSurface,
+    ) -> Coupled<'a> {
         let n = solid.dof_count();
         let model = step::Model {
             solid,
             grains: dem::Model::new(grains).expect("valid grains"),
             substeps,
+            scheme: Default::default(),
             theta: 0.5,
             newton: Default::default(),
             dead_load: vec![0.0; n],
             reference: vec![0.0; n],
         };
         let state = step::State::new(fem::State::new(solid), dem::State::new(&model.grains));
-        let work = step::Work::new(&model, &state, top(solid)).expect("a solid that can be factored");
+        let work = step::Work::new(&model, &state, surface).expect("a solid that can be factored");
         Coupled { model, state, work }
     }
 
     /// One window with the given forces on bodies.
     pub fn step(&mut self, applied: &[(usize, [f64; 3])]) {
+        self.step_loaded(applied, |_, _| {});
+    }
+
+    /// The same with loads on the solid.
+    pub fn step_loaded(&mut self, applied: &[(usize, [f64; 3])], load: impl Fn(f64, &mut [f64])) {
         step::step(
             &self.model,
             &mut self.state,
@@ -189,8 +205,26 @@ impl<'a> Coupled<'a> {
                     point: grains.position(body),
                 }));
             },
-            |_, _| {},
+            load,
         )
         .expect("a step without failure");
+    }
+}
+
+/// Random numbers of a seed, for places that follow no pattern: SplitMix64 (Steele, Lea and Flood 2014).
+pub struct Scatter(u64);
+
+impl Scatter {
+    pub fn new(seed: u64) -> Scatter {
+        Scatter(seed)
+    }
+
+    /// Uniform in [−1, 1).
+    pub fn symmetric(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }

@@ -18,11 +18,13 @@
 //!
 //! Rolling and twisting resistance, where the materials have it: `slide.rs`, with the smaller coefficients of the two.
 //!
-//! Limits: no cohesion; overlaps small against the radii.
+//! Adhesion, where the pair has it: `adhesion.rs`.
+//!
+//! Limits: overlaps small against the radii.
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, each, harmonic};
+use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, adhesion, harmonic, law_lanes};
 use crate::lanes::{Real, V3};
 use crate::material::{Material, PairOverride};
 
@@ -45,6 +47,8 @@ pub struct Linear<R = f64> {
     rolling: R,
     /// Coefficient of twisting resistance [-].
     twisting: R,
+    /// Adhesive force over the effective radius [N/m].
+    pull: R,
     /// Damping ratio ζ [-].
     pub damping_ratio: R,
 }
@@ -67,39 +71,23 @@ impl ContactLaw for Linear {
             friction: given(|e| e.friction).unwrap_or(a.friction.min(b.friction)),
             rolling: a.rolling_friction.min(b.rolling_friction),
             twisting: a.twisting_friction.min(b.twisting_friction),
+            pull: adhesion::pull(exception),
             damping_ratio: zeta,
         }
     }
 
-    #[inline(always)]
-    fn splat<R: Real>(&self) -> Linear<R> {
-        Linear {
-            normal: R::splat(self.normal),
-            tangential: R::splat(self.tangential),
-            tangential_softness: R::splat(self.tangential_softness),
-            damping: R::splat(self.damping),
-            tangential_damping: R::splat(self.tangential_damping),
-            friction: R::splat(self.friction),
-            rolling: R::splat(self.rolling),
-            twisting: R::splat(self.twisting),
-            damping_ratio: R::splat(self.damping_ratio),
-        }
-    }
-
-    #[inline(always)]
-    fn mixed<R: Real>(laws: [&Linear; 8], join: fn(&[f64; 8]) -> R) -> Linear<R> {
-        Linear {
-            normal: join(&each(&laws, |l| l.normal)),
-            tangential: join(&each(&laws, |l| l.tangential)),
-            tangential_softness: join(&each(&laws, |l| l.tangential_softness)),
-            damping: join(&each(&laws, |l| l.damping)),
-            tangential_damping: join(&each(&laws, |l| l.tangential_damping)),
-            friction: join(&each(&laws, |l| l.friction)),
-            rolling: join(&each(&laws, |l| l.rolling)),
-            twisting: join(&each(&laws, |l| l.twisting)),
-            damping_ratio: join(&each(&laws, |l| l.damping_ratio)),
-        }
-    }
+    law_lanes!(Linear {
+        normal,
+        tangential,
+        tangential_softness,
+        damping,
+        tangential_damping,
+        friction,
+        rolling,
+        twisting,
+        pull,
+        damping_ratio
+    });
 
     #[inline(always)]
     fn answer<R: Real, const ROLL: bool>(
@@ -153,8 +141,9 @@ impl ContactLaw for Linear {
         );
         dashpot = dashpot + slid.dashpot;
         let mut friction = slid.friction;
-        let mut moment = V3::zero();
+        let (mut moment, mut net) = (V3::zero(), normal);
         if ROLL {
+            net = normal - law.pull * touch.radius * weight;
             let turning = Turning {
                 stiffness: law.tangential,
                 damping: cs,
@@ -169,13 +158,13 @@ impl ContactLaw for Linear {
             dashpot = dashpot + t.dashpot;
             friction = friction + t.friction;
         }
-        Answer { force: n * normal + slid.force, normal, moment, dashpot, friction }
+        Answer { force: n * net + slid.force, normal: net, moment, dashpot, friction }
     }
 
-    fn stored(&self, overlap: f64, _: f64, history: &History) -> (f64, f64) {
+    fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let turn2: f64 = history.turn.iter().map(|x| x * x).sum();
         let held = 0.5 * self.tangential * (history.spring.norm_squared() + turn2);
-        (0.5 * self.normal * overlap * overlap, held)
+        (0.5 * self.normal * overlap * overlap - self.pull * radius * overlap, held)
     }
 
     #[inline(always)]
@@ -200,7 +189,7 @@ impl ContactLaw for Linear {
     }
 
     fn rolls(&self) -> bool {
-        self.rolling > 0.0 || self.twisting > 0.0
+        self.rolling > 0.0 || self.twisting > 0.0 || self.pull > 0.0
     }
 }
 

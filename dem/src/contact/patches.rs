@@ -67,16 +67,14 @@ fn touches<S: Surface>(
     let sharp = surface.sharp();
     let centre = [x.x, x.y, x.z];
     for pair in pairs {
-        if sharp {
-            if pair.spare > gone {
+        if pair.spare > gone {
+            continue;
+        }
+        if sharp && pair.spare >= 0.0 {
+            let clearance = surface.clearance(pair.patch, centre);
+            if clearance > r {
+                pair.spare = gone + clearance - r;
                 continue;
-            }
-            if pair.spare >= 0.0 {
-                let clearance = surface.clearance(pair.patch, centre);
-                if clearance > r {
-                    pair.spare = gone + clearance - r;
-                    continue;
-                }
             }
         }
         let closest = surface.closest_point(pair.patch, centre, pair.local);
@@ -88,8 +86,9 @@ fn touches<S: Surface>(
         let straight = sharp && closest.feature == Feature::Face;
         let distance = if straight { along.abs() } else { offset.norm() };
         if distance >= r && !(behind && straight) {
-            // Found as far only now: the bound told less. The next step looks again.
-            pair.spare = gone;
+            // Found as far only now. Beyond a sharp edge the bound told less, and the next step looks again; a smooth
+            // patch has told its true distance.
+            pair.spare = if sharp { gone } else { gone + distance - r };
             continue;
         }
         pair.spare = -1.0;

@@ -8,10 +8,11 @@
 use crate::contact::History;
 use crate::contact::groups::Groups;
 use crate::model::Model;
+use crate::periodic;
 use crate::search::candidates::{self, spheres};
 use crate::search::patches;
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, Lanes, State, xyz};
+use crate::state::{Block, Cross, ImageName, ImagePair, Lanes, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Gather, Work};
 use rayon::prelude::*;
@@ -91,6 +92,16 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         };
         merging.three.merge(&mut cross.boxes, scratch[b].boxed.iter().copied(), close);
         pool.give_back(merging);
+        if let Some(periodic) = &model.periodic {
+            let close = |c: &&ImageName| {
+                let p = &own[c.i as usize];
+                let other = c.block as usize;
+                let q = &spheres(&all[other], &scratch[other], model.rigid)[c.j as usize];
+                let reach = p[3] + q[3] + near;
+                (xyz(p) - xyz(q) - periodic.way(&c.shift)).norm_squared() < reach * reach
+            };
+            periodic::merge(&mut cross.images, scratch[b].images.iter().filter(close).copied());
+        }
     };
     let within = |(block, w): (&mut Block, &mut BlockWork)| {
         let Block { centre, pairs, planes: plane_pairs, walls: wall_pairs, surface: surface_pairs, .. } =
@@ -189,6 +200,8 @@ pub(crate) fn link(state: &State, work: &mut Work) {
             counts[b] += list.len();
             (0..list.len()).for_each(|k| counts[list.name(k)[1] as usize] += 1);
         }
+        counts[b] += cross.images.len();
+        cross.images.iter().for_each(|p| counts[p.name.block as usize] += 1);
     }
     for (w, &count) in work.blocks.iter_mut().zip(&counts) {
         w.gather.clear();
@@ -198,11 +211,13 @@ pub(crate) fn link(state: &State, work: &mut Work) {
     }
     for b in 0..state.blocks.len() {
         let (cross, boxed) = (&state.cross[b].spheres, &state.cross[b].boxes);
-        let (count, slots) = ((cross.len() + boxed.len()) * work.slot_width, &mut work.cross[b].slots);
+        let images = &state.cross[b].images;
+        let from = cross.len() + boxed.len();
+        let (count, slots) = ((from + images.len()) * work.slot_width, &mut work.cross[b].slots);
         slots.clear();
         slots.reserve_exact(count);
         slots.resize(count, Lanes::default());
-        for k in 0..cross.len() + boxed.len() {
+        for k in 0..from {
             let (block, slot) = (b as u32, k as u32);
             let boxes = k >= cross.len();
             let [i, to, j] = if boxes { boxed.name(k - cross.len()) } else { cross.name(k) };
@@ -210,6 +225,14 @@ pub(crate) fn link(state: &State, work: &mut Work) {
             work.blocks[b].gather.push(Gather::new(place, block, slot, true));
             let other = &mut work.blocks[to as usize];
             let place = if boxes { j } else { other.body(j) };
+            other.gather.push(Gather::new(place, block, slot, false));
+        }
+        for (k, ImagePair { name, .. }) in images.iter().enumerate() {
+            let (block, slot) = (b as u32, (from + k) as u32);
+            let place = work.blocks[b].body(name.i);
+            work.blocks[b].gather.push(Gather::new(place, block, slot, true));
+            let other = &mut work.blocks[name.block as usize];
+            let place = other.body(name.j);
             other.gather.push(Gather::new(place, block, slot, false));
         }
     }

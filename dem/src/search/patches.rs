@@ -68,7 +68,9 @@ pub(crate) fn refresh<S: Surface>(
         if close && !surface.sharp() {
             let closest = surface.closest_point(patch, [p[0], p[1], p[2]], pair.local);
             pair.local = closest.local;
-            close = (Vec3::from(closest.point) - xyz(p)).norm() < reach;
+            let distance = (Vec3::from(closest.point) - xyz(p)).norm();
+            pair.spare = distance - p[3];
+            close = distance < reach;
         }
         if close {
             fresh.push(pair);

@@ -1,0 +1,227 @@
+//! How long a window of the exchange may be: W = Δt √(Kₙ/m) and D = C Δt/m for every class of contact, before a run.
+//!
+//! m is the mass that a point of the solid's surface offers, 1/(Nᵀ M⁻¹ N) with the shape functions N of the touched face
+//! (and the spread, if there is one) and the mass matrix M of the solid: least at a corner of the lightest element, and
+//! found there, at mid-sides and in the middle, for the lightest face and the lightest face at a border. A stone with the
+//! mass M_s and the dashpot C = 2 ζ √(M_s Kₙ) damps the pair of masses with
+//! ζ' = C/(2 √(m' Kₙ)) = ζ √((m + M_s)/m), m' = m M_s/(m + M_s), which is the damping that the limits refer to.
+//!
+//! Limits of W by scheme, from the two-mass study and the runs of it with this program's own windows (guide, "order of the
+//! exchange"): lagged 1.2 ζ'; predicted 1 with ζ' of 0.1 or more, else 0.5; stiffened 2 with ζ' of 0.05 or more and M_s of m
+//! or more, else 1; iterated 5 with ζ' of 0.05 or more, else 0.5; all three 0.1 with ζ' below 0.02, since without any damping
+//! they grow slowly, by 0.013 W² per window. D is at most 1 where the grains go on a motion that does not know their dashpot
+//! (lagged, predicted).
+//!
+//! Limits: one contact on one point. Several stones on one face add their stiffness; a solid that carries energy away is
+//! safer than the study's single node.
+
+use crate::scheme::Scheme;
+use crate::surface::SolidSurface;
+use serde::{Deserialize, Serialize};
+use trackbed_fem as fem;
+use trackbed_fem::element::quad8;
+
+/// The two numbers that decide whether an exchange is stable, of the class of contacts with the largest W.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stability {
+    /// W = Δt √(Kₙ/m): window Δt, contact stiffness Kₙ, mass m of the lightest surface point.
+    pub stiffness: f64,
+    /// D = C Δt/m: the dashpot C of the heaviest grain on the same point; the largest of all classes.
+    pub damping: f64,
+}
+
+/// Masses that points of a surface offer [kg].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PointMasses {
+    /// At the corners of a face, the least.
+    pub corner: f64,
+    /// At the middles of its sides, the least.
+    pub side: f64,
+    /// In the middle, the least.
+    pub middle: f64,
+}
+
+impl PointMasses {
+    /// The least of all [kg].
+    pub fn least(&self) -> f64 {
+        self.corner.min(self.side).min(self.middle)
+    }
+}
+
+/// Largest W of a scheme, for the damping ratio ζ' of the pair of masses and the ratio of the stone's mass to the point's.
+pub fn largest_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
+    match scheme {
+        Scheme::Lagged => 1.2 * damping,
+        // All of these grow slowly without damping: by 0.013 W² per window.
+        _ if damping < 0.02 => 0.1,
+        Scheme::Predicted if damping >= 0.1 => 1.0,
+        Scheme::Predicted => 0.5,
+        Scheme::Stiffened if damping >= 0.05 && mass_ratio >= 1.0 => 2.0,
+        Scheme::Stiffened => 1.0,
+        Scheme::Iterated { .. } if damping >= 0.05 => 5.0,
+        Scheme::Iterated { .. } => 0.5,
+    }
+}
+
+/// Largest D of a scheme.
+pub fn largest_d(scheme: Scheme) -> f64 {
+    match scheme {
+        Scheme::Lagged | Scheme::Predicted => 1.0,
+        Scheme::Stiffened | Scheme::Iterated { .. } => f64::INFINITY,
+    }
+}
+
+/// Masses that the surface offers where it belongs to elements of the material `material`; none where none does, or where
+/// all such points are held.
+pub fn point_masses(solid: &fem::Model, surface: &SolidSurface, material: u32) -> Option<PointMasses> {
+    let mesh = solid.mesh();
+    let mass = |patch: u32| {
+        let element = surface.faces()[patch as usize].element as usize;
+        solid.elastic(element).density * mesh.element_volume(element)
+    };
+    let own = |patch: &u32| {
+        let element = surface.faces()[*patch as usize].element as usize;
+        mesh.materials[element] == material
+    };
+    let patches = || (0..surface.faces().len() as u32).filter(own);
+    let lightest = patches().min_by(|a, b| mass(*a).total_cmp(&mass(*b)))?;
+    let corners = |patch: u32| (0..4).filter(|&side| surface.on_border(patch, side)).count();
+    // A corner of the surface before its sides before its middle.
+    let outermost = patches()
+        .min_by(|&a, &b| corners(b).min(2).cmp(&corners(a).min(2)).then(mass(a).total_cmp(&mass(b))))?;
+    let mut solver = MassSolver::new(solid);
+    let mut masses = PointMasses { corner: f64::INFINITY, side: f64::INFINITY, middle: f64::INFINITY };
+    let mut tried = vec![lightest, outermost];
+    tried.dedup();
+    for patch in tried {
+        for (k, place) in quad8::NATURAL.into_iter().chain([[0.0; 2]]).enumerate() {
+            let slot = match k {
+                0..4 => &mut masses.corner,
+                4..8 => &mut masses.side,
+                _ => &mut masses.middle,
+            };
+            *slot = slot.min(solver.at(surface, patch, place));
+        }
+    }
+    masses.least().is_finite().then_some(masses)
+}
+
+/// Solves with the mass matrix, by conjugate gradients preconditioned by its diagonal: the condition does not depend on
+/// the mesh (Wathen, IMA J. Numer. Anal. 7 (1987) 449).
+struct MassSolver<'a> {
+    solid: &'a fem::Model,
+    inverse: Vec<f64>,
+}
+
+impl<'a> MassSolver<'a> {
+    fn new(solid: &'a fem::Model) -> MassSolver<'a> {
+        let mut inverse: Vec<f64> =
+            solid.matrices().mass_diagonal().iter().flat_map(|m| [1.0 / m; 3]).collect();
+        solid.supports().fixed().iter().for_each(|(dof, _)| inverse[*dof as usize] = 0.0);
+        MassSolver { solid, inverse }
+    }
+
+    /// Mass of a point of a face against a push along its normal [kg].
+    fn at(&mut self, surface: &SolidSurface, patch: u32, place: [f64; 2]) -> f64 {
+        const ACCURACY: f64 = 1e-4;
+        let normal = surface.normal(patch, place);
+        let mut forces = vec![[0.0; 3]; surface.nodes().len()];
+        for (&n, s) in surface.face_nodes(patch).iter().zip(quad8::shape_functions(place)) {
+            forces[n as usize] = normal.map(|c| s * c);
+        }
+        let size = self.inverse.len();
+        let mut load = vec![0.0; size];
+        let nodes = surface.nodes();
+        let mut add = |n: u32, f: [f64; 3]| {
+            (0..3).for_each(|d| load[3 * nodes[n as usize] as usize + d] += f[d]);
+        };
+        match surface.spread() {
+            None => forces.iter().zip(0..).for_each(|(f, n)| add(n, *f)),
+            Some(spread) => spread.distribute(&forces, add),
+        }
+        // Held dofs take no part: neither their load nor their motion counts.
+        for (l, i) in load.iter_mut().zip(&self.inverse) {
+            if *i == 0.0 {
+                *l = 0.0;
+            }
+        }
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (mut x, mut r) = (vec![0.0; size], load.clone());
+        let mut z: Vec<f64> = r.iter().zip(&self.inverse).map(|(r, i)| r * i).collect();
+        let mut p = z.clone();
+        let mut q = vec![0.0; size];
+        let mut rz = product(&r, &z);
+        let first = rz;
+        if first <= 0.0 {
+            return f64::INFINITY;
+        }
+        for _ in 0..200 {
+            self.solid.mass_times(&p, &mut q);
+            let alpha = rz / product(&p, &q);
+            for i in 0..size {
+                x[i] += alpha * p[i];
+                if self.inverse[i] != 0.0 {
+                    r[i] -= alpha * q[i];
+                }
+            }
+            (0..size).for_each(|i| z[i] = r[i] * self.inverse[i]);
+            let next = product(&r, &z);
+            if next <= ACCURACY * ACCURACY * first {
+                break;
+            }
+            let beta = next / rz;
+            rz = next;
+            (0..size).for_each(|i| p[i] = z[i] + beta * p[i]);
+        }
+        1.0 / product(&load, &x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trackbed_fem::mesh::Mesh;
+    use trackbed_fem::{Elastic, ModelInput, Quadrature};
+
+    /// Shares of one element's mass that points of a block's top offer, against the reference study (consistent mass,
+    /// 4 × 4 × 2 elements): mid-face 0.101, mid-edge 0.042, corner 0.018. There the points lie within the block; those of
+    /// the outermost element, which are found here as the least, are lighter.
+    #[test]
+    fn masses_of_points_are_those_of_the_study() {
+        let solid = fem::Model::new(ModelInput {
+            mesh: Mesh::block([4, 4, 2], [1.0, 1.0, 0.5]),
+            materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 2000.0 }.into())].into(),
+            quadrature: Quadrature::Gauss3,
+            ..Default::default()
+        })
+        .unwrap();
+        let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
+        let surface = SolidSurface::new(solid.mesh(), faces);
+        let element = 2000.0 / 64.0;
+        let mut solver = MassSolver::new(&solid);
+        // The face at the inner side of x = y = 0.5: its first corner is the middle of the top.
+        let inner = (0..16)
+            .find(|&k| {
+                let x = surface.position(surface.face_nodes(k)[0]);
+                (x[0] - 0.5).abs() + (x[1] - 0.5).abs() < 1e-9
+            })
+            .unwrap();
+        let share = |solver: &mut MassSolver<'_>, place| solver.at(&surface, inner, place) / element;
+        let found = [[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0]].map(|p| share(&mut solver, p));
+        println!(
+            "shares of an element's mass: corner {:.4}, mid-edge {:.4}, mid-face {:.4}",
+            found[0], found[1], found[2]
+        );
+        for (f, study) in found.iter().zip([0.018, 0.042, 0.101]) {
+            assert!((f - study).abs() < 6e-4, "{f} against {study}");
+        }
+        let least = point_masses(&solid, &surface, 1).unwrap();
+        println!("least of the block: {least:?} kg, share of a corner {:.4}", least.corner / element);
+        assert!(least.corner < found[0] * element && least.least() == least.corner);
+        assert!(point_masses(&solid, &surface, 2).is_none());
+        // Spread over a disc, a corner of the inside offers more.
+        let faces = surface.faces().to_vec();
+        let wide = SolidSurface::new(solid.mesh(), faces).spread_over(0.2);
+        assert!(solver.at(&wide, inner, [-1.0, -1.0]) > 3.0 * found[0] * element);
+    }
+}

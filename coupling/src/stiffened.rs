@@ -1,0 +1,157 @@
+//! The prediction of the stiffened scheme: contacts of the last grain step, linearized for the window that comes.
+//!
+//! A contact with the normal n (out of the solid), the stiffness Kₙ, Kₜ, the dashpot C, and the velocity w of the stone
+//! against v of the surface, has the force F now: spring and dashpot at the overlap with the surface where it is, and the
+//! last step's tangential force. Its mean over a window of length Δt will be
+//!
+//! F − (Δt/2) K (v − w) − (Δt/2 K + C n nᵀ) (v̄ − v),   K = Kₙ n nᵀ + Kₜ (1 − n nᵀ),
+//!
+//! v̄ being the surface's mean velocity in the window: the last term goes into the solid's matrix. Stones are taken to keep
+//! their velocity. Contacts that would pull are left out; those that slide count as sticking, which only makes the
+//! prediction a little stiffer. The forces that act in the end are those of the grains' own steps.
+
+use crate::face::dot;
+use crate::step::Model;
+use crate::surface::SolidSurface;
+use serde::{Deserialize, Serialize};
+use trackbed_dem as dem;
+use trackbed_dem::surface::{Surface, SurfaceContact};
+use trackbed_fem as fem;
+use trackbed_fem::element::quad8;
+use trackbed_fem::solver::SolveError;
+use trackbed_fem::window::WindowSolver;
+
+/// A contact of the last grain step of a window.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Held {
+    body: u32,
+    sphere: u32,
+    patch: u32,
+    local: [f64; 2],
+    force: [f64; 3],
+}
+
+impl From<&SurfaceContact> for Held {
+    fn from(c: &SurfaceContact) -> Held {
+        Held { body: c.body, sphere: c.sphere, patch: c.patch, local: c.local, force: c.force }
+    }
+}
+
+/// A linearized contact: matrix against the velocity of its point.
+struct Spring {
+    nodes: [u32; 8],
+    shape: [f64; 8],
+    normal: [f64; 3],
+    along: f64,
+    across: f64,
+}
+
+/// Scratch of the prediction.
+#[derive(Default)]
+pub(crate) struct Stiffened {
+    springs: Vec<Spring>,
+    field: Vec<[f64; 3]>,
+    mean: Vec<[f64; 3]>,
+}
+
+impl Stiffened {
+    /// The mean velocity of all nodes [m/s] in the window that comes, into `rate`, shape `[3·nodes]`. `surface` has begun
+    /// the window with the present velocity; `load` holds the loads other than contact, and takes the predicted contact
+    /// forces. Returns the iterations of the solve.
+    pub fn predict(
+        &mut self,
+        model: &Model<'_>,
+        grains: &dem::State,
+        held: &[Held],
+        surface: &SolidSurface,
+        solver: &mut WindowSolver,
+        solid: &fem::state::State,
+        load: &mut [f64],
+        rate: &mut [f64],
+    ) -> Result<u32, SolveError> {
+        let window = model.window();
+        self.springs.clear();
+        self.field.resize(surface.nodes().len(), [0.0; 3]);
+        self.mean.resize(surface.nodes().len(), [0.0; 3]);
+        self.field.fill([0.0; 3]);
+        let Some(own) = model.grains.surface_material() else { return Ok(0) };
+        for c in held {
+            let body = c.body as usize;
+            let material = model.grains.material(body);
+            // Where the surface is now, not where the last window left it.
+            let Some(&(centre, radius)) = grains.spheres(&model.grains, body).get(c.sphere as usize) else {
+                continue;
+            };
+            let near = surface.closest_point(c.patch, centre.into(), c.local);
+            let offset = centre - dem::Vec3::from(near.point);
+            let overlap = radius - offset.norm();
+            if overlap <= 0.0 || offset.dot(&dem::Vec3::from(near.normal)) <= 0.0 {
+                continue;
+            }
+            let normal: [f64; 3] = (offset / offset.norm()).into();
+            let (spring, stiffness) = model.grains.contact_spring(material, own, overlap, radius);
+            let tangential = stiffness * model.grains.tangential_ratio(material, own);
+            let (_, ratio) = model.grains.contact_stiffness(material, own);
+            let dashpot = 2.0 * ratio * (model.grains.mass(body) * stiffness).sqrt();
+            let arm = dem::Vec3::from(near.point) - grains.position(body);
+            let stone = grains.velocity(body) + grains.spin(body).cross(&arm);
+            let slip = [0, 1, 2].map(|d| near.velocity[d] - stone[d]);
+            let closing = dot(slip, normal);
+            let half = 0.5 * window;
+            let pressure = spring + (half * stiffness + dashpot) * closing;
+            if pressure <= 0.0 {
+                continue;
+            }
+            let pressed = dot(c.force, normal);
+            let force = [0, 1, 2].map(|d| {
+                let held = c.force[d] - pressed * normal[d];
+                let across = slip[d] - closing * normal[d];
+                held - half * tangential * across - pressure * normal[d]
+            });
+            let shape = quad8::shape_functions(near.local);
+            let nodes = *surface.face_nodes(c.patch);
+            for (&n, s) in nodes.iter().zip(shape) {
+                (0..3).for_each(|d| self.field[n as usize][d] += s * force[d]);
+            }
+            let along = half * stiffness + dashpot;
+            self.springs.push(Spring { nodes, shape, normal, along, across: half * tangential });
+        }
+        let nodes = surface.nodes();
+        spread(surface, &self.field, |n, f| {
+            (0..3).for_each(|d| load[3 * nodes[n as usize] as usize + d] += f[d]);
+        });
+        let Stiffened { springs, field, mean } = self;
+        let contacts = |w: &[f64], out: &mut [f64]| {
+            for (f, &n) in field.iter_mut().zip(nodes) {
+                *f = [0, 1, 2].map(|d| w[3 * n as usize + d]);
+            }
+            match surface.spread() {
+                None => mean.copy_from_slice(field),
+                Some(s) => s.mean(field, mean),
+            }
+            field.fill([0.0; 3]);
+            for s in springs.iter() {
+                let mut v = [0.0; 3];
+                for (&n, share) in s.nodes.iter().zip(s.shape) {
+                    (0..3).for_each(|d| v[d] += share * mean[n as usize][d]);
+                }
+                let closing = dot(v, s.normal);
+                let force = [0, 1, 2].map(|d| s.across * v[d] + (s.along - s.across) * closing * s.normal[d]);
+                for (&n, share) in s.nodes.iter().zip(s.shape) {
+                    (0..3).for_each(|d| field[n as usize][d] += share * force[d]);
+                }
+            }
+            spread(surface, field, |n, f| {
+                (0..3).for_each(|d| out[3 * nodes[n as usize] as usize + d] += f[d]);
+            });
+        };
+        solver.predict(model.solid, solid, load, contacts, rate)
+    }
+}
+
+fn spread(surface: &SolidSurface, forces: &[[f64; 3]], mut add: impl FnMut(u32, [f64; 3])) {
+    match surface.spread() {
+        None => forces.iter().zip(0..).filter(|(f, _)| **f != [0.0; 3]).for_each(|(f, n)| add(n, *f)),
+        Some(s) => s.distribute(forces, add),
+    }
+}

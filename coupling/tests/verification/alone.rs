@@ -1,0 +1,108 @@
+//! Grains that never touch the solid: each side of the coupled run has the bits that it has alone.
+
+use crate::support::*;
+use trackbed_coupling::scheme::Scheme;
+use trackbed_dem as dem;
+use trackbed_dem::Vec3;
+use trackbed_dem::surface::NoSurface;
+use trackbed_fem as fem;
+use trackbed_fem::window::WindowSolver;
+
+/// Spheres that tumble in a box above the block.
+fn heap() -> dem::ModelInput {
+    let wall = |point: [f64; 3], normal: [f64; 3]| dem::Plane {
+        point: point.into(),
+        normal: normal.into(),
+        material: 0,
+        velocity: Vec3::zeros(),
+    };
+    let sphere = |k: u32| {
+        let shift = 0.004 * (1.7 * f64::from(k)).sin();
+        dem::BodyInput {
+            position: Vec3::new(
+                0.35 + 0.1 * f64::from(k % 4) + shift,
+                0.35 + 0.1 * f64::from(k / 4 % 4) - shift,
+                1.06 + 0.11 * f64::from(k / 16),
+            ),
+            velocity: Vec3::new(shift, 2.0 * shift, -1.0),
+            ..Default::default()
+        }
+    };
+    dem::ModelInput {
+        materials: vec![material(2650.0, 1e5, 0.5, 0.5)],
+        shapes: vec![dem::Shape::Sphere { radius: 0.045 }],
+        bodies: (0..48).map(sphere).collect(),
+        planes: vec![
+            wall([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
+            wall([0.3, 0.0, 0.0], [1.0, 0.0, 0.0]),
+            wall([0.7, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+            wall([0.0, 0.3, 0.0], [0.0, 1.0, 0.0]),
+            wall([0.0, 0.7, 0.0], [0.0, -1.0, 0.0]),
+        ],
+        surface_material: Some(0),
+        time_step: dem::TimeStep::Fixed(4e-5),
+        ..Default::default()
+    }
+}
+
+/// With every scheme but the iterated and the stiffened one the solid alone, stepped by the same windows under the same
+/// load, and the grains alone, without a surface, have every bit of the coupled run: 300 windows of five steps. So they
+/// have with those two as well, the repeated window included: nothing of the other side enters.
+#[test]
+fn sides_that_do_not_touch_have_the_bits_of_each_alone() {
+    let solid = block(
+        [3, 3, 2],
+        [1.0, 1.0, 0.5],
+        5e6,
+        0.3,
+        2000.0,
+        Held::Base,
+        fem::Rayleigh { alpha_m: 1.0, beta_k: 1e-4 },
+    );
+    let load = solid.gravity_load().len();
+    let push = |load: &mut [f64]| load[load.len() - 1] -= 1e3;
+    const WINDOWS: usize = 300;
+
+    let mut alone = fem::State::new(&solid);
+    let mut f = vec![0.0; load];
+    push(&mut f);
+    let grains = dem::Model::new(heap()).unwrap();
+    let window = 5.0 * grains.dt();
+    let mut solver = WindowSolver::new(&solid, 0.5, window).unwrap();
+    let mut bed = dem::State::new(&grains);
+    let mut scratch = dem::Work::new(&grains, &bed);
+    for _ in 0..WINDOWS {
+        solver.step(&solid, &mut alone, &f).unwrap();
+        for _ in 0..5 {
+            dem::step(&grains, &mut bed, &mut scratch, &NoSurface, &[]).unwrap();
+        }
+    }
+    assert!(bed.ledger.dissipated() > 0.1 && alone.u.iter().any(|u| u.abs() > 1e-5));
+    let places = |state: &dem::State| -> Vec<[u64; 9]> {
+        let three = |v: Vec3| [v.x, v.y, v.z];
+        (0..48)
+            .map(|b| {
+                let all = [state.position(b), state.velocity(b), state.spin(b)].map(three);
+                std::array::from_fn(|k| all[k / 3][k % 3].to_bits())
+            })
+            .collect()
+    };
+    let bits = |v: &[f64]| v.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    for (scheme, radius) in [
+        (Scheme::Predicted, 0.0),
+        (Scheme::Predicted, 0.2),
+        (Scheme::Lagged, 0.0),
+        (Scheme::Stiffened, 0.0),
+        (Scheme::Iterated { tolerance: 1e-6, passes: 5 }, 0.0),
+    ] {
+        let mut c = Coupled::with_surface(&solid, heap(), 5, top(&solid).spread_over(radius));
+        c.model.scheme = scheme;
+        for _ in 0..WINDOWS {
+            c.step_loaded(&[], |_, load| push(load));
+        }
+        assert!(places(&c.state.grains) == places(&bed), "grains, {scheme:?}");
+        assert!(bits(&c.state.solid.u) == bits(&alone.u), "displacements, {scheme:?}");
+        assert!(bits(&c.state.solid.v) == bits(&alone.v), "velocities, {scheme:?}");
+        assert_eq!(c.state.audit.exchanges, 0);
+    }
+}

@@ -1,0 +1,201 @@
+//! The exchange through scenes: schemes and transfers, how long a window may be, and the edges of the domain.
+
+use super::support::{COUPLED, json, run, scene_folder, trackbed};
+use serde_json::Value;
+use std::fs;
+
+/// A run of [`COUPLED`] with one load cycle; its summary.
+fn summary(name: &str, text: &str, set: &[&str]) -> Value {
+    let folder = scene_folder(name, text);
+    run(&folder.join("scene.toml"), &folder.join("out"), &[&["track.load.cycles=1"], set].concat()).good();
+    json(&folder.join("out/summary.json"))
+}
+
+fn number(value: &Value, path: &str) -> f64 {
+    value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value:#}"))
+}
+
+/// Every scheme with every transfer runs the scene to its end with the account closed to 1 % of the work, sums of the
+/// interface at 1e-12, and a summary that says which they were. Iterated to the end, both sides agree on the work of the
+/// interface to 1e-6 of the energy turned over, where the predicted scheme has a larger error.
+#[test]
+fn schemes_and_transfers_close_their_accounts() {
+    let mut interface = Vec::new();
+    for (scheme, transfer, kind) in [
+        ("predicted", "\"point\"", "point"),
+        ("predicted", "{ spread = \"0.3 m\" }", "spread over discs of 3.0000e-1 m"),
+        ("lagged", "\"point\"", "point"),
+        ("stiffened", "{ spread_factor = 2 }", "spread over discs of 2.0000e-1 m"),
+        ("iterated", "\"point\"", "point"),
+        ("iterated", "{ spread = \"0.3 m\" }", "spread over discs"),
+    ] {
+        let set = [&format!("coupling.scheme={scheme}")[..], &format!("coupling.transfer={transfer}")]
+            .map(String::from);
+        let s = summary(scheme, COUPLED, &set.each_ref().map(String::as_str));
+        let c = &s["coupling"];
+        let turned = number(&s, "/energy/work").abs().max(1e-300);
+        let own = number(c, "/interface_work_error").abs() / turned;
+        println!(
+            "{scheme}, {transfer}: account {:.1e} of the work, interface {own:.1e}, {} passes in {} windows, {} solves",
+            number(&s, "/energy/relative_error"),
+            c["passes"]["passes"],
+            c["passes"]["windows"],
+            c["passes"]["solves"]
+        );
+        assert!(number(&s, "/energy/relative_error") < 0.01);
+        assert!(number(c, "/transfer/force") < 1e-12 && number(c, "/transfer/moment") < 1e-12);
+        assert!(c["transfer_kind"].as_str().unwrap().starts_with(kind), "{c:#}");
+        let named = c["scheme"].as_str().map_or("iterated".into(), String::from);
+        assert_eq!(named, scheme);
+        assert_eq!(number(c, "/passes/unconverged"), 0.0);
+        let repeated = number(c, "/passes/passes") > 1.5 * number(c, "/passes/windows");
+        assert_eq!(repeated, scheme == "iterated");
+        assert_eq!(number(c, "/passes/solves") > 0.0, scheme == "stiffened");
+        interface.push((scheme, own));
+    }
+    assert!(interface.iter().filter(|(s, _)| *s == "iterated").all(|(_, e)| *e < 1e-6), "{interface:?}");
+    assert!(interface[0].1 > 1e-6, "{interface:?}");
+}
+
+/// The numbers of a class in the output of `check`: W, its limit, and the sub-steps.
+fn classes(text: &str) -> (f64, f64, u32) {
+    let after = |mark: &str| text.split_once(mark).unwrap_or_else(|| panic!("{mark} in {text}")).1;
+    let number = |t: &str| -> f64 {
+        t.split(|c: char| !(c.is_ascii_digit() || ".e-".contains(c))).next().unwrap().parse().unwrap()
+    };
+    let row = after("stone on ");
+    let row = row.split_once('\n').unwrap().0;
+    let w = number(row.split_once("W = ").unwrap().1);
+    let limit = number(row.split_once("(at most ").unwrap().1);
+    let transfer = after("transfer: ");
+    let count = transfer.split_once("; ").unwrap().1;
+    (w, limit, number(count) as u32)
+}
+
+/// Soft ground, E = 1 MPa, ρ = 1000, under stiff stones, K = 1e7, with windows ten times too long: `check` and the run
+/// say so, with what would help, before the run blows up or not. As many sub-steps as the program finds itself are within
+/// its limits and run to the end without a remark; so do iterated windows of the length that is too long otherwise.
+#[test]
+fn soft_ground_warns_before_it_blows_up() {
+    let soft = [
+        "solid.material.0.young=1e6",
+        "solid.material.0.density=1000",
+        "material.0.stiffness=1e7",
+        "track.load.cycles=1",
+    ];
+    let folder = scene_folder("soft", COUPLED);
+    let scene = folder.join("scene.toml");
+    let check = |more: &[&str]| {
+        let mut arguments = vec!["check".to_string(), scene.display().to_string()];
+        for s in soft.iter().chain(more) {
+            arguments.extend(["--set".to_string(), s.to_string()]);
+        }
+        trackbed(arguments).good().stdout
+    };
+    let (per_step, limit, _) = classes(&check(&["coupling.substeps=1"]));
+    // Ten times W's limit.
+    let many = format!("coupling.substeps={}", (10.0 * limit / per_step).ceil());
+    let text = check(&[&many]);
+    println!("{text}");
+    assert!(text.contains("note: the exchange may be unstable for stone on "), "{text}");
+    assert!(text.contains("coupling.substeps = "), "{text}");
+    let (w, limit, _) = classes(&text);
+    assert!(w > 10.0 * limit);
+
+    let run_with = |out: &str, more: &[&str]| run(&scene, &folder.join(out), &[&soft[..], more].concat());
+    let outcome = run_with("long", &[&many]);
+    let warnings = json(&folder.join("long/summary.json"))["warnings"].to_string();
+    println!("windows too long: exit {}, {}", outcome.code, outcome.stderr);
+    assert!(warnings.contains("the exchange may be unstable"), "{warnings}");
+    assert!(outcome.code == 0 || outcome.code == 3);
+
+    let text = check(&["coupling.substeps=auto"]);
+    let (w, limit, found) = classes(&text);
+    println!("automatic: {found} sub-steps, W = {w} of {limit}");
+    assert!(text.contains("(automatic)") && !text.contains("unstable") && found >= 1);
+    assert!(w <= limit);
+    run_with("auto", &["coupling.substeps=auto"]).good();
+    let s = json(&folder.join("auto/summary.json"));
+    assert_eq!(number(&s, "/coupling/substeps") as u32, found);
+    assert!(!s["warnings"].to_string().contains("unstable"), "{}", s["warnings"]);
+    assert!(number(&s, "/energy/relative_error") < 0.01, "{:#}", s["energy"]);
+}
+
+/// Two masses of stones and two materials of ground make their own classes.
+#[test]
+fn every_class_of_contacts_has_its_own_numbers() {
+    let more = "[[material]]\nname = \"pebble\"\ndensity = 2650\nstiffness = \"4 MN/m\"\nfriction = 0.5\nrestitution = 0.4\n\n\
+                [[grains]]\nname = \"fines\"\nshape = \"sphere\"\nmaterial = \"pebble\"\nspheres = [[1.0, 0.4, 0.03, 0.03]]\n\n\
+                [track.sleeper]";
+    let s = summary("classes", &COUPLED.replace("[track.sleeper]", more), &[]);
+    let classes = s["coupling"]["classes"].as_array().unwrap();
+    let named: Vec<_> = classes.iter().map(|c| c["grains"].as_str().unwrap()).collect();
+    assert_eq!(named, ["stone", "pebble"]);
+    for c in classes {
+        let w =
+            number(&s, "/model/solid_step") * (number(c, "/stiffness") / number(c, "/masses/corner")).sqrt();
+        assert!((number(c, "/w") / w - 1.0).abs() < 1e-9, "{c:#}");
+        assert!(number(c, "/masses/corner") < number(c, "/masses/side"));
+        assert!(number(c, "/masses/side") < number(c, "/masses/middle"));
+    }
+    let mass = |k: usize| number(&classes[k], "/stones/0");
+    let exact = |r: f64| 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * r * r * r;
+    assert!((mass(0) / exact(0.1) - 1.0).abs() < 1e-9 && (mass(1) / exact(0.03) - 1.0).abs() < 1e-9);
+    // Harmonic means of 1 and 1, and of 4 and 1 MN/m.
+    assert!((number(&classes[1], "/stiffness") / number(&classes[0], "/stiffness") - 1.6).abs() < 1e-9);
+}
+
+/// A sphere alone on the block, thrown along its top towards the border.
+const ROLLING: &str = r#"
+[[grains]]
+name = "bed"
+shape = "sphere"
+material = "stone"
+spheres = [[1.6, 1.0, 0.1, 0.1]]
+velocity = [2.0, 0.0, 0.0]
+
+[coupling]
+material = "stone"
+
+[time]
+end = 0.6
+
+[output]
+frames = 2
+"#;
+
+/// A stone that rolls off the border of the mesh falls past it: the run ends well, with the account closed, and the summary
+/// names it.
+#[test]
+fn a_stone_that_leaves_the_mesh_is_named() {
+    let head = COUPLED.split_once("[[grains]]").unwrap().0;
+    let folder = scene_folder("leaves", &format!("{head}{ROLLING}"));
+    run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
+    let s = json(&folder.join("out/summary.json"));
+    let warnings = s["warnings"].to_string();
+    println!("{warnings}, energy {}", s["energy"]["relative_error"]);
+    assert!(warnings.contains("1 bodies have left the solid and are below its surface, first body 0 at"));
+    let start: f64 = s["energy"]["start"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum();
+    assert!(number(&s, "/energy/largest_error") < 1e-3 * start.abs(), "{:#}", s["energy"]);
+    // One that stays is not.
+    run(&folder.join("scene.toml"), &folder.join("stays"), &["grains.0.velocity=[0, 0, 0]"]).good();
+    let s = json(&folder.join("stays/summary.json"));
+    assert!(!s["warnings"].to_string().contains("left the solid"));
+}
+
+/// A load that pushes one node of the top through its neighbours folds the surface: exit code 3, with the element and the
+/// time in one line.
+#[test]
+fn a_surface_that_folds_is_named() {
+    let load = "\n[[solid.load]]\nkind = \"point\"\nat = [0.0, 0.0, 0.0]\nforce = [4e8, 4e8, 0]\n\
+                history = { kind = \"ramp\", duration = 0.05 }\n\n[[material]]";
+    let head = COUPLED.split_once("[[grains]]").unwrap().0.replacen("\n[[material]]", load, 1);
+    let folder = scene_folder("folds", &format!("{head}{ROLLING}"));
+    let outcome = run(&folder.join("scene.toml"), &folder.join("out"), &["grains.0.velocity=[0, 0, 0]"]);
+    println!("{outcome:?}");
+    assert_eq!(outcome.code, 3);
+    assert!(outcome.stderr.contains("the surface of the solid has folded at element "), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains(" at t = ") && outcome.stderr.lines().count() == 1);
+    let s = fs::read_to_string(folder.join("out/summary.json")).unwrap();
+    assert!(s.contains("failed: "));
+}
