@@ -73,7 +73,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             let s = exchange::stability(&classes);
             line(format!(
                 "coupling: {} faces, scheme {}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
-                 {:.3}",
+                 {:.3} (largest of all contacts)",
                 coupling.faces.len(),
                 coupling.scheme,
                 coupling.transfer_kind(&surface),
