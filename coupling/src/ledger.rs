@@ -29,6 +29,9 @@ pub struct Stored {
     pub solid_strain: f64,
     /// Potential of gravity on the solid.
     pub solid_gravity: f64,
+    /// Rails, their pads, and the track beyond the model: motion, bending and springs.
+    #[serde(default)]
+    pub rail: f64,
 }
 
 impl Stored {
@@ -41,6 +44,7 @@ impl Stored {
             + self.solid_kinetic
             + self.solid_strain
             + self.solid_gravity
+            + self.rail
     }
 }
 
@@ -79,18 +83,35 @@ pub struct Spent {
     pub surface_on_grains: f64,
     /// Work that the contacts did on the solid, as the solid saw it.
     pub contacts_on_solid: f64,
+    /// Brought in by cycle jumps, which set grains elsewhere.
+    #[serde(default)]
+    pub jumps: f64,
+    /// Work of wheels on rails, and of the rails' weight.
+    #[serde(default)]
+    pub wheels: f64,
+    /// Work that the pads under rails did on sleepers, as the rails saw it; the sleepers see it as work of applied loads.
+    #[serde(default)]
+    pub pads_on_sleepers: f64,
+    /// Dissipated in the pads on the modelled sleepers.
+    #[serde(default)]
+    pub pads: f64,
+    /// Dissipated in the track beyond the model.
+    #[serde(default)]
+    pub track_beyond: f64,
 }
 
 impl Spent {
     /// Work done on the system from outside [J].
     pub fn work(&self) -> f64 {
-        self.applied_work + self.wall_work + self.solid_load_work
+        let outside = self.applied_work - self.pads_on_sleepers + self.wheels + self.wall_work;
+        outside + self.solid_load_work + self.jumps
     }
 
     /// Energy dissipated [J].
     pub fn dissipated(&self) -> f64 {
         let grains = self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping;
-        grains + self.rayleigh + self.absorbed + self.plastic + self.numerical
+        let track = self.pads + self.track_beyond;
+        grains + track + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 
     /// Interface work of both sides, which should cancel [J].

@@ -21,9 +21,11 @@ use crate::stiffened::{Held, Stiffened};
 use crate::surface::{Motion, SolidSurface};
 use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::nonlinear::{Memory, NewtonOptions, PlasticWindowSolver, Statistics};
+use trackbed_fem::reduction::{Estimate, Reduced, ReducedWindowSolver};
 use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::StepAudit;
 use trackbed_fem::window::WindowSolver;
@@ -98,6 +100,8 @@ enum SolidSolver {
     Elastic(Box<WindowSolver>),
     /// Newton's iteration on the stresses of the Gauss points.
     Plastic(Box<PlasticWindowSolver>),
+    /// The equations of a few shapes.
+    Reduced(Box<ReducedWindowSolver>),
 }
 
 impl SolidSolver {
@@ -121,6 +125,7 @@ impl SolidSolver {
         match self {
             SolidSolver::Elastic(solver) => solver.step(solid, state, mean_load),
             SolidSolver::Plastic(solver) => solver.step(solid, state, mean_load),
+            SolidSolver::Reduced(solver) => solver.step(solid, state, mean_load),
         }
     }
 }
@@ -196,10 +201,28 @@ impl Work {
         })
     }
 
+    /// Takes the steps of the solid in the span of a reduction from now on.
+    ///
+    /// # Errors
+    /// A solid with plasticity or stresses at its Gauss points, or another one than was reduced.
+    pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<Reduced>) -> Result<(), SolveError> {
+        let solver = ReducedWindowSolver::new(model.solid, reduced, model.theta, model.window())?;
+        self.solver = SolidSolver::Reduced(Box::new(solver));
+        Ok(())
+    }
+
+    /// What the reduction of the solid costs in accuracy; none without one.
+    pub fn reduction(&self) -> Option<Estimate> {
+        match &self.solver {
+            SolidSolver::Reduced(solver) => Some(*solver.reduced().estimate()),
+            SolidSolver::Elastic(_) | SolidSolver::Plastic(_) => None,
+        }
+    }
+
     /// Counts of the iteration of a plastic solid.
     pub fn newton(&self) -> Option<Statistics> {
         match &self.solver {
-            SolidSolver::Elastic(_) => None,
+            SolidSolver::Elastic(_) | SolidSolver::Reduced(_) => None,
             SolidSolver::Plastic(solver) => Some(solver.statistics()),
         }
     }
@@ -207,7 +230,7 @@ impl Work {
     /// What the solver of a plastic solid remembers beside the state, for a checkpoint.
     pub fn memory(&self) -> Option<Memory> {
         match &self.solver {
-            SolidSolver::Elastic(_) => None,
+            SolidSolver::Elastic(_) | SolidSolver::Reduced(_) => None,
             SolidSolver::Plastic(solver) => Some(solver.memory()),
         }
     }
@@ -466,6 +489,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
         solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
+        ..Stored::default()
     }
 }
 
@@ -488,7 +512,8 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
         applied_work: ledger.work_applied,
-        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints,
+        // Grains put back at the upper end of a periodic slope have their potential energy anew.
+        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints + ledger.work_periodic,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
         bonds: ledger.dissipated_bonds,

@@ -74,6 +74,7 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             ("friction", e.friction, e.friction.is_none_or(not_negative), NOT_NEGATIVE),
             ("restitution", e.restitution, e.restitution.is_none_or(restitution), RESTITUTION),
             ("stiffness", e.stiffness, e.stiffness.is_none_or(positive), POSITIVE),
+            ("adhesion", e.adhesion, e.adhesion.is_none_or(not_negative), NOT_NEGATIVE),
             (
                 "stiffness",
                 e.stiffness,

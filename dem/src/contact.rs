@@ -3,17 +3,19 @@
 //! A law is written once, over [`Real`]: the loops over many pairs ask it for four contacts at a time
 //! ([`ContactLaw::answer`]), walls, boxes and measures for one ([`ContactLaw::respond`]). Both give the same bits.
 
+pub mod adhesion;
 pub(crate) mod groups;
 pub mod hertz;
 pub mod linear;
 pub(crate) mod pass;
+pub(crate) mod passes;
 pub(crate) mod patches;
 pub(crate) mod planes;
 pub mod restitution;
 pub(crate) mod slide;
 
 use crate::Vec3;
-use crate::lanes::{Four, Real, V3};
+use crate::lanes::{Pack, Real, V3};
 use crate::material::{Material, PairOverride};
 use serde::{Deserialize, Serialize};
 
@@ -67,7 +69,7 @@ impl History {
 pub struct ContactForce {
     /// Force on a [N]; b takes the opposite.
     pub force: Vec3,
-    /// Its normal part, pressure positive [N].
+    /// Its normal part, pressure positive [N]; adhesion taken off.
     pub normal: f64,
     /// Moment of rolling and twisting resistance on a [N m]; b takes the opposite.
     pub moment: Vec3,
@@ -122,6 +124,22 @@ pub struct Answer<R> {
     pub friction: R,
 }
 
+/// Constants of a law, field by field, in lanes: all alike, or of four laws.
+macro_rules! law_lanes {
+    ($law:ident { $($field:ident),+ $(,)? }) => {
+        #[inline(always)]
+        fn splat<R: Real>(&self) -> $law<R> {
+            $law { $($field: R::splat(self.$field)),+ }
+        }
+
+        #[inline(always)]
+        fn mixed<R: Real>(laws: [&$law; 8], join: fn(&[f64; 8]) -> R) -> $law<R> {
+            $law { $($field: join(&laws.map(|l| l.$field))),+ }
+        }
+    };
+}
+pub(crate) use law_lanes;
+
 /// A law of contact: constants of one pair of materials, and the force.
 pub trait ContactLaw: Copy + Send + Sync {
     /// The constants in lanes.
@@ -133,11 +151,12 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// The same constants in every lane.
     fn splat<R: Real>(&self) -> Self::Lanes<R>;
 
-    /// Constants of four laws in lanes, put together by `join`.
-    fn mixed<R: Real>(laws: [&Self; 4], join: fn(&[f64; 4]) -> R) -> Self::Lanes<R>;
+    /// Constants of a law per lane (of as many as there are), put together by `join`.
+    fn mixed<R: Real>(laws: [&Self; 8], join: fn(&[f64; 8]) -> R) -> Self::Lanes<R>;
 
     /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
-    /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance.
+    /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and
+    /// with adhesion.
     fn answer<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,
         touch: &Touch<R>,
@@ -162,7 +181,7 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// Damping ratio ζ of the contact [-].
     fn damping_ratio(&self) -> f64;
 
-    /// Whether the contact resists rolling or twisting.
+    /// Whether the contact resists rolling or twisting, or adheres.
     fn rolls(&self) -> bool;
 
     /// The force on one contact, given the effective mass m* = m₁m₂/(m₁ + m₂) of the bodies [kg], the velocity of a
@@ -253,25 +272,18 @@ impl<L: ContactLaw> PairTable<L> {
         &self.pairs[a as usize * self.count + b as usize]
     }
 
-    /// Number of materials.
-    pub(crate) fn count(&self) -> usize {
-        self.count
-    }
-
-    /// Constants of four pairs of materials, given as numbers in lanes.
+    /// Constants of a pair of materials per lane, given as numbers in lanes.
     #[inline(always)]
-    pub(crate) fn lanes<R: Four>(&self, a: R, b: R) -> L::Lanes<R> {
-        let (a, b) = (a.array(), b.array());
-        let laws = [
-            self.get(a[0] as u32, b[0] as u32),
-            self.get(a[1] as u32, b[1] as u32),
-            self.get(a[2] as u32, b[2] as u32),
-            self.get(a[3] as u32, b[3] as u32),
-        ];
-        L::mixed(laws, R::load)
+    pub(crate) fn lanes<R: Pack>(&self, a: R, b: R) -> L::Lanes<R> {
+        let (a, b) = (a.numbers(), b.numbers());
+        let mut laws = [&self.pairs[0]; 8];
+        for l in 0..R::LANES {
+            laws[l] = self.get(a[l] as u32, b[l] as u32);
+        }
+        L::mixed(laws, R::of)
     }
 
-    /// Whether any pair resists rolling or twisting.
+    /// Whether any pair resists rolling or twisting, or adheres.
     pub(crate) fn rolls(&self) -> bool {
         self.pairs.iter().any(L::rolls)
     }

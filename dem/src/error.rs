@@ -113,6 +113,20 @@ pub enum ModelError {
         /// What is wrong.
         problem: String,
     },
+    /// Adhesion cannot be combined with something.
+    #[error("contact override {index} has adhesion, which cannot be combined with {with}")]
+    Adhesion {
+        /// Index of the override.
+        index: usize,
+        /// With what.
+        with: &'static str,
+    },
+    /// Periodic axes cannot be as asked for.
+    #[error("periodic axes: {problem}")]
+    Periodic {
+        /// What is wrong.
+        problem: String,
+    },
     /// A setting of the run is out of range.
     #[error("{quantity} is {value}; it must {requirement}")]
     Setting {

@@ -145,6 +145,8 @@ pub struct ModelInput {
     pub bond_kinds: Vec<Bond>,
     /// Bonds between spheres, unstrained at the start.
     pub bonds: Vec<BondInput>,
+    /// Lower and upper border [m] along x, y and z where the scene repeats itself; `None` along axes where it does not.
+    pub periodic: [Option<[f64; 2]>; 3],
 }
 
 impl Default for ModelInput {
@@ -166,6 +168,7 @@ impl Default for ModelInput {
             damping: None,
             bond_kinds: Vec::new(),
             bonds: Vec::new(),
+            periodic: [None; 3],
         }
     }
 }

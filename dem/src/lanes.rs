@@ -6,12 +6,17 @@
 //! four numbers and four lanes of each number. Every operation rounds as IEEE 754 says and products are never fused
 //! with sums, so all three give the same bits.
 //!
-//! A `Kernel` is a loop written once over `R: Four`; `run` picks the implementation, and compiles the whole loop
+//! `Pack` is lanes of one group of four or of two at once (`Avx512`), for loops over lists of groups.
+//!
+//! A `Kernel` is a loop written once over `R: Pack`; `run` picks the implementation, and compiles the whole loop
 //! with the processor's features on. Everything that a kernel calls must be `#[inline(always)]` as well: an operation
 //! on `Avx2` that is not inlined below that entry becomes a call per operation, ten times slower. That rules out
 //! closures with such operations in them, hence also `map` and `from_fn`.
 
+mod wide;
+
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+pub(crate) use wide::Pack;
 
 /// A number, or several side by side.
 pub trait Real:
@@ -308,6 +313,13 @@ mod avx2 {
     #[derive(Clone, Copy, Debug)]
     pub(crate) struct Avx2Mask(__m256d);
 
+    impl Avx2 {
+        #[inline(always)]
+        pub(super) fn of(x: __m256d) -> Avx2 {
+            Avx2(x)
+        }
+    }
+
     macro_rules! lanewise {
         ($type:ident, $trait:ident, $f:ident, $op:ident) => {
             impl $trait for $type {
@@ -423,12 +435,28 @@ mod avx2 {
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2;
 
+/// Has the processor fetch a list into its second cache, where it can be told to.
+#[inline]
+pub(crate) fn prefetch<T>(list: &[T]) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        let from = list.as_ptr().cast::<i8>();
+        for line in (0..size_of_val(list)).step_by(64) {
+            // SAFETY: the address lies in the list; a prefetch changes nothing that a program sees.
+            unsafe { _mm_prefetch::<_MM_HINT_T1>(from.add(line)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = list;
+}
+
 /// A loop over lanes.
 pub(crate) trait Kernel {
     /// What it returns.
     type Output;
     /// Runs the loop; must be `#[inline(always)]`.
-    fn run<R: Four>(self) -> Self::Output;
+    fn run<R: Pack>(self) -> Self::Output;
 }
 
 /// Which lanes the processor is given.
@@ -437,7 +465,7 @@ pub(crate) enum Simd {
     Portable,
     #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// The same four lanes with twice as many registers, and masks apart from them.
+    /// Two groups of four lanes side by side.
     #[cfg(target_arch = "x86_64")]
     Avx512,
 }
@@ -465,7 +493,9 @@ impl Simd {
     pub fn best() -> Simd {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") {
-            let more = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
+            let more = is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq");
             return if more { Simd::Avx512 } else { Simd::Avx2 };
         }
         Simd::Portable
@@ -493,9 +523,9 @@ fn with_avx2<K: Kernel>(kernel: K) -> K::Output {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512vl")]
+#[target_feature(enable = "avx2,avx512f,avx512vl,avx512dq")]
 fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Avx2>()
+    kernel.run::<wide::Avx512>()
 }
 
 /// A vector of three lanes-full of numbers.
@@ -538,6 +568,12 @@ impl<R: Real> V3<R> {
     #[inline(always)]
     pub fn cross(self, o: V3<R>) -> V3<R> {
         V3 { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
+    }
+
+    /// The components.
+    #[inline(always)]
+    pub fn array(self) -> [R; 3] {
+        [self.x, self.y, self.z]
     }
 
     /// Square of the length.
@@ -631,7 +667,14 @@ mod tests {
     impl Kernel for Formula<'_> {
         type Output = Vec<[f64; 4]>;
         #[inline(always)]
-        fn run<R: Four>(self) -> Vec<[f64; 4]> {
+        fn run<P: Pack>(self) -> Vec<[f64; 4]> {
+            self.four::<P::Quad>()
+        }
+    }
+
+    impl Formula<'_> {
+        #[inline(always)]
+        fn four<R: Four>(self) -> Vec<[f64; 4]> {
             let mut out = Vec::new();
             for at in [[0, 1, 2, 3], [7, 2, 2, 5], [6, 4, 0, 1]] {
                 let r = formula(R::gather(self.0, &at));

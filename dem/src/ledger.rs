@@ -56,6 +56,9 @@ pub struct Ledger {
     pub work_servo: f64,
     /// Work of the external surface's motion on the bodies [J].
     pub work_surface: f64,
+    /// Potential energy that bodies gained when they were put back into a periodic box [J].
+    #[serde(default)]
+    pub work_periodic: f64,
     /// Work of what keeps fixed motions at their speed [J].
     pub work_constraints: f64,
     /// Impulse of gravity.
@@ -68,8 +71,15 @@ pub struct Ledger {
     pub applied: Impulse,
     /// Impulse of what keeps fixed motions at their speed.
     pub constraints: Impulse,
+    /// Angular impulse of periodic borders: of contacts across them, whose two forces do not act at one point, and of
+    /// bodies put back into the box. Its linear part is zero.
+    #[serde(default)]
+    pub periodic: Impulse,
     /// Impulse of local damping.
     pub local_damping: Impulse,
+    /// Change of momentum by bodies that were set elsewhere.
+    #[serde(default)]
+    pub jumps: Impulse,
 }
 
 impl Ledger {
@@ -84,13 +94,19 @@ impl Ledger {
 
     /// All work received from outside, gravity excepted (it has a potential) [J].
     pub fn work(&self) -> f64 {
-        self.work_applied + self.work_walls + self.work_servo + self.work_surface + self.work_constraints
+        self.work_applied
+            + self.work_walls
+            + self.work_servo
+            + self.work_surface
+            + self.work_constraints
+            + self.work_periodic
     }
 
     /// Sum of all impulses: the change of momentum since the start.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
-        for part in [self.walls, self.surface, self.applied, self.constraints, self.local_damping] {
+        let own = [self.walls, self.surface, self.applied, self.constraints];
+        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps]) {
             sum += &part;
         }
         sum
@@ -109,11 +125,14 @@ impl AddAssign<&Ledger> for Ledger {
         self.work_servo += other.work_servo;
         self.work_surface += other.work_surface;
         self.work_constraints += other.work_constraints;
+        self.work_periodic += other.work_periodic;
         self.gravity += &other.gravity;
         self.walls += &other.walls;
         self.surface += &other.surface;
         self.applied += &other.applied;
         self.constraints += &other.constraints;
+        self.periodic += &other.periodic;
         self.local_damping += &other.local_damping;
+        self.jumps += &other.jumps;
     }
 }

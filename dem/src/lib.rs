@@ -18,6 +18,7 @@ pub mod material;
 pub mod measure;
 pub mod model;
 mod order;
+mod periodic;
 pub mod search;
 pub mod shape;
 pub mod state;

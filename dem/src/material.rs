@@ -53,7 +53,7 @@ impl Default for Material {
 }
 
 /// Values of one pair of materials that replace the mixed ones.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairOverride {
     /// First material (index).
     pub a: usize,
@@ -65,4 +65,6 @@ pub struct PairOverride {
     pub restitution: Option<f64>,
     /// Normal stiffness K of the contact itself [N/m].
     pub stiffness: Option<f64>,
+    /// Work of adhesion w [J/m²]: spheres and walls in touch attract each other with 2π w R*; absent: they do not.
+    pub adhesion: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! What can be read off a state: energies, momentum, contacts, stress, porosity, fabric. None of it changes the state.
+//! What can be read off a state: energies, momentum, contacts, stress, porosity, fabric, radial distribution. None of it changes the state.
 //!
 //! Energies and momentum are those of the last half step, t − dt/2, where the velocities of the leapfrog live:
 //! bodies are moved back by half a step for it, springs likewise. So energy plus ledger closes to second order in
@@ -11,6 +11,7 @@ mod coordination;
 mod energy;
 mod footprint;
 mod porosity;
+mod radial;
 mod region;
 mod sieve;
 mod stress;
@@ -23,6 +24,7 @@ pub use coordination::{
 pub use energy::{Energies, energies, momentum};
 pub use footprint::{bytes, kernels};
 pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
+pub use radial::radial_distribution;
 pub use region::BoxRegion;
 pub use sieve::{size_of, stones};
 pub use stress::{mean_stress, mean_stress_of, region_stress};

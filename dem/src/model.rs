@@ -36,6 +36,7 @@ pub struct Model {
     pub(crate) block: usize,
     /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
+    pub(crate) periodic: Option<crate::periodic::Periodic>,
     dt: f64,
     limit: DtLimit,
 }
@@ -71,6 +72,10 @@ impl Model {
         let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
+        let skin = input.skin.unwrap_or(0.2 * mean);
+        crate::contact::adhesion::check(&input)?;
+        crate::periodic::check(&input, &bodies, skin)?;
+        let periodic = crate::periodic::Periodic::new(&input);
         let bonds = crate::bond::resolve(&input, &bodies)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
@@ -100,7 +105,8 @@ impl Model {
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
-            skin: input.skin.unwrap_or(0.2 * mean),
+            skin,
+            periodic,
             bonds,
             radii,
             dt,

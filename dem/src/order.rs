@@ -10,7 +10,7 @@ use crate::Vec3;
 use crate::bond;
 use crate::contact::History;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Cross, PatchContact, PatchPair, State};
+use crate::state::{Block, Cross, ImageName, ImagePair, PatchContact, PatchPair, State};
 
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
@@ -87,6 +87,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
             }
         }
         block.bodies = bodies;
+        block.fit();
         state.blocks.push(block);
     }
     state.cross.resize_with(state.blocks.len(), || Cross::new(turning));
@@ -123,6 +124,16 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     for (b, pairs) in cross.iter().enumerate() {
         for ([i, block, j], history) in pairs.spheres.iter() {
             file(new(named[b][i as usize]), new(named[block as usize][j as usize]), history);
+        }
+    }
+    for (b, pairs) in cross.iter().enumerate() {
+        for &ImagePair { name, history } in &pairs.images {
+            let (x, y) = (new(named[b][name.i as usize]), new(named[name.block as usize][name.j as usize]));
+            let turned = (name.shift.map(|s| -s), history.turned());
+            let (x, y, (shift, history)) =
+                if x <= y { (x, y, (name.shift, history)) } else { (y, x, turned) };
+            let name = ImageName { i: x.1, block: y.0, j: y.1, shift };
+            state.cross[x.0 as usize].images.push(ImagePair { name, history });
         }
     }
     for (b, pairs) in cross.iter().enumerate() {
@@ -166,6 +177,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     for cross in &mut state.cross {
         cross.spheres.sort();
         cross.boxes.sort();
+        cross.images.sort_unstable_by_key(|p| p.name);
     }
     state.stale = true;
 }

@@ -54,6 +54,32 @@ pub(crate) struct Cross {
     pub spheres: Groups<3>,
     /// Sphere of this block, block of the box, its place there.
     pub boxes: Groups<3>,
+    /// Sphere of this block and the image of one of any block across a periodic border.
+    #[serde(default)]
+    pub images: Vec<ImagePair>,
+}
+
+/// Sphere of a block, other block, sphere there, and how many box lengths the image is away from that sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(crate) struct ImageName {
+    pub i: u32,
+    pub block: u32,
+    pub j: u32,
+    pub shift: [i32; 3],
+}
+
+/// Two spheres that touch across a periodic border or nearly do.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct ImagePair {
+    pub name: ImageName,
+    pub history: History,
+}
+
+impl ImagePair {
+    /// A pair that has not touched.
+    pub fn new(name: ImageName) -> ImagePair {
+        ImagePair { name, history: History::NONE }
+    }
 }
 
 /// A sphere that touches a patch of a surface or nearly does.
@@ -123,12 +149,21 @@ impl Block {
     pub fn new(turning: bool) -> Block {
         Block { pairs: Groups::new(turning), planes: Groups::new(turning), ..Block::default() }
     }
+
+    /// Gives up memory that the bodies do not need.
+    pub fn fit(&mut self) {
+        self.bodies.shrink_to_fit();
+        self.centre.shrink_to_fit();
+        self.velocity.shrink_to_fit();
+        self.spin.shrink_to_fit();
+        self.rotation.shrink_to_fit();
+    }
 }
 
 impl Cross {
     /// No contacts; `turning` as in [`Block::new`].
     pub fn new(turning: bool) -> Cross {
-        Cross { spheres: Groups::new(turning), boxes: Groups::new(turning) }
+        Cross { spheres: Groups::new(turning), boxes: Groups::new(turning), images: Vec::new() }
     }
 }
 
@@ -220,6 +255,7 @@ impl State {
                 }
             }
             block.bodies = members;
+            block.fit();
             state.blocks.push(block);
         }
         state.cross.resize_with(state.blocks.len(), || Cross::new(model.laws.rolls()));
@@ -248,7 +284,7 @@ impl State {
         (&self.blocks[b as usize], k as usize)
     }
 
-    /// Centre of mass of a body [m].
+    /// Centre of mass of a body [m]. Along periodic axes it may have run on beyond the borders: see [`Model::wrap`].
     pub fn position(&self, body: usize) -> Vec3 {
         let (block, k) = self.place(body);
         xyz(&block.centre[k])
@@ -284,6 +320,30 @@ impl State {
             let local = r.orientation.inverse_transform_vector(&spin);
             r.momentum = r.orientation * local.component_mul(&model.body(body).inertia);
         }
+    }
+
+    /// Sets a body elsewhere: shifts its centre [m] and turns it by a rotation in world axes. Velocity, angular momentum and
+    /// contact memory stay as they are; fixed motions are left out (all rotations where one is fixed), and single spheres
+    /// do not turn. The change of momentum about the origin goes to the ledger, that of energy does not. Call
+    /// [`State::forget_neighbours`] afterwards.
+    pub fn shift(&mut self, model: &Model, body: usize, shift: &Vec3, turn: &UnitQuaternion<f64>) {
+        let [b, k] = self.places[body];
+        let (block, k) = (&mut self.blocks[b as usize], k as usize);
+        let constants = model.body(body);
+        let fixed = |d: usize| constants.fixed >> d & 1 == 1;
+        let shift = Vec3::from_fn(|d, _| if fixed(d) { 0.0 } else { shift[d] });
+        let place = xyz(&block.centre[k]) + shift;
+        set_xyz(&mut block.centre[k], &place);
+        if let Some(r) = block.rotation.get_mut(k)
+            && constants.kind != crate::model::Kind::Sphere
+            && !(3..6).any(fixed)
+        {
+            r.orientation = turn * r.orientation;
+            let spin = spin_of(r, &constants.inertia);
+            set_xyz(&mut block.spin[k], &spin);
+        }
+        let momentum = xyz(&block.velocity[k]) * constants.mass;
+        self.ledger.jumps.angular += shift.cross(&momentum);
     }
 
     /// Spheres of a body in the world: centre [m] and radius [m]. One for a sphere, none for a box.
@@ -367,6 +427,9 @@ impl State {
     /// Puts the bodies into blocks of present neighbours and carries the contacts along. Done every
     /// `order::EVERY` steps: by count, so that a restart does not change when.
     pub(crate) fn reorder(&mut self, model: &Model) {
+        if let Some(periodic) = &model.periodic {
+            crate::periodic::wrap(periodic, model, self);
+        }
         let positions: Vec<Vec3> = (0..self.places.len()).map(|b| self.position(b)).collect();
         order::reorder(self, model, &positions);
     }

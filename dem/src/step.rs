@@ -1,16 +1,14 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use crate::Vec3;
 use crate::bond;
-use crate::contact::pass::{Between, Interior};
-use crate::contact::planes::{self, Planes};
-use crate::contact::{ContactLaw, PairTable, pass, patches, with_law};
+use crate::contact::{ContactLaw, PairTable, pass, passes, patches, planes, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
-use crate::integrate::leapfrog::Advance;
-use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
+use crate::periodic;
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
@@ -53,11 +51,10 @@ pub fn step<S: Surface>(
         bond::pass::cross(model, state, work);
     }
     planes::now(model, &state.planes, &mut work.planes);
-    with_law!(&model.laws, laws => match (model.rigid, laws.rolls()) {
-        (false, false) => contacts_and_motion::<_, S, false, false>(model, laws, state, work, surface),
-        (false, true) => contacts_and_motion::<_, S, false, true>(model, laws, state, work, surface),
-        (true, false) => contacts_and_motion::<_, S, true, false>(model, laws, state, work, surface),
-        (true, true) => contacts_and_motion::<_, S, true, true>(model, laws, state, work, surface),
+    with_law!(&model.laws, laws => if model.rigid {
+        contacts_and_motion::<_, S, true>(model, laws, state, work, surface);
+    } else {
+        contacts_and_motion::<_, S, false>(model, laws, state, work, surface);
     });
     collect(model, state, work, surface.max_speed())
 }
@@ -90,7 +87,7 @@ pub fn find_contacts<S: Surface>(
     Ok(())
 }
 
-fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL: bool>(
+fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     model: &Model,
     laws: &PairTable<L>,
     state: &mut State,
@@ -109,24 +106,32 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         buffers,
         keep_forces,
         bonds: bonded,
+        material,
+        plane_material,
+        slot_width,
         ..
     } = work;
     let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
+    let (material, plane_material, slot_width) = (*material, *plane_material, *slot_width);
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossWork))| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
         let (lists, out) = (&mut *pairs, &mut *out);
-        let kernel = Between::<L, RIGID, ROLL> { laws, blocks: all, works: scratch, b, lists, out, dt };
-        lanes::run(simd, kernel);
+        passes::between(model, simd, (all, scratch), material, b, lists, out);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
         }
+        if let Some(periodic) = &model.periodic {
+            out.couple = Vec3::zeros();
+            periodic::contacts::<_, RIGID>(periodic, laws, all, scratch, b, pairs, out, slot_width, dt);
+        }
     };
     if *parallel {
-        cross.par_iter_mut().zip(slots.par_iter_mut()).enumerate().for_each(between);
+        // One block at a time, so that a thread that comes late leaves little to wait for.
+        cross.par_iter_mut().zip(slots.par_iter_mut()).enumerate().with_max_len(1).for_each(between);
     } else {
         cross.iter_mut().zip(slots.iter_mut()).enumerate().for_each(between);
     }
@@ -143,25 +148,20 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         w.sums = buffers.take();
         w.sums.clear();
         w.sums.resize(block.bodies.len(), Sums::default());
-        if RIGID || ROLL {
-            pass::gather::<true>(w, slots);
-        } else {
-            pass::gather::<false>(w, slots);
-        }
+        passes::fetch(block);
+        passes::gather(model, simd, w, slots);
         if !model.bonds.is_empty() {
             bond::pass::within(model, b, block, w, bonded, bonds.fresh);
         }
         let (mut pairs, mut plane_pairs) =
             (std::mem::take(&mut block.pairs), std::mem::take(&mut block.planes));
         if !pairs.is_empty() {
-            let (block, pairs) = (&*block, &mut pairs);
-            lanes::run(simd, Interior::<L, RIGID, ROLL> { laws, block, pairs, w: &mut *w, dt });
+            passes::interior(model, simd, block, &mut pairs, w);
         }
         if RIGID && w.kind.first() == Some(&Kind::Box) {
             planes::corners(model, laws, motions, block, &mut plane_pairs, w, dt);
         } else if !plane_pairs.is_empty() {
-            let (block, pairs, planes) = (&*block, &mut plane_pairs, plane_list);
-            lanes::run(simd, Planes::<L, RIGID, ROLL> { laws, planes, block, pairs, w: &mut *w, dt });
+            passes::planes(model, simd, plane_list, plane_material, block, &mut plane_pairs, w);
         }
         (block.pairs, block.planes) = (pairs, plane_pairs);
         w.wall_sums.clear();
@@ -206,13 +206,13 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool, const ROLL:
         }
         let from = applied.partition_point(|a| (a.block as usize) < b);
         let to = applied.partition_point(|a| a.block as usize <= b);
-        lanes::run(simd, Advance::<RIGID> { model, block, w: &mut *w, applied: &applied[from..to], dt });
+        passes::advance(model, simd, block, w, &applied[from..to]);
         if !*keep_forces {
             buffers.give_back(std::mem::take(&mut w.sums));
         }
     };
     if *parallel {
-        blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().for_each(within);
+        blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().with_max_len(1).for_each(within);
     } else {
         blocks.iter_mut().zip(works.iter_mut()).enumerate().for_each(within);
     }
@@ -255,6 +255,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum += &w.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
+        sum.periodic.angular += cross.couple;
         fastest = fastest.max(w.fastest);
         failure = failure.or(cross.failure).or(w.failure);
         work.surface_contacts.extend_from_slice(&w.contacts);
@@ -296,10 +297,9 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::lanes::Simd;
-    use crate::material::Material;
+    use crate::material::{Material, PairOverride};
     use crate::shape::Shape;
     use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
@@ -333,6 +333,8 @@ mod tests {
         };
         if !clumps {
             input.materials.truncate(1);
+        } else if hertz {
+            input.contacts.push(PairOverride { a: 0, b: 1, adhesion: Some(2.0), ..PairOverride::default() });
         }
         input.planes.push(Plane {
             point: Vec3::zeros(),
@@ -367,7 +369,8 @@ mod tests {
         assert!(state.ledger.dissipated() > 0.1);
         let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
         let l = &state.ledger;
-        let booked = [l.dissipated_dashpot, l.dissipated_friction, l.walls.angular.x];
+        let damped = l.local_damping.angular.y + l.dissipated_local_damping;
+        let booked = [l.dissipated_dashpot, l.dissipated_friction, l.walls.angular.x, damped];
         let motion = (0..model.body_count()).flat_map(at).flat_map(|v| [v.x, v.y, v.z]);
         motion.chain(booked).map(f64::to_bits).collect()
     }
@@ -383,12 +386,45 @@ mod tests {
     /// Registers of either kind, and plain arrays: the same bits, for each law, with and without clumps.
     #[test]
     fn all_lanes_give_the_same_bits() {
-        for (hertz, clumps) in [(false, false), (false, true), (true, false), (true, true)] {
-            let model = heap(hertz, clumps);
+        let kinds = [(false, false), (false, true), (true, false), (true, true)];
+        for (k, (hertz, clumps)) in kinds.into_iter().enumerate() {
+            let mut model = heap(hertz, clumps);
+            model.damping = [0.0, 0.2, 0.2, 0.0][k];
             let plain = bits(&model, 500, false, Simd::Portable);
             for simd in Simd::all() {
                 assert!(bits(&model, 500, false, simd) == plain, "{simd:?}, hertz {hertz}, clumps {clumps}");
             }
+        }
+    }
+
+    /// Local damping of four bodies at a time moves them and is booked as that of one by one, which any applied force
+    /// calls for.
+    #[test]
+    fn damping_of_four_is_that_of_one() {
+        for clumps in [false, true] {
+            let mut model = heap(false, clumps);
+            model.damping = 0.3;
+            let run = |applied: &[AppliedForce]| {
+                let mut state = State::new(&model);
+                let mut work = Work::new(&model, &state);
+                for _ in 0..60 {
+                    step(&model, &mut state, &mut work, &NoSurface, applied).unwrap();
+                }
+                let far = (0..model.body_count()).flat_map(|b| [state.velocity(b), state.spin(b)]).collect();
+                (far, state.ledger)
+            };
+            let nothing: Vec<AppliedForce> = (0..model.body_count())
+                .map(|body| AppliedForce { body, force: Vec3::zeros(), point: Vec3::zeros() })
+                .collect();
+            let ((four, a), (one, b)): ((Vec<Vec3>, _), (Vec<Vec3>, _)) = (run(&[]), run(&nothing));
+            let size = one.iter().map(Vec3::norm).fold(0.0, f64::max);
+            let off = four.iter().zip(&one).map(|(x, y)| (x - y).norm()).fold(0.0, f64::max);
+            assert!(off < 1e-9 * size, "clumps {clumps}: {off:e} of {size:e}");
+            let like = |x: f64, y: f64| assert!((x - y).abs() < 1e-9 * y.abs(), "clumps {clumps}: {x} {y}");
+            like(a.dissipated_local_damping, b.dissipated_local_damping);
+            like(a.local_damping.linear.norm(), b.local_damping.linear.norm());
+            like(a.local_damping.angular.norm(), b.local_damping.angular.norm());
+            assert!(b.dissipated_local_damping > 0.01, "{}", b.dissipated_local_damping);
         }
     }
 

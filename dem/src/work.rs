@@ -9,7 +9,8 @@ use crate::error::Partner;
 use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
-use crate::state::{Lanes, PatchContact, PatchPair, State, xyz};
+use crate::search::near::Merging;
+use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
 use std::sync::Mutex;
@@ -17,15 +18,23 @@ use std::sync::Mutex;
 /// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
-pub(crate) struct Sums {
-    pub force: Lanes,
-    pub torque: Lanes,
-}
+pub(crate) struct Sums(pub [Lanes; 2]);
 
 impl Sums {
     #[inline(always)]
+    pub fn force(&self) -> &Lanes {
+        &self.0[0]
+    }
+
+    #[inline(always)]
+    pub fn torque(&self) -> &Lanes {
+        &self.0[1]
+    }
+
+    #[inline(always)]
     pub fn both(&mut self) -> (&mut Lanes, &mut Lanes) {
-        (&mut self.force, &mut self.torque)
+        let [force, torque] = &mut self.0;
+        (force, torque)
     }
 }
 
@@ -84,22 +93,28 @@ impl Reference {
     }
 }
 
-/// Buffers for the forces of blocks, handed out to those in progress.
-#[derive(Debug, Default)]
-pub(crate) struct Buffers(Mutex<Vec<Vec<Sums>>>);
+/// Buffers handed out to blocks in progress.
+#[derive(Debug)]
+pub(crate) struct Buffers<T>(Mutex<Vec<T>>);
 
-impl Clone for Buffers {
-    fn clone(&self) -> Buffers {
+impl<T> Default for Buffers<T> {
+    fn default() -> Buffers<T> {
+        Buffers(Mutex::new(Vec::new()))
+    }
+}
+
+impl<T> Clone for Buffers<T> {
+    fn clone(&self) -> Buffers<T> {
         Buffers::default()
     }
 }
 
-impl Buffers {
-    pub fn take(&self) -> Vec<Sums> {
+impl<T: Default> Buffers<T> {
+    pub fn take(&self) -> T {
         self.0.lock().map(|mut b| b.pop()).ok().flatten().unwrap_or_default()
     }
 
-    pub fn give_back(&self, buffer: Vec<Sums>) {
+    pub fn give_back(&self, buffer: T) {
         if let Ok(mut buffers) = self.0.lock() {
             buffers.push(buffer);
         }
@@ -123,6 +138,8 @@ pub(crate) struct CrossWork {
     pub slots: Vec<Lanes>,
     pub dashpot: f64,
     pub friction: f64,
+    /// Angular impulse about the origin that contacts across periodic borders give in this step.
+    pub couple: Vec3,
     pub failure: Option<Failure>,
 }
 
@@ -133,6 +150,8 @@ pub(crate) struct BlockWork {
     /// Whether no motion is fixed and no body is a box.
     pub free: bool,
     pub mass_sum: f64,
+    /// The material of all bodies, where there is only one.
+    pub material: Option<u32>,
     /// Empty in scenes of single spheres only.
     pub kind: Vec<Kind>,
     pub inertia: Vec<Vec3>,
@@ -156,6 +175,7 @@ pub(crate) struct BlockWork {
     pub candidates: Vec<[u16; 2]>,
     pub cross: Vec<[u32; 3]>,
     pub boxed: Vec<[u32; 3]>,
+    pub images: Vec<ImageName>,
     pub planes: Vec<[u32; 2]>,
     pub walls: Vec<[u32; 2]>,
     pub surface: Vec<[u32; 2]>,
@@ -196,7 +216,8 @@ pub struct Work {
     pub(crate) held: Held,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
-    pub(crate) buffers: Buffers,
+    pub(crate) buffers: Buffers<Vec<Sums>>,
+    pub(crate) merging: Buffers<Merging>,
     pub(crate) keep_forces: bool,
     pub(crate) slot_width: usize,
     /// Whether the candidates exist, and where walls were when they were found.
@@ -209,8 +230,17 @@ pub struct Work {
     /// What the processor computes four lanes with.
     pub(crate) simd: Simd,
     pub(crate) planes: Vec<PlaneNow>,
+    /// The material of all bodies and of all planes, where there is only one.
+    pub(crate) material: Option<u32>,
+    pub(crate) plane_material: Option<u32>,
     /// Whether blocks are shared among threads.
     pub(crate) parallel: bool,
+}
+
+/// What all are equal to, if they are.
+fn common<T: Copy + PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
+    let first = all.next()?;
+    all.all(|x| x == first).then_some(first)
 }
 
 /// Spheres below which sharing the work costs more than it saves. Both ways give the same bits.
@@ -227,6 +257,7 @@ impl Work {
             applied: Vec::new(),
             surface_contacts: Vec::new(),
             buffers: Buffers::default(),
+            merging: Buffers::default(),
             keep_forces: false,
             slot_width: if model.rigid || model.laws.rolls() { 3 } else { 2 },
             listed: false,
@@ -237,6 +268,8 @@ impl Work {
             refreshes: 0,
             simd: Simd::best(),
             planes: Vec::new(),
+            material: None,
+            plane_material: common(model.planes.iter().map(|p| p.material as u32)),
             parallel: model.sphere_count() >= PARALLEL,
         };
         work.arrange(model, state);
@@ -263,6 +296,8 @@ impl Work {
                 }
             }
         }
+        // A block without a body or with several materials has none of its own.
+        self.material = common(self.blocks.iter().map(|w| w.material)).flatten();
         crate::search::near::link(state, self);
         bond::pass::arrange(model, state, self);
     }
@@ -281,13 +316,13 @@ impl Work {
     /// Sum of the contact forces on a body in the last step, if kept; else zero [N].
     pub fn contact_force(&self, state: &State, body: usize) -> Vec3 {
         let [b, k] = state.places[body];
-        self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(&s.force)).unwrap_or_default()
+        self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(s.force())).unwrap_or_default()
     }
 
     /// Sum of the contact torques on a body about its centre in the last step, if kept; else zero [N m].
     pub fn contact_torque(&self, state: &State, body: usize) -> Vec3 {
         let [b, k] = state.places[body];
-        self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(&s.torque)).unwrap_or_default()
+        self.blocks[b as usize].sums.get(k as usize).map(|s| xyz(s.torque())).unwrap_or_default()
     }
 
     /// How often candidates were searched and how often the near list was made from them.
@@ -308,6 +343,7 @@ impl BlockWork {
         self.local.clear();
         self.mass_sum = 0.0;
         self.fixed.reserve_exact(bodies.len());
+        self.material = common(bodies.iter().map(|&b| model.body(b as usize).material));
         for (k, &body) in bodies.iter().enumerate() {
             let b = model.body(body as usize);
             self.fixed.push(b.fixed);

@@ -49,6 +49,7 @@ pub mod modal;
 pub mod model;
 pub mod newmark;
 pub mod nonlinear;
+pub mod reduction;
 pub mod solver;
 pub mod state;
 pub mod statics;

@@ -58,6 +58,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             .flat_map(|plan| plan.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
         let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
         let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
+        grains.check_pads(&document, model.dt())?;
         line(format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()));
         line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
         if let Some(d) = &grains.deposition {

@@ -274,6 +274,10 @@ fn scheme(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Scheme
                 let expected = "another scheme for a plastic solid or one with initial stress: this one needs a constant matrix";
                 return Err(document.error("coupling.scheme", "\"stiffened\"", expected));
             }
+            if solid.reduction.is_some() {
+                let expected = "another scheme beside [solid.reduction]: this one needs the whole matrix";
+                return Err(document.error("coupling.scheme", "\"stiffened\"", expected));
+            }
             Scheme::Stiffened
         }
         SchemeName::Iterated => {

@@ -5,20 +5,22 @@ mod bonds;
 mod compaction;
 mod groups;
 mod materials;
+mod periodic;
 mod regions;
 mod sizes;
 mod track;
 pub mod walls;
 
+use super::after::{self, AfterPlan};
 use super::seat_load::CyclicLoad;
 use super::tables::Grading;
+use super::track::rail::RailInput;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
-pub use compaction::{CompactionPlan, Press};
+pub use compaction::{CompactionPlan, Measure, Press, Radial};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
-use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{
     BodyInput, LocalDamping, Material, Model, ModelError, ModelInput, PairOverride, Plane, TimeStep, Vec3,
@@ -41,6 +43,7 @@ pub struct GrainsPart {
     gravity: Vec3,
     time_step: TimeStep,
     impact_speed: Option<f64>,
+    periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
     /// Names of the groups; the sleepers are the group after the last.
@@ -55,6 +58,8 @@ pub struct GrainsPart {
     pub bonds: BondPart,
     /// Groups of prescribed motion.
     pub moving: Vec<Moving>,
+    /// Groups that foul the bed.
+    pub fouling: Vec<u32>,
     /// Groups whose mean place and force are recorded.
     pub recorded_groups: Vec<u32>,
     /// Materials that grains consist of.
@@ -64,12 +69,16 @@ pub struct GrainsPart {
     pub deposition: Option<DepositionPlan>,
     /// Compaction of the settled bed.
     pub compaction: Vec<CompactionPlan>,
-    /// Boxes that are measured, by name.
-    pub measures: Vec<(String, BoxRegion)>,
+    /// Boxes that are measured.
+    pub measures: Vec<Measure>,
     /// The sleepers, which are the last bodies of the run proper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on them.
     pub load: Option<CyclicLoad>,
+    /// Jumps over cycles, push at the end.
+    pub after: AfterPlan,
+    /// The rail, where it is a beam; one on each seat.
+    pub rail: Option<RailInput>,
 }
 
 /// A group of prescribed motion.
@@ -142,10 +151,24 @@ pub struct SleeperPlan {
     fixed: [bool; 6],
     /// Half edge lengths [m].
     pub half: [f64; 3],
+    /// Direction of the track: 0 or 1.
+    pub axis: usize,
     /// Places of the centres in x and y [m], along the track.
     pub centres: Vec<[f64; 2]>,
     /// Points of the top that share the load, in the sleeper's frame [m].
     pub seats: Vec<[f64; 3]>,
+}
+
+impl SleeperPlan {
+    /// Motions that are held: along x, y, z, about x, y, z.
+    pub fn held(&self) -> [bool; 6] {
+        self.fixed
+    }
+
+    /// Mass of a sleeper [kg].
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
 }
 
 impl GrainsPart {
@@ -163,8 +186,7 @@ impl GrainsPart {
                             a,
                             b,
                             friction: Some(friction),
-                            restitution: None,
-                            stiffness: None,
+                            ..PairOverride::default()
                         });
                     }
                 }
@@ -232,10 +254,16 @@ impl GrainsPart {
             impact_speed: self.impact_speed,
             skin: None,
             damping: None,
+            periodic: self.periodic,
             ..ModelInput::default()
         };
         self.bonds.add_to(&mut input);
         input
+    }
+
+    /// Whether the box is periodic along an axis.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic.iter().any(Option::is_some)
     }
 
     /// Density of a material [kg/m³].
@@ -278,6 +306,34 @@ impl GrainsPart {
         &self.recorded
     }
 
+    /// Refuses pads that are too stiff or too strongly damped for sleepers that move in steps of `dt` [s] under the pads'
+    /// force at the start of each step.
+    ///
+    /// # Errors
+    /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
+    /// damping.
+    pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
+        let (Some(rail), Some(sleeper)) = (&self.rail, &self.sleeper) else { return Ok(()) };
+        let [a, b, c] = sleeper.half;
+        // 1/m of a seat, turning about both level axes included: a bound for all modes.
+        let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
+        let lightness: f64 = sleeper
+            .seats
+            .iter()
+            .map(|s| 1.0 / sleeper.mass + s[0] * s[0] * third(a, c) + s[1] * s[1] * third(b, c))
+            .sum();
+        for (key, value, most) in [
+            ("pad_stiffness", rail.pad[0], 0.25 / (dt * dt * lightness)),
+            ("pad_damping", rail.pad[1], 0.5 / (dt * lightness)),
+        ] {
+            if value > most {
+                let expected = format!("at most {most:.4e} with grain steps of {dt:.4e} s");
+                return Err(document.error(&format!("track.rail.{key}"), value.to_string(), expected));
+            }
+        }
+        Ok(())
+    }
+
     /// A sleeper as a body with its centre above `centre` at height `z` [m].
     pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
@@ -314,6 +370,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
         check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
+        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
             let expected = "no stiffness where materials have a Young's modulus";
             return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
@@ -324,6 +381,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
+            adhesion: c.adhesion.map(|w| w.si),
         });
     }
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
@@ -347,6 +405,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         impact_speed,
+        periodic: [None; 3],
         bodies: Vec::new(),
         parts: Vec::new(),
         first_shape: Vec::new(),
@@ -354,6 +413,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         growths: Vec::new(),
         bonds: bonds::kinds(document, scene)?,
         moving: Vec::new(),
+        fouling: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
         material_names: names.iter().map(|n| n.to_string()).collect(),
@@ -362,6 +422,8 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         measures: Vec::new(),
         sleeper: None,
         load: None,
+        after: AfterPlan::default(),
+        rail: None,
     };
     for (i, group) in scene.grains.iter().enumerate() {
         let material = find(&format!("grains.{i}.material"), &group.material)?;
@@ -372,9 +434,17 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         if !part.grain_materials.contains(&material) {
             part.grain_materials.push(material);
         }
+        if group.fouling {
+            part.fouling.push(part.parts.len() as u32);
+        }
         part.parts.push(group.name.clone());
         groups::add(document, i, group, material, &mut part)?;
     }
+    if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
+        let expected = "a group of grains beside it that is fouled";
+        return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
+    }
+    periodic::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();
@@ -427,6 +497,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     if let Some(track) = &scene.track {
         let material = find("track.sleeper.material", &track.sleeper.material)?;
         track::add(document, track, material, &mut part)?;
+        part.after = after::build(document, track, &part)?;
     }
     Ok(part)
 }
@@ -446,6 +517,14 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         ModelError::Wall { wall, problem } => {
             document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
         }
+        ModelError::Adhesion { index, with } => document.error(
+            &format!("contact.{index}.adhesion"),
+            format!("adhesion beside {with}"),
+            "no adhesion in such a scene",
+        ),
+        ModelError::Periodic { problem } => {
+            document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
+        }
         ModelError::Bond { .. } | ModelError::BondKind { .. } => {
             document.error("bond", error.to_string(), "bonds that can be made")
         }
@@ -453,7 +532,7 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
     }
 }
 
-fn check(
+pub(super) fn check(
     document: &Document,
     key: &str,
     value: Option<f64>,

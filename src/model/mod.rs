@@ -1,11 +1,13 @@
 //! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
 //! key of the scene was set.
 
+pub mod after;
 pub mod exchange;
 pub mod grains;
 pub mod seat_load;
 pub mod solid;
 mod tables;
+pub mod track;
 
 use crate::failure::Failure;
 use crate::scene::units::vector;
@@ -86,6 +88,7 @@ impl Job {
                 ("material", !scene.material.is_empty()),
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
+                ("periodic", scene.periodic.is_some()),
                 ("deposition", scene.deposition.is_some()),
                 ("compaction", !scene.compaction.is_empty()),
                 ("measure", !scene.measure.is_empty()),
@@ -112,6 +115,11 @@ impl Job {
             }
             (None, _, _) => None,
         };
+        let jumps = grains.as_ref().and_then(|g| g.after.jump).is_some_and(|j| j.grains);
+        if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
+            let expected = "\"account\": the state of a plastic solid is not extrapolated";
+            return Err(document.error("track.jump.method", "\"grains\"", expected).into());
+        }
         let end = end_time(document, scene, grains.as_ref())?;
         let solid_step = solid_step(document, scene, end)?;
         let probes = scene
@@ -227,6 +235,12 @@ fn end_time(
     grains: Option<&grains::GrainsPart>,
 ) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.load.as_ref()).map(seat_load::CyclicLoad::end);
+    // A push comes after the cycles, or stands for itself.
+    let push = grains.and_then(|g| g.after.push).map(|p| p.duration());
+    let counted = match (counted, push) {
+        (Some(cycles), Some(push)) => Some(cycles + push),
+        (counted, push) => counted.or(push),
+    };
     let steps = |s: &crate::scene::solid::Solid| s.dynamics.is_some() || s.quasi_static.is_some();
     let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
     match (scene.time.end, counted, dynamic) {
@@ -236,7 +250,7 @@ fn end_time(
         (Some(end), Some(counted), _) if end.si < counted => Err(document.error(
             "time.end",
             format!("{} s", end.si),
-            format!("at least {counted} s, when the last load cycle ends"),
+            format!("at least {counted} s, when the last load cycle, or the push after it, ends"),
         )),
         (Some(_), None, false) => Err(document.error(
             "time.end",

@@ -1,54 +1,235 @@
-//! The cyclic load on a sleeper as a function of time.
+//! The load on a row of sleepers as a function of time.
+//!
+//! Rest without load, a smooth ramp to the load of the first instant, then whole cycles. A cycle is a period of a force
+//! that acts on all sleepers at once, or a pass of wheels or pulses that reach one sleeper after the other.
 
-use crate::scene::track::{SeatLoad, SeatLoadKind};
+use super::track::pulse::{GAUSS_REACH, Winkler, gauss};
+use super::track::rail::Wheel;
 use std::f64::consts::{PI, TAU};
 
-/// Downward force on the sleeper: rest, smooth ramp to the first value, then whole cycles.
+/// Downward forces on the sleepers.
 #[derive(Clone, Debug)]
 pub struct CyclicLoad {
-    kind: SeatLoadKind,
-    minimum: f64,
-    maximum: f64,
-    frequency: f64,
-    cycles: u32,
-    rest: f64,
-    ramp: f64,
+    /// What happens in a cycle.
+    pub course: Course,
+    /// Number of cycles.
+    pub cycles: u32,
+    /// Time without load [s].
+    pub rest: f64,
+    /// Time of the ramp [s].
+    pub ramp: f64,
+    /// Places of the sleepers along the track, the first at 0 [m].
+    pub places: Vec<f64>,
+}
+
+/// What happens in a cycle.
+#[derive(Clone, Debug)]
+pub enum Course {
+    /// Mean plus amplitude times sin 2πft, or minimum plus range times (1 − cos 2πft)/2.
+    Wave {
+        /// Whether it starts at the mean.
+        sine: bool,
+        /// Smallest force [N].
+        minimum: f64,
+        /// Largest force [N].
+        maximum: f64,
+        /// Cycles per second [Hz].
+        frequency: f64,
+    },
+    /// Rise from the smallest to the largest force, hold, fall, each flank half a cosine.
+    Ramp {
+        /// Smallest force [N].
+        minimum: f64,
+        /// Largest force [N].
+        maximum: f64,
+        /// Time of the rise [s].
+        rise: f64,
+        /// Time at the largest force [s].
+        hold: f64,
+        /// Time of the fall, where there is one [s].
+        fall: Option<f64>,
+    },
+    /// A measured force; the first row is at the start of the cycle.
+    Measured {
+        /// (Time [s], force [N]), times ascending from 0.
+        points: Vec<(f64, f64)>,
+        /// Speed at which it runs along the sleepers [m/s]; without it all have it at once.
+        speed: Option<f64>,
+    },
+    /// Wheels or pulses that run along the track.
+    Pass(Pass),
+}
+
+/// Wheels or pulses that run along the track.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// Speed [m/s].
+    pub speed: f64,
+    /// Distance behind the first axle [m] and force [N] of each axle.
+    pub axles: Vec<[f64; 2]>,
+    /// Place of the first axle when a pass begins [m].
+    pub begin: f64,
+    /// Way of the first axle in a pass [m].
+    pub way: f64,
+    /// How the force of an axle comes to the sleepers.
+    pub spread: Spread,
+    /// What an uneven rail adds: force amplitude [N] and wave length [m].
+    pub waves: Vec<[f64; 2]>,
+}
+
+/// How the force of an axle comes to the sleepers.
+#[derive(Clone, Copy, Debug)]
+pub enum Spread {
+    /// As a Gaussian pulse of this width ℓ [m].
+    Gauss(f64),
+    /// By the formula of a beam on an elastic foundation.
+    Winkler(Winkler),
+    /// Through a rail with mass from `ends[0]` to `ends[1]` [m], onto which wheels come within `taper` [m].
+    Beam {
+        /// Ends of the rail [m].
+        ends: [f64; 2],
+        /// Length at each end over which the load of a wheel grows from zero.
+        taper: f64,
+    },
+}
+
+impl Spread {
+    /// Distance from an axle at which nothing is felt any more [m].
+    pub fn reach(&self) -> f64 {
+        match self {
+            Spread::Gauss(width) => GAUSS_REACH * width,
+            Spread::Winkler(w) => w.reach(),
+            Spread::Beam { .. } => 0.0,
+        }
+    }
+}
+
+impl Pass {
+    /// Place of an axle at time `t` of a pass.
+    fn place(&self, behind: f64, t: f64) -> f64 {
+        self.begin + self.speed * t - behind
+    }
+
+    /// Whether the pulses are Gaussian, and not those of axles on a rail.
+    pub fn gaussian(&self) -> bool {
+        matches!(self.spread, Spread::Gauss(_))
+    }
+
+    /// Force of an axle at a place: F = P + Σ M a w² sin wt, with wt = 2πx/L.
+    fn axle(&self, force: f64, place: f64) -> f64 {
+        force
+            + self
+                .waves
+                .iter()
+                .map(|[amplitude, length]| amplitude * (TAU * place / length).sin())
+                .sum::<f64>()
+    }
+
+    /// Force on a sleeper at `place`.
+    fn on(&self, place: f64, t: f64) -> f64 {
+        let each = |[behind, force]: &[f64; 2]| {
+            let x = self.place(*behind, t);
+            let share = match self.spread {
+                Spread::Gauss(width) => gauss(place - x, width),
+                Spread::Winkler(w) => w.share(place - x),
+                Spread::Beam { .. } => return 0.0,
+            };
+            self.axle(*force, x) * share
+        };
+        self.axles.iter().map(each).sum()
+    }
 }
 
 impl CyclicLoad {
-    /// The load that a checked scene asks for.
-    pub fn new(load: &SeatLoad) -> CyclicLoad {
-        CyclicLoad {
-            kind: load.kind,
-            minimum: load.minimum.si,
-            maximum: load.maximum.si,
-            frequency: load.frequency.si,
-            cycles: load.cycles,
-            rest: load.rest.si,
-            ramp: load.ramp.si,
-        }
-    }
-
-    /// Downward force at time `t` [N].
-    pub fn force(&self, t: f64) -> f64 {
-        let first = self.in_cycle(0.0);
+    /// Downward force on sleeper `k` at time `t` [N], that of a rail with mass excepted.
+    pub fn on(&self, k: usize, t: f64) -> f64 {
         let since = t - self.rest;
         if since <= 0.0 {
             0.0
         } else if since < self.ramp {
-            first * 0.5 * (1.0 - (PI * since / self.ramp).cos())
+            self.in_cycles(k, 0.0) * self.brought_on(t)
         } else {
-            self.in_cycle((since - self.ramp) * self.frequency)
+            self.in_cycles(k, since - self.ramp)
         }
     }
 
-    /// Force at a phase counted in cycles.
-    fn in_cycle(&self, phase: f64) -> f64 {
-        let range = self.maximum - self.minimum;
-        match self.kind {
-            SeatLoadKind::Sine => self.minimum + 0.5 * range * (1.0 + (TAU * phase).sin()),
-            SeatLoadKind::Haversine => self.minimum + 0.5 * range * (1.0 - (TAU * phase).cos()),
+    /// Share of the load of the first instant, and of the rail's weight, that acts at time `t`.
+    pub fn brought_on(&self, t: f64) -> f64 {
+        let since = t - self.rest;
+        if since <= 0.0 {
+            0.0
+        } else if since < self.ramp {
+            0.5 * (1.0 - (PI * since / self.ramp).cos())
+        } else {
+            1.0
         }
+    }
+
+    /// Wheels on the rail at time `t`, their loads divided among `rails`; `out` is emptied first.
+    pub fn wheels(&self, t: f64, rails: usize, out: &mut Vec<Wheel>) {
+        self.wheels_with(t, rails, Pass::axle, out);
+    }
+
+    /// The same without what an uneven rail adds.
+    pub fn steady_wheels(&self, t: f64, rails: usize, out: &mut Vec<Wheel>) {
+        self.wheels_with(t, rails, |_, force, _| force, out);
+    }
+
+    fn wheels_with(&self, t: f64, rails: usize, axle: impl Fn(&Pass, f64, f64) -> f64, out: &mut Vec<Wheel>) {
+        out.clear();
+        let (Course::Pass(pass), since) = (&self.course, t - self.cycles_begin()) else { return };
+        let Spread::Beam { ends, taper } = pass.spread else { return };
+        if since < 0.0 || t >= self.end() {
+            return;
+        }
+        let t = since % self.period();
+        for [behind, force] in &pass.axles {
+            let at = pass.place(*behind, t);
+            let inside = (at - ends[0]).min(ends[1] - at);
+            if inside > 0.0 {
+                let share = if inside < taper { 0.5 * (1.0 - (PI * inside / taper).cos()) } else { 1.0 };
+                out.push(Wheel { at, force: share * axle(pass, *force, at) / rails as f64 });
+            }
+        }
+    }
+
+    /// Force on sleeper `k` at a time after the cycles began.
+    fn in_cycles(&self, k: usize, since: f64) -> f64 {
+        let place = self.places.get(k).copied().unwrap_or(0.0);
+        match &self.course {
+            &Course::Wave { sine, minimum, maximum, frequency } => {
+                let (range, phase) = (maximum - minimum, since * frequency);
+                if sine {
+                    minimum + 0.5 * range * (1.0 + (TAU * phase).sin())
+                } else {
+                    minimum + 0.5 * range * (1.0 - (TAU * phase).cos())
+                }
+            }
+            &Course::Ramp { minimum, maximum, rise, hold, fall } => {
+                let t = self.in_cycle(since);
+                let part = if t < rise {
+                    0.5 * (1.0 - (PI * t / rise).cos())
+                } else if t <= rise + hold {
+                    1.0
+                } else {
+                    fall.map_or(1.0, |fall| 0.5 * (1.0 + (PI * ((t - rise - hold) / fall).min(1.0)).cos()))
+                };
+                minimum + (maximum - minimum) * part
+            }
+            Course::Measured { points, speed } => {
+                let delay = speed.map_or(0.0, |v| place / v);
+                between(points, self.in_cycle(since) - delay)
+            }
+            Course::Pass(pass) => pass.on(place, self.in_cycle(since)),
+        }
+    }
+
+    /// Time since the present cycle began, the end of the last cycle going on for ever.
+    fn in_cycle(&self, since: f64) -> f64 {
+        let period = self.period();
+        // A time that rounding has put just before the end of a cycle is its end.
+        let number = (since / period + 1e-9).floor().clamp(0.0, f64::from(self.cycles - 1));
+        (since - number * period).max(0.0)
     }
 
     /// Time at which the first cycle begins [s].
@@ -58,7 +239,28 @@ impl CyclicLoad {
 
     /// Time at which the last cycle ends [s].
     pub fn end(&self) -> f64 {
-        self.cycles_begin() + f64::from(self.cycles) / self.frequency
+        self.cycles_begin() + f64::from(self.cycles) * self.period()
+    }
+
+    /// Smallest and largest force on the middle sleeper in a cycle [N]. A rail with mass has its own share of an axle, which
+    /// only the run tells: half of the heaviest is taken.
+    pub fn range(&self) -> [f64; 2] {
+        let ends = |forces: &mut dyn Iterator<Item = f64>| {
+            forces.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)])
+        };
+        match &self.course {
+            Course::Wave { minimum, maximum, .. } | Course::Ramp { minimum, maximum, .. } => {
+                [*minimum, *maximum]
+            }
+            Course::Measured { points, .. } => ends(&mut points.iter().map(|p| p.1)),
+            Course::Pass(pass) if matches!(pass.spread, Spread::Beam { .. }) => {
+                [0.0, 0.5 * pass.axles.iter().map(|a| a[1]).fold(0.0, f64::max)]
+            }
+            Course::Pass(_) => {
+                let (middle, step) = (self.places.len() / 2, self.period() / 1000.0);
+                ends(&mut (0..=1000).map(|i| self.in_cycles(middle, f64::from(i) * step)))
+            }
+        }
     }
 
     /// Number of cycles.
@@ -68,33 +270,29 @@ impl CyclicLoad {
 
     /// Length of a cycle [s].
     pub fn period(&self) -> f64 {
-        1.0 / self.frequency
+        match &self.course {
+            Course::Wave { frequency, .. } => 1.0 / frequency,
+            Course::Ramp { rise, hold, fall, .. } => rise + hold + fall.unwrap_or(0.0),
+            Course::Measured { points, speed } => {
+                let last = self.places.last().copied().unwrap_or(0.0);
+                points.last().map_or(0.0, |p| p.0) + speed.map_or(0.0, |v| last / v)
+            }
+            Course::Pass(pass) => pass.way / pass.speed,
+        }
+    }
+}
+
+/// Straight between points, constant beyond them.
+fn between(points: &[(f64, f64)], t: f64) -> f64 {
+    let k = points.partition_point(|p| p.0 <= t);
+    match (k.checked_sub(1).map(|k| points[k]), points.get(k)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0),
+        (Some(a), None) => a.1,
+        (None, Some(b)) => b.1,
+        (None, None) => 0.0,
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn load(kind: SeatLoadKind) -> CyclicLoad {
-        CyclicLoad { kind, minimum: 5.0, maximum: 65.0, frequency: 10.0, cycles: 3, rest: 0.1, ramp: 0.2 }
-    }
-
-    #[test]
-    fn haversine_starts_at_the_minimum_and_peaks_at_half_a_cycle() {
-        let f = load(SeatLoadKind::Haversine);
-        assert_eq!(f.force(0.05), 0.0);
-        assert!((f.force(0.2) - 2.5).abs() < 1e-12, "half way up the ramp to the minimum");
-        assert!((f.force(0.3) - 5.0).abs() < 1e-12);
-        assert!((f.force(0.35) - 65.0).abs() < 1e-9);
-        assert!((f.end() - 0.6).abs() < 1e-12);
-    }
-
-    #[test]
-    fn sine_starts_at_the_mean_and_reaches_both_ends() {
-        let f = load(SeatLoadKind::Sine);
-        assert!((f.force(0.3) - 35.0).abs() < 1e-9);
-        assert!((f.force(0.325) - 65.0).abs() < 1e-9);
-        assert!((f.force(0.375) - 5.0).abs() < 1e-9);
-    }
-}
+#[path = "seat_load_tests.rs"]
+mod tests;

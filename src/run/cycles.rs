@@ -1,4 +1,7 @@
 //! Results per load cycle: settlement, resilience, stiffness, dissipation, formation pressure.
+//!
+//! A cycle that was simulated has a row. Its number counts the cycles that were jumped over too; where only the account
+//! jumps, the bed is younger than that number, and the settlement of the row is the measured one plus slope × ln(number/age).
 
 use crate::model::seat_load::CyclicLoad;
 use serde::{Deserialize, Serialize};
@@ -6,18 +9,37 @@ use serde::{Deserialize, Serialize};
 /// What one cycle did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Cycle number, from 1.
+    /// Cycle number, from 1, jumped cycles included.
     pub number: u32,
+    /// Cycles simulated so far, this one included.
+    pub simulated: u32,
     /// Lowering of the sleeper since the first cycle began, at the end of this cycle [m].
     pub settlement: f64,
+    /// Increase of settlement per cycle since the last row [m].
+    pub rate: f64,
     /// Rise of the sleeper from its lowest place in this cycle to the cycle's end [m].
     pub resilient_deflection: f64,
     /// Range of the load over the resilient deflection [N/m].
     pub secant_stiffness: f64,
+    /// Slope between two loads on the loading branch [N/m]; 0 when it was not passed.
+    pub bed_stiffness: f64,
+    /// Range of the pressure under the sleeper over the resilient strain of the bed below it [Pa].
+    pub resilient_modulus: f64,
     /// Work of the load over the cycle [J].
     pub dissipated_energy: f64,
     /// Largest pressure on a face of the formation, as the mean over one exchange [Pa]; 0 without a solid.
     pub peak_formation_pressure: f64,
+    /// Estimated error of the settlement by cycle jumps so far [m].
+    pub jump_error: f64,
+}
+
+/// The bed under the sleeper, as a column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// Area of the sleeper's base [m²].
+    pub area: f64,
+    /// Height of the bed when the first cycle begins, less the height of the sleeper's centre [m].
+    pub below: f64,
 }
 
 /// Follows the sleeper through the cycles.
@@ -26,30 +48,88 @@ pub struct CycleRecorder {
     begin: f64,
     period: f64,
     total: u32,
+    /// Loads between which the stiffness of the bed is taken [N].
+    between: [f64; 2],
+    column: Column,
     /// Height of the sleeper when the first cycle began [m].
     datum: f64,
     lowest: f64,
     load_range: (f64, f64),
     work_before: f64,
     pressure: f64,
+    /// Load [N] and height [m] one window ago; height where the rising load passed the lower of `between`.
+    last: (f64, f64),
+    passed: Option<f64>,
+    stiffness: f64,
+    /// Cycles simulated and cycles jumped over.
+    simulated: u32,
+    skipped: u32,
+    /// Slope of the account beyond the simulated cycles [m].
+    slope: f64,
+    /// Estimated error of the settlement by jumps [m].
+    pub jump_error: f64,
+    /// Age of the bed in cycles and settlement as measured [m] after the last cycle.
+    pub latest: [f64; 2],
+    /// Whether cycles count for the laws: not those in which the bed recovers from a jump.
+    pub counting: bool,
     /// Finished cycles.
     pub done: Vec<Cycle>,
+    /// `latest` of all cycles that count: what laws are fitted to.
+    pub measured: Vec<[f64; 2]>,
 }
 
 impl CycleRecorder {
-    /// A recorder of all cycles of `load`.
-    pub fn new(load: &CyclicLoad) -> CycleRecorder {
+    /// A recorder of all cycles of `load`, with the stiffness of the bed between two loads [N].
+    pub fn new(load: &CyclicLoad, between: [f64; 2], column: Column) -> CycleRecorder {
         CycleRecorder {
             begin: load.cycles_begin(),
             period: load.period(),
             total: load.cycles(),
+            between,
+            column,
             datum: 0.0,
             lowest: f64::INFINITY,
             load_range: (f64::INFINITY, f64::NEG_INFINITY),
             work_before: 0.0,
             pressure: 0.0,
-            done: Vec::with_capacity(load.cycles() as usize),
+            last: (f64::INFINITY, 0.0),
+            passed: None,
+            stiffness: 0.0,
+            simulated: 0,
+            skipped: 0,
+            slope: 0.0,
+            jump_error: 0.0,
+            latest: [0.0; 2],
+            counting: true,
+            done: Vec::new(),
+            measured: Vec::new(),
         }
+    }
+
+    /// Cycles of the load, jumped ones included.
+    pub fn total(&self) -> u32 {
+        self.total
+    }
+
+    /// Number of the last finished cycle.
+    pub fn number(&self) -> u32 {
+        self.simulated + self.skipped
+    }
+
+    /// Cycles simulated.
+    pub fn simulated(&self) -> u32 {
+        self.simulated
+    }
+
+    /// Whether the last cycle is over.
+    pub fn over(&self) -> bool {
+        self.number() >= self.total
+    }
+
+    /// Jumps over some cycles. `slope` is that of the account, ds/d(ln N) [m]; 0 when the grains themselves are moved.
+    pub fn skip(&mut self, cycles: u32, slope: f64) {
+        self.skipped += cycles;
+        self.slope = slope;
     }
 
     /// Takes in the state at time `t` [s] after a step of length `dt` [s]: height of the sleeper's centre [m], load
@@ -69,74 +149,151 @@ impl CycleRecorder {
             self.datum = height;
             self.lowest = height;
             self.work_before = work;
+            self.last = (load, height);
             return None;
         }
-        if self.done.len() as u32 == self.total {
+        if self.over() {
             return None;
         }
         self.lowest = self.lowest.min(height);
         self.load_range = (self.load_range.0.min(load), self.load_range.1.max(load));
         self.pressure = self.pressure.max(pressure);
-        let number = self.done.len() as u32 + 1;
-        if t + 0.5 * dt < self.begin + f64::from(number) * self.period {
+        self.follow_loading(load, height);
+        let next = f64::from(self.simulated + 1);
+        if t + 0.5 * dt < self.begin + next * self.period {
             return None;
         }
-        let resilient = height - self.lowest;
+        self.simulated += 1;
+        let (number, age) = (self.number(), f64::from(self.simulated));
+        let (range, resilient) = (self.load_range.1 - self.load_range.0, height - self.lowest);
+        let over = |x: f64| if resilient > 0.0 { x / resilient } else { 0.0 };
+        let measured = self.datum - height;
+        // Grains that are moved are as old as the account says; those that are not, only as old as they are.
+        let moved = self.slope == 0.0;
+        let settlement = measured + if moved { 0.0 } else { self.slope * (f64::from(number) / age).ln() };
+        let before = self.done.last().map_or((0, 0.0), |c| (c.number, c.settlement));
         let cycle = Cycle {
             number,
-            settlement: self.datum - height,
+            simulated: self.simulated,
+            settlement,
+            rate: (settlement - before.1) / f64::from(number - before.0),
             resilient_deflection: resilient,
-            secant_stiffness: if resilient > 0.0 {
-                (self.load_range.1 - self.load_range.0) / resilient
+            secant_stiffness: over(range),
+            bed_stiffness: self.stiffness,
+            resilient_modulus: if self.column.area > 0.0 {
+                over(range / self.column.area * (self.datum + self.column.below))
             } else {
                 0.0
             },
             dissipated_energy: work - self.work_before,
             peak_formation_pressure: self.pressure,
+            jump_error: self.jump_error,
         };
         self.done.push(cycle);
+        self.latest = [if moved { f64::from(number) } else { age }, measured];
+        if self.counting {
+            self.measured.push(self.latest);
+        }
         self.lowest = height;
         self.load_range = (load, load);
         self.work_before = work;
         self.pressure = 0.0;
+        self.stiffness = 0.0;
         Some(cycle)
+    }
+
+    /// Notes where the rising load passes the two loads, straight between two windows.
+    fn follow_loading(&mut self, load: f64, height: f64) {
+        let (load_before, height_before) = self.last;
+        let [low, high] = self.between;
+        let at = |f: f64| {
+            let share = (f - load_before) / (load - load_before);
+            (load_before < f && f <= load).then_some(height_before + share * (height - height_before))
+        };
+        self.passed = at(low).or(self.passed);
+        if let (Some(from), Some(to)) = (self.passed, at(high)) {
+            self.stiffness = if from > to { (high - low) / (from - to) } else { 0.0 };
+            self.passed = None;
+        }
+        self.last = (load, height);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::track::{SeatLoad, SeatLoadKind};
-    use crate::scene::units::Quantity;
+    use crate::model::seat_load::Course;
+
+    fn load(sine: bool) -> CyclicLoad {
+        let course = Course::Wave { sine, minimum: 0.0, maximum: 100.0, frequency: 10.0 };
+        CyclicLoad { course, cycles: 3, rest: 0.1, ramp: 0.1, places: vec![0.0] }
+    }
 
     #[test]
     fn a_spring_with_drift_yields_its_own_stiffness_and_settlement() {
-        let load = CyclicLoad::new(&SeatLoad {
-            kind: SeatLoadKind::Haversine,
-            minimum: Quantity::new(0.0),
-            maximum: Quantity::new(100.0),
-            frequency: Quantity::new(10.0),
-            cycles: 3,
-            rest: Quantity::new(0.1),
-            ramp: Quantity::new(0.1),
-            seats: vec![],
-        });
-        let mut recorder = CycleRecorder::new(&load);
+        let load = load(false);
+        let column = Column { area: 0.5, below: -0.8 };
+        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], column);
         // Height 1 − F/k − drift·(t − 0.2): k = 10 kN/m, drift 1 mm per cycle.
         let (dt, k, drift) = (1e-4, 1e4, 0.01);
         for step in 1..=5000 {
             let t = f64::from(step) * dt;
-            let f = load.force(t);
+            let f = load.on(0, t);
             let height = 1.0 - f / k - drift * (t - 0.2).max(0.0);
             recorder.record(t, dt, height, f, 2.0 * t, 7.0 * f);
         }
         assert_eq!(recorder.done.len(), 3);
         for (i, c) in recorder.done.iter().enumerate() {
             assert!((c.settlement - 1e-3 * (i + 1) as f64).abs() < 3e-6, "{c:?}");
+            assert!((c.rate - 1e-3).abs() < 3e-6, "{c:?}");
             assert!((c.resilient_deflection - 0.0095).abs() < 5e-6, "{c:?}");
             assert!((c.secant_stiffness - 100.0 / 0.0095).abs() < 10.0, "{c:?}");
+            // 200 Pa over the strain of a bed 0.2 m high.
+            assert!((c.resilient_modulus - 200.0 / (0.0095 / 0.2)).abs() < 4.0, "{c:?}");
+            // From 25 to 75 N takes a sixth of the cycle: 5 mm by the spring, a sixth of a millimetre by the drift.
+            let expected = 50.0 / (0.005 + 0.001 / 6.0);
+            assert!((c.bed_stiffness / expected - 1.0).abs() < 1e-3, "{c:?} {expected}");
             assert!((c.dissipated_energy - 0.2).abs() < 1e-3, "{c:?}");
             assert!((c.peak_formation_pressure - 700.0).abs() < 1.0, "{c:?}");
         }
+    }
+
+    #[test]
+    fn a_sine_that_starts_at_the_mean_has_a_loading_branch_as_well() {
+        let load = load(true);
+        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], Column::default());
+        for step in 1..=5000 {
+            let t = f64::from(step) * 1e-4;
+            let f = load.on(0, t);
+            recorder.record(t, 1e-4, 1.0 - f / 1e4, f, 0.0, 0.0);
+        }
+        // The first cycle passes the lower load only at its end; on a spring every branch has its stiffness.
+        assert!(recorder.done[1..].iter().all(|c| (c.bed_stiffness / 1e4 - 1.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn an_account_that_jumps_goes_on_along_the_logarithm() {
+        let load = load(false);
+        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], Column::default());
+        recorder.total = 1000;
+        let mut jumped = false;
+        for step in 1..=6000 {
+            let t = f64::from(step) * 1e-4;
+            let age = ((t - 0.2) * 10.0).max(0.0);
+            recorder.record(t, 1e-4, 1.0 - 0.01 * (1.0 + age).ln(), load.on(0, t), 0.0, 0.0);
+            if recorder.simulated() == 2 && !jumped {
+                recorder.skip(500, 0.01);
+                jumped = true;
+            }
+        }
+        let last = recorder.done[3];
+        assert_eq!((last.number, last.simulated), (504, 4));
+        assert!((last.settlement - 0.01 * (5.0_f64.ln() + (504.0_f64 / 4.0).ln())).abs() < 1e-6, "{last:?}");
+        assert!((recorder.measured[3][1] - 0.01 * 5.0_f64.ln()).abs() < 1e-6);
+        assert_eq!(recorder.measured[3][0], 4.0);
+        let jump = recorder.done[2];
+        let before = recorder.done[1];
+        assert_eq!(jump.number - before.number, 501);
+        assert!((jump.rate - (jump.settlement - before.settlement) / 501.0).abs() < 1e-15);
     }
 }

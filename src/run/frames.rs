@@ -73,8 +73,9 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
     for body in 0..view.model.body_count() {
         let q = view.state.orientation(view.model, body);
         let (x, v, w) = (view.state.position(body), view.state.velocity(body), view.state.spin(body));
+        let back = into_box(view, body);
         for (centre, radius) in view.state.spheres(view.model, body) {
-            frame.position.push(centre.into());
+            frame.position.push(moved(centre, back).into());
             frame.radius.push(radius);
             frame.velocity.push((v + w.cross(&(centre - x))).into());
             frame.spin.push(w.into());
@@ -88,6 +89,21 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
         }
     }
     frame
+}
+
+/// The way that puts a body back between periodic borders; `None` where there are none.
+fn into_box(view: GrainsView<'_>, body: usize) -> Option<dem::Vec3> {
+    let x = view.state.position(body);
+    let periodic = view.model.periodic().iter().any(Option::is_some);
+    periodic.then(|| view.model.wrap(&x) - x)
+}
+
+/// A point moved; one that does not move keeps its bits.
+fn moved(x: dem::Vec3, way: Option<dem::Vec3>) -> dem::Vec3 {
+    match way {
+        Some(way) if way != dem::Vec3::zeros() => x + way,
+        _ => x,
+    }
 }
 
 /// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
@@ -104,9 +120,11 @@ pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
         frame.strong.push(u32::from(strong));
         let first = view.state.position(c.a);
         let second = match c.b {
-            dem::Partner::Body(b) => view.state.position(b),
+            dem::Partner::Body(b) => moved(view.state.position(b), Some(c.shift)),
             _ => c.point,
         };
+        let back = into_box(view, c.a);
+        let (first, second) = (moved(first, back), moved(second, back));
         let tangential = c.force - c.normal * c.force.dot(&c.normal);
         frame.ends.push([first.into(), second.into()]);
         frame.normal_force.push(c.normal_force);

@@ -4,14 +4,16 @@ use super::Stage;
 use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
 use super::cycles::Cycle;
+use super::push::{Push, PushState};
 use super::record::Recorder;
-use super::summary::{EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
+use super::summary::{BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
 use super::system::System;
 use super::track::Track;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::progress::Progress;
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use trackbed_dem as dem;
 
 /// Stage of a checkpoint from within the run proper.
@@ -34,6 +36,8 @@ struct Place {
     next_frame: u64,
     /// Seconds by the clock.
     seconds: f64,
+    /// Windows of the whole run, which are fewer where cycles are jumped over.
+    windows: u64,
 }
 
 impl Stage<'_> {
@@ -87,71 +91,110 @@ impl Stage<'_> {
         let job = self.job;
         let (grains, start) = grains.unzip();
         let window = system.window();
-        let windows = ((job.end / window).ceil() as u64).max(1);
+        let mut windows = ((job.end / window).ceil() as u64).max(1);
         let frames = u64::from(job.output.frames).min(windows);
         let interval = job.output.history_interval;
         let every = ((interval / window).round() as u64).max(1);
 
-        let track = Track::new(grains, system.grains().map_or(0, |g| g.model.body_count()));
-        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            track.apply(t, model, state, out);
-        };
-
+        let mut track = Track::new(grains, system.grains());
+        let push = Push::new(grains, &track, system);
+        let pushed = RefCell::new(PushState::default());
+        let load = grains.and_then(|g| g.load.as_ref());
+        // What follows the cycles, whenever they end.
+        let tail = load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows));
         let (mut recorder, from) = match resumed {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
+                *pushed.borrow_mut() = loaded.take()?;
+                track = track.resume(&mut loaded)?;
+                windows = from.windows;
                 (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
             }
             None => {
                 let mut recorder = Recorder::start(job, self.dir, system, &track)?;
                 recorder.row(0.0, system, &track)?;
-                recorder.frame(0.0, system)?;
-                (recorder, Place { done: 0, next_frame: 1, seconds: 0.0 })
+                recorder.frame(0.0, system, &track)?;
+                (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
             }
         };
+        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            if !push.as_ref().is_some_and(|p| p.apply(&pushed.borrow(), t, model, state, out)) {
+                track.apply(t, model, state, out);
+            }
+        };
+        // With jumps neither time nor steps tell how far a run is.
+        let jumps = grains.is_some_and(|g| g.after.jump.is_some());
+        let share = |k: u64, windows: u64, recorder: &Recorder<'_>| match recorder.progress() {
+            Some((number, total)) if jumps => (u64::from(number), u64::from(total)),
+            _ => (k, windows),
+        };
+        let (begun, whole) = share(from.done, windows, &recorder);
         let progress =
-            Progress::start("running", windows as f64, self.quiet).resumed(from.done as f64, from.seconds);
+            Progress::start("running", whole as f64, self.quiet).resumed(begun as f64, from.seconds);
         let mut next_frame = from.next_frame;
         let mut done = from.done;
+        if let (Some(push), None) = (&push, load) {
+            push.begin(&mut pushed.borrow_mut(), 0.0, 0.0);
+        }
         self.keeper.begin();
-        let outcome = (from.done + 1..=windows).try_for_each(|k| -> Result<(), Failure> {
-            let time = k as f64 * window;
-            system.advance(&apply)?;
-            if let Some(cycle) = recorder.follow(time, system, &track)? {
-                progress.message(format!(
-                    "cycle {}: settlement {:.3} mm",
-                    cycle.number,
-                    1e3 * cycle.settlement
-                ));
-            }
-            if k % every == 0 || k == windows {
-                recorder.row(time, system, &track).map_err(|e| e.at(time))?;
-            }
-            if frames > 0 && k * frames >= next_frame * windows {
-                recorder.frame(time, system).map_err(|e| e.at(time))?;
-                next_frame += 1;
-            }
-            progress.at(k as f64);
-            done = k;
-            if k == windows {
-                return Ok(());
-            }
-            self.keeper.step(
-                || Moment { stage: RUN.into(), step: k, time },
-                |body| {
-                    // In the order in which a resumed run needs them.
-                    if let Some(settled) = &*self.settled.borrow() {
-                        body.put(settled)?;
+        let mut outcome = Ok(());
+        while outcome.is_ok() && done < windows {
+            outcome = (|| -> Result<(), Failure> {
+                let k = done + 1;
+                let time = k as f64 * window;
+                track.begin_window();
+                system.advance(&apply)?;
+                track.follow(time, system);
+                if let Some(cycle) = recorder.follow(time, system, &track)? {
+                    progress.message(format!(
+                        "cycle {}: settlement {:.3} mm",
+                        cycle.number,
+                        1e3 * cycle.settlement
+                    ));
+                    if recorder.progress().is_some_and(|(number, total)| number >= total) {
+                        if let (Some(push), Some(load)) = (&push, load) {
+                            push.begin(&mut pushed.borrow_mut(), time, load.on(track.count() / 2, time));
+                        }
+                        if jumps {
+                            windows = (k + tail).min(windows);
+                        }
                     }
-                    system.save(body)?;
-                    if let Some(start) = &start {
-                        body.put(start)?;
-                    }
-                    body.put(&Place { done, next_frame, seconds: progress.seconds() })?;
-                    recorder.save(body)
-                },
-            )
-        });
+                }
+                if let Some(push) = &push {
+                    push.follow(&mut pushed.borrow_mut(), time, system);
+                }
+                if k % every == 0 || k == windows {
+                    recorder.row(time, system, &track).map_err(|e| e.at(time))?;
+                }
+                let (come, whole) = share(k, windows, &recorder);
+                if frames > 0 && come * frames >= next_frame * whole && next_frame <= frames {
+                    recorder.frame(time, system, &track).map_err(|e| e.at(time))?;
+                    next_frame = come * frames / whole + 1;
+                }
+                progress.at(come as f64);
+                done = k;
+                if k == windows {
+                    return Ok(());
+                }
+                self.keeper.step(
+                    || Moment { stage: RUN.into(), step: k, time },
+                    |body| {
+                        // In the order in which a resumed run needs them.
+                        if let Some(settled) = &*self.settled.borrow() {
+                            body.put(settled)?;
+                        }
+                        system.save(body)?;
+                        if let Some(start) = &start {
+                            body.put(start)?;
+                        }
+                        body.put(&Place { done, next_frame, seconds: progress.seconds(), windows })?;
+                        body.put(&*pushed.borrow())?;
+                        track.save(body)?;
+                        recorder.save(body)
+                    },
+                )
+            })();
+        }
         self.keeper.end();
         // A step that found no equilibrium leaves the last one: it is what the user wants to see.
         if matches!(outcome, Err(Failure::Numerical(_)))
@@ -159,7 +202,7 @@ impl Stage<'_> {
             && let Some(time) = system.solid().map(|s| s.state.time)
         {
             recorder.row(time, system, &track)?;
-            recorder.frame(time, system)?;
+            recorder.frame(time, system, &track)?;
         }
         if let (Some(part), Some(view)) = (grains, system.grains())
             && !part.bonds.is_empty()
@@ -175,7 +218,11 @@ impl Stage<'_> {
             grain_steps: done * grain_steps,
             solid_steps: done * solid_steps,
         });
-        summary.settlement = settlement(recorder.cycles());
+        if let Some(push) = &push {
+            push.finish(&pushed.borrow(), self.dir, summary)?;
+        }
+        summary.settlement = settlement(recorder.cycles(), grains, &recorder);
+        summary.track = track.record();
         let balance = recorder.balance();
         let work = balance.spent.work();
         let turnover = work.abs().max(balance.spent.dissipated());
@@ -193,7 +240,11 @@ impl Stage<'_> {
     }
 }
 
-fn settlement(cycles: &[Cycle]) -> Option<SettlementRecord> {
+fn settlement(
+    cycles: &[Cycle],
+    grains: Option<&GrainsPart>,
+    recorder: &Recorder<'_>,
+) -> Option<SettlementRecord> {
     if cycles.is_empty() {
         return None;
     }
@@ -204,5 +255,12 @@ fn settlement(cycles: &[Cycle]) -> Option<SettlementRecord> {
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
     let slowing =
         (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
-    Some(SettlementRecord { per_cycle, increments, slowing })
+    let last: Vec<f64> = cycles[cycles.len().saturating_sub(10)..].iter().map(|c| c.bed_stiffness).collect();
+    let bed_stiffness = grains.and_then(|g| g.after.between).map(|between| BedStiffness {
+        between,
+        last: last[last.len() - 1],
+        mean_of_last_ten: mean(&last),
+    });
+    let (fits, jump) = (recorder.fits(), recorder.jumps());
+    Some(SettlementRecord { per_cycle, increments, slowing, fits, bed_stiffness, jump })
 }

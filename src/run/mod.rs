@@ -6,14 +6,18 @@ mod checkpoint;
 mod compact;
 mod cycles;
 mod failure_factor;
+mod fit;
 mod frames;
 mod initial;
+mod jump;
 mod keeper;
 mod main_stage;
 mod memory;
 mod packed;
 mod packing;
 mod plastic;
+mod push;
+mod rail;
 mod record;
 mod settle;
 mod solid_alone;
@@ -41,6 +45,7 @@ use main_stage::RUN;
 use settle::Settled;
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use summary::{CouplingRecord, Hash, NewtonRecord};
 use system::{CoupledSystem, GrainsSystem, System};
 use trackbed_coupling as coupling;
@@ -254,6 +259,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
         files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
+    files.extend(scene.track.iter().filter_map(|t| t.load.as_ref()?.file.as_deref()));
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
     files
@@ -392,6 +398,11 @@ impl Stage<'_> {
             summary.sources.extend(BOND_SOURCES);
         }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
+        push::check(self.document, grains, model.dt())?;
+        grains.check_pads(self.document, model.dt())?;
+        if grains.rail.is_some() {
+            summary.sources.extend(RAIL_SOURCES);
+        }
         summary.model.bodies = model.body_count();
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());
@@ -435,9 +446,17 @@ impl Stage<'_> {
             newton: solid.newton,
             grains,
         };
-        let work = coupling::step::Work::new(&model, &state, surface)
+        let mut work = coupling::step::Work::new(&model, &state, surface)
             .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
             .map_err(|e| solid.failure(&e))?;
+        if let Some(reduction) = solid.reduction {
+            let reduced = fem::reduction::Reduced::new(&solid.model, work.surface.faces(), reduction)
+                .map_err(|e| {
+                    Failure::from(self.document.error("solid.reduction", e.to_string(), "another choice"))
+                })?;
+            work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
+            summary.model.reduction = work.reduction();
+        }
         summary.model.solid_step = Some(model.window());
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
         Ok(CoupledSystem { model, state, work, loads: &solid.loads })
@@ -531,6 +550,11 @@ fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     }
     sources
 }
+
+const RAIL_SOURCES: [&str; 2] = [
+    "rail: Euler-Bernoulli beam of cubic elements, Przemieniecki, Theory of Matrix Structural Analysis, 1968",
+    "rail in time: average acceleration, Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959",
+];
 
 const BOND_SOURCES: [&str; 1] =
     ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];

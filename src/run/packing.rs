@@ -1,11 +1,11 @@
 //! What the grains are like at the end of a run: porosity, coordination, fabric, stress, sieve curves; and the files that
-//! hold it: `gradation.csv`, `gradation.svg`, `packing.csv`.
+//! hold it: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
 
 use super::Stage;
 use super::summary::Summary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
-use crate::model::grains::{GradedGroup, GrainsPart};
+use crate::model::grains::{GradedGroup, GrainsPart, Measure, Radial};
 use crate::write::csv::{Column, History};
 use crate::write::svg::{LinePlot, Series};
 use crate::write::{WriteError, atomic};
@@ -69,8 +69,23 @@ pub struct PackingRecord {
     pub unbalanced_ratio: Option<f64>,
     /// Boxes that the scene asks for.
     pub measures: Vec<MeasureRecord>,
+    /// Fines in the bed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fouling: Option<FoulingRecord>,
     /// Sieve curves of the groups filled by one.
     pub gradations: Vec<GradationRecord>,
+}
+
+/// Fines in the bed (Selig & Waters 1994; Indraratna, Su & Rujikiatkamjorn, Can. Geotech. J. 48, 2011).
+#[derive(Debug, Serialize)]
+pub struct FoulingRecord {
+    /// Mass of the fines over that of all grains: the fouling index with the fines for what passes the sieve of 4.75 mm.
+    pub fouling_index: f64,
+    /// Solid volume of the fines over that of the other grains: relative ballast fouling ratio.
+    pub relative_fouling_ratio: f64,
+    /// Name of each measured box, porosity of the other grains alone, and solid volume of the fines over the voids that the
+    /// others leave. The void contaminant index is 1 + e_f times the last, e_f the void ratio of the fines.
+    pub boxes: Vec<(String, f64, f64)>,
 }
 
 /// What a box holds.
@@ -128,8 +143,8 @@ impl Stage<'_> {
         let ratio = measure::unbalanced_ratio(model, &contacts);
         let between =
             |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
-        let measures = grains.measures.iter().map(|(name, region)| {
-            let inside = |b: usize| is_grain(b) && region.holds(&state.position(b));
+        let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
+            let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
             let own = measure::coordination_of(model, &contacts, inside);
             MeasureRecord {
                 name: name.clone(),
@@ -145,6 +160,9 @@ impl Stage<'_> {
         if !gradations.is_empty() {
             write_gradations(self.dir, &self.job.title, model, &grains.graded)?;
         }
+        if grains.measures.iter().any(|m| m.radial.is_some()) {
+            write_radial(self.dir, view, &grains.measures, is_grain)?;
+        }
         if self.job.output.packing {
             write_packings(self.dir, view, grains)?;
         }
@@ -159,10 +177,39 @@ impl Stage<'_> {
             strong_load: strong.load,
             unbalanced_ratio: ratio.is_finite().then_some(ratio),
             measures: measures.collect(),
+            fouling: fouling(view, grains, is_grain),
             gradations,
         });
         Ok(())
     }
+}
+
+/// How much of the fouling groups is in the bed.
+fn fouling(
+    view: GrainsView<'_>,
+    grains: &GrainsPart,
+    is_grain: impl Fn(usize) -> bool,
+) -> Option<FoulingRecord> {
+    if grains.fouling.is_empty() {
+        return None;
+    }
+    let model = view.model;
+    let fine = |b: usize| grains.fouling.contains(&model.part(b));
+    let sum = |of: fn(&dem::Model, usize) -> f64, fines: bool| -> f64 {
+        (0..model.body_count()).filter(|&b| is_grain(b) && fine(b) == fines).map(|b| of(model, b)).sum()
+    };
+    let [stones, fines] = [false, true].map(|f| sum(dem::Model::mass, f));
+    let boxes = grains.measures.iter().map(|Measure { name, region, .. }| {
+        let skeleton = porosity(view, region, |b| is_grain(b) && !fine(b));
+        let both = porosity(view, region, &is_grain);
+        let share = if skeleton > 0.0 { (skeleton - both) / skeleton } else { 0.0 };
+        (name.clone(), skeleton, share)
+    });
+    Some(FoulingRecord {
+        fouling_index: fines / (stones + fines),
+        relative_fouling_ratio: sum(dem::Model::volume, true) / sum(dem::Model::volume, false),
+        boxes: boxes.collect(),
+    })
 }
 
 /// Share of a box that grains leave.
@@ -197,6 +244,26 @@ fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
 
 /// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
 /// same drawn.
+/// Radial distribution functions of the boxes that ask for one: distance at the middle of each shell, and g.
+fn write_radial(
+    dir: &Path,
+    view: GrainsView<'_>,
+    measures: &[Measure],
+    is_grain: impl Fn(usize) -> bool,
+) -> Result<(), Failure> {
+    let columns = [("measure", ""), ("distance", "m"), ("g", "")];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let mut file = History::create(&dir.join("radial.csv"), columns)?;
+    for (i, m) in measures.iter().enumerate() {
+        let Some(Radial { reach, bins }) = m.radial else { continue };
+        let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins);
+        for (k, g) in g.iter().flatten().enumerate() {
+            file.row(&[i as f64, (k as f64 + 0.5) * reach / bins as f64, *g])?;
+        }
+    }
+    Ok(())
+}
+
 fn write_gradations(
     dir: &Path,
     title: &str,
@@ -271,7 +338,7 @@ fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
     };
     let spheres = own().all(single);
     for b in own() {
-        let x = state.position(b);
+        let x = model.wrap(&state.position(b));
         if spheres {
             line(&[x.x, x.y, x.z, model.radius(b)]);
         } else {
@@ -319,6 +386,14 @@ pub(super) fn report(summary: &Summary) -> Vec<String> {
             "{}: porosity {:.4}, {} grains, {:.2} neighbours, mean pressure {pressure:.3e} Pa",
             m.name, m.porosity, m.grains, m.coordination
         ));
+    }
+    if let Some(f) = &p.fouling {
+        let boxes: Vec<String> = f
+            .boxes
+            .iter()
+            .map(|(name, _, share)| format!(", {:.1} % of the voids of {name}", 100.0 * share))
+            .collect();
+        lines.push(format!("fines: {:.2} % of the mass{}", 100.0 * f.fouling_index, boxes.concat()));
     }
     for g in &p.gradations {
         lines.push(format!(

@@ -3,13 +3,16 @@
 
 use super::bond_output;
 use super::checkpoint::{Body, Loaded};
-use super::cycles::{Cycle, CycleRecorder};
+use super::cycles::{self, Cycle, CycleRecorder};
+use super::fit;
 use super::frames;
+use super::jump::{JumpSummary, Jumper};
 use super::system::System;
 use super::track::Track;
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::Job;
+use crate::model::seat_load::CyclicLoad;
 use crate::write;
 use crate::write::csv::{Column, History, Mark};
 use serde::{Deserialize, Serialize};
@@ -33,6 +36,11 @@ struct Course {
     /// Number of the next frame.
     frame: usize,
     cycles: Option<CycleRecorder>,
+    jumper: Option<Jumper>,
+    /// Energy that cycle jumps brought in [J].
+    jump_energy: f64,
+    /// Energy error just before a jump whose energy is not known before the next window [J].
+    before_jump: Option<f64>,
     balance: Balance,
     /// Largest |energy error| at any row [J].
     largest_error: f64,
@@ -63,10 +71,11 @@ impl<'a> Recorder<'a> {
         let history = History::create(&dir.join("history.csv"), columns(job, system, track))?;
         let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
         let cycles_file =
-            load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns())).transpose()?;
+            load.map(|_| History::create(&dir.join("cycles.csv"), cycle_columns(job))).transpose()?;
         let stored = system.stored();
         let course = Course {
-            cycles: load.map(CycleRecorder::new),
+            cycles: load.map(|load| cycle_recorder(job, system, load)),
+            jumper: job.grains.as_ref().and_then(|g| g.after.jump.as_ref()).map(Jumper::new),
             balance: Balance { start: stored, now: stored, spent: system.spent() },
             ..Course::default()
         };
@@ -92,7 +101,7 @@ impl<'a> Recorder<'a> {
         let history = History::resume(&file, columns(job, system, track), marks.history).map_err(unfit)?;
         let cycles_file = marks
             .cycles
-            .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_columns(), mark))
+            .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_columns(job), mark))
             .transpose()
             .map_err(unfit)?;
         let series = write::pvd::Series::resume(&dir.join("results.pvd"), marks.series).map_err(unfit)?;
@@ -142,7 +151,7 @@ impl<'a> Recorder<'a> {
     pub fn row<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let mut row = vec![time];
         if let Some(g) = system.grains() {
-            for (k, s) in track.sleepers(time).enumerate() {
+            for (k, s) in (0..track.count()).map(|k| (k, track.sleeper(k, time))) {
                 let x = g.state.position(s.body);
                 let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
                 row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
@@ -161,6 +170,8 @@ impl<'a> Recorder<'a> {
         let course = &mut self.course;
         course.balance.now = system.stored();
         course.balance.spent = system.spent();
+        course.balance.spent.jumps = course.jump_energy;
+        track.account(&mut course.balance.now, &mut course.balance.spent);
         let (now, spent) = (&course.balance.now, &course.balance.spent);
         let error = course.balance.error();
         course.largest_error = course.largest_error.max(error.abs());
@@ -178,6 +189,10 @@ impl<'a> Recorder<'a> {
             spent.interface(),
             error,
         ]);
+        if track.has_rails() {
+            (0..track.count()).for_each(|k| row.push(track.rail(k)));
+            row.extend([now.rail, spent.wheels, spent.pads + spent.track_beyond]);
+        }
         if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
             bond_output::values(part, view, now, spent, &mut row);
         }
@@ -207,9 +222,13 @@ impl<'a> Recorder<'a> {
     pub fn follow<S: System>(
         &mut self,
         time: f64,
-        system: &S,
+        system: &mut S,
         track: &Track<'_>,
     ) -> Result<Option<Cycle>, Failure> {
+        // All that the window after a jump does not account for came in with the jump.
+        if let Some(before) = self.course.before_jump.take() {
+            self.course.jump_energy += self.energy_error(system) - before;
+        }
         let (Some(cycles), Some(s), Some(g)) =
             (&mut self.course.cycles, track.observed(time), system.grains())
         else {
@@ -217,25 +236,58 @@ impl<'a> Recorder<'a> {
         };
         let height = g.state.position(s.body).z;
         let work = g.state.ledger.work_applied;
-        let done = cycles.record(time, system.window(), height, s.load, work, system.peak_pressure());
-        if let (Some(c), Some(file)) = (done, &mut self.cycles_file) {
-            file.row(&[
-                f64::from(c.number),
-                c.settlement,
-                c.resilient_deflection,
-                c.secant_stiffness,
-                c.dissipated_energy,
-                c.peak_formation_pressure,
-            ])?;
+        let Some(cycle) = cycles.record(time, system.window(), height, s.load, work, system.peak_pressure())
+        else {
+            return Ok(None);
+        };
+        if let Some(file) = &mut self.cycles_file {
+            file.row(&cycle_values(self.job, &cycle))?;
         }
-        Ok(done)
+        if let Some(plan) = self.job.grains.as_ref().and_then(|g| g.after.jump.as_ref()) {
+            let error = if plan.grains { self.energy_error(system) } else { 0.0 };
+            let course = &mut self.course;
+            if let (Some(jumper), Some(cycles)) = (&mut course.jumper, &mut course.cycles)
+                && jumper.after_cycle(plan, cycles, system)
+            {
+                course.before_jump = Some(error);
+            }
+        }
+        Ok(Some(cycle))
+    }
+
+    /// Energy error of the present state [J].
+    fn energy_error<S: System>(&self, system: &S) -> f64 {
+        let mut spent = system.spent();
+        spent.jumps = self.course.jump_energy;
+        Balance { start: self.course.balance.start, now: system.stored(), spent }.error()
+    }
+
+    /// Number of the last finished cycle and of all cycles; none without a cyclic load.
+    pub fn progress(&self) -> Option<(u32, u32)> {
+        self.course.cycles.as_ref().map(|c| (c.number(), c.total()))
+    }
+
+    /// Settlement laws fitted to the cycles.
+    pub fn fits(&self) -> Vec<fit::Fit> {
+        let load = self.job.grains.as_ref().and_then(|g| g.load.as_ref());
+        match (&self.course.cycles, load) {
+            (Some(cycles), Some(load)) => fit::fits(&cycles.measured, load.range()[1]),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What became of the cycle jumps.
+    pub fn jumps(&self) -> Option<JumpSummary> {
+        let plan = self.job.grains.as_ref()?.after.jump.as_ref()?;
+        let course = &self.course;
+        Some(course.jumper.as_ref()?.summary(plan, course.cycles.as_ref()?, course.jump_energy))
     }
 
     /// Writes a frame of the animation.
     ///
     /// # Errors
     /// A field is not finite, or the disk refuses.
-    pub fn frame<S: System>(&mut self, time: f64, system: &S) -> Result<(), Failure> {
+    pub fn frame<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let k = self.course.frame;
         let vtk = self.job.output.vtk;
         if let Some(solid) = system.solid() {
@@ -255,7 +307,8 @@ impl<'a> Recorder<'a> {
             )?;
             self.series.push(time, 1, "grains", &name("grains"));
             self.series.push(time, 2, "force chains", &name("chains"));
-            let walls = frames::walls(view, part);
+            let mut walls = frames::walls(view, part);
+            track.draw(&mut walls);
             if !walls.polygons.is_empty() {
                 write::vtp::write_walls(&self.dir.join(name("walls")), &walls)?;
                 self.series.push(time, 3, "walls and sleeper", &name("walls"));
@@ -352,6 +405,12 @@ fn columns<S: System>(job: &Job, system: &S, track: &Track<'_>) -> Vec<Column> {
     for name in ENERGY_COLUMNS {
         columns.push(Column::new(name, "J"));
     }
+    if track.has_rails() {
+        for k in 0..track.count() {
+            columns.push(Column::new(format!("rail{}", numbered(track, k)), "m"));
+        }
+        columns.extend(["rail_energy", "wheels_work", "dissipated_track"].map(|name| Column::new(name, "J")));
+    }
     if system.grains().is_some() {
         columns.extend(job.grains.iter().flat_map(bond_output::columns));
     }
@@ -385,21 +444,56 @@ const ENERGY_COLUMNS: [&str; 12] = [
     "energy_error",
 ];
 
-fn cycle_columns() -> Vec<Column> {
-    [
-        ("cycle", ""),
-        ("settlement", "m"),
-        ("resilient_deflection", "m"),
-        ("secant_stiffness", "N/m"),
-        ("dissipated_energy", "J"),
-        ("peak_formation_pressure", "Pa"),
-    ]
-    .map(|(name, unit)| Column::new(name, unit))
-    .to_vec()
+/// What follows the cycles of a load.
+fn cycle_recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {
+    let part = job.grains.as_ref();
+    let between = part.and_then(|g| g.after.between).unwrap_or(load.range());
+    let column = match (part.and_then(|g| g.sleeper.as_ref()), system.grains()) {
+        (Some(sleeper), Some(g)) => {
+            let spheres = (0..g.model.body_count()).flat_map(|b| g.state.spheres(g.model, b));
+            let bottom = spheres.map(|(x, r)| x.z - r).fold(f64::INFINITY, f64::min);
+            let area = 4.0 * sleeper.half[0] * sleeper.half[1];
+            let below = -sleeper.half[2] - bottom;
+            if bottom.is_finite() { cycles::Column { area, below } } else { cycles::Column::default() }
+        }
+        _ => cycles::Column::default(),
+    };
+    CycleRecorder::new(load, between, column)
+}
+
+/// Columns of `cycles.csv`, each with its value.
+fn cycle_table(job: &Job, c: &Cycle) -> Vec<(&'static str, &'static str, f64)> {
+    let mut table = vec![
+        ("cycle", "", f64::from(c.number)),
+        ("settlement", "m", c.settlement),
+        ("resilient_deflection", "m", c.resilient_deflection),
+        ("secant_stiffness", "N/m", c.secant_stiffness),
+        ("dissipated_energy", "J", c.dissipated_energy),
+        ("peak_formation_pressure", "Pa", c.peak_formation_pressure),
+        ("rate", "m", c.rate),
+        ("bed_stiffness", "N/m", c.bed_stiffness),
+    ];
+    if job.solid.is_none() {
+        table.push(("resilient_modulus", "Pa", c.resilient_modulus));
+    }
+    if job.grains.as_ref().is_some_and(|g| g.after.jump.is_some()) {
+        table.push(("simulated", "", f64::from(c.simulated)));
+        table.push(("jump_error", "m", c.jump_error));
+    }
+    table
+}
+
+fn cycle_columns(job: &Job) -> Vec<Column> {
+    cycle_table(job, &Cycle::default()).into_iter().map(|(name, unit, _)| Column::new(name, unit)).collect()
+}
+
+fn cycle_values(job: &Job, cycle: &Cycle) -> Vec<f64> {
+    cycle_table(job, cycle).into_iter().map(|(_, _, value)| value).collect()
 }
 
 /// What a run may leave beside its frames.
-const FILES: [&str; 14] = [
+const FILES: [&str; 16] = [
+    "push.csv",
     "breaks.csv",
     "summary.json",
     "log.txt",
@@ -413,6 +507,7 @@ const FILES: [&str; 14] = [
     "sleeper.svg",
     "gradation.csv",
     "gradation.svg",
+    "radial.csv",
     "packing.csv",
 ];
 

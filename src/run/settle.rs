@@ -173,7 +173,7 @@ fn at_rest(
 ) -> (Vec<BodyInput>, usize) {
     let mut bodies = Vec::with_capacity(inputs.len());
     for (b, input) in inputs.iter().enumerate() {
-        let position = state.position(b);
+        let position = model.wrap(&state.position(b));
         if plan.level.is_some_and(|level| position.z > level) {
             continue;
         }

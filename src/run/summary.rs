@@ -1,6 +1,9 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
+use super::fit::Fit;
+use super::jump::JumpSummary;
 use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
+use super::push::PushSummary;
 use crate::failure::Failure;
 use crate::model::exchange::ContactClass;
 use crate::write::WriteError;
@@ -57,9 +60,15 @@ pub struct Summary {
     /// Search for the factor of safety.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safety: Option<SafetyRecord>,
+    /// Lateral push of a sleeper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub push: Option<PushSummary>,
     /// Settlement per load cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
+    /// Sleepers under load.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub track: Option<TrackRecord>,
     /// Groups that have grown to their size.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthRecord>,
@@ -109,6 +118,9 @@ pub struct ModelRecord {
     pub grain_step_set_by: Option<String>,
     /// Step of the solid [s].
     pub solid_step: Option<f64>,
+    /// Shapes and errors of a reduced solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<trackbed_fem::reduction::Estimate>,
     /// Memory that the solid was predicted to need [bytes].
     pub predicted_memory: Option<u64>,
     /// Mean number of touching partners per grain at the start of the run proper.
@@ -277,6 +289,55 @@ pub struct SettlementRecord {
     pub increments: Vec<f64>,
     /// Mean increment of the second half of the cycles over that of the first half.
     pub slowing: Option<f64>,
+    /// Settlement laws fitted to the cycles from the tenth on.
+    pub fits: Vec<Fit>,
+    /// Slope of the loading branch between two loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bed_stiffness: Option<BedStiffness>,
+    /// Cycle jumps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jump: Option<JumpSummary>,
+}
+
+/// Stiffness of the bed under a sleeper.
+#[derive(Debug, Serialize)]
+pub struct BedStiffness {
+    /// The two loads [N].
+    pub between: [f64; 2],
+    /// In the last cycle [N/m].
+    pub last: f64,
+    /// Mean of the last ten cycles [N/m].
+    pub mean_of_last_ten: f64,
+}
+
+/// Sleepers while the load cycles last.
+#[derive(Clone, Debug, Serialize)]
+pub struct TrackRecord {
+    /// In their order along the track.
+    pub sleepers: Vec<SleeperRecord>,
+}
+
+/// One sleeper while the load cycles last.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SleeperRecord {
+    /// Largest downward force on its seats together [N], at the end of any window.
+    pub largest_force: f64,
+    /// Smallest one; negative where it was lifted.
+    pub smallest_force: f64,
+    /// Largest lowering since the cycles began [m].
+    pub lowering: f64,
+    /// Largest force over the load of one axle, where there are axles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_share: Option<f64>,
+    /// Largest downward deflection of the rail over it since the rail was laid [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rail_deflection: Option<f64>,
+    /// Largest force when the wheels stand still, on a bed of the scene's `foundation` under every sleeper [N].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub static_force: Option<f64>,
+    /// Largest force over that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dynamic_amplification: Option<f64>,
 }
 
 impl Summary {
@@ -310,6 +371,9 @@ impl Summary {
     /// What a user wants to see when a run has ended.
     pub fn report(&self) -> String {
         let mut lines = Vec::new();
+        if let Some(r) = &self.model.reduction {
+            lines.push(format!("solid reduced: {r}"));
+        }
         for stage in &self.stages {
             lines.push(format!(
                 "{}: {:.1} s, {} grain steps, {} solid steps",
@@ -396,7 +460,58 @@ impl Summary {
         }
         if let Some(s) = &self.settlement {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
-            lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
+            if list.len() <= 20 {
+                lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
+            } else {
+                let last = list.len() - 1;
+                lines.push(format!(
+                    "settlement [mm]: {} after the first cycle, {} after the last",
+                    list[0], list[last]
+                ));
+            }
+            for fit in &s.fits {
+                let p: Vec<String> = fit.parameters.iter().map(|(n, v)| format!("{n} = {v:.4e}")).collect();
+                lines.push(format!("{}: s = {}, {}, R2 = {:.4}", fit.law, fit.form, p.join(", "), fit.r2));
+            }
+            if let Some(b) = &s.bed_stiffness {
+                let [low, high] = b.between.map(|f| 1e-3 * f);
+                lines.push(format!(
+                    "bed stiffness between {low:.1} and {high:.1} kN: {:.3} kN/mm",
+                    1e-6 * b.mean_of_last_ten
+                ));
+            }
+            if let Some(j) = &s.jump {
+                lines.push(format!(
+                    "cycle jumps ({}): {} cycles simulated, {} jumped over; error of the settlement estimated {:.3} mm ({:.1} %)",
+                    j.method,
+                    j.simulated,
+                    j.skipped,
+                    1e3 * j.error_estimate,
+                    100.0 * j.relative_error_estimate
+                ));
+            }
+        }
+        if let Some(p) = &self.push {
+            let at_two =
+                p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
+            lines.push(format!(
+                "lateral push: {at_two}peak {:.3} kN at {:.2} mm, under {:.3} kN",
+                1e-3 * p.peak,
+                1e3 * p.displacement_at_peak,
+                1e-3 * p.vertical_force
+            ));
+        }
+        for (k, s) in self.track.iter().flat_map(|t| t.sleepers.iter().enumerate()) {
+            let share = s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of an axle)", 100.0 * p));
+            let factor =
+                s.dynamic_amplification.map_or(String::new(), |f| format!(", {f:.3} times the static force"));
+            lines.push(format!(
+                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, lowered by {:.3} mm",
+                k + 1,
+                1e-3 * s.smallest_force,
+                1e-3 * s.largest_force,
+                1e3 * s.lowering
+            ));
         }
         lines.extend(packing::report(self));
         for warning in &self.warnings {

@@ -40,6 +40,8 @@ pub trait System {
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
     /// Puts into a checkpoint what `resume` of the system goes on from.
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
+    /// Sets grains elsewhere: body, shift [m], rotation in world axes.
+    fn relocate(&mut self, _moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {}
     /// Energy stored now [J].
     fn stored(&self) -> Stored;
     /// Work and dissipation so far [J].
@@ -239,6 +241,11 @@ impl System for GrainsSystem {
         body.put(&self.state)
     }
 
+    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
+        moves.iter().for_each(|(body, shift, turn)| self.state.shift(&self.model, *body, shift, turn));
+        self.state.forget_neighbours();
+    }
+
     fn stored(&self) -> Stored {
         let e = dem::measure::energies(&self.model, &self.state);
         Stored {
@@ -292,6 +299,12 @@ impl System for CoupledSystem<'_> {
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         body.put(&(&self.model.reference, self.work.memory(), &self.state))
+    }
+
+    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
+        let grains = &mut self.state.grains;
+        moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
+        grains.forget_neighbours();
     }
 
     fn stored(&self) -> Stored {

@@ -1,15 +1,47 @@
-//! Sleepers of a running system and what loads them.
+//! Sleepers of a running system and what loads them: forces on their seats, or rails on pads.
 
+use super::checkpoint::{Body, Loaded};
+use super::rail::{Laid, Rails};
+use super::summary::{SleeperRecord, TrackRecord};
+use super::system::{GrainsView, System};
+use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, SleeperPlan};
-use crate::model::seat_load::CyclicLoad;
+use crate::model::seat_load::{Course, CyclicLoad};
+use crate::write::WallFrame;
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+use std::io;
+use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
 
-/// The sleepers of a run, which are its last bodies, and the load on them.
+/// The sleepers of a run, which are its last bodies, and what loads them.
 pub struct Track<'a> {
     plan: Option<&'a SleeperPlan>,
     load: Option<&'a CyclicLoad>,
     /// Body of the first sleeper.
     first: usize,
+    rails: Option<Rails>,
+    now: RefCell<Now>,
+    /// The rails as they were when the present window began, for a window that is made again.
+    before: RefCell<Option<Laid>>,
+}
+
+/// What changes, and so what a checkpoint keeps.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Now {
+    /// The rails, once they are laid.
+    laid: Option<Laid>,
+    extremes: Vec<Extremes>,
+}
+
+/// Extremes of a sleeper while the load cycles last.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Extremes {
+    force: [f64; 2],
+    /// Height when the cycles began, and the least since [m].
+    height: [f64; 2],
+    /// Least deflection of the rail over it [m].
+    rail: f64,
 }
 
 /// Place and load of a sleeper at one moment.
@@ -22,25 +54,119 @@ pub struct Sleeper {
 }
 
 impl<'a> Track<'a> {
-    /// The track of a system with so many bodies; one without sleepers where there are none.
-    pub fn new(grains: Option<&'a GrainsPart>, bodies: usize) -> Track<'a> {
+    /// The track of a system; one without sleepers where there are none.
+    pub fn new(grains: Option<&'a GrainsPart>, view: Option<GrainsView<'_>>) -> Track<'a> {
         let plan = grains.and_then(|g| g.sleeper.as_ref());
         let load = grains.and_then(|g| g.load.as_ref());
         let count = plan.map_or(0, |p| p.centres.len());
-        Track { plan, load, first: bodies.saturating_sub(count) }
+        let rails = match (grains.and_then(|g| g.rail), plan, load, view) {
+            (Some(input), Some(plan), Some(load), Some(view)) => {
+                Rails::new(input, plan.seats.len(), load.clone(), view.model.dt())
+            }
+            _ => None,
+        };
+        let first = view.map_or(0, |v| v.model.body_count()).saturating_sub(count);
+        Track { plan, load, first, rails, now: RefCell::default(), before: RefCell::default() }
+    }
+
+    /// The same, going on from a checkpoint.
+    ///
+    /// # Errors
+    /// A checkpoint of something else.
+    pub fn resume(self, loaded: &mut Loaded) -> Result<Track<'a>, Failure> {
+        self.now.replace(loaded.take()?);
+        Ok(self)
+    }
+
+    /// Puts into a checkpoint what [`Track::resume`] goes on from.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&*self.now.borrow())
+    }
+
+    /// Begins a window of steps.
+    pub fn begin_window(&self) {
+        if self.rails.is_some() {
+            self.before.borrow_mut().clone_from(&self.now.borrow().laid);
+        }
+    }
+
+    /// Seats of all sleepers where they are: number of sleeper and of seat, body, point.
+    fn seats<'b>(
+        &'b self,
+        model: &'b dem::Model,
+        state: &'b dem::State,
+    ) -> impl Iterator<Item = (usize, usize, usize, dem::Vec3)> + 'b {
+        let plan = self.plan;
+        (0..self.count()).flat_map(move |k| {
+            let body = self.first + k;
+            let (x, q) = (state.position(body), state.orientation(model, body));
+            let seats = plan.map_or(&[][..], |p| &p.seats);
+            seats.iter().enumerate().map(move |(r, seat)| (k, r, body, x + q * dem::Vec3::from(*seat)))
+        })
+    }
+
+    /// Brings the rails to the time of the grains.
+    fn bring_up(&self, model: &dem::Model, state: &dem::State) {
+        let Some(rails) = &self.rails else { return };
+        let laid = &mut self.now.borrow_mut().laid;
+        if laid.as_ref().is_some_and(|l| l.step() > state.steps) {
+            laid.clone_from(&self.before.borrow());
+        }
+        let heights = self.seats(model, state).map(|s| s.3.z);
+        match laid {
+            None => *laid = rails.lay(state.time, state.steps, heights),
+            Some(laid) => rails.advance(laid, state.time, state.steps, heights),
+        }
     }
 
     /// Adds the forces that act on the sleepers at time `t` [s].
     pub fn apply(&self, t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>) {
         let (Some(load), Some(plan)) = (self.load, self.plan) else { return };
+        self.bring_up(model, state);
+        let now = self.now.borrow();
+        let share = 1.0 / plan.seats.len() as f64;
+        for (k, r, body, point) in self.seats(model, state) {
+            let down = match (&self.rails, &now.laid) {
+                (Some(_), Some(laid)) => laid.force(k, r),
+                (Some(_), None) => 0.0,
+                (None, _) => load.on(k, t) * share,
+            };
+            out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -down), point });
+        }
+    }
+
+    /// Takes in the state at the end of a window.
+    pub fn follow<S: System>(&self, t: f64, system: &S) {
+        let (Some(load), Some(view)) = (self.load, system.grains()) else { return };
+        self.bring_up(view.model, view.state);
+        if t + 0.5 * system.window() < load.cycles_begin() {
+            return;
+        }
+        let mut now = self.now.borrow_mut();
         for k in 0..self.count() {
-            let body = self.first + k;
-            let share = load.force(t) / plan.seats.len() as f64;
-            let (x, q) = (state.position(body), state.orientation(model, body));
-            for seat in &plan.seats {
-                let point = x + q * dem::Vec3::from(*seat);
-                out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -share), point });
+            let height = view.state.position(self.first + k).z;
+            let force = self.force(&now, k, t);
+            let rail = now.laid.as_ref().zip(self.rails.as_ref()).map_or(0.0, |(l, r)| l.deflection(r, k));
+            match now.extremes.get_mut(k) {
+                None => now.extremes.push(Extremes { force: [force; 2], height: [height; 2], rail }),
+                Some(e) => {
+                    e.force = [e.force[0].min(force), e.force[1].max(force)];
+                    e.height[1] = e.height[1].min(height);
+                    e.rail = e.rail.min(rail);
+                }
             }
+        }
+    }
+
+    /// Downward force on a sleeper.
+    fn force(&self, now: &Now, k: usize, t: f64) -> f64 {
+        match (&self.rails, &now.laid, self.plan) {
+            (Some(_), Some(laid), Some(plan)) => (0..plan.seats.len()).map(|r| laid.force(k, r)).sum(),
+            (Some(_), _, _) => 0.0,
+            (None, _, _) => self.load.map_or(0.0, |l| l.on(k, t)),
         }
     }
 
@@ -49,14 +175,67 @@ impl<'a> Track<'a> {
         self.plan.map_or(0, |p| p.centres.len())
     }
 
-    /// The sleepers with their loads at time `t` [s].
-    pub fn sleepers(&self, t: f64) -> impl Iterator<Item = Sleeper> + '_ {
-        let load = self.load.map_or(0.0, |l| l.force(t));
-        (0..self.count()).map(move |k| Sleeper { body: self.first + k, load })
+    /// Whether there are rails with columns of their own.
+    pub fn has_rails(&self) -> bool {
+        self.rails.is_some()
+    }
+
+    /// Sleeper `k` with its load at time `t` [s].
+    pub fn sleeper(&self, k: usize, t: f64) -> Sleeper {
+        Sleeper { body: self.first + k, load: self.force(&self.now.borrow(), k, t) }
+    }
+
+    /// Deflection of the rail over sleeper `k` since it was laid, upwards, mean of all rails [m].
+    pub fn rail(&self, k: usize) -> f64 {
+        let now = self.now.borrow();
+        now.laid.as_ref().zip(self.rails.as_ref()).map_or(0.0, |(laid, rails)| laid.deflection(rails, k))
     }
 
     /// The sleeper whose settlement is followed: the one in the middle.
     pub fn observed(&self, t: f64) -> Option<Sleeper> {
-        self.sleepers(t).nth(self.count() / 2)
+        (self.count() > 0).then(|| self.sleeper(self.count() / 2, t))
+    }
+
+    /// Adds what rails and pads hold and have turned over [J].
+    pub fn account(&self, stored: &mut Stored, spent: &mut Spent) {
+        if let Some(laid) = &self.now.borrow().laid {
+            let books = laid.books();
+            stored.rail += books.kinetic + books.elastic;
+            spent.wheels += books.wheels;
+            spent.pads_on_sleepers += books.on_seats;
+            spent.pads += books.pads;
+            spent.track_beyond += books.beyond;
+        }
+    }
+
+    /// Adds the rails over the modelled sleepers to a picture.
+    pub fn draw(&self, frame: &mut WallFrame) {
+        if let (Some(plan), Some(rails), Some(laid)) = (self.plan, &self.rails, &self.now.borrow().laid) {
+            laid.draw(rails, plan, frame);
+        }
+    }
+
+    /// Extremes of the run.
+    pub fn record(&self) -> Option<TrackRecord> {
+        let now = self.now.borrow();
+        let load = self.load.filter(|_| !now.extremes.is_empty())?;
+        let axle = match &load.course {
+            Course::Pass(pass) if !pass.gaussian() => pass.axles.iter().map(|a| a[1]).reduce(f64::max),
+            _ => None,
+        };
+        let at_rest = self.rails.as_ref().and_then(Rails::static_peaks);
+        let record = |(k, e): (usize, &Extremes)| {
+            let static_force = at_rest.as_ref().map(|f| f[k]);
+            SleeperRecord {
+                largest_force: e.force[1],
+                smallest_force: e.force[0],
+                lowering: e.height[0] - e.height[1],
+                load_share: axle.map(|p| e.force[1] / p),
+                rail_deflection: self.rails.as_ref().map(|_| -e.rail),
+                static_force,
+                dynamic_amplification: static_force.map(|f| e.force[1] / f),
+            }
+        };
+        Some(TrackRecord { sleepers: now.extremes.iter().enumerate().map(record).collect() })
     }
 }

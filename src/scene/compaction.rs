@@ -77,4 +77,16 @@ pub struct Measure {
     /// Corners of the box [m].
     #[serde(rename = "box")]
     pub region: [[Quantity<Length>; 3]; 2],
+    /// Radial distribution function of the grains inside.
+    pub radial: Option<Radial>,
+}
+
+/// `radial = { reach = …, bins = … }` of a measure.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Radial {
+    /// Largest distance [m].
+    pub reach: Quantity<Length>,
+    /// Number of shells of equal width up to it.
+    pub bins: usize,
 }

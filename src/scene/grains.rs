@@ -47,6 +47,9 @@ pub struct Grains {
     pub motion: Option<[Quantity<Velocity>; 3]>,
     /// Whether the mean place of the grains and the force on them go to `history.csv`; default: with `motion`.
     pub record: Option<bool>,
+    /// Whether these grains foul the bed: fines in the voids of the others; default false.
+    #[serde(default)]
+    pub fouling: bool,
     /// Initial velocity [m/s].
     pub velocity: Option<[Quantity<Velocity>; 3]>,
     /// Initial angular velocity [rad/s].

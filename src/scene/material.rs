@@ -1,6 +1,6 @@
 //! Contact materials and exceptions for pairs of them, as written in a scene.
 
-use super::units::{Density, Quantity, Stiffness, Stress};
+use super::units::{Adhesion, Density, Quantity, Stiffness, Stress};
 use serde::Deserialize;
 
 /// `[[material]]`: contact by a linear spring and dashpot, or after Hertz and Mindlin where materials have a Young's
@@ -47,4 +47,6 @@ pub struct PairContact {
     pub restitution: Option<f64>,
     /// Normal stiffness of the pair [N/m].
     pub stiffness: Option<Quantity<Stiffness>>,
+    /// Work of adhesion [J/m²].
+    pub adhesion: Option<Quantity<Adhesion>>,
 }

@@ -4,6 +4,7 @@
 //! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
 //! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
 
+pub mod after;
 pub mod bonds;
 pub mod compaction;
 pub mod coupling;
@@ -12,6 +13,7 @@ mod document;
 pub mod grains;
 pub mod history;
 pub mod material;
+pub mod periodic;
 pub mod solid;
 pub mod track;
 pub mod units;
@@ -51,6 +53,8 @@ pub struct Scene {
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,
+    /// Axes along which the grains repeat themselves.
+    pub periodic: Option<periodic::Periodic>,
     /// Gravity deposition before the run proper.
     pub deposition: Option<deposition::Deposition>,
     /// Compaction after it, stage by stage.

@@ -1,7 +1,11 @@
-//! Sleeper and its load as written in a scene.
+//! Sleepers, their load and the rail as written in a scene.
 
-use super::units::{Force, Frequency, Length, Mass, Quantity, Time};
+use super::after::{CycleJump, Push};
+use super::units::{
+    Bending, Dashpot, Force, Frequency, Length, LineMass, Mass, Quantity, Stiffness, Time, Velocity,
+};
 use serde::Deserialize;
+use std::path::PathBuf;
 
 /// `[track]`: what stands on the ballast.
 #[derive(Clone, Debug, Deserialize)]
@@ -9,8 +13,17 @@ use serde::Deserialize;
 pub struct Track {
     /// The sleepers.
     pub sleeper: Sleeper,
-    /// The load on its seat; without it the sleeper only rests.
+    /// The load on their seats, or the wheels on the rail; without it the sleepers only rest.
     pub load: Option<SeatLoad>,
+    /// Cycles that are not simulated one by one.
+    pub jump: Option<CycleJump>,
+    /// Lateral push at the end.
+    pub push: Option<Push>,
+    /// Two loads between which the stiffness of the bed is taken in each cycle [N]; default a quarter and three quarters
+    /// of the range.
+    pub bed_stiffness: Option<[Quantity<Force>; 2]>,
+    /// The rail that brings the loads of axles to the sleepers.
+    pub rail: Option<RailTable>,
 }
 
 /// Sleepers as rigid boxes, placed on the settled grains.
@@ -81,28 +94,54 @@ pub enum Motion {
     Rz,
 }
 
-/// Cyclic vertical load on the sleeper's top.
+/// Vertical load on the sleepers' tops, or wheels on the rail.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeatLoad {
     /// Shape of a cycle.
     pub kind: SeatLoadKind,
-    /// Smallest downward force [N].
-    pub minimum: Quantity<Force>,
-    /// Largest downward force [N].
-    pub maximum: Quantity<Force>,
-    /// Cycles per second [Hz].
-    pub frequency: Quantity<Frequency>,
-    /// Number of cycles.
-    pub cycles: u32,
-    /// Time for the sleeper to come to rest under its own weight before any load [s]; default 0.1 s.
+    /// Smallest downward force [N]: `sine`, `haversine`, `ramp`.
+    pub minimum: Option<Quantity<Force>>,
+    /// Largest downward force [N]: `sine`, `haversine`, `ramp`; peak of one pulse: `gauss`.
+    pub maximum: Option<Quantity<Force>>,
+    /// Cycles per second [Hz]: `sine`, `haversine`.
+    pub frequency: Option<Quantity<Frequency>>,
+    /// Number of cycles, or passes; default 1, needed by `sine` and `haversine`.
+    pub cycles: Option<u32>,
+    /// Times of rise, of the largest force and of the fall [s]: `ramp`; without a fall the load stays.
+    pub rise: Option<Quantity<Time>>,
+    /// See `rise`.
+    pub hold: Option<Quantity<Time>>,
+    /// See `rise`.
+    pub fall: Option<Quantity<Time>>,
+    /// Measured force: `history`; table of trains: `train`.
+    pub file: Option<PathBuf>,
+    /// Factor on a measured force: `history`; default 1.
+    pub factor: Option<f64>,
+    /// Speed along the track [m/s].
+    pub speed: Option<Quantity<Velocity>>,
+    /// Half the width ℓ of a Gaussian pulse where it has fallen to 1/e [m]: `gauss`.
+    pub width: Option<Quantity<Length>>,
+    /// Distances of the pulses behind the first one [m]: `gauss`; default one pulse.
+    pub axles: Option<Vec<Quantity<Length>>>,
+    /// Load of an axle [N]: `bogie`; `train`, in place of the table's.
+    pub axle_load: Option<Quantity<Force>>,
+    /// Distance of the two axles [m]: `bogie`.
+    pub wheelbase: Option<Quantity<Length>>,
+    /// Name of the train: `train`.
+    pub train: Option<String>,
+    /// Number of its cars: `train`; default 1.
+    pub cars: Option<u32>,
+    /// What an uneven rail adds to the load of an axle: `bogie`, `train`.
+    pub excitation: Option<Excitation>,
+    /// Time for the sleepers to come to rest under their own weight before any load [s]; default 0.1 s.
     #[serde(default = "tenth")]
     pub rest: Quantity<Time>,
-    /// Time over which the load of the first instant is brought on [s]; default 0.1 s.
+    /// Time over which the load of the first instant, and the rail's weight, are brought on [s]; default 0.1 s.
     #[serde(default = "tenth")]
     pub ramp: Quantity<Time>,
-    /// Points of the sleeper's top that share the load, as offsets in x and y from its centre [m]; default the
-    /// centre.
+    /// Points of a sleeper's top that share the load, and carry the rails, as offsets in x and y from its centre [m];
+    /// default the centre.
     #[serde(default)]
     pub seats: Vec<[Quantity<Length>; 2]>,
 }
@@ -111,7 +150,7 @@ fn tenth() -> Quantity<Time> {
     Quantity::new(0.1)
 }
 
-/// Shape of one cycle between minimum and maximum.
+/// Shape of one cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SeatLoadKind {
@@ -119,4 +158,59 @@ pub enum SeatLoadKind {
     Sine,
     /// Minimum plus range times (1 − cos 2πft)/2: starts and ends at the minimum.
     Haversine,
+    /// Smooth rise, hold and fall.
+    Ramp,
+    /// A measured force.
+    History,
+    /// Gaussian pulses that run along the sleepers.
+    Gauss,
+    /// Two axles on the rail.
+    Bogie,
+    /// The axles of a train on the rail.
+    Train,
+}
+
+/// Forces of an uneven rail: Σ M a w² sin wt with w = 2πv/L.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Excitation {
+    /// Unsprung mass of an axle [kg].
+    pub mass: Quantity<Mass>,
+    /// Waves: [length L, amplitude a] [m].
+    pub waves: Vec<[Quantity<Length>; 2]>,
+}
+
+/// The rail.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RailTable {
+    /// How it shares the load of an axle among the sleepers.
+    pub kind: RailKind,
+    /// Bending stiffness EI of one rail [N m²].
+    pub bending_stiffness: Quantity<Bending>,
+    /// Stiffness under one seat of a sleeper [N/m]: of pad and bed together with `winkler`, of the bed under the
+    /// sleepers beyond the model with `beam`.
+    pub foundation: Quantity<Stiffness>,
+    /// Damping of that bed [N s/m]: `beam`; default 0.
+    pub foundation_damping: Option<Quantity<Dashpot>>,
+    /// Mass of one rail per length [kg/m]: `beam`.
+    pub mass: Option<Quantity<LineMass>>,
+    /// Stiffness of a pad [N/m]: `beam`.
+    pub pad_stiffness: Option<Quantity<Stiffness>>,
+    /// Damping of a pad [N s/m]: `beam`; default 0.
+    pub pad_damping: Option<Quantity<Dashpot>>,
+    /// Length of rail beyond the first and the last sleeper [m]: `beam`.
+    pub extension: Option<Quantity<Length>>,
+    /// Beam elements between two sleepers: `beam`; default 4.
+    pub elements: Option<u32>,
+}
+
+/// How a rail works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RailKind {
+    /// Quasi-static, by the formula of a beam on a continuous elastic foundation.
+    Winkler,
+    /// A beam with mass on pads.
+    Beam,
 }

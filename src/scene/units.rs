@@ -74,6 +74,8 @@ dimensions! {
     Force: "a force in N, such as 5e4 or \"50 kN\"", [("N", 1.0), ("kN", 1e3), ("MN", 1e6)];
     /// Stiffness [N/m].
     Stiffness: "a stiffness in N/m, such as 2e6 or \"2 MN/m\"", [("N/m", 1.0), ("kN/m", 1e3), ("MN/m", 1e6), ("N/mm", 1e3), ("kN/mm", 1e6), ("GN/m", 1e9)];
+    /// Energy over area [J/m²].
+    Adhesion: "a work of adhesion in J/m2, such as 0.05 or \"50 mJ/m2\"", [("J/m2", 1.0), ("mJ/m2", 1e-3), ("N/m", 1.0)];
     /// Velocity [m/s].
     Velocity: "a velocity in m/s, such as 0.1 or \"10 cm/s\"", [("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("km/h", 1.0 / 3.6)];
     /// Acceleration [m/s²].
@@ -82,6 +84,12 @@ dimensions! {
     Spin: "an angular velocity in rad/s, such as 1.5", [("rad/s", 1.0), ("1/s", 1.0)];
     /// Angle [rad].
     Angle: "an angle in rad, or with its unit such as \"60 deg\"", [("rad", 1.0), ("deg", std::f64::consts::PI / 180.0)];
+    /// Mass per length [kg/m].
+    LineMass: "a mass per length in kg/m, such as 60", [("kg/m", 1.0), ("t/m", 1e3)];
+    /// Bending stiffness [N m²].
+    Bending: "a bending stiffness in N m2, such as 6.4e6 or \"6.4 MN m2\"", [("N m2", 1.0), ("kN m2", 1e3), ("MN m2", 1e6)];
+    /// Damping of a dashpot [N s/m].
+    Dashpot: "a damping in N s/m, such as 4e4 or \"40 kN s/m\"", [("N s/m", 1.0), ("kN s/m", 1e3), ("MN s/m", 1e6)];
     /// Rate [1/s].
     Rate: "a rate in 1/s, such as 4.2", [("1/s", 1.0)];
 }

@@ -40,7 +40,8 @@ fn lattices_have_their_porosity_and_are_read_back() {
         let folder = Folder::new("lattice");
         let low = [0.051, 0.052, 0.053];
         let high: Vec<f64> = (0..3).map(|k| low[k] + period[k] * if k == 0 { 4.0 } else { 2.0 }).collect();
-        let measure = format!("[[measure]]\nname = \"bulk\"\nbox = [{low:?}, {high:?}]\n");
+        let radial = "[[measure]]\nname = \"all\"\nbox = [[0, 0, 0], [0.2, 0.22, 0.24]]\nradial = { reach = \"45 mm\", bins = 15 }\n";
+        let measure = format!("[[measure]]\nname = \"bulk\"\nbox = [{low:?}, {high:?}]\n{radial}");
         let lattice = format!(
             "shape = \"sphere\"\nlattice = {{ kind = \"{kind}\", size = \"20 mm\", low = [0, 0, 0], counts = [10, 11, 12] }}"
         );
@@ -50,6 +51,18 @@ fn lattices_have_their_porosity_and_are_read_back() {
         assert!((porosity - exact).abs() < 1e-6, "{kind}: {porosity} {exact}");
         assert_eq!(summary["model"]["bodies"], 1320);
 
+        let table = rows(&folder.join("first/radial.csv"));
+        assert_eq!(table.len(), 15);
+        if kind == "loose" {
+            // Neighbours of a simple cubic lattice at d, d√2, d√3, 2 d and d√5, nothing between.
+            let shell = |r: f64| 4.0 / 3.0 * PI * ((r + 0.0015).powi(3) - (r - 0.0015).powi(3)) / d.powi(3);
+            let found: Vec<f64> = table.iter().filter(|r| r[2] > 0.0).map(|r| r[2] * shell(r[1])).collect();
+            assert_eq!(found.len(), 5, "{table:?}");
+            for (n, exact) in found.iter().zip([6.0, 12.0, 8.0, 6.0, 24.0]) {
+                assert!((n / exact - 1.0).abs() < 1e-9, "{n} {exact}");
+            }
+            assert!(table.iter().all(|r| r[0] == 1.0));
+        }
         let packing = folder.join("first/packing.csv");
         folder.write("bed.csv", &fs::read_to_string(&packing).unwrap());
         let again = ran(&folder, &scene("shape = \"sphere\"\npacking = \"bed.csv\"", &measure), "second");

@@ -214,3 +214,65 @@ history_interval = "5 ms"
     assert!(history.column("table_moment_z").iter().any(|m| *m < -1e-4), "the ball is dragged along");
     assert!(history.column("bowl_force_z").iter().any(|f| *f < -0.05));
 }
+
+/// A flow down an incline that is periodic downhill and across: it keeps going, its grains stay between the borders in
+/// every file, and energy and momentum close.
+#[test]
+fn flow_goes_round_a_periodic_box() {
+    let out = Folder::new("shear");
+    let set = ["grains.1.count=150", "time.end=0.25", "output.frames=2", "output.packing=true"];
+    run(&scene("shear"), out.path(), &set).good();
+    good_energy(out.path(), 0.02);
+    let packing = fs::read_to_string(out.join("packing_1.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        packing.lines().skip(1).map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 150);
+    for row in &rows {
+        assert!((0.0..=0.06).contains(&row[0]) && (0.0..=0.03).contains(&row[1]), "{row:?}");
+    }
+}
+
+/// A ball on a ceiling stays there where the pair adheres with more than its weight, and falls where with less.
+#[test]
+fn adhesion_holds_a_ball_to_the_ceiling() {
+    let folder = Folder::new("adhesion");
+    let weight = 2600.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6 * 9.81;
+    for (share, holds) in [(1.02, true), (0.98, false)] {
+        let work = share * weight / (2.0 * std::f64::consts::PI * 0.01);
+        let text = format!(
+            r#"
+[[material]]
+name = "stone"
+density = 2600
+stiffness = 1e5
+friction = 0.5
+restitution = 0.2
+[[contact]]
+between = ["stone", "stone"]
+adhesion = "{} mJ/m2"
+[[grains]]
+name = "ball"
+shape = "sphere"
+material = "stone"
+spheres = [[0.0, 0.0, -0.0099999999, 0.01]]
+[[walls]]
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 0, -1]
+material = "stone"
+[time]
+end = 0.1
+[output]
+frames = 1
+packing = true
+"#,
+            work * 1e3
+        );
+        let file = folder.write("scene.toml", &text);
+        let out = folder.join(if holds { "holds" } else { "falls" });
+        run(&file, &out, &[]).good();
+        let packing = fs::read_to_string(out.join("packing.csv")).unwrap();
+        let z: f64 = packing.lines().nth(1).unwrap().split(',').nth(2).unwrap().parse().unwrap();
+        assert!((z > -0.01) == holds, "{share}: {z}");
+    }
+}

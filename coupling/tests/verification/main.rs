@@ -2,9 +2,18 @@
 //! those of the project's list of coupling verification problems; each test's head says what is exact in it.
 
 mod alone;
+mod beam;
+mod bed;
+mod bounce;
+mod collapse;
+mod curved;
+mod cyclic;
 mod edges;
 mod impact;
+mod mapping;
+mod plate;
 mod pressure;
+mod reduction;
 mod rest;
 mod sliding;
 mod spread;

@@ -210,3 +210,21 @@ impl<'a> Coupled<'a> {
         .expect("a step without failure");
     }
 }
+
+/// Random numbers of a seed, for places that follow no pattern: SplitMix64 (Steele, Lea and Flood 2014).
+pub struct Scatter(u64);
+
+impl Scatter {
+    pub fn new(seed: u64) -> Scatter {
+        Scatter(seed)
+    }
+
+    /// Uniform in [−1, 1).
+    pub fn symmetric(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}

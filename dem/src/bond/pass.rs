@@ -7,7 +7,7 @@ use super::store::{BondList, Entry, Group};
 use super::{Break, BreakMode};
 use crate::Vec3;
 use crate::contact::History;
-use crate::lanes::{self, Four, Kernel, Portable, Simd, V3};
+use crate::lanes::{self, Four, Kernel, Pack, Portable, Simd, V3};
 use crate::model::Model;
 use crate::state::{Block, Lanes, State, xyz};
 use crate::work::{BlockWork, Failure, Sums, Work};
@@ -230,7 +230,14 @@ impl Kernel for Interior<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<R: Four>(self) -> f64 {
+    fn run<P: Pack>(self) -> f64 {
+        self.by_four::<P::Quad>()
+    }
+}
+
+impl Interior<'_> {
+    #[inline(always)]
+    fn by_four<R: Four>(self) -> f64 {
         let n = self.centre.len();
         let (centre, velocity, spin) = (&self.centre[..n], &self.velocity[..n], &self.spin[..n]);
         let sums = &mut self.sums[..n];
@@ -274,7 +281,14 @@ impl Kernel for Cross<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<R: Four>(self) -> f64 {
+    fn run<P: Pack>(self) -> f64 {
+        self.by_four::<P::Quad>()
+    }
+}
+
+impl Cross<'_> {
+    #[inline(always)]
+    fn by_four<R: Four>(self) -> f64 {
         let dt = R::splat(self.dt);
         let mut power = R::zero();
         for (number, (g, constants)) in self.groups.iter_mut().zip(self.constants).enumerate() {

@@ -1,6 +1,7 @@
 //! Lists of contacts with their memory, four to a group: what the loops over lanes work on.
 //!
-//! The last group may hold fewer than four; its other lanes name body 0 and have no contact.
+//! Groups come in twos, for loops over eight lanes. The last ones may hold fewer than four; the other lanes name body 0
+//! and have no contact.
 
 use super::{FRESH, History};
 use crate::Vec3;
@@ -10,21 +11,38 @@ use serde::{Deserialize, Serialize};
 /// Four contacts: N numbers that say between whom, and the memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group<const N: usize> {
-    pub names: [[u32; 4]; N],
+    names: [[u32; 4]; N],
+    pub springs: Springs,
+}
+
+/// The memory of four contacts, rolling and twisting apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Springs {
     pub spring: [Lanes; 3],
     pub rate: Lanes,
 }
 
 impl<const N: usize> Group<N> {
-    const EMPTY: Group<N> =
-        Group { names: [[0; 4]; N], spring: [Lanes([0.0; 4]); 3], rate: Lanes([FRESH; 4]) };
+    /// Names to read and memory to write.
+    #[inline(always)]
+    pub fn parts(&mut self) -> (&[[u32; 4]; N], &mut Springs) {
+        (&self.names, &mut self.springs)
+    }
+
+    /// Contacts of body 0 with itself that have not begun.
+    pub const EMPTY: Group<N> = Group {
+        names: [[0; 4]; N],
+        springs: Springs { spring: [Lanes([0.0; 4]); 3], rate: Lanes([FRESH; 4]) },
+    };
 }
 
 /// A list of contacts.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(into = "Flat", try_from = "Flat")]
 pub(crate) struct Groups<const N: usize> {
     len: usize,
+    /// The largest of the names, by place.
+    most: [u32; N],
     pub groups: Vec<Group<N>>,
     /// Rolling and twisting springs of each group; empty unless `turning`.
     pub turns: Vec<[Lanes; 4]>,
@@ -32,9 +50,15 @@ pub(crate) struct Groups<const N: usize> {
     pub turning: bool,
 }
 
+impl<const N: usize> Default for Groups<N> {
+    fn default() -> Groups<N> {
+        Groups::new(false)
+    }
+}
+
 impl<const N: usize> Groups<N> {
     pub fn new(turning: bool) -> Groups<N> {
-        Groups { len: 0, groups: Vec::new(), turns: Vec::new(), turning }
+        Groups { len: 0, most: [0; N], groups: Vec::new(), turns: Vec::new(), turning }
     }
 
     pub fn len(&self) -> usize {
@@ -45,8 +69,14 @@ impl<const N: usize> Groups<N> {
         self.len == 0
     }
 
+    /// No name in place k is larger than the k-th of these.
+    pub fn most(&self) -> [u32; N] {
+        self.most
+    }
+
     pub fn clear(&mut self) {
         self.len = 0;
+        self.most = [0; N];
         self.groups.clear();
         self.turns.clear();
     }
@@ -54,14 +84,15 @@ impl<const N: usize> Groups<N> {
     #[inline(always)]
     pub fn push(&mut self, name: [u32; N], history: &History) {
         let (g, lane) = (self.len / 4, self.len % 4);
-        if lane == 0 {
-            self.groups.push(Group::EMPTY);
+        if self.len.is_multiple_of(8) {
+            self.groups.extend([Group::EMPTY; 2]);
             if self.turning {
-                self.turns.push([Lanes::default(); 4]);
+                self.turns.extend([[Lanes::default(); 4]; 2]);
             }
         }
-        for (names, n) in self.groups[g].names.iter_mut().zip(name) {
+        for ((names, most), n) in self.groups[g].names.iter_mut().zip(&mut self.most).zip(name) {
             names[lane] = n;
+            *most = n.max(*most);
         }
         self.len += 1;
         self.set_history(self.len - 1, history);
@@ -74,7 +105,7 @@ impl<const N: usize> Groups<N> {
 
     #[inline(always)]
     pub fn history(&self, k: usize) -> History {
-        let (g, lane) = (&self.groups[k / 4], k % 4);
+        let (g, lane) = (&self.groups[k / 4].springs, k % 4);
         let spring = Vec3::new(g.spring[0][lane], g.spring[1][lane], g.spring[2][lane]);
         let turn = if self.turning { self.turns[k / 4].map(|t| t[lane]) } else { [0.0; 4] };
         History { spring, rate: g.rate[lane], turn }
@@ -82,7 +113,7 @@ impl<const N: usize> Groups<N> {
 
     #[inline(always)]
     pub fn set_history(&mut self, k: usize, history: &History) {
-        let (g, lane) = (&mut self.groups[k / 4], k % 4);
+        let (g, lane) = (&mut self.groups[k / 4].springs, k % 4);
         for d in 0..3 {
             g.spring[d][lane] = history.spring[d];
         }
@@ -102,7 +133,7 @@ impl<const N: usize> Groups<N> {
     /// Takes over another list's contacts without giving up memory of its own.
     pub fn copy_from(&mut self, other: &Groups<N>) {
         self.clear();
-        self.len = other.len;
+        (self.len, self.most) = (other.len, other.most);
         self.groups.reserve_exact(other.groups.len());
         self.groups.extend_from_slice(&other.groups);
         self.turns.reserve_exact(other.turns.len());

@@ -21,12 +21,14 @@
 //!
 //! Second order in time as the linear law: the dashpot sees the approach speed extrapolated to the full step.
 //!
+//! Adhesion, where the pair has it: `adhesion.rs`; with this law it is the model of Derjaguin, Muller & Toporov.
+//!
 //! Limits: smooth elastic spheres, contact circle small against the radii; the partial slip near the rim under
-//! oscillating tangential force (Mindlin & Deresiewicz 1953) only as the rule above has it; no cohesion.
+//! oscillating tangential force (Mindlin & Deresiewicz 1953) only as the rule above has it.
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, harmonic};
+use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, adhesion, harmonic, law_lanes};
 use crate::lanes::{Real, V3};
 use crate::material::{Material, PairOverride};
 
@@ -50,6 +52,8 @@ pub struct Hertz<R = f64> {
     rolling: R,
     /// Coefficient of twisting resistance [-].
     twisting: R,
+    /// Adhesive force over the effective radius [N/m].
+    pull: R,
 }
 
 impl ContactLaw for Hertz {
@@ -68,40 +72,20 @@ impl ContactLaw for Hertz {
             friction: given(|e| e.friction).unwrap_or(a.friction.min(b.friction)),
             rolling: a.rolling_friction.min(b.rolling_friction),
             twisting: a.twisting_friction.min(b.twisting_friction),
+            pull: adhesion::pull(exception),
         }
     }
 
-    #[inline(always)]
-    fn splat<R: Real>(&self) -> Hertz<R> {
-        Hertz {
-            modulus: R::splat(self.modulus),
-            shear: R::splat(self.shear),
-            damping_ratio: R::splat(self.damping_ratio),
-            tangential_damping: R::splat(self.tangential_damping),
-            friction: R::splat(self.friction),
-            rolling: R::splat(self.rolling),
-            twisting: R::splat(self.twisting),
-        }
-    }
-
-    #[inline(always)]
-    fn mixed<R: Real>(laws: [&Hertz; 4], join: fn(&[f64; 4]) -> R) -> Hertz<R> {
-        let [a, b, c, d] = laws;
-        Hertz {
-            modulus: join(&[a.modulus, b.modulus, c.modulus, d.modulus]),
-            shear: join(&[a.shear, b.shear, c.shear, d.shear]),
-            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
-            tangential_damping: join(&[
-                a.tangential_damping,
-                b.tangential_damping,
-                c.tangential_damping,
-                d.tangential_damping,
-            ]),
-            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
-            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
-            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
-        }
-    }
+    law_lanes!(Hertz {
+        modulus,
+        shear,
+        damping_ratio,
+        tangential_damping,
+        friction,
+        rolling,
+        twisting,
+        pull
+    });
 
     #[inline(always)]
     fn answer<R: Real, const ROLL: bool>(
@@ -118,12 +102,20 @@ impl ContactLaw for Hertz {
 
         let fresh = memory.rate.equals(R::splat(FRESH));
         let mut now = R::splat(1.5) * rate - R::splat(0.5) * memory.rate;
-        let mut time = step;
+        let (mut time, mut weight) = (step, one);
         if R::any(fresh & on) {
             // The share of the last step with contact; more than one: the contact is there from the start of the run.
             let since = R::select(R::zero().lt(rate), d / (rate * step), one);
             now = R::select(fresh, rate, now);
             time = R::select(fresh, step * since.min(one), step);
+            if ROLL {
+                let begun = R::select(
+                    R::zero().lt(rate) & since.lt(R::splat(1.5)),
+                    since.min(one) + R::splat(0.5),
+                    one,
+                );
+                weight = R::select(fresh, begun, one);
+            }
         }
         memory.rate = rate;
 
@@ -144,11 +136,13 @@ impl ContactLaw for Hertz {
 
         let cs = c * law.tangential_damping;
         let limit = law.friction * normal;
-        let slid = slide::plane(&mut memory.spring, n, slip_velocity, stiffness, cs, limit, time, dt, on);
+        let slid =
+            slide::plane(&mut memory.spring, n, slip_velocity, stiffness, None, cs, limit, time, dt, on);
         dashpot = dashpot + slid.dashpot;
         friction = friction + slid.friction;
-        let mut moment = V3::zero();
+        let (mut moment, mut net) = (V3::zero(), normal);
         if ROLL {
+            net = normal - law.pull * touch.radius * weight;
             let length2 = memory.roll.norm2() + memory.twist * memory.twist;
             friction = friction + (loss * length2).only(!fresh);
             memory.roll = memory.roll * kept;
@@ -167,14 +161,14 @@ impl ContactLaw for Hertz {
             dashpot = dashpot + t.dashpot;
             friction = friction + t.friction;
         }
-        Answer { force: n * normal + slid.force, normal, moment, dashpot, friction }
+        Answer { force: n * net + slid.force, normal: net, moment, dashpot, friction }
     }
 
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let circle = (radius * overlap).sqrt();
         let turn2: f64 = history.turn.iter().map(|x| x * x).sum();
         let held = 4.0 * self.shear * circle * (history.spring.norm_squared() + turn2);
-        (8.0 / 15.0 * self.modulus * circle * overlap * overlap, held)
+        (8.0 / 15.0 * self.modulus * circle * overlap * overlap - self.pull * radius * overlap, held)
     }
 
     /// Nothing: the stiffness, and with it the energy, has gone to zero with the overlap, and was booked on the way
@@ -197,7 +191,7 @@ impl ContactLaw for Hertz {
     }
 
     fn rolls(&self) -> bool {
-        self.rolling > 0.0 || self.twisting > 0.0
+        self.rolling > 0.0 || self.twisting > 0.0 || self.pull > 0.0
     }
 }
 

@@ -18,11 +18,13 @@
 //!
 //! Rolling and twisting resistance, where the materials have it: `slide.rs`, with the smaller coefficients of the two.
 //!
-//! Limits: no cohesion; overlaps small against the radii.
+//! Adhesion, where the pair has it: `adhesion.rs`.
+//!
+//! Limits: overlaps small against the radii.
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, harmonic};
+use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, adhesion, harmonic, law_lanes};
 use crate::lanes::{Real, V3};
 use crate::material::{Material, PairOverride};
 
@@ -33,6 +35,8 @@ pub struct Linear<R = f64> {
     pub normal: R,
     /// Tangential stiffness Ks [N/m].
     pub tangential: R,
+    /// 1/Ks [m/N].
+    tangential_softness: R,
     /// C/√m* = 2ζ√K [√(N/m)].
     damping: R,
     /// Cs/C [-].
@@ -43,6 +47,8 @@ pub struct Linear<R = f64> {
     rolling: R,
     /// Coefficient of twisting resistance [-].
     twisting: R,
+    /// Adhesive force over the effective radius [N/m].
+    pull: R,
     /// Damping ratio ζ [-].
     pub damping_ratio: R,
 }
@@ -55,51 +61,33 @@ impl ContactLaw for Linear {
         let normal = given(|e| e.stiffness).unwrap_or(harmonic(a.stiffness, b.stiffness));
         let restitution = given(|e| e.restitution).unwrap_or(a.restitution.min(b.restitution));
         let zeta = damping_ratio(restitution);
+        let tangential = normal * harmonic(a.tangential_ratio, b.tangential_ratio);
         Linear {
             normal,
-            tangential: normal * harmonic(a.tangential_ratio, b.tangential_ratio),
+            tangential,
+            tangential_softness: 1.0 / tangential,
             damping: 2.0 * zeta * normal.sqrt(),
             tangential_damping: harmonic(a.tangential_damping_ratio, b.tangential_damping_ratio),
             friction: given(|e| e.friction).unwrap_or(a.friction.min(b.friction)),
             rolling: a.rolling_friction.min(b.rolling_friction),
             twisting: a.twisting_friction.min(b.twisting_friction),
+            pull: adhesion::pull(exception),
             damping_ratio: zeta,
         }
     }
 
-    #[inline(always)]
-    fn splat<R: Real>(&self) -> Linear<R> {
-        Linear {
-            normal: R::splat(self.normal),
-            tangential: R::splat(self.tangential),
-            damping: R::splat(self.damping),
-            tangential_damping: R::splat(self.tangential_damping),
-            friction: R::splat(self.friction),
-            rolling: R::splat(self.rolling),
-            twisting: R::splat(self.twisting),
-            damping_ratio: R::splat(self.damping_ratio),
-        }
-    }
-
-    #[inline(always)]
-    fn mixed<R: Real>(laws: [&Linear; 4], join: fn(&[f64; 4]) -> R) -> Linear<R> {
-        let [a, b, c, d] = laws;
-        Linear {
-            normal: join(&[a.normal, b.normal, c.normal, d.normal]),
-            tangential: join(&[a.tangential, b.tangential, c.tangential, d.tangential]),
-            damping: join(&[a.damping, b.damping, c.damping, d.damping]),
-            tangential_damping: join(&[
-                a.tangential_damping,
-                b.tangential_damping,
-                c.tangential_damping,
-                d.tangential_damping,
-            ]),
-            friction: join(&[a.friction, b.friction, c.friction, d.friction]),
-            rolling: join(&[a.rolling, b.rolling, c.rolling, d.rolling]),
-            twisting: join(&[a.twisting, b.twisting, c.twisting, d.twisting]),
-            damping_ratio: join(&[a.damping_ratio, b.damping_ratio, c.damping_ratio, d.damping_ratio]),
-        }
-    }
+    law_lanes!(Linear {
+        normal,
+        tangential,
+        tangential_softness,
+        damping,
+        tangential_damping,
+        friction,
+        rolling,
+        twisting,
+        pull,
+        damping_ratio
+    });
 
     #[inline(always)]
     fn answer<R: Real, const ROLL: bool>(
@@ -138,12 +126,24 @@ impl ContactLaw for Linear {
         let cs = c * law.tangential_damping;
         let time = R::splat(dt) * part;
         let limit = law.friction * normal;
-        let slid =
-            slide::plane(&mut memory.spring, n, slip_velocity, law.tangential, cs, limit, time, dt, on);
+        let softness = Some(law.tangential_softness);
+        let slid = slide::plane(
+            &mut memory.spring,
+            n,
+            slip_velocity,
+            law.tangential,
+            softness,
+            cs,
+            limit,
+            time,
+            dt,
+            on,
+        );
         dashpot = dashpot + slid.dashpot;
         let mut friction = slid.friction;
-        let mut moment = V3::zero();
+        let (mut moment, mut net) = (V3::zero(), normal);
         if ROLL {
+            net = normal - law.pull * touch.radius * weight;
             let turning = Turning {
                 stiffness: law.tangential,
                 damping: cs,
@@ -158,13 +158,13 @@ impl ContactLaw for Linear {
             dashpot = dashpot + t.dashpot;
             friction = friction + t.friction;
         }
-        Answer { force: n * normal + slid.force, normal, moment, dashpot, friction }
+        Answer { force: n * net + slid.force, normal: net, moment, dashpot, friction }
     }
 
-    fn stored(&self, overlap: f64, _: f64, history: &History) -> (f64, f64) {
+    fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let turn2: f64 = history.turn.iter().map(|x| x * x).sum();
         let held = 0.5 * self.tangential * (history.spring.norm_squared() + turn2);
-        (0.5 * self.normal * overlap * overlap, held)
+        (0.5 * self.normal * overlap * overlap - self.pull * radius * overlap, held)
     }
 
     #[inline(always)]
@@ -189,7 +189,7 @@ impl ContactLaw for Linear {
     }
 
     fn rolls(&self) -> bool {
-        self.rolling > 0.0 || self.twisting > 0.0
+        self.rolling > 0.0 || self.twisting > 0.0 || self.pull > 0.0
     }
 }
 

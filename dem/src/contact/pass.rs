@@ -1,14 +1,13 @@
-//! The hot loops of contact, over lanes of four: detect, ask the law, add the forces. Generic in the law, in whether
+//! The hot loops of contact, over the lanes of one group of four or two: detect, ask the law, add the forces. Generic in the law, in whether
 //! bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps and boxes, and in whether rolling
 //! is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
 
-use super::groups::{Group, Groups};
+use super::groups::{Group, Groups, Springs};
 use super::{Answer, ContactLaw, FRESH, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
-use crate::lanes::{Four, Kernel, Real, V3};
-use crate::search::candidates::spheres;
+use crate::lanes::{Four, Kernel, Pack, Real, V3};
 use crate::state::{Block, Cross, Lanes, xyz};
 use crate::work::{BlockWork, CrossWork, Failure, Sums};
 
@@ -38,7 +37,10 @@ pub(crate) fn motion<'a>(block: &'a Block, body: usize, point: &Vec3) -> Motion<
     Motion { velocity: &block.velocity[body], spin: &block.spin[body], arm }
 }
 
-/// One partner of four contacts, by lane: its sphere, and of its body the centre, the velocity and the spin.
+/// A number per lane; of four lanes only, the others are not used.
+pub(crate) type Names = [usize; 8];
+
+/// One partner of the contacts in lanes: its sphere, and of its body the centre, the velocity and the spin.
 pub(crate) trait End {
     fn sphere(&self, lane: usize) -> &Lanes;
     fn centre(&self, lane: usize) -> &Lanes;
@@ -47,128 +49,145 @@ pub(crate) trait End {
 }
 
 /// Bodies of one block.
-pub(crate) struct Own<'a> {
+pub(crate) struct Own<'a, const RIGID: bool> {
     spheres: &'a [Lanes],
     centre: &'a [Lanes],
     velocity: &'a [Lanes],
     spin: &'a [Lanes],
-    sphere: [usize; 4],
-    body: [usize; 4],
+    names: [&'a [u32; 4]; 2],
+    /// Of clumps and boxes only.
+    body: Names,
 }
 
-impl End for Own<'_> {
+impl<'a, const RIGID: bool> Own<'a, RIGID> {
+    /// `names`: of spheres, by lane.
+    ///
+    /// # Safety
+    /// Single spheres (`RIGID = false`): every name is below the number of the block's bodies.
+    #[inline(always)]
+    pub unsafe fn new<R: Pack>(
+        block: &'a Block,
+        w: &'a BlockWork,
+        names: [&'a [u32; 4]; 2],
+    ) -> Own<'a, RIGID> {
+        let mut body = [0; 8];
+        if RIGID {
+            for l in 0..R::LANES {
+                body[l] = w.owner[names[l / 4][l % 4] as usize] as usize;
+            }
+        }
+        let Block { centre, velocity, spin, .. } = block;
+        Own { spheres: &w.spheres, centre, velocity, spin, names, body }
+    }
+
+    #[inline(always)]
+    pub fn body(&self, lane: usize) -> usize {
+        if RIGID { self.body[lane] } else { self.names[lane / 4][lane % 4] as usize }
+    }
+
+    #[inline(always)]
+    fn of_body(&self, list: &'a [Lanes], lane: usize) -> &'a Lanes {
+        let k = self.body(lane);
+        // SAFETY: as whoever called `new` has promised; the block's lists are of one length.
+        if RIGID { &list[k] } else { unsafe { list.get_unchecked(k) } }
+    }
+}
+
+/// Whether a block's lists of records and its sums are of one length, and `most` is below it.
+pub(crate) fn within(block: &Block, w: &BlockWork, most: u32) -> bool {
+    let n = block.centre.len();
+    block.velocity.len() == n && block.spin.len() == n && w.sums.len() == n && (most as usize) < n
+}
+
+impl<const RIGID: bool> End for Own<'_, RIGID> {
     #[inline(always)]
     fn sphere(&self, lane: usize) -> &Lanes {
-        &self.spheres[self.sphere[lane]]
+        if RIGID { &self.spheres[self.names[lane / 4][lane % 4] as usize] } else { self.centre(lane) }
     }
     #[inline(always)]
     fn centre(&self, lane: usize) -> &Lanes {
-        &self.centre[self.body[lane]]
+        self.of_body(self.centre, lane)
     }
     #[inline(always)]
     fn velocity(&self, lane: usize) -> &Lanes {
-        &self.velocity[self.body[lane]]
+        self.of_body(self.velocity, lane)
     }
     #[inline(always)]
     fn spin(&self, lane: usize) -> &Lanes {
-        &self.spin[self.body[lane]]
+        self.of_body(self.spin, lane)
     }
 }
 
 /// Bodies of several blocks.
 struct Far<'a> {
-    blocks: [&'a Block; 4],
-    spheres: [&'a [Lanes]; 4],
-    sphere: [usize; 4],
-    body: [usize; 4],
+    blocks: &'a [Block],
+    works: &'a [BlockWork],
+    rigid: bool,
+    block: [&'a [u32; 4]; 2],
+    sphere: [&'a [u32; 4]; 2],
+    body: Names,
+}
+
+impl<'a> Far<'a> {
+    #[inline(always)]
+    fn block(&self, lane: usize) -> usize {
+        self.block[lane / 4][lane % 4] as usize
+    }
+    #[inline(always)]
+    fn body(&self, lane: usize) -> usize {
+        if self.rigid { self.body[lane] } else { self.sphere[lane / 4][lane % 4] as usize }
+    }
 }
 
 impl End for Far<'_> {
     #[inline(always)]
     fn sphere(&self, lane: usize) -> &Lanes {
-        &self.spheres[lane][self.sphere[lane]]
+        if self.rigid {
+            &self.works[self.block(lane)].spheres[self.sphere[lane / 4][lane % 4] as usize]
+        } else {
+            self.centre(lane)
+        }
     }
     #[inline(always)]
     fn centre(&self, lane: usize) -> &Lanes {
-        &self.blocks[lane].centre[self.body[lane]]
+        &self.blocks[self.block(lane)].centre[self.body(lane)]
     }
     #[inline(always)]
     fn velocity(&self, lane: usize) -> &Lanes {
-        &self.blocks[lane].velocity[self.body[lane]]
+        &self.blocks[self.block(lane)].velocity[self.body(lane)]
     }
     #[inline(always)]
     fn spin(&self, lane: usize) -> &Lanes {
-        &self.blocks[lane].spin[self.body[lane]]
+        &self.blocks[self.block(lane)].spin[self.body(lane)]
     }
 }
 
-/// Four records from a list.
+/// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` (1, 0 or −1) before.
 #[inline(always)]
-pub(crate) fn rows<R: Four>(records: &[Lanes], at: &[usize; 4]) -> [R; 4] {
-    [R::load(&records[at[0]]), R::load(&records[at[1]]), R::load(&records[at[2]]), R::load(&records[at[3]])]
+fn difference<R: Pack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
+    let sign = R::record(&[1.0, 1.0, 1.0, last]);
+    R::columns([p[0].less(q[0], sign), p[1].less(q[1], sign), p[2].less(q[2], sign), p[3].less(q[3], sign)])
 }
 
+/// The groups for the lanes, from the first of `list`; where there is one only, the spare one as the second.
 #[inline(always)]
-fn sphere_rows<R: Four>(e: &impl End) -> [R; 4] {
-    [R::load(e.sphere(0)), R::load(e.sphere(1)), R::load(e.sphere(2)), R::load(e.sphere(3))]
+pub(crate) fn side_by_side<'a, R: Pack, T>(list: &'a mut [T], spare: &'a mut T) -> (&'a mut T, &'a mut T) {
+    let (first, rest) = list.split_at_mut(1);
+    (&mut first[0], if R::GROUPS > 1 { &mut rest[0] } else { spare })
 }
 
-#[inline(always)]
-fn centre_rows<R: Four>(e: &impl End) -> [R; 4] {
-    [R::load(e.centre(0)), R::load(e.centre(1)), R::load(e.centre(2)), R::load(e.centre(3))]
-}
-
-#[inline(always)]
-fn velocity_rows<R: Four>(e: &impl End) -> [R; 4] {
-    [R::load(e.velocity(0)), R::load(e.velocity(1)), R::load(e.velocity(2)), R::load(e.velocity(3))]
-}
-
-#[inline(always)]
-fn spin_rows<R: Four>(e: &impl End) -> [R; 4] {
-    [R::load(e.spin(0)), R::load(e.spin(1)), R::load(e.spin(2)), R::load(e.spin(3))]
-}
-
-/// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` before.
-#[inline(always)]
-fn difference<R: Four>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
-    let sign = R::load(&[1.0, 1.0, 1.0, last]);
-    R::transpose([p[0] - q[0] * sign, p[1] - q[1] * sign, p[2] - q[2] * sign, p[3] - q[3] * sign])
-}
-
-/// Records of a vector in lanes.
-#[inline(always)]
-pub(crate) fn records<R: Four>(v: V3<R>) -> [R; 4] {
-    R::transpose([v.x, v.y, v.z, R::zero()])
-}
-
-/// Numbers of the bodies of four spheres.
-#[inline(always)]
-pub(crate) fn bodies<const RIGID: bool>(owner: &[u32], at: &[u32; 4]) -> [usize; 4] {
-    let [a, b, c, d] = *at;
-    let [a, b, c, d] = [a as usize, b as usize, c as usize, d as usize];
-    if RIGID {
-        [owner[a] as usize, owner[b] as usize, owner[c] as usize, owner[d] as usize]
-    } else {
-        [a, b, c, d]
-    }
-}
-
-#[inline(always)]
-pub(crate) fn wide(at: &[u32; 4]) -> [usize; 4] {
-    [at[0] as usize, at[1] as usize, at[2] as usize, at[3] as usize]
-}
-
-/// The law of four contacts: one for all, or mixed lane by lane.
+/// The law of the contacts in lanes: one for all, or mixed lane by lane.
 pub(crate) struct Mix<'a, L: ContactLaw, R: Real> {
     laws: &'a PairTable<L>,
-    /// Set where there is one material only.
+    /// Set where either side is of one material.
     one: Option<L::Lanes<R>>,
 }
 
-impl<'a, L: ContactLaw, R: Four> Mix<'a, L, R> {
+impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
+    /// `a`, `b`: the material of each side, where it has only one.
     #[inline(always)]
-    pub fn new(laws: &'a PairTable<L>) -> Mix<'a, L, R> {
-        Mix { laws, one: if laws.count() == 1 { Some(laws.get(0, 0).splat()) } else { None } }
+    pub fn new(laws: &'a PairTable<L>, a: Option<u32>, b: Option<u32>) -> Mix<'a, L, R> {
+        Mix { laws, one: a.zip(b).map(|(a, b)| laws.get(a, b).splat()) }
     }
 
     /// For materials in lanes.
@@ -181,74 +200,70 @@ impl<'a, L: ContactLaw, R: Four> Mix<'a, L, R> {
     }
 }
 
-/// Lanes below `count` of a group.
-#[inline(always)]
-pub(crate) fn present<R: Four>(count: usize) -> R::Mask {
-    R::load(&[0.0, 1.0, 2.0, 3.0]).lt(R::splat(count as f64))
+/// Energy that contacts took, by lane of a group.
+pub(crate) struct Taken<Q> {
+    pub dashpot: Q,
+    pub friction: Q,
 }
 
-/// Energy that contacts took, by lane.
-pub(crate) struct Taken<R> {
-    pub dashpot: R,
-    pub friction: R,
-}
-
-impl<R: Real> Taken<R> {
+impl<Q: Four> Taken<Q> {
     #[inline(always)]
-    pub fn new() -> Taken<R> {
-        Taken { dashpot: R::zero(), friction: R::zero() }
+    pub fn new() -> Taken<Q> {
+        Taken { dashpot: Q::zero(), friction: Q::zero() }
     }
 }
 
-/// Reads the memory of a group.
+/// Reads the memory of groups.
 #[inline(always)]
-pub(crate) fn recall<R: Four, const N: usize, const ROLL: bool>(
-    group: &Group<N>,
-    turn: &[Lanes; 4],
+pub(crate) fn recall<R: Pack, const ROLL: bool>(
+    springs: &(&mut Springs, &mut Springs),
+    turns: &(&mut [Lanes; 4], &mut [Lanes; 4]),
 ) -> Memory<R> {
-    let [x, y, z] = &group.spring;
-    let spring = V3::new(R::load(x), R::load(y), R::load(z));
-    let rate = R::load(&group.rate);
+    let (p, q) = springs;
+    let [x, y, z] = [0, 1, 2].map(|d| (&p.spring[d], &q.spring[d]));
+    let spring = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
+    let rate = R::join(&p.rate, &q.rate);
     if ROLL {
-        let [x, y, z, twist] = turn;
-        Memory { spring, rate, roll: V3::new(R::load(x), R::load(y), R::load(z)), twist: R::load(twist) }
+        let [x, y, z, t] = [0, 1, 2, 3].map(|d| (&turns.0[d], &turns.1[d]));
+        let roll = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
+        Memory { spring, rate, roll, twist: R::join(t.0, t.1) }
     } else {
         Memory { spring, rate, roll: V3::zero(), twist: R::zero() }
     }
 }
 
-/// Writes the memory of a group: that of the lanes `on`, nothing for the others.
+/// Writes the memory of groups: that of the lanes `on`, nothing for the others.
 #[inline(always)]
-pub(crate) fn remember<R: Four, const N: usize, const ROLL: bool>(
-    group: &mut Group<N>,
-    turn: &mut [Lanes; 4],
+pub(crate) fn remember<R: Pack, const ROLL: bool>(
+    springs: &mut (&mut Springs, &mut Springs),
+    turns: &mut (&mut [Lanes; 4], &mut [Lanes; 4]),
     memory: &Memory<R>,
     on: R::Mask,
 ) {
+    let (p, q) = springs;
     let spring = memory.spring.only(on);
-    spring.x.store(&mut group.spring[0]);
-    spring.y.store(&mut group.spring[1]);
-    spring.z.store(&mut group.spring[2]);
-    R::select(on, memory.rate, R::splat(FRESH)).store(&mut group.rate);
+    spring.x.split(&mut p.spring[0], &mut q.spring[0]);
+    spring.y.split(&mut p.spring[1], &mut q.spring[1]);
+    spring.z.split(&mut p.spring[2], &mut q.spring[2]);
+    R::select(on, memory.rate, R::splat(FRESH)).split(&mut p.rate, &mut q.rate);
     if ROLL {
+        let (p, q) = turns;
         let roll = memory.roll.only(on);
-        roll.x.store(&mut turn[0]);
-        roll.y.store(&mut turn[1]);
-        roll.z.store(&mut turn[2]);
-        memory.twist.only(on).store(&mut turn[3]);
+        roll.x.split(&mut p[0], &mut q[0]);
+        roll.y.split(&mut p[1], &mut q[1]);
+        roll.z.split(&mut p[2], &mut q[2]);
+        memory.twist.only(on).split(&mut p[3], &mut q[3]);
     }
 }
 
-/// Forces of four contacts: records of the force on a, the torque on a and the torque on b; and what to complain of.
+/// Forces of contacts in lanes: on a, and the torques on a and b; and what to complain of.
 struct Outcome<R: Real> {
-    force: [R; 4],
-    torque_a: [R; 4],
-    torque_b: [R; 4],
+    force: V3<R>,
+    torque_a: V3<R>,
+    torque_b: V3<R>,
     /// Of single spheres: force times normal, and the levers of both.
     moment: V3<R>,
     levers: (R, R),
-    /// The force in lanes.
-    push: V3<R>,
     on: R::Mask,
     /// Lanes that overlap by more than the smaller radius.
     deep: u32,
@@ -256,34 +271,47 @@ struct Outcome<R: Real> {
     bound: R,
 }
 
-/// Four contacts between spheres. `None` when none of them touches. `law` mixes constants for materials in lanes.
+impl<R: Pack> Outcome<R> {
+    /// The first contact that is too deep: its number in a list where the lanes begin with group `g`, the overlap and
+    /// its bound.
+    #[cold]
+    fn too_deep(&self, g: usize) -> (usize, f64, f64) {
+        let l = self.deep.trailing_zeros() as usize;
+        (4 * g + l, self.overlap.numbers()[l], self.bound.numbers()[l])
+    }
+}
+
+/// Contacts between spheres. `None` when none of them touches. `law` mixes constants for materials in lanes.
 #[inline(always)]
-fn contacts<L: ContactLaw, R: Four, const RIGID: bool, const ROLL: bool, const N: usize>(
+fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
     law: &Mix<'_, L, R>,
     a: &impl End,
     b: &impl End,
-    group: &mut Group<N>,
-    turn: &mut [Lanes; 4],
+    mut springs: (&mut Springs, &mut Springs),
+    mut turns: (&mut [Lanes; 4], &mut [Lanes; 4]),
     present: R::Mask,
-    taken: &mut Taken<R>,
+    taken: &mut Taken<R::Quad>,
     dt: f64,
 ) -> Option<Outcome<R>> {
     // Differences of whole records, so that one transposition serves both partners; radii are added by the same token.
-    let (xa, xb) = (sphere_rows::<R>(a), sphere_rows::<R>(b));
+    let (xa, xb) = (R::rows(|l| a.sphere(l)), R::rows(|l| b.sphere(l)));
     let [dx, dy, dz, reach] = difference(xa, xb, -1.0);
     let between = V3::new(dx, dy, dz);
     let distance2 = between.norm2();
     let on = distance2.lt(reach * reach) & present;
-    let mut memory = recall::<R, N, ROLL>(group, turn);
+    let mut memory = recall::<R, ROLL>(&springs, &turns);
     let ended = !on & memory.rate.lt(R::splat(FRESH));
     if R::any(ended) {
-        let (ma, mb) = (R::transpose(spin_rows::<R>(a))[3], R::transpose(spin_rows::<R>(b))[3]);
-        taken.friction = taken.friction + L::left::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
-        remember::<R, N, ROLL>(group, turn, &memory, on);
+        let (ma, mb) = (R::columns(R::rows(|l| a.spin(l)))[3], R::columns(R::rows(|l| b.spin(l)))[3]);
+        let left = L::left::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
+        taken.friction = left.add_to(taken.friction);
+        remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
     }
     if !R::any(on) {
         return None;
     }
+    let (va, wa) = R::two_rows(|l| (a.velocity(l), a.spin(l)));
+    let (vb, wb) = R::two_rows(|l| (b.velocity(l), b.spin(l)));
     let distance = distance2.sqrt();
     // distance/distance² rather than 1/distance: the division need not wait for the root.
     let mut normal = between * (distance * (R::splat(1.0) / distance2));
@@ -292,21 +320,21 @@ fn contacts<L: ContactLaw, R: Four, const RIGID: bool, const ROLL: bool, const N
         normal = V3::select(apart, normal, V3::new(R::zero(), R::zero(), R::splat(1.0)));
     }
     let overlap = reach - distance;
-    let ra = R::transpose(xa)[3];
+    let ra = R::columns(xa)[3];
     let rb = reach - ra;
     // From the centres to the contact point, which halves the overlap.
     let la = ra - R::splat(0.5) * overlap;
     let lb = distance - la;
 
-    let [ux, uy, uz, softness] = difference(velocity_rows::<R>(a), velocity_rows::<R>(b), -1.0);
-    let [wax, way, waz, ma] = R::transpose(spin_rows::<R>(a));
-    let [wbx, wby, wbz, mb] = R::transpose(spin_rows::<R>(b));
+    let [ux, uy, uz, softness] = difference(va, vb, -1.0);
+    let [wax, way, waz, ma] = R::columns(wa);
+    let [wbx, wby, wbz, mb] = R::columns(wb);
     let (wa, wb) = (V3::new(wax, way, waz), V3::new(wbx, wby, wbz));
     let translation = V3::new(ux, uy, uz);
     let (mut arm_a, mut arm_b) = (V3::zero(), V3::zero());
     let velocity = if RIGID {
-        let [ax, ay, az, _] = difference(xa, centre_rows::<R>(a), 0.0);
-        let [bx, by, bz, _] = difference(xb, centre_rows::<R>(b), 0.0);
+        let [ax, ay, az, _] = difference(xa, R::rows(|l| a.centre(l)), 0.0);
+        let [bx, by, bz, _] = difference(xb, R::rows(|l| b.centre(l)), 0.0);
         arm_a = V3::new(ax, ay, az) - normal * la;
         arm_b = V3::new(bx, by, bz) + normal * lb;
         translation + wa.cross(arm_a) - wb.cross(arm_b)
@@ -323,9 +351,9 @@ fn contacts<L: ContactLaw, R: Four, const RIGID: bool, const ROLL: bool, const N
     };
     let Answer { force, moment, dashpot, friction, .. } =
         L::answer::<R, ROLL>(&law.of(ma, mb), &touch, &mut memory, on, dt);
-    remember::<R, N, ROLL>(group, turn, &memory, on);
-    taken.dashpot = taken.dashpot + dashpot.only(on);
-    taken.friction = taken.friction + friction.only(on);
+    remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
+    taken.dashpot = dashpot.only(on).add_to(taken.dashpot);
+    taken.friction = friction.only(on).add_to(taken.friction);
     let force = force.only(on);
     let lever = force.cross(normal).only(on);
     let (mut torque_a, mut torque_b) =
@@ -337,17 +365,39 @@ fn contacts<L: ContactLaw, R: Four, const RIGID: bool, const ROLL: bool, const N
     }
     let bound = ra.min(rb);
     Some(Outcome {
-        force: records(force),
-        torque_a: records(torque_a),
-        torque_b: records(torque_b),
+        force,
+        torque_a,
+        torque_b,
         moment: lever,
         levers: (la, lb),
-        push: force,
         on,
-        deep: R::bits(overlap.gt(bound) & on),
+        deep: R::mask_bits(overlap.gt(bound) & on),
         overlap,
         bound,
     })
+}
+
+/// A vector per lane as a record with a fourth number.
+#[inline(always)]
+fn four<R: Real>(v: V3<R>, last: R) -> [R; 4] {
+    [v.x, v.y, v.z, last]
+}
+
+/// Force and torque of each lane, for the sums of bodies.
+#[inline(always)]
+pub(crate) fn records<R: Pack>(force: V3<R>, torque: V3<R>) -> [R::Record; 8] {
+    R::records(four(force, R::zero()), four(torque, R::zero()))
+}
+
+/// Adds force and torque to the sums of a body.
+///
+/// # Safety
+/// Single spheres (`RIGID = false`): `body` is below the number of sums.
+#[inline(always)]
+unsafe fn give<R: Pack, const RIGID: bool>(record: R::Record, sums: &mut [Sums], body: usize) {
+    // SAFETY: as the caller has promised.
+    let sum = if RIGID { &mut sums[body] } else { unsafe { sums.get_unchecked_mut(body) } };
+    R::give(record, &mut sum.0);
 }
 
 /// Contacts between spheres of one block.
@@ -363,49 +413,55 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Four>(self) {
+    fn run<R: Pack>(self) {
         let Interior { laws, block, pairs, w, dt } = self;
-        let n = block.centre.len();
-        let (centre, velocity, spin) = (&block.centre[..n], &block.velocity[..n], &block.spin[..n]);
-        let sums = &mut w.sums[..n];
-        let spheres = if RIGID { &w.spheres[..] } else { centre };
-        let owner = &w.owner[..];
-        let law = Mix::new(laws);
-        let mut taken = Taken::<R>::new();
-        let mut failure = None;
+        let [i, j] = pairs.most();
+        assert!(RIGID || within(block, w, i.max(j)), "names of contacts are places of bodies");
+        let mut sums = std::mem::take(&mut w.sums);
+        let own = &*w;
+        let law = Mix::<L, R>::new(laws, own.material, own.material);
+        let mut taken = Taken::new();
+        let mut deepest = None;
         let len = pairs.len();
-        let mut no_turn = [Lanes::default(); 4];
-        for (g, group) in pairs.groups.iter_mut().enumerate() {
-            let turn = if ROLL { &mut pairs.turns[g] } else { &mut no_turn };
-            let names = group.names;
-            let [i, j] = [wide(&names[0]), wide(&names[1])];
-            let (body_a, body_b) = (bodies::<RIGID>(owner, &names[0]), bodies::<RIGID>(owner, &names[1]));
-            let a = Own { spheres, centre, velocity, spin, sphere: i, body: body_a };
-            let b = Own { spheres, centre, velocity, spin, sphere: j, body: body_b };
-            let there = present::<R>(len - 4 * g);
+        let (mut spare, mut spare_turn, mut no_turn) =
+            (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+            let turns = if ROLL {
+                side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
+            } else {
+                (&mut no_turn, &mut spare_turn)
+            };
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            // SAFETY: compared above.
+            let a = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[0], &q[0]]) };
+            let b = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[1], &q[1]]) };
+            let (there, springs) = (R::below(len - 4 * g), (first, second));
             let Some(out) =
-                contacts::<L, R, RIGID, ROLL, 2>(&law, &a, &b, group, turn, there, &mut taken, dt)
+                contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt)
             else {
                 continue;
             };
-            for l in 0..4 {
-                let (force, torque) = &mut sums[a.body[l]].both();
-                (R::load(force) + out.force[l]).store(force);
-                (R::load(torque) + out.torque_a[l]).store(torque);
-                let (force, torque) = &mut sums[b.body[l]].both();
-                (R::load(force) - out.force[l]).store(force);
-                (R::load(torque) + out.torque_b[l]).store(torque);
+            let (on_a, on_b) = R::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
+            for l in 0..R::LANES {
+                // SAFETY: compared above.
+                unsafe {
+                    give::<R, RIGID>(on_a[l], &mut sums, a.body(l));
+                    give::<R, RIGID>(on_b[l], &mut sums, b.body(l));
+                }
             }
-            if out.deep != 0 && failure.is_none() {
-                let l = out.deep.trailing_zeros() as usize;
-                let partner = Partner::Body(block.bodies[b.body[l]] as usize);
-                let (overlap, bound) = (out.overlap.array()[l], out.bound.array()[l]);
-                failure = Some(Failure::Overlap { body: block.bodies[a.body[l]], partner, overlap, bound });
+            if out.deep != 0 && deepest.is_none() {
+                deepest = Some(out.too_deep(g));
             }
         }
+        w.sums = sums;
         w.ledger.dissipated_dashpot += taken.dashpot.sum();
         w.ledger.dissipated_friction += taken.friction.sum();
-        w.failure = w.failure.or(failure);
+        if let (Some((k, overlap, bound)), None) = (deepest, w.failure) {
+            let [i, j] = pairs.name(k).map(|sphere| block.bodies[w.body(sphere) as usize]);
+            w.failure =
+                Some(Failure::Overlap { body: i, partner: Partner::Body(j as usize), overlap, bound });
+        }
     }
 }
 
@@ -414,6 +470,8 @@ pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
     pub blocks: &'a [Block],
     pub works: &'a [BlockWork],
+    /// The material of all bodies, where there is only one.
+    pub material: Option<u32>,
     pub b: usize,
     pub lists: &'a mut Cross,
     pub out: &'a mut CrossWork,
@@ -424,64 +482,73 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Four>(self) {
-        let Between { laws, blocks, works, b: own, lists, out, dt } = self;
+    fn run<R: Pack>(self) {
+        let Between { laws, blocks, works, material, b: own, lists, out, dt } = self;
         let (mine, wa) = (&blocks[own], &works[own]);
         let pairs = &mut lists.spheres;
         let len = pairs.len();
-        let law = Mix::new(laws);
-        let mut taken = Taken::<R>::new();
-        let mut no_turn = [Lanes::default(); 4];
-        for (g, group) in pairs.groups.iter_mut().enumerate() {
-            let turn = if ROLL { &mut pairs.turns[g] } else { &mut no_turn };
-            let names = group.names;
-            let [i, block, j] = [wide(&names[0]), wide(&names[1]), wide(&names[2])];
-            let count = (len - 4 * g).min(4);
-            let a = Own {
-                spheres: spheres(mine, wa, RIGID),
-                centre: &mine.centre,
-                velocity: &mine.velocity,
-                spin: &mine.spin,
-                sphere: i,
-                body: bodies::<RIGID>(&wa.owner, &names[0]),
+        let law = Mix::<L, R>::new(laws, material, material);
+        let mut taken = Taken::new();
+        let (mut spare, mut spare_turn, mut no_turn) =
+            (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
+        let n = mine.centre.len();
+        let even = mine.velocity.len() == n && mine.spin.len() == n;
+        assert!(RIGID || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
+        let mut deepest = None;
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+            let turns = if ROLL {
+                side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
+            } else {
+                (&mut no_turn, &mut spare_turn)
             };
-            let b = Far {
-                blocks: block.map(|k| &blocks[k]),
-                spheres: block.map(|k| spheres(&blocks[k], &works[k], RIGID)),
-                sphere: j,
-                body: if RIGID { std::array::from_fn(|l| works[block[l]].owner[j[l]] as usize) } else { j },
-            };
-            let there = present::<R>(count);
+            let count = (len - 4 * g).min(R::LANES);
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            // SAFETY: compared above.
+            let a = unsafe { Own::<RIGID>::new::<R>(mine, wa, [&p[0], &q[0]]) };
+            let (block, sphere) = ([&p[1], &q[1]], [&p[2], &q[2]]);
+            let mut b = Far { blocks, works, rigid: RIGID, block, sphere, body: [0; 8] };
+            if RIGID {
+                for l in 0..count {
+                    b.body[l] = works[b.block(l)].owner[sphere[l / 4][l % 4] as usize] as usize;
+                }
+            }
+            let (there, springs) = (R::below(count), (first, second));
             let width = if RIGID || ROLL { 3 } else { 2 };
             let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
-            match contacts::<L, R, RIGID, ROLL, 3>(&law, &a, &b, group, turn, there, &mut taken, dt) {
+            match contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt) {
                 None => slots.fill(Lanes::default()),
                 Some(o) => {
                     if RIGID || ROLL {
-                        for (l, slot) in slots.chunks_exact_mut(3).enumerate() {
-                            o.force[l].store(&mut slot[0]);
-                            o.torque_a[l].store(&mut slot[1]);
-                            o.torque_b[l].store(&mut slot[2]);
+                        let on_a = records::<R>(o.force, o.torque_a);
+                        let on_b = records::<R>(o.torque_b, V3::zero());
+                        let mut last = [Lanes::default(); 2];
+                        for (l, slot) in slots.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+                            let [force, torque_a, torque_b] = slot;
+                            R::put(on_a[l], &mut last);
+                            [*force, *torque_a] = last;
+                            R::put(on_b[l], &mut last);
+                            *torque_b = last[0];
                         }
                     } else {
-                        let (f, m, (la, lb)) = (o.push, o.moment, o.levers);
-                        let (la, lb) = (R::select(o.on, la, R::zero()), R::select(o.on, lb, R::zero()));
-                        let force = R::transpose([f.x, f.y, f.z, la]);
-                        let moment = R::transpose([m.x, m.y, m.z, lb]);
-                        for (l, slot) in slots.chunks_exact_mut(2).enumerate() {
-                            force[l].store(&mut slot[0]);
-                            moment[l].store(&mut slot[1]);
+                        let (la, lb) = (o.levers.0.only(o.on), o.levers.1.only(o.on));
+                        let rows = R::records(four(o.force, la), four(o.moment, lb));
+                        for (l, slot) in slots.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+                            R::put(rows[l], slot);
                         }
                     }
-                    if o.deep != 0 && out.failure.is_none() {
-                        let l = o.deep.trailing_zeros() as usize;
-                        let partner = Partner::Body(b.blocks[l].bodies[b.body[l]] as usize);
-                        let (overlap, bound) = (o.overlap.array()[l], o.bound.array()[l]);
-                        let body = mine.bodies[a.body[l]];
-                        out.failure = Some(Failure::Overlap { body, partner, overlap, bound });
+                    if o.deep != 0 && deepest.is_none() {
+                        deepest = Some(o.too_deep(g));
                     }
                 }
             }
+        }
+        if let (Some((k, overlap, bound)), None) = (deepest, out.failure) {
+            let [i, block, j] = pairs.name(k);
+            let (other, there) = (&blocks[block as usize], works[block as usize].body(j));
+            let (body, partner) = (mine.bodies[wa.body(i) as usize], other.bodies[there as usize]);
+            let partner = Partner::Body(partner as usize);
+            out.failure = Some(Failure::Overlap { body, partner, overlap, bound });
         }
         out.dashpot += taken.dashpot.sum();
         out.friction += taken.friction.sum();
@@ -537,18 +604,33 @@ pub(crate) fn boxes<L: ContactLaw>(
 }
 
 /// Adds the slots of contacts with other blocks, in their fixed order. `WIDE`: slots hold both torques.
-pub(crate) fn gather<const WIDE: bool>(w: &mut BlockWork, cross: &[CrossWork]) {
-    let width = if WIDE { 3 } else { 2 };
-    for entry in &w.gather {
-        let (slot, first) = entry.slot();
-        let slot = &cross[entry.block as usize].slots[slot * width..][..width];
-        let Sums { force, torque } = &mut w.sums[entry.place as usize];
-        let sign = if first { 1.0 } else { -1.0 };
-        let lever = if first { slot[0][3] } else { slot[1][3] };
-        let turn = if first { &slot[1] } else { &slot[width - 1] };
-        for d in 0..3 {
-            force[d] += sign * slot[0][d];
-            torque[d] += if WIDE { turn[d] } else { slot[1][d] * lever };
+pub(crate) struct Gathering<'a, const WIDE: bool> {
+    pub w: &'a mut BlockWork,
+    pub cross: &'a [CrossWork],
+}
+
+impl<const WIDE: bool> Kernel for Gathering<'_, WIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Pack>(self) {
+        let Gathering { w, cross } = self;
+        let width = if WIDE { 3 } else { 2 };
+        let three = R::Quad::load(&[1.0, 1.0, 1.0, 0.0]);
+        for entry in &w.gather {
+            let (slot, first) = entry.slot();
+            let slot = &cross[entry.block as usize].slots[slot * width..][..width];
+            let sums = &mut w.sums[entry.place as usize].0;
+            let sign = three * R::Quad::splat(if first { 1.0 } else { -1.0 });
+            let force = R::Quad::load(&slot[0]) * sign;
+            let torque = if WIDE {
+                R::Quad::load(&slot[if first { 1 } else { 2 }])
+            } else {
+                let lever = slot[usize::from(!first)][3];
+                R::Quad::load(&slot[1]) * (three * R::Quad::splat(lever))
+            };
+            (R::Quad::load(&sums[0]) + force).store(&mut sums[0]);
+            (R::Quad::load(&sums[1]) + torque).store(&mut sums[1]);
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Contacts with planes: spheres by lanes of four, corners of boxes one by one.
 
-use super::groups::Groups;
-use super::pass::{Mix, Taken, bodies, motion, present, recall, records, remember, rows, wide};
+use super::groups::{Group, Groups};
+use super::pass::{End, Mix, Own, Taken, motion, recall, records, remember, side_by_side, within};
 use super::{Answer, ContactGeometry, ContactLaw, FRESH, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
-use crate::lanes::{Four, Kernel, V3};
+use crate::lanes::{Four, Kernel, Pack, Real, V3};
 use crate::model::Model;
 use crate::shape::cuboid;
 use crate::state::{Block, Lanes, xyz};
@@ -36,6 +36,8 @@ pub(crate) fn now(model: &Model, motions: &[WallMotion], out: &mut Vec<PlaneNow>
 pub(crate) struct Planes<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
     pub planes: &'a [PlaneNow],
+    /// The material of all planes, where there is only one.
+    pub material: Option<u32>,
     pub block: &'a Block,
     pub pairs: &'a mut Groups<2>,
     pub w: &'a mut BlockWork,
@@ -46,50 +48,54 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Four>(self) {
-        let Planes { laws, planes, block, pairs, w, dt } = self;
-        let mix = Mix::new(laws);
+    fn run<R: Pack>(self) {
+        let Planes { laws, planes, material, block, pairs, w, dt } = self;
+        assert!(RIGID || within(block, w, pairs.most()[0]), "names of contacts are places of bodies");
+        let mut sums = std::mem::take(&mut w.sums);
+        let own = &*w;
+        let mut failure = None;
+        let mix = Mix::<L, R>::new(laws, own.material, material);
         let len = pairs.len();
-        let mut taken = Taken::<R>::new();
-        let (mut work, mut linear, mut angular) = (R::zero(), V3::<R>::zero(), V3::<R>::zero());
-        let mut no_turn = [Lanes::default(); 4];
-        let spheres = if RIGID { &w.spheres[..] } else { &block.centre[..] };
-        for (g, group) in pairs.groups.iter_mut().enumerate() {
-            let turn = if ROLL { &mut pairs.turns[g] } else { &mut no_turn };
-            let names = group.names;
-            let [i, plane] = [wide(&names[0]), wide(&names[1])];
-            let body = bodies::<RIGID>(&w.owner, &names[0]);
-            let there = present::<R>(len - 4 * g);
-            let [x, y, z, r] = R::transpose(rows(spheres, &i));
-            let [p, q, s, t] = plane;
-            let (p, q, s, t) = (&planes[p], &planes[q], &planes[s], &planes[t]);
-            let [nx, ny, nz, from] =
-                R::transpose([R::load(&p.face), R::load(&q.face), R::load(&s.face), R::load(&t.face)]);
+        let mut taken = Taken::<R::Quad>::new();
+        let zero = R::Quad::zero();
+        let (mut work, mut linear, mut angular) = (zero, V3::<R::Quad>::zero(), V3::<R::Quad>::zero());
+        let (mut spare, mut spare_turn, mut no_turn) =
+            (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+            let mut turns = if ROLL {
+                side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
+            } else {
+                (&mut no_turn, &mut spare_turn)
+            };
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            let plane = |l: usize| if l < 4 { p[1][l] as usize } else { q[1][l - 4] as usize };
+            // SAFETY: compared above.
+            let body = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[0], &q[0]]) };
+            let (there, mut springs) = (R::below(len - 4 * g), (first, second));
+            let [x, y, z, r] = R::columns(R::rows(|l| body.sphere(l)));
+            let [nx, ny, nz, from] = R::columns(R::rows(|l| &planes[plane(l)].face));
             let (position, normal) = (V3::new(x, y, z), V3::new(nx, ny, nz));
             let height = position.dot(normal) - from;
             let on = height.lt(r) & there;
-            let mut memory = recall::<R, 2, ROLL>(group, turn);
+            let mut memory = recall::<R, ROLL>(&springs, &turns);
             let ended = !on & memory.rate.lt(R::splat(FRESH));
-            let [vx, vy, vz, material] = R::transpose([
-                R::load(&p.motion),
-                R::load(&q.motion),
-                R::load(&s.motion),
-                R::load(&t.motion),
-            ]);
-            let [wx, wy, wz, own] = R::transpose(rows(&block.spin, &body));
-            let law = mix.of(own, material);
+            let [vx, vy, vz, material] = R::columns(R::rows(|l| &planes[plane(l)].motion));
+            let [wx, wy, wz, material_a] = R::columns(R::rows(|l| body.spin(l)));
+            let law = mix.of(material_a, material);
             if R::any(ended) {
-                taken.friction = taken.friction + L::left::<R, ROLL>(&law, &memory).only(ended);
-                remember::<R, 2, ROLL>(group, turn, &memory, on);
+                let left = L::left::<R, ROLL>(&law, &memory).only(ended);
+                taken.friction = left.add_to(taken.friction);
+                remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
             }
             if !R::any(on) {
                 continue;
             }
-            let [ux, uy, uz, softness] = R::transpose(rows(&block.velocity, &body));
+            let [ux, uy, uz, softness] = R::columns(R::rows(|l| body.velocity(l)));
             let spin = V3::new(wx, wy, wz);
             let to_point = -(normal * height);
             let arm = if RIGID {
-                let [cx, cy, cz, _] = R::transpose(rows(&block.centre, &body));
+                let [cx, cy, cz, _] = R::columns(R::rows(|l| body.centre(l)));
                 position - V3::new(cx, cy, cz) + to_point
             } else {
                 to_point
@@ -100,9 +106,9 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             let touch = Touch { mass, radius: r, overlap: r - height, normal, velocity, spin };
             let Answer { force, moment, dashpot, friction, .. } =
                 L::answer::<R, ROLL>(&law, &touch, &mut memory, on, dt);
-            remember::<R, 2, ROLL>(group, turn, &memory, on);
-            taken.dashpot = taken.dashpot + dashpot.only(on);
-            taken.friction = taken.friction + friction.only(on);
+            remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
+            taken.dashpot = dashpot.only(on).add_to(taken.dashpot);
+            taken.friction = friction.only(on).add_to(taken.friction);
             let force = force.only(on);
             let mut torque = arm.cross(force);
             let mut about_origin = (position + to_point).cross(force);
@@ -110,25 +116,24 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
                 torque = torque + moment.only(on);
                 about_origin = about_origin + moment.only(on);
             }
-            work = work + force.dot(wall);
-            linear = linear + force;
-            angular = angular + about_origin;
-            let (forces, torques) = (records(force), records(torque));
-            for l in 0..4 {
-                let (force, torque) = w.sums[body[l]].both();
-                (R::load(force) + forces[l]).store(force);
-                (R::load(torque) + torques[l]).store(torque);
+            work = force.dot(wall).add_to(work);
+            linear = add(force, linear);
+            angular = add(about_origin, angular);
+            let records = records::<R>(force, torque);
+            for l in 0..R::LANES {
+                R::give(records[l], &mut sums[body.body(l)].0);
             }
-            let deep = R::bits((touch.overlap).gt(r) & on);
-            if deep != 0 && w.failure.is_none() {
+            let deep = R::mask_bits((touch.overlap).gt(r) & on);
+            if deep != 0 && failure.is_none() {
                 let l = deep.trailing_zeros() as usize;
-                w.failure = Some(Failure::Overlap {
-                    body: block.bodies[body[l]],
-                    partner: Partner::Plane(plane[l]),
-                    overlap: touch.overlap.array()[l],
-                    bound: r.array()[l],
-                });
+                failure = Some((4 * g + l, touch.overlap.numbers()[l], r.numbers()[l]));
             }
+        }
+        w.sums = sums;
+        if let (Some((k, overlap, bound)), None) = (failure, w.failure) {
+            let [sphere, plane] = pairs.name(k);
+            let (body, partner) = (block.bodies[w.body(sphere) as usize], Partner::Plane(plane as usize));
+            w.failure = Some(Failure::Overlap { body, partner, overlap, bound });
         }
         let ledger = &mut w.ledger;
         ledger.dissipated_dashpot += taken.dashpot.sum();
@@ -137,6 +142,12 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
         ledger.walls.linear += Vec3::new(linear.x.sum(), linear.y.sum(), linear.z.sum()) * dt;
         ledger.walls.angular += Vec3::new(angular.x.sum(), angular.y.sum(), angular.z.sum()) * dt;
     }
+}
+
+/// A sum of vectors and the vectors of each group.
+#[inline(always)]
+fn add<R: Pack>(v: V3<R>, sum: V3<R::Quad>) -> V3<R::Quad> {
+    V3::new(v.x.add_to(sum.x), v.y.add_to(sum.y), v.z.add_to(sum.z))
 }
 
 /// Corners of the boxes of a block against planes.

@@ -13,7 +13,8 @@ pub(crate) struct Slid<V, R> {
     pub friction: R,
 }
 
-/// A spring in the plane across `normal`. `velocity` lies in that plane; `time` is the part of the step during which
+/// A spring in the plane across `normal`. `velocity` lies in that plane; `softness` is one over the stiffness, where that
+/// is known; `time` is the part of the step during which
 /// the contact was there [s].
 #[inline(always)]
 pub(crate) fn plane<R: Real>(
@@ -21,6 +22,7 @@ pub(crate) fn plane<R: Real>(
     normal: V3<R>,
     velocity: V3<R>,
     stiffness: R,
+    softness: Option<R>,
     damping: R,
     limit: R,
     time: R,
@@ -50,7 +52,11 @@ pub(crate) fn plane<R: Real>(
     if R::any(slides) {
         let limited = force * (limit / size2.sqrt());
         let sprung = R::zero().lt(stiffness);
-        let short = (-(limited + viscous) * (R::splat(1.0) / stiffness)).only(sprung);
+        let softness = match softness {
+            Some(known) => known,
+            None => R::splat(1.0) / stiffness,
+        };
+        let short = (-(limited + viscous) * softness).only(sprung);
         // The spring's mean force over the slide; without a spring the dashpot did all the work.
         let lost = R::select(
             sprung,
@@ -130,6 +136,7 @@ pub(crate) fn turning<R: Real>(
         normal,
         rolling,
         t.stiffness.only(rolls),
+        None,
         t.damping.only(rolls),
         t.rolling * t.normal_force,
         t.time,

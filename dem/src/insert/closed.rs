@@ -11,7 +11,7 @@
 //! Limits: the surface must not cut itself; points on it count as either side.
 
 use crate::Vec3;
-use crate::shape::triangle;
+use crate::shape::polyhedron::{Nearest, Surface};
 use std::collections::BTreeMap;
 
 /// Why triangles do not bound a body.
@@ -43,11 +43,11 @@ pub struct ClosedSurface {
     triangles: Vec<[u32; 3]>,
     low: Vec3,
     high: Vec3,
-    /// Triangles over each cell of a grid in x and y, and in each cell of one in space.
+    /// Triangles over each cell of a grid in x and y.
     plan: Vec<Vec<u32>>,
-    cells: Vec<Vec<u32>>,
-    counts: [usize; 3],
-    width: Vec3,
+    counts: [usize; 2],
+    width: [f64; 2],
+    nearest: Nearest,
     volume: f64,
 }
 
@@ -67,22 +67,28 @@ impl ClosedSurface {
             return Err(SurfaceError::Index(k));
         }
         let (vertices, triangles) = welded(vertices, triangles);
+        if triangles.is_empty() {
+            return Err(SurfaceError::Empty);
+        }
         closed(&vertices, &triangles)?;
         let low = vertices.iter().fold(Vec3::repeat(f64::INFINITY), |a, v| a.inf(v));
         let high = vertices.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |a, v| a.sup(v));
         let side = (high - low).map(|l| l.max(1e-12 * (high - low).max()));
-        // About two triangles per column, as many layers as the columns are wide.
+        // About two triangles per column.
         let columns = ((triangles.len() as f64 / 2.0).sqrt().ceil() as usize).clamp(1, 400);
         let unit = side.max() / columns as f64;
-        let counts: [usize; 3] =
+        let counts: [usize; 2] =
             std::array::from_fn(|d| ((side[d] / unit).ceil() as usize).clamp(1, columns));
         let mut surface = ClosedSurface {
             low,
             high,
             plan: vec![Vec::new(); counts[0] * counts[1]],
-            cells: vec![Vec::new(); counts.iter().product()],
-            width: Vec3::from_fn(|d, _| side[d] / counts[d] as f64),
+            width: std::array::from_fn(|d| side[d] / counts[d] as f64),
             counts,
+            nearest: Nearest::new(Surface {
+                vertices: vertices.iter().map(|v| (*v).into()).collect(),
+                triangles: triangles.clone(),
+            }),
             vertices,
             triangles,
             volume: 0.0,
@@ -93,9 +99,6 @@ impl ClosedSurface {
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     surface.plan[i * counts[1] + j].push(t as u32);
-                    for k in from[2]..=to[2] {
-                        surface.cells[(i * counts[1] + j) * counts[2] + k].push(t as u32);
-                    }
                 }
             }
         }
@@ -128,7 +131,7 @@ impl ClosedSurface {
         if (0..3).any(|d| !(p[d] >= self.low[d] && p[d] <= self.high[d])) {
             return false;
         }
-        let [i, j, _] = self.cell(p);
+        let [i, j] = self.cell(p);
         let above = self.plan[i * self.counts[1] + j].iter().filter(|t| self.crossed(**t as usize, p));
         above.count() % 2 == 1
     }
@@ -140,25 +143,14 @@ impl ClosedSurface {
 
     /// Whether the surface passes through a sphere.
     pub fn meets(&self, centre: &Vec3, radius: f64) -> bool {
-        let (from, to) = (self.cell(&centre.add_scalar(-radius)), self.cell(&centre.add_scalar(radius)));
-        (from[0]..=to[0]).any(|i| {
-            (from[1]..=to[1]).any(|j| {
-                (from[2]..=to[2]).any(|k| {
-                    self.cells[(i * self.counts[1] + j) * self.counts[2] + k].iter().any(|&t| {
-                        let [a, b, c] = self.corners(t as usize);
-                        let ([v, w], _) = triangle::closest_point(&a, &b, &c, centre);
-                        (a + (b - a) * v + (c - a) * w - centre).norm_squared() < radius * radius
-                    })
-                })
-            })
-        })
+        self.nearest.closest((*centre).into()).distance < radius
     }
 
     fn corners(&self, t: usize) -> [Vec3; 3] {
         self.triangles[t].map(|v| self.vertices[v as usize])
     }
 
-    fn cell(&self, p: &Vec3) -> [usize; 3] {
+    fn cell(&self, p: &Vec3) -> [usize; 2] {
         std::array::from_fn(|d| {
             (((p[d] - self.low[d]) / self.width[d]).max(0.0) as usize).min(self.counts[d] - 1)
         })

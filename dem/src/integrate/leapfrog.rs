@@ -6,11 +6,14 @@
 //! angular momentum (x(n+1), v(n+½)) balance to rounding too, and the change of kinetic energy in a step is
 //! exactly dt F(n)·(v(n−½) + v(n+½))/2.
 //!
+//! Local damping (Cundall) takes the share α of each component of the sum of forces, gravity included, and of torques
+//! where it drives the motion, and adds it where it brakes; it is booked with the mean of the velocities too.
+//!
 //! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
 
 use super::rotation::{self, Turn};
 use crate::Vec3;
-use crate::lanes::{Four, Kernel, V3};
+use crate::lanes::{Four, Kernel, Pack, V3};
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::state::{Block, Lanes, Rotation, set_xyz, spin_of, xyz};
@@ -31,14 +34,28 @@ impl<const RIGID: bool> Kernel for Advance<'_, RIGID> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Four>(self) {
+    fn run<P: Pack>(self) {
+        self.by_four::<P::Quad>();
+    }
+}
+
+impl<const RIGID: bool> Advance<'_, RIGID> {
+    #[inline(always)]
+    fn by_four<R: Four>(self) {
         let Advance { model, block, w, mut applied, dt } = self;
         let bound = 0.5 * model.radii.0 / dt;
         let n = block.bodies.len();
-        let quick = if w.free && model.damping == 0.0 && applied.is_empty() { n - n % 4 } else { 0 };
-        let mut sums = Sums { moment: V3::<R>::zero(), fastest2: R::zero(), sound: true };
-        for k in (0..quick).step_by(4) {
-            four::<R, RIGID>(model, block, w, k, dt, &mut sums);
+        let quick = if w.free && applied.is_empty() { n - n % 4 } else { 0 };
+        let mut sums = Sums::<R>::new();
+        if model.damping == 0.0 {
+            for k in (0..quick).step_by(4) {
+                four::<R, RIGID, false>(model, block, w, k, dt, &mut sums);
+            }
+        } else {
+            for k in (0..quick).step_by(4) {
+                four::<R, RIGID, true>(model, block, w, k, dt, &mut sums);
+            }
+            sums.book_damping(&mut w.ledger, dt);
         }
         let moment = &sums.moment;
         let mut moment = Vec3::new(moment.x.sum(), moment.y.sum(), moment.z.sum());
@@ -84,6 +101,45 @@ struct Sums<R> {
     fastest2: R,
     /// Whether all speeds are numbers.
     sound: bool,
+    // Of local damping: its power, its forces and its torques as records of three components, the moments of its forces.
+    power: R,
+    force: R,
+    torque: R,
+    angular: V3<R>,
+}
+
+impl<R: Four> Sums<R> {
+    #[inline(always)]
+    fn new() -> Sums<R> {
+        let (zero, none) = (R::zero(), V3::zero());
+        Sums {
+            moment: none,
+            fastest2: zero,
+            sound: true,
+            power: zero,
+            force: zero,
+            torque: zero,
+            angular: none,
+        }
+    }
+
+    #[inline(always)]
+    fn book_damping(&self, ledger: &mut Ledger, dt: f64) {
+        ledger.dissipated_local_damping -= self.power.sum() * dt;
+        let ([fx, fy, fz, _], [tx, ty, tz, _]) = (self.force.array(), self.torque.array());
+        let about = &self.angular;
+        let about = Vec3::new(about.x.sum() + tx, about.y.sum() + ty, about.z.sum() + tz);
+        ledger.local_damping.linear += Vec3::new(fx, fy, fz) * dt;
+        ledger.local_damping.angular += about * dt;
+    }
+}
+
+/// Local damping of a force or a torque against a motion, component by component.
+#[inline(always)]
+fn resist<R: Four>(load: R, motion: R, damping: f64) -> R {
+    let (zero, one) = (R::zero(), R::splat(1.0));
+    let sign = R::select(motion.gt(zero), one, (-one).only(motion.lt(zero)));
+    -(R::splat(damping) * load.abs()) * sign
 }
 
 /// Square of the largest speed of a body's points.
@@ -93,9 +149,9 @@ fn speed2<const RIGID: bool>(block: &Block, w: &BlockWork, k: usize) -> f64 {
     (v + turn) * (v + turn)
 }
 
-/// Moves the free bodies k to k + 3.
+/// Moves the free bodies k to k + 3; `DAMPED`: with local damping.
 #[inline(always)]
-fn four<R: Four, const RIGID: bool>(
+fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     model: &Model,
     block: &mut Block,
     w: &mut BlockWork,
@@ -106,28 +162,56 @@ fn four<R: Four, const RIGID: bool>(
     let step = R::load(&[dt, dt, dt, 0.0]);
     let gravity = R::load(&[model.gravity.x, model.gravity.y, model.gravity.z, 0.0]);
     let (mut before, mut after) = ([R::zero(); 4], [R::zero(); 4]);
+    let (mut torque, mut held, mut stop) = ([R::zero(); 4], [R::zero(); 4], [R::zero(); 4]);
     let (centre, velocity) = (&mut block.centre[k..k + 4], &mut block.velocity[k..k + 4]);
     let (spin, force) = (&mut block.spin[k..k + 4], &w.sums[k..k + 4]);
     for l in 0..4 {
         let (x, v) = (R::load(&centre[l]), R::load(&velocity[l]));
-        let kicked = v + (R::load(&force[l].force) * R::splat(velocity[l][3]) + gravity) * step;
+        let softness = R::splat(velocity[l][3]);
+        let mut push = R::load(force[l].force());
+        let kicked = if DAMPED {
+            push = push + gravity * (R::splat(1.0) / softness);
+            held[l] = resist(push, v, model.damping);
+            sums.force = sums.force + held[l];
+            v + (push + held[l]) * (softness * step)
+        } else {
+            v + (push * softness + gravity) * step
+        };
+        torque[l] = R::load(force[l].torque());
+        if DAMPED {
+            let mean = (v + kicked) * R::splat(0.5);
+            stop[l] = resist(torque[l], R::load(&spin[l]), model.damping);
+            sums.power = sums.power + held[l] * mean;
+            sums.torque = sums.torque + stop[l];
+            torque[l] = torque[l] + stop[l];
+        }
         kicked.store(&mut velocity[l]);
         (x + kicked * step).store(&mut centre[l]);
         (before[l], after[l]) = (x, kicked);
     }
     let [x, y, z, r] = R::transpose(before);
     let [vx, vy, vz, softness] = R::transpose(after);
-    sums.moment = sums.moment + V3::new(x, y, z) * (R::splat(1.0) / softness);
+    let position = V3::new(x, y, z);
+    sums.moment = sums.moment + position * (R::splat(1.0) / softness);
+    if DAMPED {
+        let [hx, hy, hz, _] = R::transpose(held);
+        sums.angular = sums.angular + position.cross(V3::new(hx, hy, hz));
+    }
     let mut speed2 = V3::new(vx, vy, vz).norm2();
 
     let clumps = if RIGID { w.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
     if clumps {
-        speed2 = turn_four(block, w, k, dt, speed2);
+        speed2 = turn_four::<R, DAMPED>(block, w, k, (torque, stop), dt, speed2, sums);
     } else {
         // A sphere's moment of inertia is 2/5 m r².
         let kick = (R::splat(2.5 * dt) * softness / (r * r)).array();
         for l in 0..4 {
-            (R::load(&spin[l]) + R::load(&force[l].torque) * R::splat(kick[l])).store(&mut spin[l]);
+            let old = R::load(&spin[l]);
+            let new = old + torque[l] * R::splat(kick[l]);
+            if DAMPED {
+                sums.power = sums.power + stop[l] * ((old + new) * R::splat(0.5));
+            }
+            new.store(&mut spin[l]);
         }
     }
     sums.sound &= R::all(speed2.le(R::splat(f64::MAX)));
@@ -139,13 +223,21 @@ fn four<R: Four, const RIGID: bool>(
     }
 }
 
-/// Kicks and turns the free bodies k to k + 3, clumps and perhaps single spheres among them. Returns the squares of the
+/// Kicks and turns the free bodies k to k + 3, clumps and perhaps single spheres among them, by torques and the parts
+/// of them that are local damping. Returns the squares of the
 /// largest speeds of their points, given those of the centres.
 #[inline(always)]
-fn turn_four<R: Four>(block: &mut Block, w: &BlockWork, k: usize, dt: f64, speed2: R) -> R {
+fn turn_four<R: Four, const DAMPED: bool>(
+    block: &mut Block,
+    w: &BlockWork,
+    k: usize,
+    (torque, stop): ([R; 4], [R; 4]),
+    dt: f64,
+    speed2: R,
+    sums: &mut Sums<R>,
+) -> R {
     let rotation = &mut block.rotation[k..k + 4];
     let spin = &mut block.spin[k..k + 4];
-    let force = &w.sums[k..k + 4];
     let inertia = &w.inertia[k..k + 4];
     let lane = |p: &Vec3, q: &Vec3, s: &Vec3, t: &Vec3| {
         ([p.x, q.x, s.x, t.x], [p.y, q.y, s.y, t.y], [p.z, q.z, s.z, t.z])
@@ -155,12 +247,7 @@ fn turn_four<R: Four>(block: &mut Block, w: &BlockWork, k: usize, dt: f64, speed
     let (ix, iy, iz) = lane(&inertia[0], &inertia[1], &inertia[2], &inertia[3]);
     let inertia = V3::new(R::load(&ix), R::load(&iy), R::load(&iz));
     let reach = R::load(&[w.reach[k], w.reach[k + 1], w.reach[k + 2], w.reach[k + 3]]);
-    let [tx, ty, tz, _] = R::transpose([
-        R::load(&force[0].torque),
-        R::load(&force[1].torque),
-        R::load(&force[2].torque),
-        R::load(&force[3].torque),
-    ]);
+    let [tx, ty, tz, _] = R::transpose(torque);
     let [wx, wy, wz, material] =
         R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
     let impulse = V3::new(tx, ty, tz) * R::splat(dt);
@@ -178,6 +265,19 @@ fn turn_four<R: Four>(block: &mut Block, w: &BlockWork, k: usize, dt: f64, speed
     let local = new.back(momentum);
     let rate = new.apply(V3::new(local.x / inertia.x, local.y / inertia.y, local.z / inertia.z));
     // A single sphere keeps its orientation; its momentum is not used.
+    if DAMPED {
+        // The spin after the kick, before the turn.
+        let local = old.back(momentum);
+        let kicked = old.apply(V3::new(local.x / inertia.x, local.y / inertia.y, local.z / inertia.z));
+        let kicked = V3::select(
+            sphere,
+            before + V3::new(impulse.x / inertia.x, impulse.y / inertia.x, impulse.z / inertia.x),
+            kicked,
+        );
+        let [sx, sy, sz, _] = R::transpose(stop);
+        let stop = V3::new(sx, sy, sz);
+        sums.power = sums.power + stop.dot(before + kicked) * R::splat(0.5);
+    }
     let rate = V3::select(
         sphere,
         before + V3::new(impulse.x / inertia.x, impulse.y / inertia.x, impulse.z / inertia.x),
@@ -228,8 +328,8 @@ fn general<const RIGID: bool>(
     let (mass, fixed) = (body.mass, body.fixed);
     let load = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.force);
     let load_torque = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.torque);
-    let mut force = xyz(&w.sums[k].force) + load + model.gravity * mass;
-    let mut torque = xyz(&w.sums[k].torque) + load_torque;
+    let mut force = xyz(w.sums[k].force()) + load + model.gravity * mass;
+    let mut torque = xyz(w.sums[k].torque()) + load_torque;
     let held = |v: &Vec3| Vec3::from_fn(|d, _| -model.damping * v[d].abs());
     let damping = held(&force).component_mul(&v0.map(sign));
     let damping_torque = held(&torque).component_mul(&w0.map(sign));

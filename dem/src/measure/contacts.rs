@@ -6,7 +6,7 @@ use crate::detect;
 use crate::error::Partner;
 use crate::model::{Kind, Model};
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, Lanes, PatchContact, State, xyz};
+use crate::state::{Block, Cross, ImagePair, Lanes, PatchContact, State, xyz};
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,9 @@ pub struct ContactRecord {
     pub normal_force: f64,
     /// Whole force on a [N].
     pub force: Vec3,
+    /// Where the touched image of b stands, from b [m]: b is touched at `point` − `shift`. Zero but across periodic
+    /// borders.
+    pub shift: Vec3,
 }
 
 /// One contact as [`visit`] sees it.
@@ -43,6 +46,8 @@ pub(crate) struct Visited<'a> {
     pub spin: Vec3,
     /// Materials of the two.
     pub materials: [u32; 2],
+    /// From the partner to its touched image [m].
+    pub shift: Vec3,
 }
 
 /// Bodies as they are, or moved back in time by `back` seconds.
@@ -88,7 +93,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
     remnants(state, &now, &mut f);
     for b in 0..now.blocks.len() {
         let block = &now.blocks[b];
-        let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History| {
+        let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History, shift: Vec3| {
             let second = &now.blocks[other as usize];
             let p = &now.spheres[b][i as usize];
             let a = now.owners[b][i as usize] as usize;
@@ -99,11 +104,13 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             } else {
                 let q = &now.spheres[other as usize][j as usize];
                 let c = now.owners[other as usize][j as usize] as usize;
-                (c, detect::sphere_sphere(&xyz(p), p[3], &xyz(q), q[3]))
+                (c, detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + shift), q[3]))
             };
             if let Some(geometry) = touch {
-                let (ma, mb) =
-                    (pass::motion(block, a, &geometry.point), pass::motion(second, c, &geometry.point));
+                let (ma, mb) = (
+                    pass::motion(block, a, &geometry.point),
+                    pass::motion(second, c, &(geometry.point - shift)),
+                );
                 f(&Visited {
                     body: block.bodies[a],
                     partner: Partner::Body(second.bodies[c] as usize),
@@ -113,13 +120,19 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                     history,
                     spin: ma.spin() - mb.spin(),
                     materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
+                    shift,
                 });
             }
         };
-        block.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history));
-        let Cross { spheres, boxes } = &state.cross[b];
-        spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history));
-        boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history));
+        let here = Vec3::zeros();
+        block.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history, here));
+        let Cross { spheres, boxes, images } = &state.cross[b];
+        spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history, here));
+        boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history, here));
+        for ImagePair { name, history } in images {
+            let shift = model.periodic.map_or(here, |p| p.way(&name.shift));
+            pair(name.i, name.block, name.j, false, history, shift);
+        }
         planes(model, state, &now, b, &mut f);
         for contact in &block.walls.live {
             let k = model.walls.wall_of(contact.patch);
@@ -172,6 +185,7 @@ fn remnants(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
             history: &r.history,
             spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
             materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
+            shift: Vec3::zeros(),
         });
     });
 }
@@ -203,6 +217,7 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
                 history: &history,
                 spin: xyz(&block.spin[a]),
                 materials: [block.spin[a][3] as u32, plane.material as u32],
+                shift: Vec3::zeros(),
             });
         }
     }
@@ -235,6 +250,7 @@ fn patch(
             history: &pair.history,
             spin: xyz(&block.spin[a]) - partner.spin,
             materials: [block.spin[a][3] as u32, partner.material],
+            shift: Vec3::zeros(),
         });
     }
 }
@@ -257,6 +273,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             radius: c.geometry.radius,
             normal_force: normal,
             force,
+            shift: c.shift,
         });
     });
     out

@@ -17,13 +17,13 @@ pub fn kernels(model: &Model) -> String {
     let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
     let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };
     let lanes = match Simd::best() {
-        Simd::Portable => "plain arrays",
+        Simd::Portable => "four at a time (plain arrays)",
         #[cfg(target_arch = "x86_64")]
-        Simd::Avx2 => "AVX2",
+        Simd::Avx2 => "four at a time (AVX2)",
         #[cfg(target_arch = "x86_64")]
-        Simd::Avx512 => "AVX2 with the registers of AVX-512",
+        Simd::Avx512 => "eight at a time (AVX-512)",
     };
-    format!("{law}, {shapes}{rolling}{bonds}, four at a time ({lanes})")
+    format!("{law}, {shapes}{rolling}{bonds}, {lanes}")
 }
 
 /// Bytes that bodies, contacts, neighbours and forces hold now; constants of the model are not counted.

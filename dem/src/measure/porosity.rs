@@ -15,8 +15,30 @@ use crate::state::State;
 /// Columns along one side of a body that the border of a region cuts.
 pub const COLUMNS: usize = 40;
 
-/// Volume of one body inside a box [m³].
+/// Volume of one body inside a box [m³]; along periodic axes that of the body between the borders and of its images
+/// one box length away.
 pub fn body_volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f64 {
+    let periodic = model.periodic();
+    if periodic.iter().all(Option::is_none) {
+        return volume_in(model, state, body, region);
+    }
+    let x = state.position(body);
+    let back = model.wrap(&x) - x;
+    let mut sum = 0.0;
+    for k in 0..27 {
+        let images = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1];
+        if (0..3).any(|d| periodic[d].is_none() && images[d] != 0) {
+            continue;
+        }
+        let way =
+            Vec3::from_fn(|d, _| periodic[d].map_or(0.0, |[l, h]| f64::from(images[d]) * (h - l))) + back;
+        let region = BoxRegion { low: region.low - way, high: region.high - way };
+        sum += volume_in(model, state, body, &region);
+    }
+    sum
+}
+
+fn volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f64 {
     let spheres = state.spheres(model, body);
     let (low, high) = extent(model, state, body, &spheres);
     if (0..3).any(|d| low[d] >= region.high[d] || high[d] <= region.low[d]) {

@@ -23,18 +23,19 @@ pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
 pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<[f64; 6]> {
     let mut stress = vec![[0.0; 6]; model.body_count()];
     let bonds = crate::bond::records(model, state);
-    let bonds = bonds.iter().map(|b| (b.a, Partner::Body(b.b), b.point, b.force));
-    for (a, b, point, force) in contacts.iter().map(|c| (c.a, c.b, c.point, c.force)).chain(bonds) {
-        let mut add = |body: usize, force: Vec3| {
+    let bonds = bonds.iter().map(|b| (b.a, Partner::Body(b.b), b.point, b.force, Vec3::zeros()));
+    let touches = contacts.iter().map(|c| (c.a, c.b, c.point, c.force, c.shift));
+    for (a, b, point, force, shift) in touches.chain(bonds) {
+        let mut add = |body: usize, point: Vec3, force: Vec3| {
             let r = point - state.position(body);
             let s = &mut stress[body];
             for (k, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
                 s[k] += 0.5 * (r[i] * force[j] + r[j] * force[i]);
             }
         };
-        add(a, force);
+        add(a, point, force);
         if let Partner::Body(b) = b {
-            add(b, -force);
+            add(b, point - shift, -force);
         }
     }
     for (body, s) in stress.iter_mut().enumerate() {
@@ -48,7 +49,7 @@ pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) 
 pub fn region_stress(model: &Model, state: &State, bodies: &[[f64; 6]], region: &BoxRegion) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (body, stress) in bodies.iter().enumerate() {
-        if region.holds(&state.position(body)) {
+        if region.holds(&model.wrap(&state.position(body))) {
             let volume = model.volume(body);
             sum.iter_mut().zip(stress).for_each(|(s, x)| *s += volume * x);
         }

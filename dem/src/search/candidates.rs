@@ -3,10 +3,11 @@
 
 use crate::Vec3;
 use crate::model::{Kind, Model};
+use crate::periodic::Space;
 use crate::search::cells::Cells;
 use crate::search::patches;
 use crate::shape::cuboid;
-use crate::state::{Block, Lanes, State, xyz};
+use crate::state::{Block, ImageName, Lanes, State, xyz};
 use crate::surface::Surface;
 use crate::work::{BlockWork, Work};
 use rayon::prelude::*;
@@ -28,7 +29,8 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         points.extend_from_slice(&own[..w.count]);
         names.extend((0..w.count as u32).map(|k| [b as u32, k]));
     }
-    cells.build(&points, model.radii, model.skin);
+    let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
+    cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
 
     let walls = model.walls.placed(&state.walls);
     let boxes = boxes(model, state);
@@ -55,6 +57,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         w.candidates.clear();
         w.cross.clear();
         w.boxed.clear();
+        w.images.clear();
         w.planes.clear();
         w.reference.start((w.count > 0).then(|| &points[first[b] as usize]));
         for i in 0..w.count as u32 {
@@ -64,16 +67,28 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
             let me = body(global);
             let fixed = still(me);
             w.row.clear();
-            cells.near(p, model.skin, |j| {
-                let q = &points[j as usize];
-                let reach = p[3] + q[3] + model.skin;
-                if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
-                    let other = body(j);
-                    if other != me && !(fixed && still(other)) && !held.has(number(me), number(other)) {
+            if let Some(space) = &space {
+                space.near(cells, global, model.skin, |j, shift| {
+                    let (other, [block, j_there]) = (body(j), names[j as usize]);
+                    if other == me || fixed && still(other) {
+                    } else if shift == [0; 3] {
                         w.row.push(j);
+                    } else {
+                        w.images.push(ImageName { i, block, j: j_there, shift });
                     }
-                }
-            });
+                });
+            } else {
+                cells.near(p, model.skin, |j| {
+                    let q = &points[j as usize];
+                    let reach = p[3] + q[3] + model.skin;
+                    if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
+                        let other = body(j);
+                        if other != me && !(fixed && still(other)) && !held.has(number(me), number(other)) {
+                            w.row.push(j);
+                        }
+                    }
+                });
+            }
             w.row.sort_unstable();
             for &j in &w.row {
                 let [block_j, j] = names[j as usize];
@@ -99,6 +114,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
                 }
             }
         }
+        w.images.sort_unstable();
         // Boxes touch planes with their corners: few enough to try them all.
         if w.kind.first() == Some(&Kind::Box) {
             for (k, lanes) in block.velocity.iter().enumerate() {

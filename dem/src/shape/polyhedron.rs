@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-pub use distance::{Closest, SurfaceDistance};
+pub use distance::{Closest, Nearest, SurfaceDistance};
 pub use hull::{HullError, convex_hull};
 pub use moments::BodyMoments;
 pub use topology::Topology;

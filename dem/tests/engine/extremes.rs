@@ -1,6 +1,6 @@
 //! At, near and beyond the edges of what the engine takes: the right answer or a named refusal, never a NaN.
 
-use crate::scene::{Random, Run, plane, rigid, sphere, stone, weightless};
+use crate::scene::{Random, Run, clump, plane, rigid, sphere, stone, weightless};
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
@@ -384,4 +384,42 @@ fn quiet_bed_for_ten_million_steps() {
     let moved = (0..27).map(|b| (run.state.position(b) - before[b]).norm()).fold(0.0, f64::max);
     println!("{start:?}\n{end:?}\nmoved {moved:e} m, dt {:e}", run.model.dt());
     assert!(end.kinetic() < 1e-20 && moved < 1e-9, "{end:?} {moved:e}");
+}
+
+/// Ten million steps of a free clump with three unlike moments of inertia, turning about the unstable axis: kinetic
+/// energy and angular momentum stay to rounding, and so does the norm of the orientation (design figure: 1e-10).
+#[test]
+#[ignore = "ten million steps of one clump: 10 s"]
+fn tumbling_for_ten_million_steps() {
+    let shape = clump();
+    let [a, b, c] = [shape.inertia[0], shape.inertia[1], shape.inertia[2]];
+    assert!((a / b - 1.0).abs() > 0.05 && (b / c - 1.0).abs() > 0.05, "{a:e} {b:e} {c:e}");
+    let mut axes = [(a, Vec3::x()), (b, Vec3::y()), (c, Vec3::z())];
+    axes.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let mut input = weightless(stone());
+    input.shapes.push(Shape::Clump(shape));
+    let spin = axes[1].1 * 60.0 + axes[0].1 * 0.5 + axes[2].1 * 0.3;
+    input.bodies.push(BodyInput { shape: 1, spin, ..BodyInput::default() });
+    input.time_step = TimeStep::FixedAboveLimit(1e-4);
+    let mut run = Run::new(input);
+    let all = |run: &Run| {
+        let energy = measure::energies(&run.model, &run.state).kinetic();
+        (energy, measure::momentum(&run.model, &run.state).angular)
+    };
+    let start = all(&run);
+    let (mut energy, mut momentum, mut turned) = (0.0_f64, 0.0_f64, 0);
+    let mut side = true;
+    for _ in 0..10_000 {
+        run.steps(1000);
+        let now = all(&run);
+        energy = energy.max((now.0 / start.0 - 1.0).abs());
+        momentum = momentum.max((now.1 - start.1).norm() / start.1.norm());
+        let q = run.state.orientation(&run.model, 0);
+        let up = q.inverse_transform_vector(&start.1).dot(&axes[1].1) > 0.0;
+        turned += usize::from(up != side);
+        side = up;
+        assert!((q.quaternion().norm() - 1.0).abs() < 1e-14);
+    }
+    println!("energy to {energy:.1e}, angular momentum to {momentum:.1e}, {turned} changes of side");
+    assert!(energy < 1e-10 && momentum < 1e-14 && turned > 100, "{energy:e} {momentum:e} {turned}");
 }

@@ -1,5 +1,6 @@
 //! The engine against closed forms, balances, and itself.
 
+mod adhesion;
 mod balance;
 mod bonds;
 mod bonds_block;
@@ -12,6 +13,7 @@ mod impact;
 mod mesh_cases;
 mod order;
 mod packing;
+mod periodic;
 mod physics_clumps;
 mod physics_flow;
 mod physics_packing;

@@ -41,7 +41,7 @@ fn indices_that_point_nowhere() {
     assert!(matches!(refused(|i| i.bodies[0].material = 1), ModelError::Index { owner: "body", .. }));
     assert!(matches!(refused(|i| i.planes[0].material = 1), ModelError::Index { owner: "plane", .. }));
     assert!(matches!(refused(|i| i.surface_material = Some(1)), ModelError::Index { owner: "surface", .. }));
-    let pair = PairOverride { a: 0, b: 9, friction: None, restitution: None, stiffness: None };
+    let pair = PairOverride { a: 0, b: 9, ..PairOverride::default() };
     assert!(matches!(refused(|i| i.contacts.push(pair)), ModelError::Index { .. }));
 }
 

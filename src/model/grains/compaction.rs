@@ -1,7 +1,7 @@
 //! `[[compaction]]` and `[[measure]]` resolved.
 
 use super::{DepositionPlan, GrainsPart, SETTLED_SPEED, check};
-use crate::scene::compaction::{Compaction, CompactionKind};
+use crate::scene::compaction::{self as scene, Compaction, CompactionKind};
 use crate::scene::units::{Length, Quantity, vector};
 use crate::scene::walls::WallKind;
 use crate::scene::{Document, Scene, SceneError};
@@ -11,6 +11,26 @@ use trackbed_dem::{BodyInput, Vec3};
 
 /// Longest time of coming to rest, unless the scene says otherwise [s].
 const REST: f64 = 0.2;
+
+/// A box in which the packing is measured.
+#[derive(Clone, Debug)]
+pub struct Measure {
+    /// Name in the summary.
+    pub name: String,
+    /// The box.
+    pub region: BoxRegion,
+    /// Radial distribution function, where it is asked for.
+    pub radial: Option<Radial>,
+}
+
+/// Shells of a radial distribution function.
+#[derive(Clone, Copy, Debug)]
+pub struct Radial {
+    /// Largest distance [m].
+    pub reach: f64,
+    /// Number of shells.
+    pub bins: usize,
+}
 
 /// One stage of compaction.
 #[derive(Clone)]
@@ -116,9 +136,30 @@ pub(super) fn add(
             return Err(document.error(&key, format!("\"{}\" again", m.name), "each name once"));
         }
         let region = region(document, &format!("measure.{i}.box"), &m.region)?;
-        part.measures.push((m.name.clone(), region));
+        let radial = radial(document, i, m, &region)?;
+        part.measures.push(Measure { name: m.name.clone(), region, radial });
     }
     Ok(())
+}
+
+/// Checks that the reach finds room about at least one point of the box.
+fn radial(
+    document: &Document,
+    i: usize,
+    measure: &scene::Measure,
+    region: &BoxRegion,
+) -> Result<Option<Radial>, SceneError> {
+    let Some(r) = &measure.radial else { return Ok(None) };
+    let least = (region.high - region.low).min();
+    let reach = r.reach.si;
+    if !(reach > 0.0 && 2.0 * reach <= least) {
+        let expected = format!("above 0, at most half the shortest side of the box, {}", 0.5 * least);
+        return Err(document.error(&format!("measure.{i}.radial.reach"), reach.to_string(), expected));
+    }
+    if !(1..=100_000).contains(&r.bins) {
+        return Err(document.error(&format!("measure.{i}.radial.bins"), r.bins.to_string(), "1 to 100000"));
+    }
+    Ok(Some(Radial { reach, bins: r.bins }))
 }
 
 fn region(

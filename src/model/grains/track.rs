@@ -1,7 +1,9 @@
 //! `[track]` resolved.
 
 use super::{GrainsPart, SleeperPlan, check};
-use crate::model::seat_load::CyclicLoad;
+use crate::failure::Failure;
+use crate::model::track::plan::{self, RailPlan};
+use crate::model::track::rail::RailInput;
 use crate::scene::track::{Motion, Sleeper, Track};
 use crate::scene::units::vector;
 use crate::scene::{Document, SceneError};
@@ -13,7 +15,7 @@ pub(super) fn add(
     track: &Track,
     material: usize,
     part: &mut GrainsPart,
-) -> Result<(), SceneError> {
+) -> Result<(), Failure> {
     let s = &track.sleeper;
     let half = vector(&s.size).map(|l| 0.5 * l);
     for l in half {
@@ -37,26 +39,23 @@ pub(super) fn add(
     }
     let mut seats = vec![[0.0, 0.0, half[2]]];
     if let Some(l) = &track.load {
-        check(document, "track.load.minimum", Some(l.minimum.si), |f| f >= 0.0, "0 or more")?;
-        check(
-            document,
-            "track.load.maximum",
-            Some(l.maximum.si),
-            |f| f > l.minimum.si,
-            "more than the minimum",
-        )?;
-        check(document, "track.load.frequency", Some(l.frequency.si), |f| f > 0.0, "above 0")?;
-        check(document, "track.load.cycles", Some(f64::from(l.cycles)), |n| n >= 1.0, "1 or more")?;
-        check(document, "track.load.rest", Some(l.rest.si), |t| t >= 0.0, "0 or more")?;
-        check(document, "track.load.ramp", Some(l.ramp.si), |t| t >= 0.0, "0 or more")?;
         if !l.seats.is_empty() {
             seats = l.seats.iter().map(|p| [p[0].si, p[1].si, half[2]]).collect();
         }
         if let Some(p) = seats.iter().find(|p| p[0].abs() > half[0] || p[1].abs() > half[1]) {
             let found = format!("({}, {})", p[0], p[1]);
-            return Err(document.error("track.load.seats", found, "points on the sleeper's top"));
+            return Err(document.error("track.load.seats", found, "points on the sleeper's top").into());
         }
-        part.load = Some(CyclicLoad::new(l));
+    }
+    let centres = row(document, s)?;
+    let rail = track.rail.as_ref().map(|r| plan::rail(document, track, r)).transpose()?;
+    if let Some(l) = &track.load {
+        let axis = s.along.axis();
+        let places = centres.iter().map(|c| c[axis] - centres[0][axis]).collect();
+        part.load = Some(plan::load(document, l, places, rail.as_ref())?);
+    }
+    if let Some(RailPlan::Beam(input)) = rail {
+        part.rail = Some(RailInput { gravity: -part.gravity.z, ..*input });
     }
     part.sleeper = Some(SleeperPlan {
         shape,
@@ -64,7 +63,8 @@ pub(super) fn add(
         mass: s.mass.si,
         fixed,
         half,
-        centres: row(document, s)?,
+        axis: s.along.axis(),
+        centres,
         seats,
     });
     Ok(())

@@ -20,7 +20,7 @@ use crate::mesh_tools;
 use crate::model::tables;
 use crate::read::MeshFile;
 use crate::scene::history::{History, TimeFunction};
-use crate::scene::solid::{Integration, Mass, Rayleigh, Solid};
+use crate::scene::solid::{Integration, Mass, Rayleigh, ReductionKind, Solid};
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -45,6 +45,8 @@ pub struct SolidPart {
     pub initial_stress: Option<InitialStress>,
     /// How equilibrium of a plastic solid is found.
     pub newton: NewtonPlan,
+    /// What it is reduced to under grains.
+    pub reduction: Option<fem::reduction::Reduction>,
     /// Names of the materials by number, for reports.
     pub material_names: BTreeMap<u32, String>,
     /// Remarks of the readers.
@@ -161,9 +163,39 @@ pub fn build(
         analysis: plans.analysis,
         initial_stress: plans.initial_stress,
         newton: plans.newton,
+        reduction: reduction(document, solid, linear, coupled)?,
         material_names: materials.names,
         warnings,
     })
+}
+
+/// The reduction of a solid, refused where it would not be one, or would not be used.
+fn reduction(
+    document: &Document,
+    solid: &Solid,
+    linear: bool,
+    coupled: bool,
+) -> Result<Option<fem::reduction::Reduction>, SceneError> {
+    let Some(r) = solid.reduction else { return Ok(None) };
+    let refuse = |found: &str, expected: &str| Err(document.error("solid.reduction", found, expected));
+    if !linear {
+        return refuse("a material with plasticity", "no such key unless every material is linear elastic");
+    }
+    if solid.initial_stress.is_some() {
+        return refuse("initial stress", "no such key beside solid.initial_stress");
+    }
+    if !coupled {
+        return refuse("a value", "no such key without [[grains]]");
+    }
+    match (r.kind, r.modes) {
+        (ReductionKind::Surface, modes) => {
+            Ok(Some(fem::reduction::Reduction::Surface { modes: modes.unwrap_or(0) }))
+        }
+        (ReductionKind::Modes, Some(0)) => Err(document.error("solid.reduction.modes", "0", "1 or more")),
+        (ReductionKind::Modes, modes) => {
+            Ok(Some(fem::reduction::Reduction::Modes { modes: modes.unwrap_or(60) }))
+        }
+    }
 }
 
 /// The mesh of a scene's solid with all its constraints, as a mesh file holds it.

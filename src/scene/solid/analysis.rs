@@ -32,6 +32,26 @@ pub struct Rayleigh {
     pub frequencies: Option<[Quantity<Frequency>; 2]>,
 }
 
+/// `[solid.reduction]`: an elastic solid under grains is stepped in the span of a few shapes.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reduction {
+    /// What it is reduced to.
+    pub kind: ReductionKind,
+    /// Natural modes; default 0 beside `surface`, 60 of `modes`.
+    pub modes: Option<usize>,
+}
+
+/// What a solid is reduced to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReductionKind {
+    /// The dofs of the contact surface.
+    Surface,
+    /// The slowest natural modes, with static corrections for pressures on the contact surface.
+    Modes,
+}
+
 /// `[solid.quasi_static]`: equilibrium at every step of a pseudo-time, in which loads and supports vary.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]

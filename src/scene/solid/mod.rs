@@ -7,7 +7,7 @@ mod mesh;
 
 pub use analysis::{
     Dynamics, InitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant, QuasiStatic, Rayleigh,
-    StrengthReduction,
+    Reduction, ReductionKind, StrengthReduction,
 };
 pub use boundary::{Absorbing, Side, Support};
 pub use material::{Cone, MaterialModel, SolidMaterial};
@@ -69,6 +69,8 @@ pub struct Solid {
     pub newton: Option<Newton>,
     /// Rayleigh damping C = α M + β K; default none.
     pub rayleigh: Option<Rayleigh>,
+    /// Reduction of an elastic solid under grains; default none.
+    pub reduction: Option<Reduction>,
     /// Loads on the solid.
     #[serde(default)]
     pub load: Vec<SolidLoad>,

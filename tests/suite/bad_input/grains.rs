@@ -326,3 +326,51 @@ fn two_measures_of_one_name() {
         .scene("[time]", &format!("{measure}{measure}[time]"))
         .refused("scene.toml:27: measure.1.name: found \"core\" again, expected each name once");
 }
+
+#[test]
+fn periodic_axes_that_cannot_be() {
+    const END: &str = "[time]\nend = \"20 ms\"";
+    for (table, words) in [
+        ("", "periodic: found no axis, expected `x`, `y` or `z` with its two borders"),
+        ("x = [1, 0]", "periodic.x: found [1, 0], expected two lengths, the second the larger"),
+        (
+            "x = [0, 0.2]",
+            "periodic: found x is 0.2 m long; at least 3.300e-1 m (three diameters of the largest body and three times the \
+             search skin) are needed, expected axes that the rest of the scene can be periodic along",
+        ),
+        (
+            "x = [0.005, 1]",
+            "grains.0: found a grain from x = 0 to 0, expected grains between the borders 0.005 and 1 of `periodic`",
+        ),
+        (
+            "z = [0, 1]",
+            "periodic: found the normal of plane 0 has a part along z, which is periodic, expected axes that the rest of \
+             the scene can be periodic along",
+        ),
+    ] {
+        let line = if words.starts_with("grains") {
+            10
+        } else if words.contains("periodic.x") {
+            23
+        } else {
+            22
+        };
+        grains_scene()
+            .scene(END, &format!("[periodic]\n{table}\n\n{END}"))
+            .refused(&format!("scene.toml:{line}: {words}"));
+    }
+}
+
+#[test]
+fn radial_distribution_without_room() {
+    let measure = "[[measure]]\nname = \"core\"\nbox = [[0, 0, 0], [1, 1, 0.5]]\n";
+    grains_scene()
+        .scene("[time]", &format!("{measure}radial = {{ reach = 0.3, bins = 10 }}\n[time]"))
+        .refused(
+            "scene.toml:25: measure.0.radial.reach: found 0.3, expected above 0, at most half the shortest side of the box, \
+             0.25",
+        );
+    grains_scene()
+        .scene("[time]", &format!("{measure}radial = {{ reach = 0.2, bins = 0 }}\n[time]"))
+        .refused("scene.toml:25: measure.0.radial.bins: found 0, expected 1 to 100000");
+}

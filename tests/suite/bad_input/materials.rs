@@ -38,3 +38,11 @@ fn impact_speed_of_linear_contacts() {
         "scene.toml:24: time.impact_speed: found a value, expected no such key without a material with `young`",
     );
 }
+
+#[test]
+fn adhesion_below_zero() {
+    let pair = "[[contact]]\nbetween = [\"stone\", \"stone\"]\nadhesion = -0.1\n";
+    grains_scene()
+        .scene("[time]", &format!("{pair}[time]"))
+        .refused("scene.toml:24: contact.0.adhesion: found -0.1, expected 0 or more");
+}

@@ -188,6 +188,29 @@ fn unstable_newmark_constants() {
 }
 
 #[test]
+fn reduction_without_modes() {
+    let key = "reduction = { kind = \"modes\", modes = 0 }\n\n[[solid.material]]";
+    coupled()
+        .scene("\n[[solid.material]]", key)
+        .refused("scene.toml:8: solid.reduction.modes: found 0, expected 1 or more");
+}
+
+#[test]
+fn reduction_of_a_stressed_solid() {
+    let keys = "reduction = { kind = \"surface\" }\ninitial_stress = { method = \"k0\", k0 = 0.5 }\n\n[[solid.material]]";
+    coupled().scene("\n[[solid.material]]", keys).refused(
+        "scene.toml:8: solid.reduction: found initial stress, expected no such key beside solid.initial_stress",
+    );
+}
+
+#[test]
+fn reduction_of_a_solid_alone() {
+    solid()
+        .scene("[[solid.material]]", "reduction = { kind = \"surface\" }\n\n[[solid.material]]")
+        .refused("scene.toml:8: solid.reduction: found a value, expected no such key without [[grains]]");
+}
+
+#[test]
 fn mixed_rayleigh_damping() {
     coupled().scene("damping_ratio = 0.05, ", "damping_ratio = 0.05, alpha_m = 3, ").refused(
         "scene.toml:7: solid.rayleigh: found a mixture of keys, expected either alpha_m and beta_k, or damping_ratio \
@@ -374,4 +397,78 @@ fn keys_without_effect() {
         "scene.toml:4: solid.dynamics: found a value, expected no such key beside [[grains]]: coupling.theta tells \
          how the solid is integrated",
     );
+}
+
+#[test]
+fn jumps_pushes_and_fouling() {
+    let bed = super::super::support::COUPLED;
+    let with = |more: &str| bed.replace("\n[coupling]", &format!("{more}\n\n[coupling]"));
+    let jump = "\n[track.jump]\nfirst = 12\nmeasure = 4";
+    let push = "\n[track.push]\ndirection = [1, 0]\nspeed = 0.02\ndisplacement = 0.005";
+    for (more, set, words) in [
+        (
+            jump,
+            "track.jump.first=12",
+            "track.jump.first: found 12, expected fewer than the 2 cycles of the load",
+        ),
+        (
+            jump,
+            "track.jump.first=9",
+            "track.jump.first: found 9, expected 10 or more, and more than `measure` by 2",
+        ),
+        (jump, "track.jump.measure=1", "track.jump.measure: found 1, expected 2 or more"),
+        (jump, "track.jump.tolerance=0", "track.jump.tolerance: found 0, expected above 0, at most 10"),
+        (jump, "track.jump.largest=11", "track.jump.largest: found 11, expected above 0, at most 10"),
+        (
+            jump,
+            "track.jump.overlap=0.5",
+            "track.jump.overlap: found a value, expected no such key without method = \"grains\"",
+        ),
+        (
+            jump,
+            "track.jump.settle=1",
+            "track.jump.settle: found a value, expected no such key without method = \"grains\"",
+        ),
+        (jump, "track.jump.method=\"all\"", "expected"),
+        (
+            "\n[track.jump]\nmethod = \"grains\"\noverlap = 3.0",
+            "track.jump.first=12",
+            "track.jump.overlap: found 3, expected above 0, at most 2",
+        ),
+        (push, "track.push.direction=[0, 0]", "track.push.direction: found (0, 0), expected a direction"),
+        (
+            push,
+            "track.sleeper.hold=[\"x\"]",
+            "expected a direction that track.sleeper.hold leaves free, not x",
+        ),
+        (push, "track.push.speed=0", "track.push.speed: found 0, expected above 0"),
+        (push, "track.push.displacement=-1", "track.push.displacement: found -1, expected above 0"),
+        (push, "track.push.load=-1", "track.push.load: found -1, expected 0 or more"),
+        (push, "track.push.rest=-1", "track.push.rest: found -1, expected 0 or more"),
+        (push, "track.push.stiffness=0", "track.push.stiffness: found 0, expected above 0"),
+        (push, "track.push.height=\"1 s\"", "track.push.height"),
+        (push, "time.end=0.1", "time.end: found 0.1 s, expected at least"),
+        (
+            "",
+            "track.bed_stiffness=[2000, 6000]",
+            "expected two rising loads from 1000 to 5000, those of the cycles",
+        ),
+        (
+            "",
+            "grains.0.fouling=true",
+            "grains.0.fouling: found true for all groups, expected a group of grains beside it",
+        ),
+    ] {
+        let folder = super::super::support::scene_folder("after", &with(more));
+        let out = folder.join("out");
+        let outcome = super::super::support::run(&folder.join("scene.toml"), &out, &[set]);
+        assert_eq!(outcome.code, 2, "{set}: {outcome:?}");
+        assert!(outcome.stderr.contains(words), "{set}: {}", outcome.stderr);
+        assert!(!out.exists(), "{set}");
+    }
+    // A ram that the step cannot follow shows only when the model is made.
+    let folder = super::super::support::scene_folder("ram", &with(push));
+    let set = ["track.push.stiffness=\"1e6 GN/m\""];
+    let outcome = super::super::support::run(&folder.join("scene.toml"), &folder.join("out"), &set);
+    assert!(outcome.code == 2 && outcome.stderr.contains("which the step of"), "{outcome:?}");
 }

@@ -25,79 +25,28 @@ pub struct Closest {
     pub distance: f64,
 }
 
-/// A closed surface prepared for questions of distance.
+/// A surface prepared for questions of distance, closed or not.
 #[derive(Clone, Debug)]
-pub struct SurfaceDistance {
+pub struct Nearest {
     surface: Surface,
     tree: Bvh,
-    face_normals: Vec<Vector3<f64>>,
-    edge_normals: HashMap<(u32, u32), Vector3<f64>>,
-    vertex_normals: Vec<Vector3<f64>>,
 }
 
-impl SurfaceDistance {
-    /// Prepares the surface of a body.
-    pub fn new(body: &Polyhedron) -> SurfaceDistance {
-        let surface = body.surface().clone();
+impl Nearest {
+    /// Prepares a surface with at least one triangle.
+    pub fn new(surface: Surface) -> Nearest {
         let boxes: Vec<Aabb> = (0..surface.triangles.len())
             .map(|t| {
                 let [a, b, c] = surface.corners(t);
                 (a.inf(&b).inf(&c).into(), a.sup(&b).sup(&c).into())
             })
             .collect();
-        let mut face_normals = Vec::with_capacity(boxes.len());
-        let mut edge_normals: HashMap<(u32, u32), Vector3<f64>> = HashMap::new();
-        let mut vertex_normals = vec![Vector3::zeros(); surface.vertices.len()];
-        for (t, corners) in surface.triangles.iter().enumerate() {
-            let x = surface.corners(t);
-            let normal = (x[1] - x[0]).cross(&(x[2] - x[0])).try_normalize(0.0).unwrap_or_default();
-            for k in 0..3 {
-                let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-                *edge_normals.entry(key(corners[k], corners[next])).or_default() += normal;
-                let angle = (x[next] - x[k]).angle(&(x[last] - x[k]));
-                vertex_normals[corners[k] as usize] += normal * angle;
-            }
-            face_normals.push(normal);
-        }
-        SurfaceDistance { tree: Bvh::new(&boxes), surface, face_normals, edge_normals, vertex_normals }
-    }
-
-    /// The surface.
-    pub fn surface(&self) -> &Surface {
-        &self.surface
+        Nearest { tree: Bvh::new(&boxes), surface }
     }
 
     /// The point of the surface closest to `p` [m].
     pub fn closest(&self, p: [f64; 3]) -> Closest {
         self.search(p).0
-    }
-
-    /// Distance of `p` [m] from the surface [m], positive inside the body.
-    pub fn depth(&self, p: [f64; 3]) -> f64 {
-        self.depth_and_closest(p).0
-    }
-
-    /// Whether `p` [m] lies inside the body.
-    pub fn contains(&self, p: [f64; 3]) -> bool {
-        self.depth(p) > 0.0
-    }
-
-    /// [`Self::depth`] and the closest point that it belongs to.
-    pub fn depth_and_closest(&self, p: [f64; 3]) -> (f64, Closest) {
-        let (closest, region) = self.search(p);
-        let corners = self.surface.triangles[closest.triangle];
-        let normal = match region {
-            Region::Face => self.face_normals[closest.triangle],
-            Region::Edge(k) => self.edge_normals[&key(corners[k], corners[(k + 1) % 3])],
-            Region::Vertex(k) => self.vertex_normals[corners[k] as usize],
-        };
-        let out = (Vector3::from(p) - Vector3::from(closest.point)).dot(&normal);
-        let inside = if out.abs() > DOUBTFUL * closest.distance * normal.norm() {
-            out < 0.0
-        } else {
-            self.surface.winding_number(p) > 0.5
-        };
-        (if inside { closest.distance } else { -closest.distance }, closest)
     }
 
     fn search(&self, p: [f64; 3]) -> (Closest, Region) {
@@ -115,6 +64,76 @@ impl SurfaceDistance {
             best.0
         });
         (Closest { point: best.2.into(), triangle: best.1, distance: best.0.sqrt() }, best.3)
+    }
+}
+
+/// A closed surface prepared for questions of distance.
+#[derive(Clone, Debug)]
+pub struct SurfaceDistance {
+    nearest: Nearest,
+    face_normals: Vec<Vector3<f64>>,
+    edge_normals: HashMap<(u32, u32), Vector3<f64>>,
+    vertex_normals: Vec<Vector3<f64>>,
+}
+
+impl SurfaceDistance {
+    /// Prepares the surface of a body.
+    pub fn new(body: &Polyhedron) -> SurfaceDistance {
+        let surface = body.surface();
+        let mut face_normals = Vec::with_capacity(surface.triangles.len());
+        let mut edge_normals: HashMap<(u32, u32), Vector3<f64>> = HashMap::new();
+        let mut vertex_normals = vec![Vector3::zeros(); surface.vertices.len()];
+        for (t, corners) in surface.triangles.iter().enumerate() {
+            let x = surface.corners(t);
+            let normal = (x[1] - x[0]).cross(&(x[2] - x[0])).try_normalize(0.0).unwrap_or_default();
+            for k in 0..3 {
+                let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+                *edge_normals.entry(key(corners[k], corners[next])).or_default() += normal;
+                let angle = (x[next] - x[k]).angle(&(x[last] - x[k]));
+                vertex_normals[corners[k] as usize] += normal * angle;
+            }
+            face_normals.push(normal);
+        }
+        let nearest = Nearest::new(surface.clone());
+        SurfaceDistance { nearest, face_normals, edge_normals, vertex_normals }
+    }
+
+    /// The surface.
+    pub fn surface(&self) -> &Surface {
+        &self.nearest.surface
+    }
+
+    /// The point of the surface closest to `p` [m].
+    pub fn closest(&self, p: [f64; 3]) -> Closest {
+        self.nearest.closest(p)
+    }
+
+    /// Distance of `p` [m] from the surface [m], positive inside the body.
+    pub fn depth(&self, p: [f64; 3]) -> f64 {
+        self.depth_and_closest(p).0
+    }
+
+    /// Whether `p` [m] lies inside the body.
+    pub fn contains(&self, p: [f64; 3]) -> bool {
+        self.depth(p) > 0.0
+    }
+
+    /// [`Self::depth`] and the closest point that it belongs to.
+    pub fn depth_and_closest(&self, p: [f64; 3]) -> (f64, Closest) {
+        let (closest, region) = self.nearest.search(p);
+        let corners = self.surface().triangles[closest.triangle];
+        let normal = match region {
+            Region::Face => self.face_normals[closest.triangle],
+            Region::Edge(k) => self.edge_normals[&key(corners[k], corners[(k + 1) % 3])],
+            Region::Vertex(k) => self.vertex_normals[corners[k] as usize],
+        };
+        let out = (Vector3::from(p) - Vector3::from(closest.point)).dot(&normal);
+        let inside = if out.abs() > DOUBTFUL * closest.distance * normal.norm() {
+            out < 0.0
+        } else {
+            self.surface().winding_number(p) > 0.5
+        };
+        (if inside { closest.distance } else { -closest.distance }, closest)
     }
 }
 

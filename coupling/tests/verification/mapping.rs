@@ -1,0 +1,80 @@
+//! (ii): the inverse map on a distorted surface of many elements.
+
+use crate::support::Scatter;
+use trackbed_coupling::face;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem::surface::Surface;
+use trackbed_fem::Mesh;
+
+const CELLS: usize = 6;
+const EDGE: f64 = 1.0 / CELLS as f64;
+
+/// The top of 6 × 6 × 3 elements on 1 × 1 × 0.5 m: mid-side nodes are moved by up to 15 % of an edge in every direction,
+/// corner nodes by up to 10 %.
+fn distorted_top() -> (Mesh, SolidSurface) {
+    let mut mesh = Mesh::block([CELLS, CELLS, CELLS / 2], [1.0, 1.0, 0.5]);
+    let mut random = Scatter::new(7);
+    for x in &mut mesh.coordinates {
+        x[2] -= 0.5;
+        if x[2] > -1e-9 {
+            let corner = (0..2).all(|d| (x[d] / EDGE - (x[d] / EDGE).round()).abs() < 1e-6);
+            let most = if corner { 0.10 } else { 0.15 };
+            x.iter_mut().for_each(|c| *c += most * EDGE * random.symmetric());
+        }
+    }
+    let faces = SolidSurface::facing(&mesh, [0.0, 0.0, 1.0], 1.3);
+    let surface = SolidSurface::new(&mesh, faces);
+    (mesh, surface)
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The patch nearest to a point among some, the distance, and the natural coordinates there.
+fn nearest(
+    surface: &SolidSurface,
+    patches: impl Iterator<Item = u32>,
+    point: [f64; 3],
+) -> Option<(u32, f64, [f64; 2])> {
+    patches
+        .map(|patch| {
+            let found = surface.closest_point(patch, point, [0.0; 2]);
+            (patch, distance(found.point, point), found.local)
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// 10,000 random points on the top: every one found through the tree of boxes, residual below 1e-12 of the edge, natural
+/// coordinates those that it was made from, and the element that a search through all elements gives.
+#[test]
+fn every_point_of_a_distorted_top_is_found_in_its_element() {
+    let (_, surface) = distorted_top();
+    let faces = surface.faces().len() as u32;
+    assert_eq!(faces, 36);
+    let mut random = Scatter::new(11);
+    let (mut found, mut worst, mut apart) = (0, 0.0_f64, 0.0_f64);
+    let mut patches = Vec::new();
+    for k in 0..10_000 {
+        let patch = k % faces;
+        let local = [0.9999 * random.symmetric(), 0.9999 * random.symmetric()];
+        let x = surface.face_nodes(patch).map(|n| surface.position(n));
+        let point = face::interpolate(&x, local);
+        patches.clear();
+        surface.candidates(point.map(|c| c - 1e-9), point.map(|c| c + 1e-9), &mut patches);
+        let Some((element, residual, natural)) = nearest(&surface, patches.iter().copied(), point) else {
+            continue;
+        };
+        let (brute, _, _) = nearest(&surface, 0..faces, point).expect("there are faces");
+        assert_eq!(element, brute, "point {k}");
+        assert_eq!(element, patch, "point {k}");
+        found += 1;
+        worst = worst.max(residual / EDGE);
+        apart = apart.max((0..2).map(|d| (natural[d] - local[d]).abs()).fold(0.0, f64::max));
+    }
+    println!(
+        "{found} of 10000 points found, residual {worst:.1e} of the edge, natural coordinates {apart:.1e} off"
+    );
+    assert_eq!(found, 10_000);
+    assert!(worst < 1e-12 && apart < 1e-10);
+}

@@ -1,0 +1,45 @@
+//! Adhesion: two partners that touch attract each other with a constant force.
+//!
+//! F = 2π w R*, with the work of adhesion w (per contact area) and the effective radius R*: the attraction outside the
+//! contact circle after Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53 (1975), pull-off force included. Beside
+//! Hertz's law this is their model; beside the linear law it is the usual linear cohesion. It acts while the overlap is
+//! above zero, with the potential −F d. Friction, rolling and twisting are limited by the pressure F + P of the contact
+//! itself, not by what is left of it outside (Derjaguin 1934).
+//!
+//! The force jumps at first touch; the first one counts for the part θ + ½ of the step, as the linear law's dashpot.
+//!
+//! Cost: the kernels with rolling resistance know adhesion; scenes without either run those that know neither.
+//!
+//! Limits: no attraction across a gap, hence no energy lost by jumping into contact; small, stiff spheres (Tabor's number
+//! below 0.1), for large and soft ones the pull-off force is 3/4 of it (Johnson, Kendall & Roberts 1971). At parting the last
+//! force counts for a whole step, which books up to F v dt/2 too much or too little. No boxes, no bonds, no rigid bodies
+//! of triangles.
+
+use crate::error::ModelError;
+use crate::input::ModelInput;
+use crate::material::PairOverride;
+use crate::shape::Shape;
+use std::f64::consts::TAU;
+
+/// Adhesive force over the effective radius, 2π w [N/m].
+pub(crate) fn pull(pair: Option<&PairOverride>) -> f64 {
+    pair.and_then(|p| p.adhesion).map_or(0.0, |work| TAU * work)
+}
+
+/// Refuses what adhesion cannot be combined with.
+pub(crate) fn check(input: &ModelInput) -> Result<(), ModelError> {
+    let Some(index) = input.contacts.iter().position(|c| c.adhesion.is_some_and(|w| w > 0.0)) else {
+        return Ok(());
+    };
+    let error = |with| Err(ModelError::Adhesion { index, with });
+    if input.bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Box { .. })) {
+        return error("boxes");
+    }
+    if !input.bonds.is_empty() {
+        return error("bonds");
+    }
+    if input.walls.iter().any(|w| w.body.is_some()) {
+        return error("rigid bodies of triangles");
+    }
+    Ok(())
+}

@@ -1,0 +1,418 @@
+//! Lanes of whole groups of four contacts: one group at a time, or two side by side in the registers of AVX-512.
+//!
+//! Each lane goes through the same operations either way, and what is summed over lanes is summed group by group, so
+//! the bits are the same.
+
+use super::{Four, Real};
+use crate::state::Lanes;
+
+/// The lanes of one group, or of two.
+pub(crate) trait Pack: Real {
+    /// The lanes of one group.
+    type Quad: Four;
+    /// Eight numbers of one lane.
+    type Record: Copy;
+    /// How many groups.
+    const GROUPS: usize;
+    /// How many lanes.
+    const LANES: usize = 4 * Self::GROUPS;
+
+    /// The lanes of the groups; of one group only, the second is not read.
+    fn join(first: &[f64; 4], second: &[f64; 4]) -> Self;
+    /// Stores the lanes of each group; of one group only, the second stays as it is.
+    fn split(self, first: &mut [f64; 4], second: &mut [f64; 4]);
+    /// `sum` and the lanes of each group, added group by group.
+    fn add_to(self, sum: Self::Quad) -> Self::Quad;
+    /// The lanes of each group; of one group only, the second is a copy.
+    fn quads(self) -> [Self::Quad; 2];
+    /// Numbers for the lanes; those beyond the last lane are not used.
+    fn of(x: &[f64; 8]) -> Self;
+    /// The lanes as numbers, zeros beyond the last.
+    fn numbers(self) -> [f64; 8];
+    /// Bit l tells lane l of a mask.
+    fn mask_bits(mask: Self::Mask) -> u32;
+    /// Loads a record for each lane, in the order that [`Pack::columns`] wants.
+    fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [Self; 4];
+    /// As [`Pack::rows`], two records for each lane.
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([Self; 4], [Self; 4]);
+    /// The lanes below `count`.
+    fn below(count: usize) -> Self::Mask;
+    /// Number k of each lane's record from the rows that hold the records.
+    fn columns(rows: [Self; 4]) -> [Self; 4];
+    /// The eight numbers of each lane; nothing of meaning beyond the last lane.
+    fn records(first: [Self; 4], second: [Self; 4]) -> [Self::Record; 8];
+    /// Per lane a record of `force` and `torque_a`, and one of −`force` and `torque_b`; the fourth numbers are zero.
+    #[inline(always)]
+    fn opposed(
+        force: [Self; 3],
+        torque_a: [Self; 3],
+        torque_b: [Self; 3],
+    ) -> ([Self::Record; 8], [Self::Record; 8]) {
+        let zero = Self::zero();
+        let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
+        (Self::records([x, y, z, zero], [a, b, c, zero]), Self::records([-x, -y, -z, zero], [d, e, f, zero]))
+    }
+    /// Adds a record to eight numbers.
+    fn give(record: Self::Record, to: &mut [Lanes; 2]);
+    /// Stores a record.
+    fn put(record: Self::Record, to: &mut [Lanes; 2]);
+
+    /// `self − o sign` for signs that are 1, 0 or −1, whose product is exact.
+    #[inline(always)]
+    fn less(self, o: Self, sign: Self) -> Self {
+        self - o * sign
+    }
+
+    /// The same record in every row.
+    #[inline(always)]
+    fn record(x: &[f64; 4]) -> Self {
+        Self::join(x, x)
+    }
+}
+
+impl<F: Four> Pack for F {
+    type Quad = F;
+    type Record = (F, F);
+    const GROUPS: usize = 1;
+
+    #[inline(always)]
+    fn join(first: &[f64; 4], _: &[f64; 4]) -> F {
+        F::load(first)
+    }
+    #[inline(always)]
+    fn split(self, first: &mut [f64; 4], _: &mut [f64; 4]) {
+        self.store(first);
+    }
+    #[inline(always)]
+    fn add_to(self, sum: F) -> F {
+        sum + self
+    }
+    #[inline(always)]
+    fn quads(self) -> [F; 2] {
+        [self, self]
+    }
+    #[inline(always)]
+    fn of(x: &[f64; 8]) -> F {
+        F::load(&[x[0], x[1], x[2], x[3]])
+    }
+    #[inline(always)]
+    fn numbers(self) -> [f64; 8] {
+        let [a, b, c, d] = self.array();
+        [a, b, c, d, 0.0, 0.0, 0.0, 0.0]
+    }
+    #[inline(always)]
+    fn mask_bits(mask: F::Mask) -> u32 {
+        F::bits(mask)
+    }
+    #[inline(always)]
+    fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [F; 4] {
+        [F::load(record(0)), F::load(record(1)), F::load(record(2)), F::load(record(3))]
+    }
+    #[inline(always)]
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([F; 4], [F; 4]) {
+        let (p, q, r, s) = (records(0), records(1), records(2), records(3));
+        (
+            [F::load(p.0), F::load(q.0), F::load(r.0), F::load(s.0)],
+            [F::load(p.1), F::load(q.1), F::load(r.1), F::load(s.1)],
+        )
+    }
+    #[inline(always)]
+    fn below(count: usize) -> F::Mask {
+        F::load(&[0.0, 1.0, 2.0, 3.0]).lt(F::splat(count as f64))
+    }
+    #[inline(always)]
+    fn columns(rows: [F; 4]) -> [F; 4] {
+        F::transpose(rows)
+    }
+    #[inline(always)]
+    fn records(first: [F; 4], second: [F; 4]) -> [(F, F); 8] {
+        let ([a, b, c, d], [p, q, r, s]) = (F::transpose(first), F::transpose(second));
+        [(a, p), (b, q), (c, r), (d, s), (a, p), (b, q), (c, r), (d, s)]
+    }
+    #[inline(always)]
+    fn give(record: (F, F), to: &mut [Lanes; 2]) {
+        (F::load(&to[0]) + record.0).store(&mut to[0]);
+        (F::load(&to[1]) + record.1).store(&mut to[1]);
+    }
+    #[inline(always)]
+    fn put(record: (F, F), to: &mut [Lanes; 2]) {
+        record.0.store(&mut to[0]);
+        record.1.store(&mut to[1]);
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx512 {
+    //! SAFETY of every block here: [`Avx512`] is private to the crate and only named as the argument of a kernel below
+    //! `with_avx512`, which runs after the processor was found to have the features. Pointers come from references
+    //! to as many numbers as are loaded or stored; no alignment is asked for.
+
+    use super::super::avx2::Avx2;
+    use super::super::{Four, Real};
+    use super::Pack;
+    use crate::state::Lanes;
+    use std::arch::x86_64::*;
+    use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+    /// A register of eight lanes.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Avx512(__m512d);
+
+    /// Truth values of [`Avx512`], a bit each.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Avx512Mask(__mmask8);
+
+    macro_rules! lanewise {
+        ($trait:ident, $f:ident, $op:ident) => {
+            impl $trait for Avx512 {
+                type Output = Avx512;
+                #[inline(always)]
+                fn $f(self, o: Avx512) -> Avx512 {
+                    Avx512(unsafe { $op(self.0, o.0) })
+                }
+            }
+        };
+    }
+    lanewise!(Add, add, _mm512_add_pd);
+    lanewise!(Sub, sub, _mm512_sub_pd);
+    lanewise!(Mul, mul, _mm512_mul_pd);
+    lanewise!(Div, div, _mm512_div_pd);
+
+    impl Neg for Avx512 {
+        type Output = Avx512;
+        #[inline(always)]
+        fn neg(self) -> Avx512 {
+            Avx512(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
+        }
+    }
+
+    impl BitAnd for Avx512Mask {
+        type Output = Avx512Mask;
+        #[inline(always)]
+        fn bitand(self, o: Avx512Mask) -> Avx512Mask {
+            Avx512Mask(self.0 & o.0)
+        }
+    }
+
+    impl BitOr for Avx512Mask {
+        type Output = Avx512Mask;
+        #[inline(always)]
+        fn bitor(self, o: Avx512Mask) -> Avx512Mask {
+            Avx512Mask(self.0 | o.0)
+        }
+    }
+
+    impl Not for Avx512Mask {
+        type Output = Avx512Mask;
+        #[inline(always)]
+        fn not(self) -> Avx512Mask {
+            Avx512Mask(!self.0)
+        }
+    }
+
+    impl Real for Avx512 {
+        type Mask = Avx512Mask;
+
+        #[inline(always)]
+        fn splat(x: f64) -> Avx512 {
+            Avx512(unsafe { _mm512_set1_pd(x) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Avx512 {
+            Avx512(unsafe { _mm512_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Avx512 {
+            Avx512(unsafe { _mm512_abs_pd(self.0) })
+        }
+        #[inline(always)]
+        fn min(self, other: Avx512) -> Avx512 {
+            Avx512(unsafe { _mm512_min_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn max(self, other: Avx512) -> Avx512 {
+            Avx512(unsafe { _mm512_max_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn lt(self, other: Avx512) -> Avx512Mask {
+            Avx512Mask(unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn le(self, other: Avx512) -> Avx512Mask {
+            Avx512Mask(unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn equals(self, other: Avx512) -> Avx512Mask {
+            Avx512Mask(unsafe { _mm512_cmp_pd_mask::<_CMP_EQ_OQ>(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn select(mask: Avx512Mask, yes: Avx512, no: Avx512) -> Avx512 {
+            Avx512(unsafe { _mm512_mask_blend_pd(mask.0, no.0, yes.0) })
+        }
+        #[inline(always)]
+        fn any(mask: Avx512Mask) -> bool {
+            mask.0 != 0
+        }
+        #[inline(always)]
+        fn all(mask: Avx512Mask) -> bool {
+            mask.0 == 255
+        }
+    }
+
+    /// Two records side by side.
+    #[inline(always)]
+    fn both(low: &[f64; 4], high: &[f64; 4]) -> Avx512 {
+        Avx512(unsafe {
+            let low = _mm512_castpd256_pd512(_mm256_loadu_pd(low.as_ptr()));
+            _mm512_insertf64x4::<1>(low, _mm256_loadu_pd(high.as_ptr()))
+        })
+    }
+
+    /// Four numbers of each lane: first those of lanes 0 and 2, 1 and 3, 4 and 6, 5 and 7, each as two pairs of the first
+    /// numbers and then two of the last.
+    #[inline(always)]
+    fn halves([Avx512(a), Avx512(b), Avx512(c), Avx512(d)]: [Avx512; 4]) -> [Avx512; 4] {
+        unsafe {
+            let (ab_even, ab_odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+            let (cd_even, cd_odd) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+            [
+                Avx512(_mm512_shuffle_f64x2::<0x44>(ab_even, cd_even)),
+                Avx512(_mm512_shuffle_f64x2::<0x44>(ab_odd, cd_odd)),
+                Avx512(_mm512_shuffle_f64x2::<0xee>(ab_even, cd_even)),
+                Avx512(_mm512_shuffle_f64x2::<0xee>(ab_odd, cd_odd)),
+            ]
+        }
+    }
+
+    /// Eight numbers of each lane from two results of [`halves`].
+    #[inline(always)]
+    fn join(p: [Avx512; 4], q: [Avx512; 4]) -> [Avx512; 8] {
+        unsafe {
+            [
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[0].0, q[0].0)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[1].0, q[1].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[0].0, q[0].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[1].0, q[1].0)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[2].0, q[2].0)),
+                Avx512(_mm512_shuffle_f64x2::<0x88>(p[3].0, q[3].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[2].0, q[2].0)),
+                Avx512(_mm512_shuffle_f64x2::<0xdd>(p[3].0, q[3].0)),
+            ]
+        }
+    }
+
+    impl Pack for Avx512 {
+        type Quad = Avx2;
+        type Record = Avx512;
+        const GROUPS: usize = 2;
+
+        #[inline(always)]
+        fn join(first: &[f64; 4], second: &[f64; 4]) -> Avx512 {
+            both(first, second)
+        }
+        #[inline(always)]
+        fn less(self, o: Avx512, sign: Avx512) -> Avx512 {
+            // One rounding, as the product has none.
+            Avx512(unsafe { _mm512_fnmadd_pd(o.0, sign.0, self.0) })
+        }
+        #[inline(always)]
+        fn split(self, first: &mut [f64; 4], second: &mut [f64; 4]) {
+            let [low, high] = self.quads();
+            low.store(first);
+            high.store(second);
+        }
+        #[inline(always)]
+        fn add_to(self, sum: Avx2) -> Avx2 {
+            let [low, high] = self.quads();
+            sum + low + high
+        }
+        #[inline(always)]
+        fn quads(self) -> [Avx2; 2] {
+            unsafe {
+                [Avx2::of(_mm512_castpd512_pd256(self.0)), Avx2::of(_mm512_extractf64x4_pd::<1>(self.0))]
+            }
+        }
+        #[inline(always)]
+        fn of(x: &[f64; 8]) -> Avx512 {
+            Avx512(unsafe { _mm512_loadu_pd(x.as_ptr()) })
+        }
+        #[inline(always)]
+        fn numbers(self) -> [f64; 8] {
+            let mut out = [0.0; 8];
+            unsafe { _mm512_storeu_pd(out.as_mut_ptr(), self.0) };
+            out
+        }
+        #[inline(always)]
+        fn mask_bits(mask: Avx512Mask) -> u32 {
+            u32::from(mask.0)
+        }
+        #[inline(always)]
+        fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [Avx512; 4] {
+            // The pairs that two rounds of shuffles bring into the order of the lanes.
+            [
+                both(record(0), record(2)),
+                both(record(1), record(3)),
+                both(record(4), record(6)),
+                both(record(5), record(7)),
+            ]
+        }
+        #[inline(always)]
+        fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([Avx512; 4], [Avx512; 4]) {
+            let (a, c) = (records(0), records(2));
+            let (p, x) = (both(a.0, c.0), both(a.1, c.1));
+            let (b, d) = (records(1), records(3));
+            let (q, y) = (both(b.0, d.0), both(b.1, d.1));
+            let (e, g) = (records(4), records(6));
+            let (r, z) = (both(e.0, g.0), both(e.1, g.1));
+            let (f, h) = (records(5), records(7));
+            let (s, w) = (both(f.0, h.0), both(f.1, h.1));
+            ([p, q, r, s], [x, y, z, w])
+        }
+        #[inline(always)]
+        fn below(count: usize) -> Avx512Mask {
+            Avx512Mask(if count < 8 { (1 << count) - 1 } else { 255 })
+        }
+        #[inline(always)]
+        fn columns(rows: [Avx512; 4]) -> [Avx512; 4] {
+            let [Avx512(a), Avx512(b), Avx512(c), Avx512(d)] = rows;
+            unsafe {
+                let (ab_even, ab_odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+                let (cd_even, cd_odd) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+                [
+                    Avx512(_mm512_shuffle_f64x2::<0x88>(ab_even, cd_even)),
+                    Avx512(_mm512_shuffle_f64x2::<0x88>(ab_odd, cd_odd)),
+                    Avx512(_mm512_shuffle_f64x2::<0xdd>(ab_even, cd_even)),
+                    Avx512(_mm512_shuffle_f64x2::<0xdd>(ab_odd, cd_odd)),
+                ]
+            }
+        }
+        #[inline(always)]
+        fn records(first: [Avx512; 4], second: [Avx512; 4]) -> [Avx512; 8] {
+            join(halves(first), halves(second))
+        }
+        #[inline(always)]
+        fn opposed(
+            force: [Avx512; 3],
+            torque_a: [Avx512; 3],
+            torque_b: [Avx512; 3],
+        ) -> ([Avx512; 8], [Avx512; 8]) {
+            let zero = Avx512::zero();
+            let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
+            let [p, q, r, s] = halves([x, y, z, zero]);
+            // The fourth numbers become −0, which a sum does not feel.
+            let back = [-p, -q, -r, -s];
+            (join([p, q, r, s], halves([a, b, c, zero])), join(back, halves([d, e, f, zero])))
+        }
+        #[inline(always)]
+        fn give(record: Avx512, to: &mut [Lanes; 2]) {
+            let to = to.as_mut_ptr().cast::<f64>();
+            unsafe { _mm512_storeu_pd(to, _mm512_add_pd(_mm512_loadu_pd(to), record.0)) }
+        }
+        #[inline(always)]
+        fn put(record: Avx512, to: &mut [Lanes; 2]) {
+            unsafe { _mm512_storeu_pd(to.as_mut_ptr().cast::<f64>(), record.0) }
+        }
+    }
+}
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Avx512;

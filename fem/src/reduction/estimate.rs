@@ -1,0 +1,108 @@
+//! What a reduction costs in accuracy, known before a run.
+
+use super::ReductionError;
+use crate::loads;
+use crate::mesh::Face;
+use crate::modal::Modes;
+use crate::model::Model;
+use crate::statics::StaticSolver;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Excess of a frequency that counts as right.
+const RIGHT: f64 = 0.01;
+
+/// Errors of a reduced solid against the full one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Free dofs of the full solid.
+    pub dofs: usize,
+    /// Shapes of the reduced one.
+    pub shapes: usize,
+    /// Part of the mean deflection under a uniform pressure on the contact surface that is lost [-].
+    pub pressure: f64,
+    /// Part of the deflection under a vertical force at a corner, in the middle of a side and in the middle of the face nearest to
+    /// the surface's middle that is lost [-].
+    pub point: [f64; 3],
+    /// Excess of the lowest natural frequency over that of the full solid [-].
+    pub lowest: f64,
+    /// Natural frequency of the full solid up to which none of the reduced one's is more than 1 % off [Hz]; 0 if the lowest is.
+    pub right_up_to: f64,
+    /// Whether the comparison ended there only because it had no more modes.
+    pub open: bool,
+}
+
+impl Estimate {
+    /// Compares the frequencies; the static errors follow.
+    pub(super) fn of_frequencies(model: &Model, square: &[f64], natural: &Modes) -> Estimate {
+        let excess = |k: usize| (square[k].sqrt() / natural.circular[k] - 1.0).abs();
+        let compared = natural.circular.len().min(square.len());
+        let right = (0..compared).take_while(|&k| excess(k) <= RIGHT).count();
+        Estimate {
+            dofs: model.free_dof_count(),
+            shapes: square.len(),
+            lowest: if compared > 0 { excess(0) } else { 0.0 },
+            right_up_to: if right > 0 { natural.frequencies[right - 1] } else { 0.0 },
+            open: right == compared,
+            ..Estimate::default()
+        }
+    }
+
+    /// Static deflections under a pressure and under point forces: 1 − reduced/full.
+    pub(super) fn static_errors(
+        &mut self,
+        model: &Model,
+        faces: &[Face],
+        solver: &mut StaticSolver,
+        square: &[f64],
+        shape: &[f64],
+    ) -> Result<(), ReductionError> {
+        let zero = vec![0.0; model.supports().fixed().len()];
+        let mut lost = |load: &[f64]| -> Result<f64, ReductionError> {
+            let full = super::basis::dot(load, &solver.solve_prescribed(model, load, Some(&zero))?.u);
+            let mut q = vec![0.0; square.len()];
+            for (f, row) in load.iter().zip(shape.chunks_exact(square.len())).filter(|(f, _)| **f != 0.0) {
+                q.iter_mut().zip(row).for_each(|(q, v)| *q += f * v);
+            }
+            let reduced: f64 = q.iter().zip(square).map(|(q, s)| q * q / s).sum();
+            Ok(if full > 0.0 { 1.0 - reduced / full } else { 0.0 })
+        };
+        let mut load = vec![0.0; model.dof_count()];
+        faces.iter().for_each(|f| loads::face_pressure(model.mesh(), f, 1.0, &mut load));
+        self.pressure = lost(&load)?;
+        let centres: Vec<[f64; 3]> = faces.iter().map(|f| f.centre(model.mesh())).collect();
+        let middle: [f64; 3] =
+            std::array::from_fn(|d| centres.iter().map(|c| c[d]).sum::<f64>() / centres.len() as f64);
+        let away = |c: &[f64; 3]| (0..3).map(|d| (c[d] - middle[d]).powi(2)).sum::<f64>();
+        let nearest = (0..faces.len()).min_by(|&a, &b| away(&centres[a]).total_cmp(&away(&centres[b])));
+        if let Some(face) = nearest {
+            for (error, xi) in self.point.iter_mut().zip([[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0]]) {
+                load.fill(0.0);
+                loads::face_point_load(&faces[face], xi, [0.0, 0.0, -1.0], &mut load);
+                *error = lost(&load)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One line for a summary.
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = |x: f64| 100.0 * x.max(0.0);
+        write!(
+            f,
+            "{} shapes for {} dofs; deflection lost under a uniform pressure {:.2} %, under a point force {:.1}, {:.1}, {:.1} % \
+             (corner, side, middle of a face); lowest frequency {:+.2} %, within 1 % up to {:.1} Hz{}",
+            self.shapes,
+            self.dofs,
+            percent(self.pressure),
+            percent(self.point[0]),
+            percent(self.point[1]),
+            percent(self.point[2]),
+            100.0 * self.lowest,
+            self.right_up_to,
+            if self.open { " or more" } else { "" }
+        )
+    }
+}

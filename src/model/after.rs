@@ -1,0 +1,182 @@
+//! `[track.jump]`, `[track.push]` and `track.bed_stiffness` resolved.
+
+use super::grains::{GrainsPart, check};
+use super::seat_load::CyclicLoad;
+use crate::scene::after::{CycleJump, JumpMethod, Push};
+use crate::scene::track::Track;
+use crate::scene::{Document, SceneError};
+use trackbed_dem::Vec3;
+
+/// Share of its time at full speed in which the ram of a push gets going.
+const START: f64 = 0.05;
+
+/// What goes on about the load cycles.
+#[derive(Clone, Debug, Default)]
+pub struct AfterPlan {
+    /// Jumps over cycles.
+    pub jump: Option<JumpPlan>,
+    /// Lateral push at the end.
+    pub push: Option<PushPlan>,
+    /// Loads between which the stiffness of the bed is taken [N]; none without a cyclic load.
+    pub between: Option<[f64; 2]>,
+}
+
+/// Cycles that are not simulated one by one.
+#[derive(Clone, Copy, Debug)]
+pub struct JumpPlan {
+    /// Whether the grains are moved; otherwise only the account goes on.
+    pub grains: bool,
+    /// Cycles simulated before the first jump.
+    pub first: u32,
+    /// Cycles of a stretch whose rate is measured.
+    pub measure: u32,
+    /// Cycles after a jump whose rate does not count.
+    pub settle: u32,
+    /// Error of a jump over the settlement up to which the next jump is longer.
+    pub tolerance: f64,
+    /// Largest jump over the cycles before it.
+    pub largest: f64,
+    /// Share by which a jump may change the overlaps in the mean.
+    pub overlap: f64,
+}
+
+/// A lateral push.
+#[derive(Clone, Copy, Debug)]
+pub struct PushPlan {
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Speed of the ram [m/s].
+    pub speed: f64,
+    /// How far it goes [m].
+    pub displacement: f64,
+    /// Vertical force on the sleeper meanwhile [N].
+    pub load: f64,
+    /// Time from the last cycle to the push [s].
+    pub rest: f64,
+    /// Height of the ram above the sleeper's centre [m].
+    pub height: f64,
+    /// Stiffness of the ram [N/m].
+    pub stiffness: f64,
+}
+
+impl PushPlan {
+    /// Time that the push takes with the rest before it [s].
+    pub fn duration(&self) -> f64 {
+        self.rest + (1.0 + 0.5 * START) * self.displacement / self.speed
+    }
+
+    /// Way [m] and speed [m/s] of the ram a time after it started [s]: it gets going evenly.
+    pub fn ram(&self, since: f64) -> (f64, f64) {
+        let start = START * self.displacement / self.speed;
+        if since < start {
+            let share = since.max(0.0) / start;
+            (0.5 * self.speed * share * share * start, share * self.speed)
+        } else {
+            (self.speed * (since - 0.5 * start), self.speed)
+        }
+    }
+}
+
+/// Resolves what a scene says.
+///
+/// # Errors
+/// Bad input.
+pub fn build(document: &Document, track: &Track, part: &GrainsPart) -> Result<AfterPlan, SceneError> {
+    let jump = track.jump.as_ref().map(|j| jump(document, j, part)).transpose()?;
+    let push = track.push.as_ref().map(|p| push(document, p, part)).transpose()?;
+    let range = part.load.as_ref().map(CyclicLoad::range);
+    let between = match (track.bed_stiffness, range) {
+        (Some(_), None) => {
+            let expected = "a [track.load] with cycles, or no such key";
+            return Err(document.error("track.bed_stiffness", "two loads", expected));
+        }
+        (Some(loads), Some([least, most])) => {
+            let [low, high] = loads.map(|f| f.si);
+            if !(least <= low && low < high && high <= most) {
+                let expected = format!("two rising loads from {least} to {most}, those of the cycles");
+                return Err(document.error("track.bed_stiffness", format!("{low} and {high}"), expected));
+            }
+            Some([low, high])
+        }
+        (None, range) => range.map(|[a, b]| [a + 0.25 * (b - a), a + 0.75 * (b - a)]),
+    };
+    Ok(AfterPlan { jump, push, between })
+}
+
+fn jump(document: &Document, j: &CycleJump, part: &GrainsPart) -> Result<JumpPlan, SceneError> {
+    let key = |k: &str| format!("track.jump.{k}");
+    let Some(load) = &part.load else {
+        return Err(document.error("track.jump", "a jump", "a [track.load] with cycles beside it"));
+    };
+    let grains = j.method == JumpMethod::Grains;
+    for (name, present) in [("settle", j.settle.is_some()), ("overlap", j.overlap.is_some())] {
+        if present && !grains {
+            return Err(document.error(&key(name), "a value", "no such key without method = \"grains\""));
+        }
+    }
+    if grains && !part.bonds.is_empty() {
+        let expected = "\"account\": grains that are bonded are not moved";
+        return Err(document.error(&key("method"), "\"grains\"", expected));
+    }
+    if grains && part.is_periodic() {
+        let expected = "\"account\": grains that cross a periodic border are not moved";
+        return Err(document.error(&key("method"), "\"grains\"", expected));
+    }
+    check(document, &key("measure"), Some(f64::from(j.measure)), |n| n >= 2.0, "2 or more")?;
+    let least = f64::from(j.measure) + 2.0;
+    check(
+        document,
+        &key("first"),
+        Some(f64::from(j.first)),
+        |n| n >= least.max(10.0),
+        "10 or more, and more than `measure` by 2",
+    )?;
+    check(document, &key("tolerance"), Some(j.tolerance), |t| t > 0.0 && t <= 10.0, "above 0, at most 10")?;
+    check(document, &key("largest"), Some(j.largest), |g| g > 0.0 && g <= 10.0, "above 0, at most 10")?;
+    check(document, &key("overlap"), j.overlap, |o| o > 0.0 && o <= 2.0, "above 0, at most 2")?;
+    if j.first >= load.cycles() {
+        let expected = format!("fewer than the {} cycles of the load", load.cycles());
+        return Err(document.error(&key("first"), j.first.to_string(), expected));
+    }
+    Ok(JumpPlan {
+        grains,
+        first: j.first,
+        measure: j.measure,
+        settle: if grains { j.settle.unwrap_or(3) } else { 0 },
+        tolerance: j.tolerance,
+        largest: j.largest,
+        overlap: j.overlap.unwrap_or(0.5),
+    })
+}
+
+fn push(document: &Document, p: &Push, part: &GrainsPart) -> Result<PushPlan, SceneError> {
+    let key = |k: &str| format!("track.push.{k}");
+    let direction = Vec3::new(p.direction[0], p.direction[1], 0.0);
+    let found = format!("({}, {})", p.direction[0], p.direction[1]);
+    let Some(direction) = direction.try_normalize(0.0).filter(|d| d.iter().all(|x| x.is_finite())) else {
+        return Err(document.error(&key("direction"), found, "a direction"));
+    };
+    if part.rail.is_some() {
+        return Err(document.error("track.push", "a push", "no such table beside a rail with mass"));
+    }
+    let held = part.sleeper.as_ref().map_or([false; 6], |s| s.held());
+    if let Some(d) = (0..2).find(|&d| held[d] && direction[d] != 0.0) {
+        let expected = format!("a direction that track.sleeper.hold leaves free, not {}", ["x", "y"][d]);
+        return Err(document.error(&key("direction"), found, expected));
+    }
+    check(document, &key("speed"), Some(p.speed.si), |v| v > 0.0, "above 0")?;
+    check(document, &key("displacement"), Some(p.displacement.si), |l| l > 0.0, "above 0")?;
+    check(document, &key("load"), Some(p.load.si), |f| f >= 0.0, "0 or more")?;
+    check(document, &key("rest"), Some(p.rest.si), |t| t >= 0.0, "0 or more")?;
+    check(document, &key("height"), Some(p.height.si), |_| true, "a length")?;
+    check(document, &key("stiffness"), Some(p.stiffness.si), |k| k > 0.0, "above 0")?;
+    Ok(PushPlan {
+        direction,
+        speed: p.speed.si,
+        displacement: p.displacement.si,
+        load: p.load.si,
+        rest: p.rest.si,
+        height: p.height.si,
+        stiffness: p.stiffness.si,
+    })
+}

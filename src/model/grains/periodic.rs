@@ -1,0 +1,40 @@
+//! `[periodic]` resolved: borders, and the grains that must lie between them.
+
+use super::GrainsPart;
+use crate::scene::{Document, Scene, SceneError};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Adds the borders; grains that are placed by the program may not stick out, others must have their centre inside.
+pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> Result<(), SceneError> {
+    let Some(table) = &scene.periodic else { return Ok(()) };
+    let sides = [&table.x, &table.y, &table.z];
+    if sides.iter().all(|s| s.is_none()) {
+        return Err(document.error("periodic", "no axis", "`x`, `y` or `z` with its two borders"));
+    }
+    for (d, side) in sides.into_iter().enumerate() {
+        let Some([low, high]) = side.as_ref().map(|s| [s[0].si, s[1].si]) else { continue };
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            let key = format!("periodic.{}", AXES[d]);
+            return Err(document.error(
+                &key,
+                format!("[{low}, {high}]"),
+                "two lengths, the second the larger",
+            ));
+        }
+        part.periodic[d] = Some([low, high]);
+        let slack = 1e-9 * (high - low);
+        for body in &part.bodies {
+            let group = &scene.grains[body.part as usize];
+            let by_hand = group.spheres.is_some() || group.packing.is_some();
+            let reach = if by_hand { 0.0 } else { part.reach(body) };
+            let x = body.position[d];
+            if x - reach < low - slack || x + reach > high + slack {
+                let found = format!("a grain from {} = {} to {}", AXES[d], x - reach, x + reach);
+                let expected = format!("grains between the borders {low} and {high} of `periodic`");
+                return Err(document.error(&format!("grains.{}", body.part), found, expected));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,315 @@
+//! `[track.load]` and `[track.rail]` resolved.
+
+use super::pulse::Winkler;
+use super::rail::RailInput;
+use super::trains;
+use crate::failure::Failure;
+use crate::model::seat_load::{Course, CyclicLoad, Pass, Spread};
+use crate::model::tables;
+use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, Track};
+use crate::scene::{Document, SceneError};
+
+/// Spacings at the ends of a rail over which the load of a wheel comes on.
+const TAPER: f64 = 2.0;
+
+/// The keys that only some kinds of load have, which kinds, and whether these need them.
+const KEYS: [(&str, &[SeatLoadKind], bool); 21] = {
+    use SeatLoadKind::{Bogie, Gauss, Haversine, History, Ramp, Sine, Train};
+    [
+        ("minimum", &[Sine, Haversine], true),
+        ("minimum", &[Ramp], false),
+        ("maximum", &[Sine, Haversine, Ramp, Gauss], true),
+        ("frequency", &[Sine, Haversine], true),
+        ("cycles", &[Sine, Haversine], true),
+        ("cycles", &[Ramp, History, Gauss, Bogie, Train], false),
+        ("rise", &[Ramp], true),
+        ("hold", &[Ramp], true),
+        ("fall", &[Ramp], false),
+        ("file", &[History, Train], true),
+        ("factor", &[History], false),
+        ("speed", &[Gauss, Bogie, Train], true),
+        ("speed", &[History], false),
+        ("width", &[Gauss], true),
+        ("axles", &[Gauss], false),
+        ("axle_load", &[Bogie], true),
+        ("axle_load", &[Train], false),
+        ("wheelbase", &[Bogie], true),
+        ("train", &[Train], true),
+        ("cars", &[Train], false),
+        ("excitation", &[Bogie, Train], false),
+    ]
+};
+
+fn key(name: &str) -> String {
+    format!("track.load.{name}")
+}
+
+fn check(
+    document: &Document,
+    key: &str,
+    value: f64,
+    good: impl Fn(f64) -> bool,
+    expected: &str,
+) -> Result<f64, SceneError> {
+    if value.is_finite() && good(value) {
+        return Ok(value);
+    }
+    Err(document.error(key, value.to_string(), expected))
+}
+
+/// The load of a scene on sleepers at `places` along the track [m], through `rail` where the scene has one.
+///
+/// # Errors
+/// Bad input in the scene or in the files it names.
+pub fn load(
+    document: &Document,
+    l: &SeatLoad,
+    places: Vec<f64>,
+    rail: Option<&RailPlan>,
+) -> Result<CyclicLoad, Failure> {
+    which_keys(document, l)?;
+    let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
+    let least_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x >= 0.0, "0 or more");
+    let cycles = l.cycles.unwrap_or(1);
+    check(document, &key("cycles"), f64::from(cycles), |n| n >= 1.0, "1 or more")?;
+    least_zero("rest", l.rest.si)?;
+    least_zero("ramp", l.ramp.si)?;
+    let minimum = least_zero("minimum", l.minimum.map_or(0.0, |f| f.si))?;
+    if let Some(maximum) = l.maximum {
+        check(document, &key("maximum"), maximum.si, |f| f > minimum, "more than the minimum")?;
+    }
+    let maximum = l.maximum.map_or(0.0, |f| f.si);
+    let speed = l.speed.map(|v| above_zero("speed", v.si)).transpose()?;
+    if matches!(l.kind, SeatLoadKind::Bogie | SeatLoadKind::Train) != rail.is_some() {
+        let error = match rail {
+            Some(_) => {
+                document.error(&key("kind"), "a load on the sleepers", "\"bogie\" or \"train\" on a rail")
+            }
+            None => document.error(&key("kind"), "wheels", "[track.rail], on which they roll"),
+        };
+        return Err(error.into());
+    }
+    let course = match l.kind {
+        SeatLoadKind::Sine | SeatLoadKind::Haversine => Course::Wave {
+            sine: l.kind == SeatLoadKind::Sine,
+            minimum,
+            maximum,
+            frequency: above_zero("frequency", l.frequency.map_or(0.0, |f| f.si))?,
+        },
+        SeatLoadKind::Ramp => Course::Ramp {
+            minimum,
+            maximum,
+            rise: above_zero("rise", l.rise.map_or(0.0, |t| t.si))?,
+            hold: least_zero("hold", l.hold.map_or(0.0, |t| t.si))?,
+            fall: l.fall.map(|t| above_zero("fall", t.si)).transpose()?,
+        },
+        SeatLoadKind::History => {
+            let factor =
+                check(document, &key("factor"), l.factor.unwrap_or(1.0), |f| f != 0.0, "other than 0")?;
+            let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
+            let rows = tables::history(&document.resolve(file))?;
+            let first = rows[0].0;
+            if rows.len() < 2 {
+                return Err(document.error(&key("file"), "one row", "two or more").into());
+            }
+            let points = rows.iter().map(|(t, f)| (t - first, f * factor)).collect();
+            Course::Measured { points, speed }
+        }
+        SeatLoadKind::Gauss => {
+            let width = above_zero("width", l.width.map_or(0.0, |w| w.si))?;
+            let behind: Vec<f64> = l.axles.as_ref().map_or(vec![0.0], |a| a.iter().map(|x| x.si).collect());
+            if behind.first() != Some(&0.0) || behind.windows(2).any(|a| a[1] <= a[0]) {
+                let found = format!("{behind:?}");
+                return Err(document.error(&key("axles"), found, "ascending distances, the first 0").into());
+            }
+            let axles = behind.iter().map(|&b| [b, maximum]).collect();
+            pass(speed, axles, Spread::Gauss(width), &places, Vec::new())
+        }
+        SeatLoadKind::Bogie | SeatLoadKind::Train => {
+            let axles = axles(document, l)?;
+            let waves = waves(document, l, speed.unwrap_or(0.0))?;
+            let rail = rail.expect("checked above");
+            pass(speed, axles, rail.spread(&places), &places, waves)
+        }
+    };
+    Ok(CyclicLoad { course, cycles, rest: l.rest.si, ramp: l.ramp.si, places })
+}
+
+/// Refuses keys of other kinds and asks for those that are needed.
+fn which_keys(document: &Document, l: &SeatLoad) -> Result<(), SceneError> {
+    let present = |name: &str| match name {
+        "minimum" => l.minimum.is_some(),
+        "maximum" => l.maximum.is_some(),
+        "frequency" => l.frequency.is_some(),
+        "cycles" => l.cycles.is_some(),
+        "rise" => l.rise.is_some(),
+        "hold" => l.hold.is_some(),
+        "fall" => l.fall.is_some(),
+        "file" => l.file.is_some(),
+        "factor" => l.factor.is_some(),
+        "speed" => l.speed.is_some(),
+        "width" => l.width.is_some(),
+        "axles" => l.axles.is_some(),
+        "axle_load" => l.axle_load.is_some(),
+        "wheelbase" => l.wheelbase.is_some(),
+        "train" => l.train.is_some(),
+        "cars" => l.cars.is_some(),
+        _ => l.excitation.is_some(),
+    };
+    for (name, _, _) in KEYS {
+        let mut allowed = KEYS.iter().filter(|(n, kinds, _)| *n == name && kinds.contains(&l.kind));
+        match (allowed.next(), present(name)) {
+            (None, true) => {
+                return Err(document.error(&key(name), "a value", "no such key for this kind of load"));
+            }
+            (Some((_, _, true)), false) => {
+                return Err(document.error(&key(name), "nothing", "a value for this kind of load"));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Distance behind the first [m] and force [N] of each axle on the rail.
+fn axles(document: &Document, l: &SeatLoad) -> Result<Vec<[f64; 2]>, SceneError> {
+    let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
+    let given = l.axle_load.map(|f| above_zero("axle_load", f.si)).transpose()?;
+    if l.kind == SeatLoadKind::Bogie {
+        let base = above_zero("wheelbase", l.wheelbase.map_or(0.0, |w| w.si))?;
+        let force = given.unwrap_or(0.0);
+        return Ok(vec![[0.0, force], [base, force]]);
+    }
+    let cars = l.cars.unwrap_or(1);
+    check(document, &key("cars"), f64::from(cars), |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
+    let car = trains::car(&document.resolve(file), l.train.as_deref().unwrap_or_default())?;
+    let force = given.unwrap_or(car.axle_load.si);
+    Ok(car.axles(cars).into_iter().map(|behind| [behind, force]).collect())
+}
+
+/// Force amplitudes [N] and lengths [m] of the waves of an uneven rail.
+fn waves(document: &Document, l: &SeatLoad, speed: f64) -> Result<Vec<[f64; 2]>, SceneError> {
+    let Some(e) = &l.excitation else { return Ok(Vec::new()) };
+    let mass = check(document, &key("excitation.mass"), e.mass.si, |m| m > 0.0, "above 0")?;
+    let wave = |[length, amplitude]: &[crate::scene::units::Quantity<crate::scene::units::Length>; 2]| {
+        let length = check(document, &key("excitation.waves"), length.si, |x| x > 0.0, "lengths above 0")?;
+        let turn = std::f64::consts::TAU * speed / length;
+        Ok([mass * amplitude.si * turn * turn, length])
+    };
+    e.waves.iter().map(wave).collect()
+}
+
+/// A pass of axles over sleepers, from out of reach to out of reach.
+fn pass(
+    speed: Option<f64>,
+    axles: Vec<[f64; 2]>,
+    spread: Spread,
+    places: &[f64],
+    waves: Vec<[f64; 2]>,
+) -> Course {
+    let last = places.last().copied().unwrap_or(0.0);
+    let [from, to] = match spread {
+        Spread::Beam { ends, .. } => ends,
+        _ => [-spread.reach(), last + spread.reach()],
+    };
+    let behind = axles.last().map_or(0.0, |a| a[0]);
+    let speed = speed.unwrap_or(1.0);
+    Course::Pass(Pass { speed, axles, begin: from, way: to - from + behind, spread, waves })
+}
+
+/// The rail of a scene.
+#[derive(Clone, Debug)]
+pub enum RailPlan {
+    /// A formula.
+    Winkler(Winkler),
+    /// A beam.
+    Beam(Box<RailInput>),
+}
+
+impl RailPlan {
+    /// How it spreads the load of an axle.
+    fn spread(&self, places: &[f64]) -> Spread {
+        match self {
+            RailPlan::Winkler(w) => Spread::Winkler(*w),
+            RailPlan::Beam(input) => {
+                let before = input.beyond as f64 * input.spacing;
+                let ends = [-before, before + places.last().copied().unwrap_or(0.0)];
+                Spread::Beam { ends, taper: TAPER * input.spacing }
+            }
+        }
+    }
+}
+
+/// The rail of a scene, one on each seat.
+///
+/// # Errors
+/// Bad input.
+pub fn rail(document: &Document, track: &Track, r: &RailTable) -> Result<RailPlan, SceneError> {
+    let key = |name: &str| format!("track.rail.{name}");
+    let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
+    let least_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x >= 0.0, "0 or more");
+    let Some(load) = &track.load else {
+        return Err(document.error("track.rail", "a rail", "[track.load] with wheels on it"));
+    };
+    let Some(spacing) = track.sleeper.spacing.map(|s| s.si) else {
+        return Err(document.error(
+            "track.sleeper.spacing",
+            "nothing",
+            "the distance of the sleepers under a rail",
+        ));
+    };
+    let axis = track.sleeper.along.axis();
+    if let Some(seat) = load.seats.iter().find(|s| s[axis].si != 0.0) {
+        let found = format!("({}, {})", seat[0].si, seat[1].si);
+        return Err(document.error("track.load.seats", found, "rails on the line across the track"));
+    }
+    let bending = above_zero("bending_stiffness", r.bending_stiffness.si)?;
+    let foundation = above_zero("foundation", r.foundation.si)?;
+    let beam = r.kind == RailKind::Beam;
+    for (name, present, needed) in [
+        ("mass", r.mass.is_some(), true),
+        ("pad_stiffness", r.pad_stiffness.is_some(), true),
+        ("pad_damping", r.pad_damping.is_some(), false),
+        ("foundation_damping", r.foundation_damping.is_some(), false),
+        ("extension", r.extension.is_some(), true),
+        ("elements", r.elements.is_some(), false),
+    ] {
+        if beam && needed && !present {
+            return Err(document.error(&key(name), "nothing", "a value for a beam"));
+        }
+        if !beam && present {
+            return Err(document.error(&key(name), "a value", "no such key for this kind of rail"));
+        }
+    }
+    if !beam {
+        return Ok(RailPlan::Winkler(Winkler::new(bending, foundation, spacing)));
+    }
+    let extension = above_zero("extension", r.extension.map_or(0.0, |x| x.si))?;
+    let beyond = (extension / spacing).round();
+    if !(TAPER + 1.0..=10_000.0).contains(&beyond) {
+        let expected = format!("{} to 10000 sleepers of {spacing} m", TAPER + 1.0);
+        return Err(document.error(&key("extension"), extension.to_string(), expected));
+    }
+    let elements = r.elements.unwrap_or(4);
+    check(document, &key("elements"), f64::from(elements), |n| (1.0..=100.0).contains(&n), "1 to 100")?;
+    let rails = load.seats.len().max(1);
+    Ok(RailPlan::Beam(Box::new(RailInput {
+        elements: elements as usize,
+        spacing,
+        bending,
+        mass: above_zero("mass", r.mass.map_or(0.0, |m| m.si))?,
+        pad: [
+            above_zero("pad_stiffness", r.pad_stiffness.map_or(0.0, |k| k.si))?,
+            least_zero("pad_damping", r.pad_damping.map_or(0.0, |c| c.si))?,
+        ],
+        gravity: 0.0,
+        sleepers: track.sleeper.count as usize,
+        beyond: beyond as usize,
+        sleeper_mass: track.sleeper.mass.si / rails as f64,
+        foundation: [
+            foundation,
+            least_zero("foundation_damping", r.foundation_damping.map_or(0.0, |c| c.si))?,
+        ],
+    })))
+}

@@ -1,0 +1,98 @@
+//! Trains: axles of cars from a table of axle layouts.
+
+use crate::read::ReadError;
+use crate::scene::units::{Force, Length, Quantity};
+use crate::scene::{Document, SceneError};
+use serde::Deserialize;
+use std::path::Path;
+
+/// Axle layout of a car with two bogies of two axles.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Car {
+    /// Name of the train.
+    pub name: String,
+    /// Where the figures are from.
+    pub source: String,
+    /// Static load of an axle [N].
+    pub axle_load: Quantity<Force>,
+    /// Distance of the axles of a bogie [m].
+    pub wheelbase: Quantity<Length>,
+    /// Distance of the bogies' centres [m].
+    pub bogie_spacing: Quantity<Length>,
+    /// Length over couplers, which is the distance from car to car [m].
+    pub car_length: Quantity<Length>,
+}
+
+/// A file of trains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    train: Vec<Car>,
+}
+
+/// The car of train `name` in a file.
+///
+/// # Errors
+/// The file is missing or no table of trains, the name is not in it, or its lengths make no car.
+pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
+    let document = Document::open(file)?;
+    let table: Table = document.read()?;
+    let names: Vec<&str> = table.train.iter().map(|t| t.name.as_str()).collect();
+    let Some(k) = names.iter().position(|n| *n == name) else {
+        return Err(ReadError {
+            file: file.to_path_buf(),
+            line: None,
+            key: "train".into(),
+            found: format!("no train \"{name}\""),
+            expected: format!("one of {}", names.join(", ")),
+        });
+    };
+    let car = &table.train[k];
+    let lengths = [car.wheelbase.si, car.bogie_spacing.si, car.car_length.si];
+    for (key, value, least) in [
+        ("axle_load", car.axle_load.si, 0.0),
+        ("wheelbase", lengths[0], 0.0),
+        ("bogie_spacing", lengths[1], lengths[0]),
+        ("car_length", lengths[2], lengths[0] + lengths[1]),
+    ] {
+        if value <= least {
+            let key = format!("train.{k}.{key}");
+            return Err(document.error(&key, value.to_string(), format!("more than {least}")));
+        }
+    }
+    Ok(car.clone())
+}
+
+impl Car {
+    /// Distances of all axles of `cars` cars behind the first one [m], ascending.
+    pub fn axles(&self, cars: u32) -> Vec<f64> {
+        let (base, bogies) = (self.wheelbase.si, self.bogie_spacing.si);
+        let car = [0.0, base, bogies, bogies + base];
+        (0..cars).flat_map(|c| car.map(|a| f64::from(c) * self.car_length.si + a)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every train of the shipped table can be made, and its axles are in order.
+    #[test]
+    fn shipped_trains() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/data/trains.toml");
+        let crh = car(&file, "CRH2").unwrap();
+        assert_eq!(crh.axles(2), [0.0, 2.5, 17.5, 20.0, 25.0, 27.5, 42.5, 45.0]);
+        assert_eq!(crh.axle_load.si, 140e3);
+        let error = car(&file, "TGV").unwrap_err().to_string();
+        assert!(error.contains("train: found no train \"TGV\", expected one of CRH2, "), "{error}");
+        let names = error.split("one of ").nth(1).unwrap().split(", ");
+        let mut count = 0;
+        for name in names {
+            let axles = car(&file, name).unwrap().axles(3);
+            assert!(axles.windows(2).all(|a| a[1] > a[0]), "{name}");
+            count += 1;
+        }
+        assert_eq!(count, 6);
+    }
+}

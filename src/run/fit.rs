@@ -1,0 +1,195 @@
+//! Settlement laws fitted to the settlement per load cycle.
+//!
+//! Source: Alva-Hurtado & Selig, 10th ICSMFE, Stockholm 1981 (1 + C log10 N); ORE D71, 1970 (the same with C = 0.2);
+//! Hettler 1984 (1 + C ln N, amplitude r F^1.6); Selig & Waters 1994 (a N^b); Indraratna et al. 1997–2010 (quadratic in
+//! log10 N); Shenton 1985 (N^0.2 and a linear term); Sato 1995 (γ (1 − exp(−α N)) + β N); after the review of Dahlberg,
+//! Proc. IMechE F 215, 2001. All are least squares in the settlement itself.
+//!
+//! Limits: the laws are of whole tests; cycles before [`FIRST`], in which the sleeper finds its seat, are left out.
+//! Alva-Hurtado & Selig and Hettler are one curve written in two ways. Errors of neighbouring cycles are alike, so no
+//! confidence interval of a parameter is given.
+
+use serde::Serialize;
+
+/// First cycle that fits use.
+pub const FIRST: f64 = 10.0;
+/// Fewest cycles that a fit is made of.
+pub const FEWEST: usize = 10;
+
+/// A law with its parameters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fit {
+    /// Name of the law.
+    pub law: &'static str,
+    /// s(N), with the names of the parameters.
+    pub form: &'static str,
+    /// Names and values of the parameters; settlements [m].
+    pub parameters: Vec<(&'static str, f64)>,
+    /// 1 − (sum of squared residuals)/(sum of squares about the mean).
+    pub r2: f64,
+    /// Root-mean-square residual [m].
+    pub rms_error: f64,
+    /// First and last cycle used.
+    pub range: [f64; 2],
+    /// Number of cycles used.
+    pub points: usize,
+}
+
+impl Fit {
+    /// A parameter by its name.
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        self.parameters.iter().find(|p| p.0 == name).map(|p| p.1)
+    }
+}
+
+/// All laws, fitted to settlements [m] after cycles N, from cycle [`FIRST`] on; `load` is the largest load [N]. Empty when
+/// fewer than [`FEWEST`] cycles are there, or when the settlement does not change.
+pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
+    let used: Vec<[f64; 2]> = cycles.iter().copied().filter(|c| c[0] >= FIRST).collect();
+    let mean = used.iter().map(|c| c[1]).sum::<f64>() / used.len().max(1) as f64;
+    let spread = used.iter().map(|c| (c[1] - mean).powi(2)).sum::<f64>();
+    // Below rounding there is nothing to fit.
+    if used.len() < FEWEST || spread <= 1e-24 * used.len() as f64 * mean * mean || !spread.is_finite() {
+        return Vec::new();
+    }
+    let data = Data { used: &used, spread };
+    let (one, log): (Term, Term) = (&|_| 1.0, &|n| n.log10());
+    let mut out = Vec::new();
+    if let Some((c, rest)) = data.linear(&[one, log]) {
+        let form = "s1 (1 + C log10 N)";
+        out.push(data.fit("Alva-Hurtado & Selig", form, vec![("s1", c[0]), ("C", c[1] / c[0])], rest));
+        // r in millimetres per kN^1.6, as the author has it.
+        let r = 1e3 * c[0] / (1e-3 * load).powf(1.6);
+        let parameters = vec![("r [mm/kN^1.6]", r), ("C", c[1] / c[0] / std::f64::consts::LN_10)];
+        out.push(data.fit("Hettler", "r F^1.6 (1 + C ln N)", parameters, rest));
+    }
+    if let Some((c, rest)) = data.linear(&[&|n| 1.0 + 0.2 * n.log10()]) {
+        out.push(data.fit("ORE D71", "s1 (1 + 0.2 log10 N)", vec![("s1", c[0])], rest));
+    }
+    if let Some((c, rest)) = data.linear(&[one, log, &|n| n.log10().powi(2)]) {
+        let form = "s1 (1 + a log10 N + b/2 (log10 N)^2)";
+        let parameters = vec![("s1", c[0]), ("a", c[1] / c[0]), ("b", 2.0 * c[2] / c[0])];
+        out.push(data.fit("Indraratna", form, parameters, rest));
+    }
+    if let Some((b, c, rest)) = search(-4.0, 2.0, |b| data.linear(&[&|n| n.powf(b)])) {
+        out.push(data.fit("power", "a N^b", vec![("a", c[0]), ("b", b)], rest));
+    }
+    if let Some((c, rest)) = data.linear(&[&|n| n.powf(0.2), &|n| n]) {
+        out.push(data.fit("Shenton", "a N^0.2 + b N", vec![("a", c[0]), ("b", c[1])], rest));
+    }
+    // alpha in a range in which the exponential is neither straight nor over.
+    let range = [(0.05 / used[used.len() - 1][0]).ln(), (5.0 / used[0][0]).ln()];
+    let sato = |ln: f64| data.linear(&[&|n| -(-ln.exp() * n).exp_m1(), &|n| n]);
+    if let Some((ln, c, rest)) = search(range[0], range[1], sato) {
+        let parameters = vec![("gamma", c[0]), ("alpha", ln.exp()), ("beta", c[1])];
+        out.push(data.fit("Sato", "gamma (1 - exp(-alpha N)) + beta N", parameters, rest));
+    }
+    out.retain(|f| f.parameters.iter().all(|p| p.1.is_finite()));
+    out
+}
+
+/// Straight line of s against ln N through the last cycles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slope {
+    /// ds/d(ln N) [m].
+    pub slope: f64,
+    /// Its standard error, were the residuals independent [m].
+    pub error: f64,
+}
+
+/// The slope of the cycles from `from` on; none when they are fewer than three.
+pub fn slope(cycles: &[[f64; 2]], from: f64) -> Option<Slope> {
+    let used: Vec<[f64; 2]> = cycles.iter().filter(|c| c[0] >= from).map(|c| [c[0].ln(), c[1]]).collect();
+    if used.len() < 3 {
+        return None;
+    }
+    let n = used.len() as f64;
+    let mean = [0, 1].map(|d| used.iter().map(|c| c[d]).sum::<f64>() / n);
+    let sxx = used.iter().map(|c| (c[0] - mean[0]).powi(2)).sum::<f64>();
+    let sxy = used.iter().map(|c| (c[0] - mean[0]) * (c[1] - mean[1])).sum::<f64>();
+    let slope = sxy / sxx;
+    let rest = used.iter().map(|c| (c[1] - mean[1] - slope * (c[0] - mean[0])).powi(2)).sum::<f64>();
+    let fit = Slope { slope, error: (rest / (n - 2.0) / sxx).sqrt() };
+    (fit.slope.is_finite() && fit.error.is_finite()).then_some(fit)
+}
+
+/// A function of N that a law is made of.
+type Term<'a> = &'a dyn Fn(f64) -> f64;
+
+struct Data<'a> {
+    used: &'a [[f64; 2]],
+    /// Sum of squares about the mean [m²].
+    spread: f64,
+}
+
+impl Data<'_> {
+    /// Coefficients of the sum of terms that is nearest in the mean square, and the sum of squares left [m²]; none when the
+    /// terms cannot be told apart.
+    fn linear(&self, terms: &[Term<'_>]) -> Option<(Vec<f64>, f64)> {
+        let rows = self.used.len();
+        let mut matrix = nalgebra::DMatrix::from_fn(rows, terms.len(), |i, k| terms[k](self.used[i][0]));
+        let values = nalgebra::DVector::from_iterator(rows, self.used.iter().map(|c| c[1]));
+        // Columns of one size, so that the rank is judged by their directions.
+        let sizes: Vec<f64> = matrix.column_iter().map(|c| c.norm()).collect();
+        if sizes.iter().any(|s| !(s.is_finite() && *s > 0.0)) {
+            return None;
+        }
+        for (mut column, size) in matrix.column_iter_mut().zip(&sizes) {
+            column /= *size;
+        }
+        let qr = matrix.clone().qr();
+        let r = qr.r();
+        if r.diagonal().iter().any(|d| d.abs() < 1e-9) {
+            return None;
+        }
+        let solved = r.solve_upper_triangular(&(qr.q().transpose() * &values))?;
+        let rest = (&matrix * &solved - values).norm_squared();
+        let c: Vec<f64> = solved.iter().zip(&sizes).map(|(c, s)| c / s).collect();
+        (rest.is_finite() && c.iter().all(|x| x.is_finite())).then_some((c, rest))
+    }
+
+    fn fit(
+        &self,
+        law: &'static str,
+        form: &'static str,
+        parameters: Vec<(&'static str, f64)>,
+        rest: f64,
+    ) -> Fit {
+        let points = self.used.len();
+        Fit {
+            law,
+            form,
+            parameters,
+            r2: 1.0 - rest / self.spread,
+            rms_error: (rest / points as f64).sqrt(),
+            range: [self.used[0][0], self.used[points - 1][0]],
+            points,
+        }
+    }
+}
+
+/// Points of the grid of [`search`].
+const GRID: usize = 120;
+
+/// The number between two bounds whose linear fit leaves least, with that fit: the best of a grid, narrowed down by golden
+/// sections. None when the best lies at a bound, where the data do not tell it.
+fn search(low: f64, high: f64, fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>) -> Option<(f64, Vec<f64>, f64)> {
+    let at = |k: usize| low + (high - low) * k as f64 / GRID as f64;
+    let rest = |x: f64| fit(x).map_or(f64::INFINITY, |f| f.1);
+    let best = (0..=GRID).map(|k| (k, rest(at(k)))).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    if best == 0 || best == GRID {
+        return None;
+    }
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut a, mut b) = (at(best - 1), at(best + 1));
+    for _ in 0..60 {
+        let (p, q) = (b - golden * (b - a), a + golden * (b - a));
+        if rest(p) < rest(q) { b = q } else { a = p }
+    }
+    let x = 0.5 * (a + b);
+    fit(x).map(|(c, rest)| (x, c, rest))
+}
+
+#[cfg(test)]
+#[path = "fit_tests.rs"]
+mod tests;

@@ -1,0 +1,16 @@
+//! Periodic axes as written in a scene.
+
+use super::units::{Length, Quantity};
+use serde::Deserialize;
+
+/// `[periodic]`: lower and upper border [m] of the axes along which the grains repeat themselves.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Periodic {
+    /// Along x.
+    pub x: Option<[Quantity<Length>; 2]>,
+    /// Along y.
+    pub y: Option<[Quantity<Length>; 2]>,
+    /// Along z.
+    pub z: Option<[Quantity<Length>; 2]>,
+}

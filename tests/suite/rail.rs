@@ -1,0 +1,337 @@
+//! Rails, wheels and trains over sleepers.
+
+use super::support::{Folder, Table, json, repository, run, trackbed};
+use super::track::{BED, goes_on_bit_for_bit, options, springs, written};
+
+/// A rail like UIC 60 in one line over the middle of the sleepers, with soft pads, over a bed like that of the model.
+pub const BEAM: &str = r#"
+[track.rail]
+kind = "beam"
+bending_stiffness = "12.8 MN m2"
+mass = "120 kg/m"
+pad_stiffness = "120 MN/m"
+pad_damping = "60 kN s/m"
+foundation = "40 MN/m"
+foundation_damping = "100 kN s/m"
+extension = "9 m"
+"#;
+
+fn bogie(speed: &str) -> String {
+    format!(
+        r#"
+[track.load]
+kind = "bogie"
+axle_load = "140 kN"
+wheelbase = "2.5 m"
+speed = "{speed}"
+rest = "30 ms"
+ramp = "100 ms"
+"#
+    )
+}
+
+/// Largest and smallest value of a column.
+fn extremes(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)])
+}
+
+/// Slow wheels over sleepers on springs load the seats as Winkler's formula says, with the pad and the bed in series;
+/// the account closes. At 200 km/h the sleepers get more.
+#[test]
+fn a_bogie_on_a_beam() {
+    let mut peaks = Vec::new();
+    for speed in ["36 km/h", "200 km/h"] {
+        let (folder, scene) = written(&springs(3, &(bogie(speed) + BEAM)));
+        let out = folder.join("out");
+        trackbed::run::run(&scene, &options(&out, 1)).unwrap();
+        let history = Table::read(&out.join("history.csv"));
+        let summary = json(&out.join("summary.json"));
+        let series = BED * 120e6 / (BED + 120e6);
+        let beta = (series / 0.6 / (4.0 * 12.8e6_f64)).powf(0.25);
+        let shape = |x: f64| (-beta * x).exp() * ((beta * x).cos() + (beta * x).sin());
+        // Under an axle, the other one 2.5 m away, and the rail's weight.
+        let formula = 140e3 * 0.5 * beta * 0.6 * (1.0 + shape(2.5)) + 120.0 * 9.81 * 0.6;
+        let energy = summary["energy"]["relative_error"].as_f64().unwrap();
+        assert!(energy < 1e-3, "{energy} at {speed}");
+        for k in 1..=3 {
+            let [least, most] = extremes(&history.column(&format!("load_{k}")));
+            let told = &summary["track"]["sleepers"][k - 1];
+            let number = |key: &str| told[key].as_f64().unwrap();
+            println!(
+                "{speed}, sleeper {k}: {most:.0} N, {:.4} of Winkler's, {:.4} of the static beam's; least {least:.0} N; \
+                 energy {energy:.1e}",
+                most / formula,
+                number("dynamic_amplification"),
+            );
+            assert!(number("largest_force") >= most - 1e-6 && number("largest_force") < 1.01 * most);
+            assert!((number("static_force") / formula - 1.0).abs() < 0.02);
+            assert!((number("load_share") - number("largest_force") / 140e3).abs() < 1e-12);
+            assert!(number("rail_deflection") > number("lowering"));
+            if speed == "36 km/h" {
+                assert!((most / formula - 1.0).abs() < 0.05, "{most} {formula}");
+            }
+            peaks.push(most);
+        }
+        // The wheels reach the sleepers one after the other.
+        let time = history.column("time");
+        let when = |k: usize| {
+            let force = history.column(&format!("load_{k}"));
+            let most = extremes(&force)[1];
+            force.iter().zip(&time).find(|(f, _)| **f > 0.7 * most).map(|(_, t)| *t).unwrap()
+        };
+        let v = if speed == "36 km/h" { 10.0 } else { 200.0 / 3.6 };
+        let delay = 0.5 * (when(3) - when(1));
+        assert!((delay / (0.6 / v) - 1.0).abs() < 0.1, "{delay} s from sleeper to sleeper");
+    }
+    let amplification = peaks[4] / peaks[1];
+    println!("200 km/h over 36 km/h: {amplification:.4}");
+    assert!((1.0..1.5).contains(&amplification), "{amplification}");
+}
+
+/// The quasi-static rail hands each sleeper its share, at the same times as the beam.
+#[test]
+fn a_train_by_winklers_formula() {
+    let file = repository().join("inputs/data/trains.toml");
+    let load = format!(
+        r#"
+[track.load]
+kind = "train"
+file = "{}"
+train = "CRH2"
+cars = 1
+speed = "300 km/h"
+rest = "10 ms"
+ramp = "10 ms"
+seats = [[-0.75, 0], [0.75, 0]]
+[track.rail]
+kind = "winkler"
+bending_stiffness = "6.4 MN m2"
+foundation = "15 MN/m"
+"#,
+        file.display()
+    );
+    let (folder, scene) = written(&springs(2, &load));
+    let out = folder.join("out");
+    trackbed::run::run(&scene, &options(&out, 1)).unwrap();
+    let history = Table::read(&out.join("history.csv"));
+    let beta = (15e6_f64 / 0.6 / (4.0 * 6.4e6)).powf(0.25);
+    let (time, load) = (history.column("time"), history.column("load_2"));
+    let reach = 3.0 * std::f64::consts::PI / beta;
+    for (t, found) in time.iter().zip(&load).filter(|(t, _)| **t > 0.0201) {
+        let first = -reach + 300.0 / 3.6 * (t - 0.02);
+        let share = |behind: f64| {
+            let x = beta * (0.6 - (first - behind)).abs();
+            0.5 * beta * 0.6 * (-x).exp() * (x.cos() + x.sin())
+        };
+        let expected: f64 = [0.0, 2.5, 17.5, 20.0].iter().map(|a| 140e3 * share(*a)).sum();
+        assert!((found - expected).abs() < 1e-6 * 140e3, "{found} {expected} at {t}");
+    }
+    let summary = json(&out.join("summary.json"));
+    assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 2e-3);
+    assert!(
+        summary["track"]["sleepers"][1]["smallest_force"].as_f64().unwrap() < 0.0,
+        "lifted before the wheels"
+    );
+}
+
+/// A measured force that pulls harder than the sleeper weighs lifts it off, and it comes down again.
+#[test]
+fn a_lifted_sleeper_comes_down_again() {
+    let load = r#"
+[track.load]
+kind = "history"
+file = "force.csv"
+factor = 2.0
+speed = 30
+rest = "20 ms"
+ramp = "0 s"
+"#;
+    let (folder, scene) = written(&springs(2, load).replace("[time]", "[time]\nend = 0.4"));
+    // Up with 6 kN, against a weight of 2.9 kN, for 50 ms.
+    folder.write("force.csv", "time, force\n0, 0\n0.01, -3000\n0.06, -3000\n0.07, 0\n");
+    let out = folder.join("out");
+    trackbed::run::run(&scene, &options(&out, 1)).unwrap();
+    let history = Table::read(&out.join("history.csv"));
+    for k in 1..=2 {
+        let z = history.column(&format!("sleeper_{k}_z"));
+        let highest = extremes(&z)[1];
+        assert!(highest - z[0] > 0.01, "lifted by {} m", highest - z[0]);
+        let rest = 300.0 * 9.81 / BED;
+        let last = z.last().unwrap();
+        assert!((z[0] - last - rest).abs() < 0.2 * rest, "{} m above its rest", last - z[0] + rest);
+    }
+    let summary = json(&out.join("summary.json"));
+    assert!((summary["track"]["sleepers"][0]["smallest_force"].as_f64().unwrap() + 6000.0).abs() < 1.0);
+    assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 2e-2);
+}
+
+#[test]
+fn rails_go_on_bit_for_bit() {
+    let text = springs(2, &(bogie("200 km/h") + BEAM)).replace("vtk = false", "vtk = true");
+    let (folder, scene) = written(&text.replace("extension = \"9 m\"", "extension = \"2.4 m\""));
+    goes_on_bit_for_bit(&scene, &folder, &[300, 900, 2000]);
+    let walls = std::fs::read_to_string(folder.join("whole/frames/walls_00001.vtp")).unwrap();
+    assert!(walls.contains("NumberOfPolys"), "a picture with sleepers and rail");
+}
+
+/// A line on standard error for a scene with one thing broken; nothing is written.
+#[track_caller]
+fn refused(scene: &str, old: &str, new: &str, line: &str) {
+    assert_eq!(scene.matches(old).count(), 1, "{old}");
+    let (folder, file) = written(&scene.replace(old, new));
+    folder.write("force.csv", "time, force\n0, 0\n1, 5\n");
+    let told = run(&file, &folder.join("out"), &[]);
+    assert_eq!(told.code, 2, "{}", told.stderr);
+    assert!(told.stderr.contains(line), "{}\n{line}", told.stderr);
+    assert!(!folder.join("out").exists());
+    if !line.contains("grain steps") {
+        let checked = trackbed([std::path::Path::new("check"), &file]);
+        assert_eq!(checked.stderr, told.stderr);
+    }
+    let _: &Folder = &folder;
+}
+
+#[test]
+fn broken_loads_are_refused() {
+    let scene = springs(2, &(bogie("200 km/h") + BEAM));
+    let of = |old, new, line: &str| refused(&scene, old, new, line);
+    of("kind = \"bogie\"", "kind = \"cart\"", "track.load.kind: found \"cart\", expected one of \"sine\"");
+    of("axle_load = \"140 kN\"", "axle_load = -1", "track.load.axle_load: found -1, expected above 0");
+    of(
+        "axle_load = \"140 kN\"",
+        "",
+        "track.load.axle_load: found nothing, expected a value for this kind of load",
+    );
+    of("wheelbase = \"2.5 m\"", "wheelbase = 0", "track.load.wheelbase: found 0, expected above 0");
+    of("speed = \"200 km/h\"", "speed = 0", "track.load.speed: found 0, expected above 0");
+    of(
+        "speed = \"200 km/h\"",
+        "speed = \"2 kg\"",
+        "track.load.speed: found string \"2 kg\", expected a velocity in m/s",
+    );
+    of("rest = \"30 ms\"", "rest = -1", "track.load.rest: found -1, expected 0 or more");
+    of("ramp = \"100 ms\"", "ramp = -1", "track.load.ramp: found -1, expected 0 or more");
+    of("rest = \"30 ms\"", "cycles = 0", "track.load.cycles: found 0, expected 1 or more");
+    of(
+        "rest = \"30 ms\"",
+        "cars = 2",
+        "track.load.cars: found a value, expected no such key for this kind of load",
+    );
+    of("rest = \"30 ms\"", "maximum = 2", "track.load.maximum: found a value, expected no such key");
+    of(
+        "rest = \"30 ms\"",
+        "seats = [[0, 0.1]]",
+        "track.load.seats: found (0, 0.1), expected rails on the line across",
+    );
+    let waves = "excitation = { mass = 750, waves = [[0, 1e-3]] }";
+    of("rest = \"30 ms\"", waves, "track.load.excitation.waves: found 0, expected lengths above 0");
+    let mass = "excitation = { mass = 0, waves = [[1, 1e-3]] }";
+    of("rest = \"30 ms\"", mass, "track.load.excitation.mass: found 0, expected above 0");
+    of("rest = \"30 ms\"", "rest = 0\n[track.rails]", "track.rails: found an unknown key");
+}
+
+#[test]
+fn broken_rails_are_refused() {
+    let scene = springs(2, &(bogie("200 km/h") + BEAM));
+    let of = |old, new, line: &str| refused(&scene, old, new, line);
+    of("kind = \"beam\"", "kind = \"slab\"", "track.rail.kind: found \"slab\", expected");
+    of(
+        "kind = \"beam\"",
+        "kind = \"winkler\"",
+        "track.rail.mass: found a value, expected no such key for this kind of rail",
+    );
+    of("mass = \"120 kg/m\"", "", "track.rail.mass: found nothing, expected a value for a beam");
+    of("mass = \"120 kg/m\"", "mass = 0", "track.rail.mass: found 0, expected above 0");
+    of("\"12.8 MN m2\"", "0", "track.rail.bending_stiffness: found 0, expected above 0");
+    of("foundation = \"40 MN/m\"", "foundation = 0", "track.rail.foundation: found 0, expected above 0");
+    of(
+        "pad_stiffness = \"120 MN/m\"",
+        "pad_stiffness = 0",
+        "track.rail.pad_stiffness: found 0, expected above 0",
+    );
+    of(
+        "pad_stiffness = \"120 MN/m\"",
+        "pad_stiffness = 1e13",
+        "track.rail.pad_stiffness: found 10000000000000, expected at most",
+    );
+    of(
+        "pad_damping = \"60 kN s/m\"",
+        "pad_damping = -1",
+        "track.rail.pad_damping: found -1, expected 0 or more",
+    );
+    of(
+        "pad_damping = \"60 kN s/m\"",
+        "pad_damping = 1e9",
+        "track.rail.pad_damping: found 1000000000, expected at most",
+    );
+    of("\"100 kN s/m\"", "-2", "track.rail.foundation_damping: found -2, expected 0 or more");
+    of(
+        "extension = \"9 m\"",
+        "extension = \"1 m\"",
+        "track.rail.extension: found 1, expected 3 to 10000 sleepers of 0.6 m",
+    );
+    of("extension = \"9 m\"", "", "track.rail.extension: found nothing, expected a value for a beam");
+    of(
+        "extension = \"9 m\"",
+        "extension = 9\nelements = 0",
+        "track.rail.elements: found 0, expected 1 to 100",
+    );
+}
+
+#[test]
+fn broken_loads_on_sleepers_are_refused() {
+    let load = |text: &str| springs(2, &format!("[track.load]\n{text}\nrest = \"1 ms\"\nramp = 0\n"));
+    let gauss = load("kind = \"gauss\"\nmaximum = 10\nspeed = 10\nwidth = 0.7\naxles = [0, 2.5]");
+    refused(&gauss, "width = 0.7", "width = 0", "track.load.width: found 0, expected above 0");
+    refused(
+        &gauss,
+        "[0, 2.5]",
+        "[1, 2.5]",
+        "track.load.axles: found [1.0, 2.5], expected ascending distances, the first 0",
+    );
+    refused(
+        &gauss,
+        "maximum = 10",
+        "maximum = -10",
+        "track.load.maximum: found -10, expected more than the minimum",
+    );
+    let ramp = load("kind = \"ramp\"\nmaximum = 10\nrise = 0.1\nhold = 0.1\nfall = 0.1");
+    refused(&ramp, "rise = 0.1", "rise = 0", "track.load.rise: found 0, expected above 0");
+    refused(&ramp, "hold = 0.1", "hold = -1", "track.load.hold: found -1, expected 0 or more");
+    refused(&ramp, "fall = 0.1", "fall = 0", "track.load.fall: found 0, expected above 0");
+    refused(&ramp, "fall = 0.1", "width = 0.1", "track.load.width: found a value, expected no such key");
+    let measured = load("kind = \"history\"\nfile = \"force.csv\"\nfactor = 2");
+    refused(&measured, "factor = 2", "factor = 0", "track.load.factor: found 0, expected other than 0");
+    refused(&measured, "\"force.csv\"", "\"none.csv\"", "none.csv: history: found ");
+    let train = load("kind = \"train\"\nfile = \"force.csv\"\ntrain = \"CRH2\"\nspeed = 10");
+    refused(
+        &train,
+        "speed = 10",
+        "speed = 10",
+        "track.load.kind: found wheels, expected [track.rail], on which they roll",
+    );
+    let sine = load("kind = \"sine\"\nminimum = 0\nmaximum = 10\nfrequency = 1\ncycles = 1");
+    refused(&sine, "frequency = 1", "frequency = 0", "track.load.frequency: found 0, expected above 0");
+    refused(&sine, "minimum = 0", "minimum = -1", "track.load.minimum: found -1, expected 0 or more");
+    let on_rail = sine.clone() + BEAM;
+    refused(
+        &on_rail,
+        "cycles = 1",
+        "cycles = 1",
+        "track.load.kind: found a load on the sleepers, expected \"bogie\" or \"train\" on a rail",
+    );
+    let alone = springs(2, BEAM);
+    refused(
+        &alone,
+        "[time]",
+        "[time]\nend = 1",
+        "track.rail: found a rail, expected [track.load] with wheels on it",
+    );
+    let single = springs(1, &(bogie("10") + BEAM)).replace("spacing = \"0.6 m\"\n", "");
+    refused(
+        &single,
+        "along = \"y\"",
+        "along = \"y\"",
+        "track.sleeper.spacing: found nothing, expected the distance of the sleepers under a rail",
+    );
+}
