@@ -70,8 +70,7 @@ fn classes(text: &str) -> (f64, f64, u32) {
     let row = row.split_once('\n').unwrap().0;
     let w = number(row.split_once("W = ").unwrap().1);
     let limit = number(row.split_once("(at most ").unwrap().1);
-    let transfer = after("transfer: ");
-    let count = transfer.split_once("; ").unwrap().1;
+    let count = after(" faces, ");
     (w, limit, number(count) as u32)
 }
 
