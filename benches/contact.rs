@@ -105,7 +105,11 @@ fn triad(bencher: Bencher<'_, '_>, threads: usize) {
     });
     assert!(lists[0].iter().all(|&x| x == 7.0));
     let bytes = (24 * LEN * done) as f64;
-    remarks::add(format!("triad, {threads} threads: {:.2} GB/s of wall time", bytes / watch.wall / 1e9));
+    remarks::add(format!(
+        "triad, {threads} threads: {:.2} GB/s of wall time, {:.2} GB per processor second",
+        bytes / watch.wall / 1e9,
+        bytes / watch.cpu / 1e9
+    ));
 }
 
 fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, steps: u32) {

@@ -175,8 +175,8 @@ pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = Image
     }
 }
 
-/// Contacts of block `b`'s image pairs, one by one; their slots follow those of the spheres and boxes.
-pub(crate) fn contacts<L: ContactLaw, const RIGID: bool, const ROLL: bool>(
+/// Contacts of block `b`'s image pairs, one by one; their slots of `width` records follow those of the spheres and boxes.
+pub(crate) fn contacts<L: ContactLaw, const RIGID: bool>(
     periodic: &Periodic,
     laws: &PairTable<L>,
     blocks: &[Block],
@@ -184,10 +184,10 @@ pub(crate) fn contacts<L: ContactLaw, const RIGID: bool, const ROLL: bool>(
     b: usize,
     lists: &mut Cross,
     out: &mut CrossWork,
+    width: usize,
     dt: f64,
 ) {
     let first = lists.spheres.len() + lists.boxes.len();
-    let width = if RIGID || ROLL { 3 } else { 2 };
     let (mine, wa) = (&blocks[b], &works[b]);
     for (k, ImagePair { name, history }) in lists.images.iter_mut().enumerate() {
         let [i, block, j] = [name.i, name.block, name.j].map(|n| n as usize);
@@ -212,7 +212,7 @@ pub(crate) fn contacts<L: ContactLaw, const RIGID: bool, const ROLL: bool>(
         out.friction += f.friction;
         out.couple += way.cross(&f.force) * dt;
         let lanes = |v: Vec3, last: f64| Lanes([v.x, v.y, v.z, last]);
-        if RIGID || ROLL {
+        if width == 3 {
             slot[0] = lanes(f.force, 0.0);
             slot[1] = lanes(ma.arm.cross(&f.force) + f.moment, 0.0);
             slot[2] = lanes(-(mb.arm.cross(&f.force) + f.moment), 0.0);

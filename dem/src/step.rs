@@ -108,11 +108,12 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         bonds: bonded,
         material,
         plane_material,
+        slot_width,
         ..
     } = work;
     let plane_list = planes;
     let (simd, plane_list) = (*simd, &**plane_list);
-    let (material, plane_material) = (*material, *plane_material);
+    let (material, plane_material, slot_width) = (*material, *plane_material, *slot_width);
 
     // Contacts between blocks: they read any block, and write slots.
     let (all, scratch) = (&*blocks, &*works);
@@ -125,7 +126,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         }
         if let Some(periodic) = &model.periodic {
             out.couple = Vec3::zeros();
-            periodic::contacts::<_, RIGID, ROLL>(periodic, laws, all, scratch, b, pairs, out, dt);
+            periodic::contacts::<_, RIGID>(periodic, laws, all, scratch, b, pairs, out, slot_width, dt);
         }
     };
     if *parallel {

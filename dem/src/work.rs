@@ -114,6 +114,13 @@ impl<T: Default> Buffers<T> {
         self.0.lock().map(|mut b| b.pop()).ok().flatten().unwrap_or_default()
     }
 
+    /// Frees them.
+    pub fn clear(&self) {
+        if let Ok(mut buffers) = self.0.lock() {
+            *buffers = Vec::new();
+        }
+    }
+
     pub fn give_back(&self, buffer: T) {
         if let Ok(mut buffers) = self.0.lock() {
             buffers.push(buffer);

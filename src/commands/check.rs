@@ -73,15 +73,15 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
             let s = exchange::stability(&classes);
             line(format!(
-                "coupling: {} faces, scheme {}, transfer: {}; {} grain steps{} per window of {window:.4e} s; stability W = {:.3}, D = \
-                 {:.3}",
+                "coupling: {} faces, {} grain steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of \
+                 all contacts); scheme {}, transfer: {}",
                 coupling.faces.len(),
-                coupling.scheme,
-                coupling.transfer_kind(&surface),
                 substeps,
                 if coupling.automatic() { " (automatic)" } else { "" },
                 s.stiffness,
                 s.damping,
+                coupling.scheme,
+                coupling.transfer_kind(&surface),
             ));
             classes.iter().for_each(|c| line(format!("  {}", c.line())));
             for remark in exchange::remarks(&classes, coupling.scheme, substeps) {

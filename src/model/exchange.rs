@@ -80,7 +80,7 @@ impl ContactClass {
         let limit = |v: f64| if v < 1e-12 { "0".into() } else { format!("{v:.2}") };
         format!(
             "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {:.3e} kg at a corner, {:.3e} at a side, {:.3e} in the \
-             middle; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}",
+             middle, {:.3e} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}",
             self.grains,
             self.solid,
             self.stiffness,
@@ -88,6 +88,7 @@ impl ContactClass {
             self.masses.corner,
             self.masses.side,
             self.masses.middle,
+            self.masses.border,
             self.stones[0],
             self.stones[1],
             if self.stones[0] < 0.3 * self.masses.least() {
@@ -271,6 +272,10 @@ fn scheme(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Scheme
         SchemeName::Stiffened => {
             if !solid.is_linear() {
                 let expected = "another scheme for a plastic solid or one with initial stress: this one needs a constant matrix";
+                return Err(document.error("coupling.scheme", "\"stiffened\"", expected));
+            }
+            if solid.reduction.is_some() {
+                let expected = "another scheme beside [solid.reduction]: this one needs the whole matrix";
                 return Err(document.error("coupling.scheme", "\"stiffened\"", expected));
             }
             Scheme::Stiffened

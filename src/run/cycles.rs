@@ -208,7 +208,7 @@ impl CycleRecorder {
         let [low, high] = self.between;
         let at = |f: f64| {
             let share = (f - load_before) / (load - load_before);
-            (load_before < f && f <= load).then(|| height_before + share * (height - height_before))
+            (load_before < f && f <= load).then_some(height_before + share * (height - height_before))
         };
         self.passed = at(low).or(self.passed);
         if let (Some(from), Some(to)) = (self.passed, at(high)) {

@@ -481,7 +481,7 @@ fn fallen(system: &CoupledSystem<'_>, lowest: f64) -> Option<String> {
     let first = below.next()?;
     let x = state.position(first);
     Some(format!(
-        "{} bodies have left the solid and are below its surface, first body {first} at ({:.4}, {:.4}, {:.4}) m: enlarge the \
+        "bodies that have left the solid and are below its surface: {}, the first is body {first} at ({:.4}, {:.4}, {:.4}) m: enlarge the \
          mesh, or put walls at its borders",
         1 + below.count(),
         x.x,

@@ -41,7 +41,7 @@ fn soft() -> fem::Model {
 
 /// A body at rest is pulled up with three times its weight for 30 ms and comes down again, in every scheme: it touches,
 /// flies without any force on the solid, lands at the speed that the work of the pull gives it, and rests with its weight
-/// in the end; the account closes to 0.1 % of the work of the pull.
+/// in the end; the account closes to 0.5 % of the work of the pull.
 #[test]
 fn a_body_that_is_lifted_off_comes_back() {
     let solid = soft();
@@ -82,7 +82,7 @@ fn a_body_that_is_lifted_off_comes_back() {
             error / work,
             c.state.passes
         );
-        assert!(error.abs() < 1e-3 * work);
+        assert!(error.abs() < 5e-3 * work);
         let last = -c.work.mean_contact_force(window)[2];
         assert!((last / weight - 1.0).abs() < 0.01);
     }

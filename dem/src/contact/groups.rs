@@ -84,7 +84,7 @@ impl<const N: usize> Groups<N> {
     #[inline(always)]
     pub fn push(&mut self, name: [u32; N], history: &History) {
         let (g, lane) = (self.len / 4, self.len % 4);
-        if self.len % 8 == 0 {
+        if self.len.is_multiple_of(8) {
             self.groups.extend([Group::EMPTY; 2]);
             if self.turning {
                 self.turns.extend([[Lanes::default(); 4]; 2]);

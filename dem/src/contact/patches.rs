@@ -70,13 +70,11 @@ fn touches<S: Surface>(
         if pair.spare > gone {
             continue;
         }
-        if sharp {
-            if pair.spare >= 0.0 {
-                let clearance = surface.clearance(pair.patch, centre);
-                if clearance > r {
-                    pair.spare = gone + clearance - r;
-                    continue;
-                }
+        if sharp && pair.spare >= 0.0 {
+            let clearance = surface.clearance(pair.patch, centre);
+            if clearance > r {
+                pair.spare = gone + clearance - r;
+                continue;
             }
         }
         let closest = surface.closest_point(pair.patch, centre, pair.local);

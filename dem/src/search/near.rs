@@ -135,6 +135,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         cross.iter_mut().enumerate().for_each(between);
         blocks.iter_mut().zip(work.blocks.iter_mut()).for_each(within);
     }
+    // Lists are made once in some ten steps: not kept.
+    work.merging.clear();
     link(state, work);
 }
 

@@ -277,8 +277,8 @@ impl Rail {
         self.stiffness.multiply_add(-1.0, &state.u, right);
         self.damping.multiply_add(-1.0, &state.v, right);
         self.factor.solve(right);
+        state.a[..n].copy_from_slice(&right[..n]);
         for i in 0..n {
-            state.a[i] = right[i];
             state.v[i] += 0.5 * dt * right[i];
             let more = 0.25 * dt * dt * right[i];
             state.u[i] += more;
