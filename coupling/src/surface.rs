@@ -177,6 +177,15 @@ impl SolidSurface {
         (0..self.nodes.len() as u32).map(|n| self.position(n)[2]).fold(f64::INFINITY, f64::min)
     }
 
+    /// Distance of the farthest node of face `patch` from the origin of coordinates [m].
+    pub fn reach(&self, patch: u32) -> f64 {
+        let square = |n: &u32| {
+            let x = self.position(*n);
+            face::dot(x, x)
+        };
+        self.face_nodes[patch as usize].iter().map(square).fold(0.0, f64::max).sqrt()
+    }
+
     /// Area vector of face `patch` in its present shape, by its corners: outward normal times area [m²].
     pub fn area_vector(&self, patch: u32) -> [f64; 3] {
         let x = |k: usize| self.position(self.face_nodes[patch as usize][k]);

@@ -18,8 +18,8 @@ pub struct TransferAudit {
     pub exchanges: u64,
     /// Largest |Σ nodal load − Σ contact force| / Σ |contact force|.
     pub force: f64,
-    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| about the origin of coordinates, over the sum of the moments'
-    /// sizes, |p||contact force| and |xᵢ||nodal loadᵢ|.
+    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| about the origin of coordinates, over Σ R |contact force| with the
+    /// distance R of the touched face's farthest node from there.
     pub moment: f64,
 }
 
@@ -85,14 +85,13 @@ impl Transfer {
                 self.face_impulse[contact.patch as usize][d] += contact.force[d] * dt;
             }
             force_scale += norm(contact.force);
-            moment_scale += norm(contact.point) * norm(contact.force);
+            moment_scale += surface.reach(contact.patch) * norm(contact.force);
         }
         // The nodal loads' own sums, independent of how they came about.
         for &node in &self.loaded {
             let load = std::mem::take(&mut self.load[node as usize]);
             let x = surface.position(node);
             let arm = cross(x, load);
-            moment_scale += norm(x) * norm(load);
             for d in 0..3 {
                 force[d] -= load[d];
                 moment[d] -= arm[d];
