@@ -41,8 +41,7 @@ pub struct CompactionRecord {
     pub porosity_before: f64,
     /// The same after, of the region cut off at a plane that has moved in.
     pub porosity_after: f64,
-    /// Force on the plane that has moved [N].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Force on the plane that has moved [N]. Written even where there is none: checkpoints have no names of fields.
     pub wall_force: Option<f64>,
 }
 

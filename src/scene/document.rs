@@ -61,7 +61,7 @@ impl Document {
     }
 
     /// Replaces or adds one key, given as `key.path=value` with a TOML value; a value that is not TOML is taken
-    /// as a string. Tables of an array are addressed by index: `solid.material.0.young=2e7`.
+    /// as a string, and nothing after the `=` takes the key away. Tables of an array are addressed by index: `solid.material.0.young=2e7`.
     ///
     /// # Errors
     /// No `=`, or a path through something that is not a table or an array.
@@ -110,6 +110,9 @@ impl Document {
             };
         }
         table.remove(last);
+        if value.is_empty() {
+            return Ok(());
+        }
         table.insert(Spanned::new(span.clone(), last.into()), Spanned::new(span, parsed));
         Ok(())
     }
