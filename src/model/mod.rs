@@ -250,7 +250,10 @@ fn end_time(
         (Some(end), Some(counted), _) if end.si < counted => Err(document.error(
             "time.end",
             format!("{} s", end.si),
-            format!("at least {counted} s, when the last load cycle, or the push after it, ends"),
+            format!(
+                "at least {counted} s, when the {} ends",
+                if push.is_some() { "push" } else { "last load cycle" }
+            ),
         )),
         (Some(_), None, false) => Err(document.error(
             "time.end",

@@ -172,6 +172,8 @@ fn files_of_a_coupled_run_hold_every_field() {
         "secant_stiffness",
         "dissipated_energy",
         "peak_formation_pressure",
+        "rate",
+        "bed_stiffness",
     ];
     assert_eq!(cycles.heads, expected);
     assert_eq!(cycles.column("cycle"), [1.0, 2.0]);
