@@ -240,8 +240,8 @@ mod tests {
         let least = point_masses(&solid, &surface, 1).unwrap();
         println!("least of the block: {least:?} kg, share of a corner {:.4}", least.corner / element);
         // The nearer to the border, the lighter: a corner one element away from it has a tenth less than the middle one.
-        let inner = least.corner / (found[0] * element);
-        assert!(inner > 0.85 && inner < 1.0 + 1e-9 && least.least() == least.corner, "{inner}");
+        let share = least.corner / (found[0] * element);
+        assert!(share > 0.85 && share < 1.0 + 1e-9 && least.least() == least.corner, "{share}");
         assert!(least.border < 0.5 * least.corner && least.side > least.corner);
         assert!(point_masses(&solid, &surface, 2).is_none());
         // Spread over a disc, a corner of the inside offers more.
