@@ -227,7 +227,11 @@ fn broken_loads_are_refused() {
     of("rest = \"30 ms\"", waves, "track.load.excitation.waves: found 0, expected lengths above 0");
     let mass = "excitation = { mass = 0, waves = [[1, 1e-3]] }";
     of("rest = \"30 ms\"", mass, "track.load.excitation.mass: found 0, expected above 0");
-    of("rest = \"30 ms\"", "rest = 0\n[track.rails]", "track.rails: found the unknown key `rails`, expected `rail`");
+    of(
+        "rest = \"30 ms\"",
+        "rest = 0\n[track.rails]",
+        "track.rails: found the unknown key `rails`, expected `rail`",
+    );
 }
 
 #[test]
