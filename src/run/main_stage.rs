@@ -256,7 +256,9 @@ fn settlement(
     let slowing =
         (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
     let last: Vec<f64> = cycles[cycles.len().saturating_sub(10)..].iter().map(|c| c.bed_stiffness).collect();
-    let bed_stiffness = grains.and_then(|g| g.after.between).map(|between| BedStiffness {
+    // Cycles that never rise from the one load to the other tell none.
+    let between = grains.and_then(|g| g.after.between).filter(|_| last.iter().any(|k| *k > 0.0));
+    let bed_stiffness = between.map(|between| BedStiffness {
         between,
         last: last[last.len() - 1],
         mean_of_last_ten: mean(&last),
