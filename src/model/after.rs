@@ -159,6 +159,9 @@ fn push(document: &Document, p: &Push, part: &GrainsPart) -> Result<PushPlan, Sc
     if part.rail.is_some() {
         return Err(document.error("track.push", "a push", "no such table beside a rail with mass"));
     }
+    if part.sleeper.as_ref().is_some_and(|s| s.centres.len() > 1) {
+        return Err(document.error("track.push", "a push", "no such table beside several sleepers"));
+    }
     let held = part.sleeper.as_ref().map_or([false; 6], |s| s.held());
     if let Some(d) = (0..2).find(|&d| held[d] && direction[d] != 0.0) {
         let expected = format!("a direction that track.sleeper.hold leaves free, not {}", ["x", "y"][d]);

@@ -4,7 +4,6 @@ use super::Stage;
 use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
 use super::cycles::Cycle;
-use super::push::{Push, PushState};
 use super::record::Recorder;
 use super::summary::{BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
 use super::system::System;
@@ -13,7 +12,6 @@ use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::progress::Progress;
 use serde::{Deserialize, Serialize};
-use std::cell::RefCell;
 use trackbed_dem as dem;
 
 /// Stage of a checkpoint from within the run proper.
@@ -97,15 +95,12 @@ impl Stage<'_> {
         let every = ((interval / window).round() as u64).max(1);
 
         let mut track = Track::new(grains, system.grains());
-        let push = Push::new(grains, &track, system);
-        let pushed = RefCell::new(PushState::default());
         let load = grains.and_then(|g| g.load.as_ref());
         // What follows the cycles, whenever they end.
         let tail = load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows));
         let (mut recorder, from) = match resumed {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
-                *pushed.borrow_mut() = loaded.take()?;
                 track = track.resume(&mut loaded)?;
                 windows = from.windows;
                 (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
@@ -118,9 +113,7 @@ impl Stage<'_> {
             }
         };
         let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            if !push.as_ref().is_some_and(|p| p.apply(&pushed.borrow(), t, model, state, out)) {
-                track.apply(t, model, state, out);
-            }
+            track.apply(t, model, state, out);
         };
         // With jumps neither time nor steps tell how far a run is.
         let jumps = grains.is_some_and(|g| g.after.jump.is_some());
@@ -133,9 +126,6 @@ impl Stage<'_> {
             Progress::start("running", whole as f64, self.quiet).resumed(begun as f64, from.seconds);
         let mut next_frame = from.next_frame;
         let mut done = from.done;
-        if let (Some(push), None) = (&push, load) {
-            push.begin(&mut pushed.borrow_mut(), 0.0, 0.0);
-        }
         self.keeper.begin();
         let mut outcome = Ok(());
         while outcome.is_ok() && done < windows {
@@ -152,16 +142,11 @@ impl Stage<'_> {
                         1e3 * cycle.settlement
                     ));
                     if recorder.progress().is_some_and(|(number, total)| number >= total) {
-                        if let (Some(push), Some(load)) = (&push, load) {
-                            push.begin(&mut pushed.borrow_mut(), time, load.on(track.count() / 2, time));
-                        }
+                        track.end_cycles(time);
                         if jumps {
                             windows = (k + tail).min(windows);
                         }
                     }
-                }
-                if let Some(push) = &push {
-                    push.follow(&mut pushed.borrow_mut(), time, system);
                 }
                 if k % every == 0 || k == windows {
                     recorder.row(time, system, &track).map_err(|e| e.at(time))?;
@@ -188,7 +173,6 @@ impl Stage<'_> {
                             body.put(start)?;
                         }
                         body.put(&Place { done, next_frame, seconds: progress.seconds(), windows })?;
-                        body.put(&*pushed.borrow())?;
                         track.save(body)?;
                         recorder.save(body)
                     },
@@ -218,9 +202,7 @@ impl Stage<'_> {
             grain_steps: done * grain_steps,
             solid_steps: done * solid_steps,
         });
-        if let Some(push) = &push {
-            push.finish(&pushed.borrow(), self.dir, summary)?;
-        }
+        track.finish(self.dir, summary)?;
         summary.settlement = settlement(recorder.cycles(), grains, &recorder);
         summary.track = track.record();
         let balance = recorder.balance();

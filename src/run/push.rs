@@ -4,11 +4,10 @@
 //! Source: single-tie push test, as in Zakeri, Lateral resistance of railway track, 2012. The resistance is the force of the
 //! ram, mean over one row: less the inertia of the sleeper, which at a steady speed is none.
 //!
-//! Limits: one sleeper, the observed one, without a rail.
+//! Limits: a single sleeper, without a rail.
 
 use super::summary::Summary;
-use super::system::System;
-use super::track::Track;
+use super::system::GrainsView;
 use crate::failure::Failure;
 use crate::model::after::PushPlan;
 use crate::model::grains::GrainsPart;
@@ -80,17 +79,15 @@ pub fn check(document: &Document, grains: &GrainsPart, dt: f64) -> Result<(), Sc
 }
 
 impl<'a> Push<'a> {
-    /// The push of a scene, if it has one.
-    pub fn new<S: System>(grains: Option<&'a GrainsPart>, track: &Track<'_>, system: &S) -> Option<Push<'a>> {
-        let grains = grains?;
+    /// The push of the sleeper `body`, if the scene has one.
+    pub fn new(grains: &'a GrainsPart, model: &dem::Model, body: usize) -> Option<Push<'a>> {
         let (plan, sleeper) = (grains.after.push.as_ref()?, grains.sleeper.as_ref()?);
-        let gravity = system.grains()?.model.gravity();
         Some(Push {
             plan,
             mass: sleeper.mass(),
-            weight: -sleeper.mass() * gravity.z,
+            weight: -sleeper.mass() * model.gravity().z,
             seats: &sleeper.seats,
-            body: track.observed(0.0)?.body,
+            body,
         })
     }
 
@@ -107,6 +104,11 @@ impl<'a> Push<'a> {
         Some((before + share * (self.plan.load - before), since - self.plan.rest))
     }
 
+    /// Vertical load on the sleeper at time `t` [N]; none before the cycles are over.
+    pub fn load(&self, state: &PushState, t: f64) -> Option<f64> {
+        self.at(state, t).map(|(load, _)| load)
+    }
+
     /// Force of the ram on the sleeper [N], and how far that has come [m].
     fn ram(&self, state: &PushState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
         let (ram, ram_speed) = self.plan.ram(self.at(state, t)?.1);
@@ -118,7 +120,7 @@ impl<'a> Push<'a> {
         Some((force.max(0.0), way))
     }
 
-    /// Adds the forces at time `t` [s], once the cycles are over; whether they are.
+    /// Adds the forces at time `t` [s]; whether the cycles are over, so that there are any.
     pub fn apply(
         &self,
         state: &PushState,
@@ -142,8 +144,8 @@ impl<'a> Push<'a> {
     }
 
     /// After a window that ended at time `t` [s]: takes the force into the curve.
-    pub fn follow<S: System>(&self, state: &mut PushState, t: f64, system: &S) {
-        let (Some((_, since)), Some(g)) = (self.at(state, t), system.grains()) else { return };
+    pub fn follow(&self, state: &mut PushState, t: f64, g: GrainsView<'_>) {
+        let Some((_, since)) = self.at(state, t) else { return };
         let (x, ram) = (g.state.position(self.body), self.plan.ram(since).0);
         if since < 0.0 || state.rows.len() as f64 >= ROWS {
             return;

@@ -1,8 +1,9 @@
-//! Sleepers of a running system and what loads them: forces on their seats, or rails on pads.
+//! Sleepers of a running system and what loads them: forces on their seats, rails on pads, a push when the cycles are over.
 
 use super::checkpoint::{Body, Loaded};
+use super::push::{Push, PushState};
 use super::rail::{Laid, Rails};
-use super::summary::{SleeperRecord, TrackRecord};
+use super::summary::{SleeperRecord, Summary, TrackRecord};
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, SleeperPlan};
@@ -11,6 +12,7 @@ use crate::write::WallFrame;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::io;
+use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
 
@@ -21,6 +23,7 @@ pub struct Track<'a> {
     /// Body of the first sleeper.
     first: usize,
     rails: Option<Rails>,
+    push: Option<Push<'a>>,
     now: RefCell<Now>,
     /// The rails as they were when the present window began, for a window that is made again.
     before: RefCell<Option<Laid>>,
@@ -32,6 +35,7 @@ struct Now {
     /// The rails, once they are laid.
     laid: Option<Laid>,
     extremes: Vec<Extremes>,
+    push: PushState,
 }
 
 /// Extremes of a sleeper while the load cycles last.
@@ -66,7 +70,35 @@ impl<'a> Track<'a> {
             _ => None,
         };
         let first = view.map_or(0, |v| v.model.body_count()).saturating_sub(count);
-        Track { plan, load, first, rails, now: RefCell::default(), before: RefCell::default() }
+        let push = match (grains, view) {
+            (Some(grains), Some(view)) => Push::new(grains, view.model, first + count / 2),
+            _ => None,
+        };
+        let track =
+            Track { plan, load, first, rails, push, now: RefCell::default(), before: RefCell::default() };
+        if load.is_none() {
+            track.end_cycles(0.0);
+        }
+        track
+    }
+
+    /// The cycles are over at time `t` [s]: a push, if there is one, begins.
+    pub fn end_cycles(&self, t: f64) {
+        if let Some(push) = &self.push {
+            push.begin(
+                &mut self.now.borrow_mut().push,
+                t,
+                self.load.map_or(0.0, |l| l.on(self.count() / 2, t)),
+            );
+        }
+    }
+
+    /// Writes what a push told.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn finish(&self, dir: &Path, summary: &mut Summary) -> Result<(), Failure> {
+        self.push.as_ref().map_or(Ok(()), |push| push.finish(&self.now.borrow().push, dir, summary))
     }
 
     /// The same, going on from a checkpoint.
@@ -124,6 +156,9 @@ impl<'a> Track<'a> {
 
     /// Adds the forces that act on the sleepers at time `t` [s].
     pub fn apply(&self, t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>) {
+        if self.push.as_ref().is_some_and(|p| p.apply(&self.now.borrow().push, t, model, state, out)) {
+            return;
+        }
         let (Some(load), Some(plan)) = (self.load, self.plan) else { return };
         self.bring_up(model, state);
         let now = self.now.borrow();
@@ -140,7 +175,15 @@ impl<'a> Track<'a> {
 
     /// Takes in the state at the end of a window.
     pub fn follow<S: System>(&self, t: f64, system: &S) {
-        let (Some(load), Some(view)) = (self.load, system.grains()) else { return };
+        let Some(view) = system.grains() else { return };
+        if let Some(push) = &self.push {
+            let state = &mut self.now.borrow_mut().push;
+            push.follow(state, t, view);
+            if push.load(state, t).is_some() {
+                return;
+            }
+        }
+        let Some(load) = self.load else { return };
         self.bring_up(view.model, view.state);
         if t + 0.5 * system.window() < load.cycles_begin() {
             return;
@@ -163,6 +206,9 @@ impl<'a> Track<'a> {
 
     /// Downward force on a sleeper.
     fn force(&self, now: &Now, k: usize, t: f64) -> f64 {
+        if let Some(load) = self.push.as_ref().and_then(|p| p.load(&now.push, t)) {
+            return load;
+        }
         match (&self.rails, &now.laid, self.plan) {
             (Some(_), Some(laid), Some(plan)) => (0..plan.seats.len()).map(|r| laid.force(k, r)).sum(),
             (Some(_), _, _) => 0.0,

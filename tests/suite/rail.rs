@@ -339,6 +339,14 @@ fn broken_loads_on_sleepers_are_refused() {
         "displacement = 0.02",
         "track.push: found a push, expected no such table beside a rail with mass",
     );
+    let wave = "kind = \"sine\"\nminimum = 1\nmaximum = 2\nfrequency = 10\ncycles = 1\n";
+    let pushed = springs(2, &format!("[track.load]\n{wave}{push}"));
+    refused(
+        &pushed,
+        "displacement = 0.01",
+        "displacement = 0.02",
+        "track.push: found a push, expected no such table beside several sleepers",
+    );
     let single = springs(1, &(bogie("10") + BEAM)).replace("spacing = \"0.6 m\"\n", "");
     refused(
         &single,
