@@ -193,7 +193,7 @@ impl Work {
             load: vec![0.0; n],
             contact_load: vec![0.0; n],
             other_load: vec![0.0; n],
-            before: state.solid.clone(),
+            before: fem::state::State { points: Vec::new(), ..state.solid.clone() },
             rate: vec![0.0; n],
             applied: Vec::new(),
             accelerator: Accelerator::default(),
@@ -320,6 +320,7 @@ pub fn step(
             return Ok(());
         }
         Scheme::Iterated { tolerance, passes: most } => {
+            work.before.points.clone_from(&state.solid.points);
             let start = (state.grains.clone(), state.audit);
             work.accelerator.start();
             let nodes = work.surface.nodes().to_vec();
@@ -347,6 +348,7 @@ pub fn step(
                     work.rate[i] = *a;
                 }
                 copy(&work.before, &mut state.solid);
+                state.solid.points.clone_from(&work.before.points);
                 (state.grains, state.audit) = start.clone();
                 work.grains.follow(&model.grains, &state.grains);
                 passes += 1;
@@ -369,13 +371,13 @@ fn not_constant(model: &Model<'_>) -> SolveError {
     SolveError::Plastic { material: model.solid.plastic_material().unwrap_or_default() }
 }
 
-/// Copies a state without new memory.
+/// Copies displacement and motion without new memory. The stresses at Gauss points are many, and only a window that may be
+/// made again needs them.
 fn copy(from: &fem::state::State, to: &mut fem::state::State) {
     to.time = from.time;
     to.u.copy_from_slice(&from.u);
     to.v.copy_from_slice(&from.v);
     to.a.copy_from_slice(&from.a);
-    to.points.clone_from(&from.points);
 }
 
 /// The mean velocity of the window just made by the solid.
