@@ -3,55 +3,16 @@
 use crate::support::*;
 use std::sync::Arc;
 use trackbed_coupling::step;
-use trackbed_dem as dem;
-use trackbed_dem::Vec3;
 use trackbed_fem as fem;
 use trackbed_fem::reduction::{Reduced, Reduction};
 
 const PULSE: f64 = 0.05;
 const SETTLING: f64 = 0.3;
 
-/// Two layers of 6 × 6 spheres and a sleeper, as in the cyclic problem.
-fn bed() -> dem::ModelInput {
-    let side = |at: f64, normal: Vec3| dem::Plane {
-        point: Vec3::new(at, at, 0.0),
-        normal,
-        material: 0,
-        velocity: Vec3::zeros(),
-    };
-    let mut random = Scatter::new(5);
-    let mut bodies = vec![dem::BodyInput {
-        shape: 1,
-        position: Vec3::new(0.5, 0.5, 0.39),
-        mass: Some(120.0),
-        ..Default::default()
-    }];
-    bodies.extend((0..72).map(|k| {
-        let at = [k % 6, k / 6 % 6, k / 36].map(|i| f64::from(i) * 0.164 + 0.09);
-        let place = Vec3::from(at.map(|c| c + 0.001 * random.symmetric()));
-        dem::BodyInput { position: place, ..Default::default() }
-    }));
-    let stone = dem::Material { tangential_damping_ratio: 0.5, ..material(2650.0, 2e5, 0.5, 0.3) };
-    dem::ModelInput {
-        materials: vec![stone],
-        shapes: vec![dem::Shape::Sphere { radius: 0.08 }, dem::Shape::Box { half: [0.4, 0.15, 0.05] }],
-        bodies,
-        planes: vec![
-            side(0.0, Vec3::x()),
-            side(1.0, -Vec3::x()),
-            side(0.0, Vec3::y()),
-            side(1.0, -Vec3::y()),
-        ],
-        surface_material: Some(0),
-        time_step: dem::TimeStep::Fixed(5e-5),
-        ..Default::default()
-    }
-}
-
 /// Largest settlement of the middle of the block and of the sleeper under a pulse of 5 kN after the settling, and the
 /// error of the account of energy over the work of the load and of gravity on the way.
 fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
-    let mut c = Coupled::new(solid, bed(), 5);
+    let mut c = Coupled::new(solid, sleeper_on_a_bed(2, 5e-5), 5);
     if let Some(reduction) = reduction {
         let reduced = Arc::new(Reduced::new(solid, c.work.surface.faces(), reduction).expect("a reduction"));
         println!("{reduction:?}: {}", reduced.estimate());

@@ -228,3 +228,40 @@ impl Scatter {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
+
+/// Layers of 6 × 6 spheres in a box as wide as block B, a sleeper of 120 kg above them as body 0.
+pub fn sleeper_on_a_bed(layers: u32, dt: f64) -> dem::ModelInput {
+    let side = |at: f64, normal: Vec3| dem::Plane {
+        point: Vec3::new(at, at, 0.0),
+        normal,
+        material: 0,
+        velocity: Vec3::zeros(),
+    };
+    let mut random = Scatter::new(5);
+    let mut bodies = vec![dem::BodyInput {
+        shape: 1,
+        position: Vec3::new(0.5, 0.5, 0.05 + 0.17 * f64::from(layers)),
+        mass: Some(120.0),
+        ..Default::default()
+    }];
+    bodies.extend((0..36 * layers).map(|k| {
+        let at = [k % 6, k / 6 % 6, k / 36].map(|i| f64::from(i) * 0.164 + 0.09);
+        let place = Vec3::from(at.map(|c| c + 0.001 * random.symmetric()));
+        dem::BodyInput { position: place, ..Default::default() }
+    }));
+    let stone = dem::Material { tangential_damping_ratio: 0.5, ..material(2650.0, 2e5, 0.5, 0.3) };
+    dem::ModelInput {
+        materials: vec![stone],
+        shapes: vec![dem::Shape::Sphere { radius: 0.08 }, dem::Shape::Box { half: [0.4, 0.15, 0.05] }],
+        bodies,
+        planes: vec![
+            side(0.0, Vec3::x()),
+            side(1.0, -Vec3::x()),
+            side(0.0, Vec3::y()),
+            side(1.0, -Vec3::y()),
+        ],
+        surface_material: Some(0),
+        time_step: dem::TimeStep::Fixed(dt),
+        ..Default::default()
+    }
+}
