@@ -8,7 +8,6 @@
 //! Processor time of one thread. `cargo bench --bench newton` (about two minutes); `cargo bench --bench newton -- large` adds 54,000
 //! equations to table 2 (some minutes more), `-- coarse` takes 60 elements in table 1.
 
-#[allow(dead_code, reason = "shared with the verification tests")]
 #[path = "../fem/tests/verification/collapse_common.rs"]
 mod collapse_common;
 #[path = "common/watch.rs"]

@@ -3,22 +3,13 @@
 use std::collections::{BTreeMap, HashMap};
 use trackbed_fem::nonlinear::{Loading, NewtonOptions, QuasiStatic, Statistics, StepControl, Variant};
 use trackbed_fem::{
-    Cone, Constraint, DruckerPrager, Elastic, ElementKind, Material, Mesh, Model, ModelInput, MohrCoulomb,
-    Quadrature, State,
+    Constraint, Elastic, ElementKind, Material, Mesh, Model, ModelInput, MohrCoulomb, Quadrature, State,
 };
 
 /// Mohr–Coulomb without tension cut-off; angles in degrees.
 pub fn mohr_coulomb(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
     let (friction, dilation) = (phi.to_radians().into(), psi.to_radians());
     Material::plastic(elastic, MohrCoulomb { cohesion: c.into(), friction, dilation, tension: None })
-}
-
-/// Drucker–Prager with the limit load of Mohr–Coulomb in plane strain; angles in degrees.
-pub fn drucker_prager(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
-    let (friction, dilation) = (phi.to_radians().into(), psi.to_radians());
-    let law =
-        DruckerPrager { cohesion: c.into(), friction, dilation, cone: Cone::PlaneStrain, tension: None };
-    Material::plastic(elastic, law)
 }
 
 /// A mesh put together from mapped blocks; nodes that coincide are one.
@@ -193,16 +184,6 @@ pub fn loose() -> NewtonOptions {
     }
 }
 
-/// The elastic matrix with line search, to 1e-4 of the forces. Hundreds of cheap iterations per step; for psi < phi it gets through where
-/// the tangent's iterations run in circles between the planes of the yield surface.
-pub fn patient() -> NewtonOptions {
-    NewtonOptions {
-        force_tolerance: 1e-4,
-        energy_tolerance: 1e-4,
-        ..NewtonOptions::new(Variant::InitialStiffness)
-    }
-}
-
 /// What a footing did.
 pub struct Course {
     /// Settlement [m] and mean pressure [Pa] at each station.
@@ -218,12 +199,6 @@ impl Course {
     /// Pressure over `c` at the last station.
     pub fn factor(&self, c: f64) -> f64 {
         self.curve.last().map_or(0.0, |p| p[1] / c)
-    }
-
-    /// Growth of the pressure over the last tenth of the settlement, over the pressure.
-    pub fn growth(&self) -> f64 {
-        let n = self.curve.len();
-        if n < 11 { f64::NAN } else { 1.0 - self.curve[n - 1 - n / 10][1] / self.curve[n - 1][1] }
     }
 }
 

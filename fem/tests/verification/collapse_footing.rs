@@ -6,9 +6,9 @@
 //! part of that, as if the footing were wider by a fraction of an element, so Nc falls to the exact value from above as they shrink.
 //! Tolerances: 3 % (phi = 0) and 5 % (phi = 20°) on the finest mesh.
 
-use crate::collapse_common::{Course, Footing, Ground, drucker_prager, loose, mohr_coulomb, patient, push};
-use trackbed_fem::nonlinear::NewtonOptions;
-use trackbed_fem::{Elastic, ElementKind, Material};
+use crate::collapse_common::{Course, Footing, Ground, loose, mohr_coulomb, push};
+use trackbed_fem::nonlinear::{NewtonOptions, Variant};
+use trackbed_fem::{Cone, DruckerPrager, Elastic, ElementKind, Material};
 
 const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
 const COHESION: f64 = 10e3;
@@ -55,7 +55,7 @@ fn run(
         footing.model.free_dof_count(),
         course.factor(COHESION),
         100.0 * (course.factor(COHESION) / exact - 1.0),
-        course.growth(),
+        growth(&course),
         s.steps,
         s.halvings,
         s.iterations,
@@ -73,7 +73,7 @@ fn errors(name: &str, meshes: &[usize], phi: f64, psi: f64, settlement: f64, law
         let material = law(SOIL, COHESION, phi, psi);
         let course =
             run(name, loose(), &ground(ElementKind::Hex20, mesh, phi), material, phi, [settlement, 20.0]);
-        assert!(course.stopped.is_none() && course.growth().abs() < 5e-3, "{name}: no plateau");
+        assert!(course.stopped.is_none() && growth(&course).abs() < 5e-3, "{name}: no plateau");
         // Only associated flow has symmetric tangents.
         assert!(phi != psi || course.statistics.factorizations_unsymmetric == 0, "{name}: not associated");
         course.factor(COHESION) / prandtl(phi) - 1.0
@@ -133,7 +133,7 @@ fn check_without_dilation(phi: f64, meshes: &[usize], path: [f64; 2]) {
         let course = without_dilation(phi, mesh, patient(), path);
         let error = course.factor(COHESION) / prandtl(phi) - 1.0;
         assert!(course.stopped.is_none() && error.abs() < 0.1, "{error}");
-        assert!(course.growth().abs() < 0.02, "no plateau: {}", course.growth());
+        assert!(growth(&course).abs() < 0.02, "no plateau: {}", growth(&course));
     }
 }
 
@@ -169,4 +169,28 @@ fn kinds_of_elements() {
             );
         }
     }
+}
+
+/// Drucker–Prager with the limit load of Mohr–Coulomb in plane strain; angles in degrees.
+fn drucker_prager(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
+    let (friction, dilation) = (phi.to_radians().into(), psi.to_radians());
+    let law =
+        DruckerPrager { cohesion: c.into(), friction, dilation, cone: Cone::PlaneStrain, tension: None };
+    Material::plastic(elastic, law)
+}
+
+/// The elastic matrix with line search, to 1e-4 of the forces. Hundreds of cheap iterations per step; for psi < phi it gets through where
+/// the tangent's iterations run in circles between the planes of the yield surface.
+fn patient() -> NewtonOptions {
+    NewtonOptions {
+        force_tolerance: 1e-4,
+        energy_tolerance: 1e-4,
+        ..NewtonOptions::new(Variant::InitialStiffness)
+    }
+}
+
+/// Growth of the pressure over the last tenth of the settlement, over the pressure.
+fn growth(course: &Course) -> f64 {
+    let n = course.curve.len();
+    if n < 11 { f64::NAN } else { 1.0 - course.curve[n - 1 - n / 10][1] / course.curve[n - 1][1] }
 }
