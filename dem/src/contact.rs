@@ -6,6 +6,7 @@
 pub mod adhesion;
 pub(crate) mod groups;
 pub mod hertz;
+pub(crate) mod hits;
 pub mod linear;
 pub(crate) mod pass;
 pub(crate) mod passes;

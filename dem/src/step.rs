@@ -170,6 +170,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
             let mut sums = std::mem::take(&mut w.wall_sums);
             sums.resize(walls.groups(), WallSum::default());
             patches::contacts::<_, _, RIGID>(
+                (model, simd),
                 laws,
                 &walls,
                 |patch| model.walls.material(patch),
@@ -180,7 +181,6 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
                 &mut sums,
                 false,
                 gone,
-                dt,
             );
             w.wall_sums = sums;
             block.walls = list;
@@ -188,6 +188,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         if !block.surface.is_empty() {
             let mut list = std::mem::take(&mut block.surface);
             let done = patches::contacts::<_, _, RIGID>(
+                (model, simd),
                 laws,
                 surface,
                 |_| surface_material,
@@ -198,7 +199,6 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
                 &mut [],
                 true,
                 gone,
-                dt,
             );
             w.ledger.work_surface += done.work;
             w.ledger.surface += &done.impulse;

@@ -76,9 +76,17 @@ pub trait Surface: Sync {
         0.0
     }
 
+    /// Has the processor fetch what [`Surface::closest_point`] will read of a patch.
+    fn fetch(&self, _patch: u32) {}
+
     /// Whether [`Surface::clearance`] is near enough to the truth for lists, and normals inside a patch are exact: the
     /// distance is then measured along them.
     fn sharp(&self) -> bool {
+        false
+    }
+
+    /// Whether two patches lie in one plane, told without a search.
+    fn level(&self, _a: u32, _b: u32) -> bool {
         false
     }
 
@@ -90,6 +98,11 @@ pub trait Surface: Sync {
     /// Number of rigid walls.
     fn groups(&self) -> usize {
         1
+    }
+
+    /// Whether the forces on a rigid wall set its speed.
+    fn driven(&self, _group: usize) -> bool {
+        false
     }
 
     /// Point that moments on the patch's wall refer to [m].

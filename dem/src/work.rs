@@ -3,6 +3,7 @@
 use crate::Vec3;
 use crate::bond::pass::{BondWork, ListWork};
 use crate::bond::{self, Held};
+use crate::contact::hits::Hit;
 use crate::contact::patches::Touch;
 use crate::contact::planes::PlaneNow;
 use crate::error::Partner;
@@ -10,6 +11,7 @@ use crate::lanes::Simd;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model, for_members};
 use crate::search::near::Merging;
+use crate::search::patches::Candidate;
 use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
 use crate::wall::advance::WallSum;
@@ -184,8 +186,8 @@ pub(crate) struct BlockWork {
     pub boxed: Vec<[u32; 3]>,
     pub images: Vec<ImageName>,
     pub planes: Vec<[u32; 2]>,
-    pub walls: Vec<[u32; 2]>,
-    pub surface: Vec<[u32; 2]>,
+    pub walls: Vec<Candidate>,
+    pub surface: Vec<Candidate>,
 
     // The step.
     pub gather: Vec<Gather>,
@@ -199,6 +201,7 @@ pub(crate) struct BlockWork {
     pub patches: Vec<PatchPair>,
     pub touches: Vec<Touch>,
     pub live: Vec<PatchContact>,
+    pub hits: Vec<Hit>,
     /// What the block's spheres felt from each wall; empty in blocks near none.
     pub wall_sums: Vec<WallSum>,
     pub bonds: ListWork,

@@ -379,7 +379,7 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
 
 /// A vector per lane as a record with a fourth number.
 #[inline(always)]
-fn four<R: Real>(v: V3<R>, last: R) -> [R; 4] {
+pub(crate) fn four<R: Real>(v: V3<R>, last: R) -> [R; 4] {
     [v.x, v.y, v.z, last]
 }
 

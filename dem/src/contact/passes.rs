@@ -1,6 +1,7 @@
 //! The loops of a step on one block, chosen by law and kind of body. Nothing here depends on the type of the external
 //! surface, so these loops are compiled once, with this crate.
 
+use super::hits::{Ask, Hit};
 use super::pass::{Between, Gathering, Interior};
 use super::planes::{PlaneNow, Planes};
 use super::with_law;
@@ -73,6 +74,16 @@ pub(crate) fn planes(
         (false, true) => lanes::run(simd, Planes::<_, false, true> { laws, planes, material, block, pairs, w, dt }),
         (true, false) => lanes::run(simd, Planes::<_, true, false> { laws, planes, material, block, pairs, w, dt }),
         (true, true) => lanes::run(simd, Planes::<_, true, true> { laws, planes, material, block, pairs, w, dt }),
+    });
+}
+
+/// Forces of contacts of a block's spheres with patches.
+pub(crate) fn hits(model: &Model, simd: Simd, block: &Block, hits: &mut [Hit]) {
+    let dt = model.dt();
+    with_law!(&model.laws, laws => if laws.rolls() {
+        lanes::run(simd, Ask::<_, true> { laws, block, hits, dt });
+    } else {
+        lanes::run(simd, Ask::<_, false> { laws, block, hits, dt });
     });
 }
 

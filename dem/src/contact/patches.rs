@@ -18,11 +18,13 @@
 //!
 //! The near list holds numbers only; what a contact remembers is kept for those in touch.
 
-use super::pass::motion;
-use super::{ContactGeometry, ContactLaw, History, PairTable};
+use super::hits::Hit;
+use super::{ContactGeometry, ContactLaw, History, PairTable, passes};
 use crate::Vec3;
 use crate::error::Partner;
+use crate::lanes::Simd;
 use crate::ledger::Impulse;
+use crate::model::Model;
 use crate::state::{Block, Lanes, PatchContact, PatchList, PatchPair, xyz};
 use crate::surface::{Feature, PatchPoint, Surface, SurfaceContact};
 use crate::wall::advance::WallSum;
@@ -138,6 +140,33 @@ fn touches<S: Surface>(
     keep_deepest(out);
 }
 
+/// The touch of a sphere that stays inside a patch, where all patches near it lie in one plane and the overlap is so small
+/// that whatever else it touches of them differs by less than [`SMOOTH`]: the others need not be asked. That is how a bed
+/// rests on a floor of triangles.
+#[inline]
+fn level<S: Surface>(
+    surface: &S,
+    x: &Vec3,
+    r: f64,
+    pairs: &[PatchPair],
+    before: &[PatchContact],
+) -> Option<Touch> {
+    let [PatchContact { patch, .. }] = *before else { return None };
+    if !pairs.iter().all(|p| surface.level(p.patch, patch)) || surface.one_sided_patch(patch) {
+        return None;
+    }
+    let closest = surface.closest_point(patch, [x.x, x.y, x.z], [0.0; 2]);
+    let (point, outward) = (Vec3::from(closest.point), Vec3::from(closest.normal));
+    let along = (x - point).dot(&outward);
+    let distance = along.abs();
+    if closest.feature != Feature::Face || distance >= r || distance <= SMOOTH * r {
+        return None;
+    }
+    let normal = if along < 0.0 { -outward } else { outward };
+    let geometry = ContactGeometry { point, normal, overlap: r - distance, radius: r };
+    Some(Touch { patch, closest, geometry, behind: false, counts: true })
+}
+
 /// Of contacts whose normals differ little keeps the deepest, the first of equals.
 fn keep_deepest(found: &mut [Touch]) {
     let mut last = (f64::INFINITY, 0);
@@ -162,8 +191,9 @@ fn after(last: (f64, usize), k: usize, t: &Touch) -> bool {
     t.geometry.overlap < last.0 || (t.geometry.overlap == last.0 && k > last.1)
 }
 
-/// All contacts of a block with one surface.
+/// All contacts of a block with one surface: found sphere by sphere, then the law of all of them, then what they do.
 pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
+    (model, simd): (&Model, Simd),
     laws: &PairTable<L>,
     surface: &S,
     material: impl Fn(u32) -> u32,
@@ -174,15 +204,13 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
     sums: &mut [WallSum],
     external: bool,
     gone: f64,
-    dt: f64,
 ) -> Exchange {
-    let mut exchange = Exchange::default();
     let mut touched = std::mem::take(&mut w.touches);
     let mut live = std::mem::take(&mut w.live);
+    let mut hits = std::mem::take(&mut w.hits);
     live.clear();
-    // Out of `w`, which takes the forces meanwhile.
-    let owners = std::mem::take(&mut w.owner);
-    let owner = |i: u32| if RIGID { owners[i as usize] as usize } else { i as usize };
+    hits.clear();
+    let owner = |i: u32| if RIGID { w.owner[i as usize] as usize } else { i as usize };
     let end = |c: &mut PatchContact| {
         if c.history.is_fresh() {
             return 0.0;
@@ -190,6 +218,10 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         laws.get(block.spin[owner(c.i)][3] as u32, material(c.patch)).release(&mut c.history)
     };
     let (mut dashpot, mut friction) = (0.0, 0.0);
+    let mut failure = w.failure;
+    let sharp = surface.sharp();
+    // Patches lie in no order of the blocks.
+    list.pairs.iter().filter(|p| p.spare <= gone).for_each(|p| surface.fetch(p.patch));
     let old = &mut list.live[..];
     let mut at = 0;
     for pairs in list.pairs.chunk_by_mut(|a, b| a.i == b.i) {
@@ -197,8 +229,6 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         let i = sphere as usize;
         let p: Lanes = if RIGID { w.spheres[i] } else { block.centre[i] };
         let (x, r) = (xyz(&p), p[3]);
-        touched.clear();
-        touches(surface, &x, r, gone, pairs, &mut touched);
         while at < old.len() && old[at].i < sphere {
             friction += end(&mut old[at]);
             at += 1;
@@ -206,6 +236,11 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         let from = at;
         at += old[from..].iter().take_while(|c| c.i == sphere).count();
         let before = &mut old[from..at];
+        touched.clear();
+        match if sharp { level(surface, &x, r, pairs, before) } else { None } {
+            Some(touch) => touched.push(touch),
+            None => touches(surface, &x, r, gone, pairs, &mut touched),
+        }
         if touched.is_empty() && before.is_empty() {
             continue;
         }
@@ -220,7 +255,6 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         }
 
         let a = owner(sphere);
-        let own = block.spin[a][3] as u32;
         for (t, contact) in touched.iter().filter(|t| t.counts).zip(now) {
             let g = &t.geometry;
             let side = g.normal.dot(&Vec3::from(t.closest.normal));
@@ -230,64 +264,73 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
                 && contact.normal.dot(&g.normal) < -0.5
                 && contact.side * side <= 0.0;
             let overlap = if passed { 2.0 * r - g.overlap } else { g.overlap };
-            let one_sided = surface.one_sided();
-            let bound = if one_sided { 2.0 * r } else { r };
-            if (passed || overlap > bound) && w.failure.is_none() {
+            let bound = if surface.one_sided() { 2.0 * r } else { r };
+            if (passed || overlap > bound) && failure.is_none() {
                 let partner = partner(t.patch);
-                w.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
+                failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
             }
-            let ma = motion(block, a, &g.point);
-            let wall = Vec3::from(t.closest.velocity);
-            let mass = 1.0 / (block.velocity[a][3] + surface.inverse_mass(t.patch));
-            let law = laws.get(own, material(t.patch));
-            let f = law.respond(
-                mass,
-                g,
-                &(ma.at_point() - wall),
-                &(ma.spin() - surface.spin(t.patch)),
-                &mut contact.history,
-                dt,
-            );
             contact.point = g.point;
             contact.normal = g.normal;
-            contact.velocity = wall;
+            contact.velocity = t.closest.velocity.into();
             contact.overlap = g.overlap;
             contact.side = side;
-            dashpot += f.dashpot;
-            friction += f.friction;
-            w.push(a, &f.force, &(ma.arm.cross(&f.force) + f.moment));
-            if external {
-                exchange.work += f.force.dot(&wall) * dt;
-                exchange.impulse.add(&g.point, &(f.force * dt));
-                exchange.impulse.angular += f.moment * dt;
-                let member = if RIGID { sphere - w.first[a] } else { 0 };
-                w.contacts.push(SurfaceContact {
-                    sphere: member,
-                    body: block.bodies[a],
-                    patch: t.patch,
-                    local: t.closest.local,
-                    point: g.point.into(),
-                    force: (-f.force).into(),
-                    overlap: g.overlap,
-                });
-            } else {
-                let sum = &mut sums[surface.group(t.patch)];
-                let stiffness = law.stiffness(g.overlap, g.radius);
-                sum.force += f.force;
-                sum.moment +=
-                    (g.point - Vec3::from(surface.moment_centre(t.patch))).cross(&f.force) + f.moment;
+            hits.push(Hit::new(
+                a as u32,
+                (&g.point, g.overlap),
+                (&g.normal, g.radius),
+                (&contact.velocity, surface.inverse_mass(t.patch)),
+                (&surface.spin(t.patch), material(t.patch)),
+                t.closest.local,
+                &contact.history,
+            ));
+        }
+    }
+    old[at..].iter_mut().for_each(|c| friction += end(c));
+    w.failure = failure;
+
+    let dt = model.dt();
+    let mut exchange = Exchange::default();
+    passes::hits(model, simd, block, &mut hits);
+    for (hit, contact) in hits.iter().zip(&mut live) {
+        contact.history = hit.history();
+        let (a, force, moment) = (hit.body as usize, hit.force(), hit.moment());
+        let taken = hit.dissipated();
+        dashpot += taken.0;
+        friction += taken.1;
+        w.push(a, &force, &hit.torque());
+        if external {
+            exchange.work += force.dot(&contact.velocity) * dt;
+            exchange.impulse.add(&contact.point, &(force * dt));
+            exchange.impulse.angular += moment * dt;
+            let member = if RIGID { contact.i - w.first[a] } else { 0 };
+            w.contacts.push(SurfaceContact {
+                sphere: member,
+                body: block.bodies[a],
+                patch: contact.patch,
+                local: hit.local,
+                point: contact.point.into(),
+                force: (-force).into(),
+                overlap: contact.overlap,
+            });
+        } else {
+            let group = surface.group(contact.patch);
+            let sum = &mut sums[group];
+            sum.force += force;
+            sum.moment +=
+                (contact.point - Vec3::from(surface.moment_centre(contact.patch))).cross(&force) + moment;
+            if surface.driven(group) {
+                let law = laws.get(block.spin[a][3] as u32, material(contact.patch));
+                let stiffness = law.stiffness(contact.overlap, hit.radius());
+                let mass = 1.0 / (block.velocity[a][3] + surface.inverse_mass(contact.patch));
                 sum.stiffness += stiffness;
                 sum.damping += (stiffness * mass).sqrt();
             }
         }
     }
-    old[at..].iter_mut().for_each(|c| friction += end(c));
     w.ledger.dissipated_dashpot += dashpot;
     w.ledger.dissipated_friction += friction;
     std::mem::swap(&mut list.live, &mut live);
-    w.live = live;
-    w.owner = owners;
-    w.touches = touched;
+    (w.live, w.touches, w.hits) = (live, touched, hits);
     exchange
 }
 

@@ -32,10 +32,12 @@ pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
         }
     }
     work.surface_drift += state.wall_drift;
-    if state.stale || !work.listed || !candidates_hold(model, state, work) {
+    let mut approach = if state.stale || !work.listed { f64::INFINITY } else { approach(model, state, work) };
+    if approach + state.near > model.skin {
         candidates::search(model, state, work, surface);
+        approach = 0.0;
     }
-    make(model, state, work, surface);
+    make(model, state, work, surface, approach);
     state.drift = 0.0;
     state.wall_drift = 0.0;
     state.lasted = 0;
@@ -43,8 +45,8 @@ pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
     work.refreshes += 1;
 }
 
-/// Whether every pair within the near reach now was within the skin when the candidates were found.
-fn candidates_hold(model: &Model, state: &State, work: &Work) -> bool {
+/// A bound on the way that any two partners have come together since the candidates were found [m].
+fn approach(model: &Model, state: &State, work: &Work) -> f64 {
     let moved2 = state.blocks.iter().zip(&work.blocks).map(|(block, w)| {
         let own = spheres(block, w, model.rigid);
         let moved = own[..w.count].iter().enumerate().map(|(k, p)| w.reference.moved2(k, &xyz(p)));
@@ -63,10 +65,10 @@ fn candidates_hold(model: &Model, state: &State, work: &Work) -> bool {
     let walls = state.planes.iter().zip(&work.wall_reference);
     let wall = walls.map(|(m, x)| (m.offset - x).norm()).fold(work.surface_drift, f64::max);
     let wall = wall.max(crate::wall::advance::way(model, state, &work.wall_places));
-    (2.0 * moved).max(moved + wall) + state.near <= model.skin
+    (2.0 * moved).max(moved + wall)
 }
 
-fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S, approach: f64) {
     let State { blocks, cross, planes, walls: wall_states, near, .. } = &mut *state;
     let (near, planes, wall_states) = (*near, &*planes, &*wall_states);
     let (parallel, pool) = (work.parallel, &work.merging);
@@ -125,8 +127,15 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         merging.two.merge(plane_pairs, w.planes.iter().copied(), close);
         pool.give_back(merging);
         let walls = model.walls.placed(wall_states);
-        patches::refresh(&walls, own, near, &w.walls, &mut w.patches, &mut wall_pairs.pairs);
-        patches::refresh(surface, own, near, &w.surface, &mut w.patches, &mut surface_pairs.pairs);
+        patches::refresh(&walls, own, (near, approach), &w.walls, &mut w.patches, &mut wall_pairs.pairs);
+        patches::refresh(
+            surface,
+            own,
+            (near, approach),
+            &w.surface,
+            &mut w.patches,
+            &mut surface_pairs.pairs,
+        );
     };
     if parallel {
         cross.par_iter_mut().enumerate().with_max_len(1).for_each(between);

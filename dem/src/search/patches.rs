@@ -4,6 +4,21 @@ use crate::Vec3;
 use crate::state::{Lanes, PatchPair, xyz};
 use crate::surface::Surface;
 
+/// A patch that a sphere was found near.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate {
+    i: u32,
+    patch: u32,
+    /// A lower bound of the gap between them then [m].
+    gap: f32,
+}
+
+impl Candidate {
+    fn new(i: u32, patch: u32, gap: f64) -> Candidate {
+        Candidate { i, patch, gap: (gap - 1e-6 * gap.abs()) as f32 }
+    }
+}
+
 /// Patches near each free sphere of a block (or each sphere, where the patch itself is free to move); none at all is told
 /// from one query for the whole block.
 pub(crate) fn candidates<S: Surface>(
@@ -12,7 +27,7 @@ pub(crate) fn candidates<S: Surface>(
     skin: f64,
     free: impl Fn(u32) -> bool,
     row: &mut Vec<u32>,
-    out: &mut Vec<[u32; 2]>,
+    out: &mut Vec<Candidate>,
 ) {
     out.clear();
     if surface.is_empty() || spheres.is_empty() {
@@ -34,27 +49,31 @@ pub(crate) fn candidates<S: Surface>(
         let (lo, hi) = bounds(p);
         row.clear();
         surface.candidates(lo, hi, row);
-        let near = |patch: u32| {
-            (free(i as u32) || surface.inverse_mass(patch) > 0.0)
-                && surface.clearance(patch, [p[0], p[1], p[2]]) <= p[3] + skin
+        let near = |&patch: &u32| {
+            let gap = surface.clearance(patch, [p[0], p[1], p[2]]) - p[3];
+            let meets = gap <= skin && (free(i as u32) || surface.inverse_mass(patch) > 0.0);
+            meets.then(|| Candidate::new(i as u32, patch, gap))
         };
-        out.extend(row.iter().filter(|&&patch| near(patch)).map(|&patch| [i as u32, patch]));
+        out.extend(row.iter().filter_map(near));
     }
 }
 
-/// The near list: candidates within `near` of touch. Both lists are in order of sphere and patch; `list` is replaced,
-/// and keeps the patch coordinates of the pairs that it holds already.
+/// The near list: candidates within `near` of touch, none of which has come closer by more than `approach` since they were
+/// found. Both lists are in order of sphere and patch; `list` is replaced, and keeps the patch coordinates of the pairs that
+/// it holds already.
 pub(crate) fn refresh<S: Surface>(
     surface: &S,
     spheres: &[Lanes],
-    near: f64,
-    candidates: &[[u32; 2]],
+    (near, approach): (f64, f64),
+    candidates: &[Candidate],
     fresh: &mut Vec<PatchPair>,
     list: &mut Vec<PatchPair>,
 ) {
     fresh.clear();
     let mut k = 0;
-    for &[i, patch] in candidates {
+    let may_meet = |c: &&Candidate| f64::from(c.gap) <= near + approach;
+    candidates.iter().filter(may_meet).for_each(|c| surface.fetch(c.patch));
+    for &Candidate { i, patch, .. } in candidates.iter().filter(may_meet) {
         while k < list.len() && (list[k].i, list[k].patch) < (i, patch) {
             k += 1;
         }

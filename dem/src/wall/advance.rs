@@ -19,7 +19,7 @@ pub(crate) struct WallSum {
     /// Force on the grains [N] and its moment about the wall's centre [N m].
     pub force: Vec3,
     pub moment: Vec3,
-    /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m].
+    /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.
     pub stiffness: f64,
     pub damping: f64,
 }

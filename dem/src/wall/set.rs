@@ -19,7 +19,7 @@ use crate::shape::triangle::Region;
 use crate::surface::{Feature, PatchPoint, Surface};
 use crate::timestep::DtLimit;
 use nalgebra::UnitQuaternion;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Where a patch that cannot be touched is said to be [m]: out of reach of everything.
 const FAR: f64 = 1e30;
@@ -36,6 +36,8 @@ enum Kind {
 struct Entry {
     wall: u32,
     kind: Kind,
+    /// Patches of one number lie in one plane.
+    flat: u32,
 }
 
 /// Constants of one wall.
@@ -86,18 +88,19 @@ impl Walls {
         let first = self.entries.len();
         match &wall.shape {
             WallShape::Triangles { vertices, triangles } => {
+                let mut flats = HashMap::new();
                 for t in triangulated::triangles(vertices, triangles, &name)? {
-                    self.entries.push(Entry {
-                        wall: index as u32,
-                        kind: Kind::Triangle(self.triangles.len() as u32),
-                    });
+                    let own = self.entries.len() as u32;
+                    let flat = *flats.entry(t.plane_bits()).or_insert(own);
+                    let kind = Kind::Triangle(self.triangles.len() as u32);
+                    self.entries.push(Entry { wall: index as u32, kind, flat });
                     self.triangles.push(t);
                 }
             }
             shape => {
                 for round in rounds(shape) {
-                    self.entries
-                        .push(Entry { wall: index as u32, kind: Kind::Round(self.rounds.len() as u32) });
+                    let (flat, kind) = (self.entries.len() as u32, Kind::Round(self.rounds.len() as u32));
+                    self.entries.push(Entry { wall: index as u32, kind, flat });
                     self.rounds.push(round);
                 }
             }
@@ -284,7 +287,7 @@ pub(crate) struct PlacedWalls<'a> {
 impl PlacedWalls<'_> {
     #[inline(always)]
     fn parts(&self, patch: u32) -> (Kind, &Wall, &WallState) {
-        let Entry { wall, kind } = self.walls.entries[patch as usize];
+        let Entry { wall, kind, .. } = self.walls.entries[patch as usize];
         (kind, &self.walls.walls[wall as usize], &self.states[wall as usize])
     }
 }
@@ -363,6 +366,13 @@ impl Surface for PlacedWalls<'_> {
         }
     }
 
+    #[inline(always)]
+    fn fetch(&self, patch: u32) {
+        if let Kind::Triangle(t) = self.walls.entries[patch as usize].kind {
+            self.walls.triangles[t as usize].fetch();
+        }
+    }
+
     fn max_speed(&self) -> f64 {
         let speed = |(w, s): (&Wall, &WallState)| s.velocity.norm() + s.spin.norm() * w.reach;
         self.walls.walls.iter().zip(self.states).map(speed).fold(0.0, f64::max)
@@ -383,12 +393,21 @@ impl Surface for PlacedWalls<'_> {
         true
     }
 
+    #[inline(always)]
+    fn level(&self, a: u32, b: u32) -> bool {
+        self.walls.entries[a as usize].flat == self.walls.entries[b as usize].flat
+    }
+
     fn group(&self, patch: u32) -> usize {
         self.walls.wall_of(patch)
     }
 
     fn groups(&self) -> usize {
         self.states.len()
+    }
+
+    fn driven(&self, group: usize) -> bool {
+        self.walls.walls[group].servo.is_some()
     }
 
     fn moment_centre(&self, patch: u32) -> [f64; 3] {

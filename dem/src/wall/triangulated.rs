@@ -9,6 +9,7 @@
 
 use crate::Vec3;
 use crate::error::ModelError;
+use crate::lanes;
 use crate::search::bvh::Aabb;
 use crate::shape::triangle::{self, Region};
 use crate::wall::set::SLACK;
@@ -42,6 +43,18 @@ impl Triangle {
     #[inline(always)]
     pub fn normal(&self) -> Vec3 {
         Vec3::new(self.plane[0], self.plane[1], self.plane[2])
+    }
+
+    /// Its plane, to compare: neighbours that lie in one plane to rounding have the same bits.
+    pub fn plane_bits(&self) -> [u64; 4] {
+        self.plane.map(f64::to_bits)
+    }
+
+    /// Has the processor fetch the lines that a contact inside it needs.
+    #[inline(always)]
+    pub fn fetch(&self) {
+        lanes::prefetch(std::slice::from_ref(&self.plane));
+        lanes::prefetch(&self.rims[2..]);
     }
 
     /// A lower bound of the distance to `x`: from its height above the plane and outside the edges.
