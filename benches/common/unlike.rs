@@ -12,23 +12,24 @@ pub fn cut(count: usize) -> Bed {
     Bed::at_rest(of_spheres(tile.into_iter().filter(inside).collect()), side, 20_000, grains::stone())
 }
 
-/// Spheres 20 times smaller that fill the pores between those of a cube cut from the bed: face-centred cubic, in layers
-/// that rest on each other.
+/// Spheres 20 times smaller between those of a cube cut from the bed: the same bed on a scale of 1 : 20, again and again,
+/// without what would overlap, settled under 400 times gravity, with which overlaps over radii stay
+/// what they were, until spheres of both sizes touch as they do in a bed.
 pub fn two_sizes() -> Bed {
-    let side = 0.06;
+    let (side, scale) = (0.042, 0.05);
+    let tile = tile();
     let mut bodies: Vec<_> =
-        tile().into_iter().filter(|b| b.position.iter().all(|&x| x + b.scale < side)).collect();
+        tile.iter().filter(|b| b.position.iter().all(|&x| x + b.scale < side)).cloned().collect();
     let large = bodies.clone();
-    let r = 0.0005;
-    // Just touching.
-    let d = 2.0 * r - 1e-8;
-    let (n, layers) = ((side / d) as usize, (side / (d * 0.5_f64.sqrt())) as usize);
-    for layer in 0..layers {
-        let shift = 0.5 * (layer % 2) as f64;
-        for k in 0..n * n {
-            let x = [k % n, k / n].map(|c| (c as f64 + 0.5 + shift) * d);
-            let position = Vec3::new(x[0], x[1], r + layer as f64 * d * 0.5_f64.sqrt());
-            let inside = x.iter().all(|&x| x + r <= side);
+    let height = tile.iter().map(|b| b.position.z + b.scale).fold(0.0, f64::max);
+    let tiles = Vec3::new(WIDTH, WIDTH, height) * scale;
+    let count = tiles.map(|t| (side / t).ceil() as usize);
+    for k in 0..count.x * count.y * count.z {
+        let cell = [k % count.x, k / count.x % count.y, k / (count.x * count.y)];
+        let corner = Vec3::from_fn(|d, _| cell[d] as f64 * tiles[d]);
+        for b in &tile {
+            let (position, r) = (corner + b.position * scale, b.scale * scale);
+            let inside = position.iter().all(|&x| x + r <= side);
             if inside && large.iter().all(|b| (b.position - position).norm() > b.scale + r) {
                 bodies.push(BodyInput { position, scale: r, ..BodyInput::default() });
             }
@@ -36,8 +37,9 @@ pub fn two_sizes() -> Bed {
     }
     // The step of the small ones.
     let mut input = of_spheres(bodies);
-    input.time_step = TimeStep::Auto { fraction: 0.2 };
-    Bed::at_rest(input, side, 300, grains::stone())
+    input.time_step = TimeStep::Auto { fraction: 0.8 };
+    input.gravity *= 400.0;
+    Bed::at_rest(input, side, 10_000, grains::stone())
 }
 
 /// The bed on a floor of 2 × 71 × 71 triangles.
