@@ -141,6 +141,60 @@ fn corners_and_diagonals() {
     assert!((force - Vec3::repeat(100.0)).norm() < 1e-6, "{force}");
 }
 
+/// A floor and two walls, eight triangles a side: a ball that slides over the floor into their corner and back meets them as
+/// it meets three planes, at every step.
+#[test]
+fn corner_of_triangles_is_one_of_planes() {
+    let n = 8_u32;
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    // Right-handed pairs of sides, so that all normals point into the room.
+    for (u, v, corner) in [
+        (Vec3::x(), Vec3::y(), Vec3::zeros()),
+        (Vec3::z(), Vec3::y(), Vec3::x() * 0.1),
+        (Vec3::x(), Vec3::z(), Vec3::y() * 0.1),
+    ] {
+        let first = vertices.len() as u32;
+        for k in 0..(n + 1) * (n + 1) {
+            let [i, j] = [k % (n + 1), k / (n + 1)].map(|i| 0.1 * f64::from(i) / f64::from(n));
+            vertices.push((corner + u * i + v * j).into());
+        }
+        for k in 0..n * n {
+            let a = first + k / n * (n + 1) + k % n;
+            let (b, c, d) = (a + 1, a + n + 2, a + n + 1);
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    let body = sphere(Vec3::new(0.031, 0.047, 0.009_999_8), Vec3::new(0.9, 0.6, 0.0));
+    let prepare = |mut input: ModelInput| {
+        input.gravity = Vec3::new(0.0, 0.0, -9.81);
+        let mut run = Run::new(input);
+        run.work.keep_forces(true);
+        run
+    };
+    let mut flat = on_triangles(&[], &[], body.clone());
+    flat.triangles.clear();
+    flat.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    flat.planes.push(plane(Vec3::x() * 0.1, -Vec3::x()));
+    flat.planes.push(plane(Vec3::y() * 0.1, -Vec3::y()));
+    let (mut reference, mut run) = (prepare(flat), prepare(on_triangles(&vertices, &triangles, body)));
+    // Rounding grows with each bounce.
+    let (mut forces, mut walls, mut worst) = (0.0_f64, [0, 0], 0.0_f64);
+    while reference.state.time < 0.3 {
+        reference.step();
+        run.step();
+        let (a, b) =
+            (reference.work.contact_force(&reference.state, 0), run.work.contact_force(&run.state, 0));
+        forces = forces.max(a.norm());
+        worst = worst.max((a - b).norm() / forces);
+        let x = reference.state.position(0);
+        (0..2).filter(|&d| x[d] > 0.09).for_each(|d| walls[d] += 1);
+    }
+    println!("largest difference {worst:e}");
+    assert!(worst < 1e-7, "{worst:e}");
+    assert!(walls.iter().all(|&steps| steps > 10), "both walls are hit");
+}
+
 /// From below the same triangles push down: two-sided.
 #[test]
 fn both_sides_push() {
