@@ -16,6 +16,9 @@ use crate::wall::advance::{self, WallSum};
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Sums, Work};
 use rayon::prelude::*;
 
+/// Blocks per thread whose contacts are found before they move.
+const WAVE: usize = 32;
+
 /// Advances `state` by one step of [`Model::dt`].
 ///
 /// `surface` is a surface that another crate owns ([`NoSurface`](crate::surface::NoSurface) for none), as it is at
@@ -115,12 +118,10 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     let (simd, plane_list) = (*simd, &**plane_list);
     let (material, plane_material, slot_width) = (*material, *plane_material, *slot_width);
 
-    // Contacts between blocks: they read any block, and write slots.
-    let (all, scratch) = (&*blocks, &*works);
-    let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossWork))| {
+    // Contacts between blocks: they read their own block and later ones, and write slots.
+    let between = |b: usize, all: &[Block], scratch: &[BlockWork], pairs: &mut Cross, out: &mut CrossWork| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
-        let (lists, out) = (&mut *pairs, &mut *out);
-        passes::between(model, simd, (all, scratch), material, b, lists, out);
+        passes::between(model, simd, (all, scratch), material, b, pairs, out);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
         }
@@ -129,19 +130,13 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
             periodic::contacts::<_, RIGID>(periodic, laws, all, scratch, b, pairs, out, slot_width, dt);
         }
     };
-    if *parallel {
-        // One block at a time, so that a thread that comes late leaves little to wait for.
-        cross.par_iter_mut().zip(slots.par_iter_mut()).enumerate().with_max_len(1).for_each(between);
-    } else {
-        cross.iter_mut().zip(slots.iter_mut()).enumerate().for_each(between);
-    }
 
     // All else concerns one block at a time.
-    let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
+    let (applied, bonded, bonds) = (&**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
     let gone = *drift + *wall_drift;
     let surface_material = model.surface_material.unwrap_or(0);
-    let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
+    let within = |b: usize, block: &mut Block, w: &mut BlockWork, slots: &[CrossWork]| {
         w.ledger = Ledger::default();
         w.failure = None;
         w.contacts.clear();
@@ -211,10 +206,30 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
             buffers.give_back(std::mem::take(&mut w.sums));
         }
     };
-    if *parallel {
-        blocks.par_iter_mut().zip(works.par_iter_mut()).enumerate().with_max_len(1).for_each(within);
-    } else {
-        blocks.iter_mut().zip(works.iter_mut()).enumerate().for_each(within);
+    // A block may move once the contacts of all blocks up to it are known: so many blocks at a time that the second loop finds
+    // in the cache what the first has read.
+    let threads = if *parallel { rayon::current_num_threads() } else { 1 };
+    let wave = if threads > 1 { WAVE * threads } else { 1 };
+    for from in (0..blocks.len()).step_by(wave) {
+        let range = from..(from + wave).min(blocks.len());
+        let (all, scratch) = (&*blocks, &*works);
+        let (lists, out) = (&mut cross[range.clone()], &mut slots[range.clone()]);
+        if threads > 1 {
+            // One block at a time, so that a thread that comes late leaves little to wait for.
+            let lists = lists.par_iter_mut().zip(out).enumerate().with_max_len(1);
+            lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
+        } else {
+            let lists = lists.iter_mut().zip(out).enumerate();
+            lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
+        }
+        let (blocks, works, slots) = (&mut blocks[range.clone()], &mut works[range], &*slots);
+        if threads > 1 {
+            let blocks = blocks.par_iter_mut().zip(works).enumerate().with_max_len(1);
+            blocks.for_each(|(k, (block, w))| within(from + k, block, w, slots));
+        } else {
+            let blocks = blocks.iter_mut().zip(works).enumerate();
+            blocks.for_each(|(k, (block, w))| within(from + k, block, w, slots));
+        }
     }
 }
 
