@@ -121,6 +121,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     // Contacts between blocks: they read their own block and later ones, and write slots.
     let between = |b: usize, all: &[Block], scratch: &[BlockWork], pairs: &mut Cross, out: &mut CrossWork| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
+        passes::fetch(&all[b]);
         passes::between(model, simd, (all, scratch), material, b, pairs, out);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);

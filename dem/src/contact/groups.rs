@@ -29,6 +29,12 @@ impl<const N: usize> Group<N> {
         (&self.names, &mut self.springs)
     }
 
+    /// Between whom the contacts are.
+    #[inline(always)]
+    pub fn names(&self) -> &[[u32; 4]; N] {
+        &self.names
+    }
+
     /// Contacts of body 0 with itself that have not begun.
     pub const EMPTY: Group<N> = Group {
         names: [[0; 4]; N],

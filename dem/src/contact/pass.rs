@@ -7,7 +7,7 @@ use super::{Answer, ContactLaw, FRESH, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
-use crate::lanes::{Four, Kernel, Pack, Real, V3};
+use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
 use crate::state::{Block, Cross, Lanes, xyz};
 use crate::work::{BlockWork, CrossWork, Failure, Sums};
 
@@ -465,6 +465,22 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
     }
 }
 
+/// Groups between the fetching of records and their use: those of other blocks lie far away in large beds.
+const AHEAD: usize = 4;
+
+/// Has the records of single spheres in other blocks fetched.
+#[inline(always)]
+fn fetch(blocks: &[Block], group: &Group<3>) {
+    let [_, block, sphere] = group.names();
+    for l in 0..4 {
+        let other = &blocks[block[l] as usize];
+        let k = sphere[l] as usize;
+        for list in [&other.centre, &other.velocity, &other.spin] {
+            lanes::prefetch(&list[k..k + 1]);
+        }
+    }
+}
+
 /// Contacts of block `b`'s spheres with spheres of other blocks: forces go to slots.
 pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
@@ -496,6 +512,11 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
         assert!(RIGID || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
         let mut deepest = None;
         for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            if !RIGID {
+                for ahead in pairs.groups.iter().skip(g + AHEAD).take(R::GROUPS) {
+                    fetch(blocks, ahead);
+                }
+            }
             let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
             let turns = if ROLL {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
