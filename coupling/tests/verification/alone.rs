@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use trackbed_coupling::scheme::Scheme;
+use trackbed_coupling::step;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_dem::surface::NoSurface;
@@ -155,6 +156,10 @@ fn a_solid_under_grains_that_do_not_touch_moves_as_newmarks_does() {
     }
     assert_eq!(c.state.audit.exchanges, 0);
     assert!(c.state.grains.ledger.dissipated() > 0.1);
+    // The solid's own books: work of its loads = stored + damped.
+    let (stored, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
+    let kept = stored.solid_kinetic + stored.solid_strain + spent.rayleigh;
+    assert!((spent.solid_load_work / kept - 1.0).abs() < 1e-10, "{} {kept}", spent.solid_load_work);
     let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let off = |course: &[(Vec<f64>, Vec<f64>)]| {
         let (mut u, mut v, mut du, mut dv) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
