@@ -10,11 +10,13 @@ linear map; a spectral radius above 1 means that the exchange gains energy and g
     A   solid first, under the contact force of the last window; then stone on the interpolated motion of the node
     A'  as A, with the force filtered: 0.4 of the new and 0.6 of the old one
     B   stone first, on the predicted motion x + v t of the node; then solid, under the mean force of the same window
+    B'  as B, but with the node ahead of the stone: the force of a sub-step is taken with the node where it is at the end of
+        the sub-step and the stone where it is at the start, as a program has it that moves the surface first
     S   as B, the node's mean velocity predicted by a solve with the contact's spring and dashpot in the matrix
     I   window repeated until the stone moves on the node's own mean velocity
 
 Printed: the largest W = dt sqrt(K/m) up to which the radius stays at or below 1 + 1e-6, and the growth per window
-without damping.
+without damping and, for B and B', with zeta = 0.05.
 """
 
 import numpy as np
@@ -41,9 +43,11 @@ def window(z, scheme, dt, substeps, mass, stone, damping):
     def stone_steps(place, speed):
         h, impulse = dt / substeps, 0.0
         place_of_stone, speed_of_stone = y, w
-        # Force, place of the stone and place of the node are of one instant, as in the program.
+        # Force, place of the stone and place of the node are of one instant, as in the program; but in B'.
+        ahead = h if scheme == "B'" else 0.0
         for k in range(substeps):
-            force = -(place(k * h) - place_of_stone) - damping * (speed(k * h) - speed_of_stone)
+            t = k * h + ahead
+            force = -(place(t) - place_of_stone) - damping * (speed(t) - speed_of_stone)
             impulse += force * h
             speed_of_stone -= force * h / stone
             place_of_stone += speed_of_stone * h
@@ -68,7 +72,7 @@ def window(z, scheme, dt, substeps, mass, stone, damping):
 
         at_0, at_1 = again(0.0)[0], again(1.0)[0]
         return again(at_0 / (1 - at_1 + at_0))[1]
-    if scheme == "B":
+    if scheme in ("B", "B'"):
         y1, w1, mean = stone_steps(lambda t: x + v * t, lambda t: v)
         return [*solid_mean_force(mean), y1, w1, mean]
     x1, v1, a1 = solid_end_force(kept)
@@ -84,24 +88,35 @@ def radius(scheme, w, stone, zeta):
 
 
 def largest_stable(scheme, stone, zeta):
-    stable = 0.0
-    for w in np.concatenate([np.arange(0.02, 0.3, 0.02), np.arange(0.3, 6.0, 0.05)]):
-        if radius(scheme, w, stone, zeta) > 1 + 1e-6:
-            break
-        stable = w
-    return stable
+    """The first threshold from W = 0.02 up, to 0.1 %; 0 where that grows already, 6 where nothing up to there does."""
+    grows = lambda w: radius(scheme, w, stone, zeta) > 1 + 1e-6
+    high = 0.02
+    if grows(high):
+        return 0.0
+    while not grows(high):
+        low, high = high, 1.02 * high
+        if low > 6.0:
+            return 6.0
+    while high > 1.001 * low:
+        middle = (low * high) ** 0.5
+        low, high = (low, middle) if grows(middle) else (middle, high)
+    return low
 
 
 def main():
     stones = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
     print("largest stable W; M/m =", " ".join(f"{s:6g}" for s in stones))
-    for scheme in ("A", "A'", "B", "S", "I"):
+    for scheme in ("A", "A'", "B", "B'", "S", "I"):
         for zeta in (0.0, 0.05, 0.1, 0.2, 0.3):
-            row = " ".join(f"{largest_stable(scheme, s, zeta):6.2f}" for s in stones)
+            row = " ".join(f"{largest_stable(scheme, s, zeta):6.3f}" for s in stones)
             print(f"{scheme:2} zeta = {zeta:4.2f}          {row}")
     print("growth per window without damping, M = m")
-    for scheme in ("A", "A'", "B", "S", "I"):
+    for scheme in ("A", "A'", "B", "B'", "S", "I"):
         print(f"{scheme:2}", "  ".join(f"W = {w:g}: {radius(scheme, w, 1.0, 0.0):.5f}" for w in (0.05, 0.2, 0.5)))
+    print("growth per window less 1, zeta = 0.05, M = 10 m")
+    for scheme in ("B", "B'"):
+        row = (f"W = {w:g}: {radius(scheme, w, 10.0, 0.05) - 1:.1e}" for w in (0.1, 0.2, 0.3, 0.5, 1.0, 1.4))
+        print(f"{scheme:2}", "  ".join(row))
 
 
 if __name__ == "__main__":

@@ -316,3 +316,7 @@ impl Drift {
         self.motion.iter().enumerate().map(on).collect()
     }
 }
+
+#[cfg(test)]
+#[path = "jump_tests.rs"]
+mod tests;

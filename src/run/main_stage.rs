@@ -205,6 +205,7 @@ impl Stage<'_> {
         track.finish(self.dir, summary)?;
         summary.settlement = settlement(recorder.cycles(), grains, &recorder);
         summary.track = track.record();
+        summary.warnings.extend(summary.track.iter().flat_map(|t| t.remarks()));
         let balance = recorder.balance();
         let work = balance.spent.work();
         let turnover = work.abs().max(balance.spent.dissipated());

@@ -326,6 +326,9 @@ pub struct SleeperRecord {
     pub smallest_force: f64,
     /// Largest lowering since the cycles began [m].
     pub lowering: f64,
+    /// That no contact carried it for a while; absent where there always was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lifted_off: Option<LiftOff>,
     /// Largest force over the load of one axle, where there are axles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_share: Option<f64>,
@@ -338,6 +341,32 @@ pub struct SleeperRecord {
     /// Largest force over that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamic_amplification: Option<f64>,
+}
+
+/// A sleeper that no contact carried for a while.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LiftOff {
+    /// When that first began [s].
+    pub first: f64,
+    /// How long that was, all in all [s].
+    pub seconds: f64,
+    /// How far it rose above its place when the cycles began [m].
+    pub rise: f64,
+}
+
+impl TrackRecord {
+    /// What to say about sleepers that were lifted off.
+    pub fn remarks(&self) -> impl Iterator<Item = String> + '_ {
+        self.sleepers.iter().enumerate().filter_map(|(k, s)| {
+            let LiftOff { first, seconds, rise } = s.lifted_off?;
+            Some(format!(
+                "sleeper {} was lifted off: from t = {first:.6} s on no contact carried it for {seconds:.6} s in all, up to {:.3} mm \
+                 above its place when the cycles began",
+                k + 1,
+                1e3 * rise
+            ))
+        })
+    }
 }
 
 impl Summary {

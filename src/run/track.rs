@@ -3,7 +3,7 @@
 use super::checkpoint::{Body, Loaded};
 use super::push::{Push, PushState};
 use super::rail::{Laid, Rails};
-use super::summary::{SleeperRecord, Summary, TrackRecord};
+use super::summary::{LiftOff, SleeperRecord, Summary, TrackRecord};
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, SleeperPlan};
@@ -16,6 +16,9 @@ use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
 
+/// Share of a sleeper's weight below which a contact force is rounding.
+const UNFELT: f64 = 1e-9;
+
 /// The sleepers of a run, which are its last bodies, and what loads them.
 pub struct Track<'a> {
     plan: Option<&'a SleeperPlan>,
@@ -27,6 +30,18 @@ pub struct Track<'a> {
     now: RefCell<Now>,
     /// The rails as they were when the present window began, for a window that is made again.
     before: RefCell<Option<Laid>>,
+    window: RefCell<Window>,
+}
+
+/// What tells whether contacts carry a sleeper in the present window: what its momentum would be without contacts.
+#[derive(Default)]
+struct Window {
+    /// Step at which it began.
+    from: Option<u64>,
+    /// Upward speed of each sleeper then [m/s].
+    speed: Vec<f64>,
+    /// Upward impulse of its seats since [N s].
+    impulse: Vec<f64>,
 }
 
 /// What changes, and so what a checkpoint keeps.
@@ -44,6 +59,11 @@ struct Extremes {
     force: [f64; 2],
     /// Height when the cycles began, and the least since [m].
     height: [f64; 2],
+    /// Greatest height since [m].
+    highest: f64,
+    /// Time without any contact force, and when that first began [s].
+    aloft: f64,
+    lifted: Option<f64>,
     /// Least deflection of the rail over it [m].
     rail: f64,
 }
@@ -74,8 +94,16 @@ impl<'a> Track<'a> {
             (Some(grains), Some(view)) => Push::new(grains, view.model, first + count / 2),
             _ => None,
         };
-        let track =
-            Track { plan, load, first, rails, push, now: RefCell::default(), before: RefCell::default() };
+        let track = Track {
+            plan,
+            load,
+            first,
+            rails,
+            push,
+            now: RefCell::default(),
+            before: RefCell::default(),
+            window: RefCell::default(),
+        };
         if load.is_none() {
             track.end_cycles(0.0);
         }
@@ -120,6 +148,7 @@ impl<'a> Track<'a> {
 
     /// Begins a window of steps.
     pub fn begin_window(&self) {
+        self.window.borrow_mut().from = None;
         if self.rails.is_some() {
             self.before.borrow_mut().clone_from(&self.now.borrow().laid);
         }
@@ -161,7 +190,15 @@ impl<'a> Track<'a> {
         }
         let (Some(load), Some(plan)) = (self.load, self.plan) else { return };
         self.bring_up(model, state);
-        let now = self.now.borrow();
+        let (now, mut window) = (self.now.borrow(), self.window.borrow_mut());
+        // A window that is made again begins at the same step.
+        if window.from.is_none_or(|from| state.steps <= from) {
+            window.from = Some(state.steps);
+            window.speed.clear();
+            window.speed.extend((0..self.count()).map(|k| state.velocity(self.first + k).z));
+            window.impulse.clear();
+            window.impulse.resize(self.count(), 0.0);
+        }
         let share = 1.0 / plan.seats.len() as f64;
         for (k, r, body, point) in self.seats(model, state) {
             let down = match (&self.rails, &now.laid) {
@@ -169,8 +206,20 @@ impl<'a> Track<'a> {
                 (Some(_), None) => 0.0,
                 (None, _) => load.on(k, t) * share,
             };
+            window.impulse[k] -= down * model.dt();
             out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -down), point });
         }
+    }
+
+    /// Whether no contact has carried sleeper `k` in the window that is over: its momentum has changed by no more than what its
+    /// seats and its weight gave it.
+    fn aloft(&self, k: usize, view: GrainsView<'_>) -> bool {
+        let (window, Some(plan)) = (self.window.borrow(), self.plan) else { return false };
+        let (Some(from), false) = (window.from, plan.held()[2]) else { return false };
+        let mass = plan.mass();
+        let weight = mass * view.model.gravity().z * view.model.dt() * (view.state.steps - from) as f64;
+        let gained = mass * (view.state.velocity(self.first + k).z - window.speed[k]);
+        (gained - window.impulse[k] - weight).abs() <= UNFELT * weight.abs()
     }
 
     /// Takes in the state at the end of a window.
@@ -194,8 +243,20 @@ impl<'a> Track<'a> {
             let force = self.force(&now, k, t);
             let rail = now.laid.as_ref().zip(self.rails.as_ref()).map_or(0.0, |(l, r)| l.deflection(r, k));
             match now.extremes.get_mut(k) {
-                None => now.extremes.push(Extremes { force: [force; 2], height: [height; 2], rail }),
+                None => now.extremes.push(Extremes {
+                    force: [force; 2],
+                    height: [height; 2],
+                    highest: height,
+                    aloft: 0.0,
+                    lifted: None,
+                    rail,
+                }),
                 Some(e) => {
+                    e.highest = e.highest.max(height);
+                    if self.aloft(k, view) {
+                        e.lifted.get_or_insert(t - system.window());
+                        e.aloft += system.window();
+                    }
                     e.force = [e.force[0].min(force), e.force[1].max(force)];
                     e.height[1] = e.height[1].min(height);
                     e.rail = e.rail.min(rail);
@@ -276,6 +337,11 @@ impl<'a> Track<'a> {
                 largest_force: e.force[1],
                 smallest_force: e.force[0],
                 lowering: e.height[0] - e.height[1],
+                lifted_off: e.lifted.map(|first| LiftOff {
+                    first,
+                    seconds: e.aloft,
+                    rise: e.highest - e.height[0],
+                }),
                 load_share: axle.map(|p| e.force[1] / p),
                 rail_deflection: self.rails.as_ref().map(|_| -e.rail),
                 static_force,

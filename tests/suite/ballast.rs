@@ -172,6 +172,42 @@ fn a_block_on_a_plane_resists_with_its_weight_times_friction() {
     }
 }
 
+/// Up a slope of 1 in 10 the horizontal ram needs W tan(θ + φ), and the block rises by a tenth of its way. Free to pitch, it
+/// leans on the springs of its four corners by the couple of ram and friction, F (h + half the height) over 4 K a².
+#[test]
+fn a_push_up_a_slope_and_above_the_base() {
+    let folder = Folder::new("slope");
+    let slope = BLOCK
+        .replace("point = [0, 0, 0]\nnormal = [0, 0, 1]", "point = [0, 0, -0.0251]\nnormal = [-0.1, 0, 1]")
+        .replace("[5.0, 5.0, 0.05, 0.05]", "[0.0, 5.0, 0.026, 0.05]")
+        .replace("direction = [3, 4]", "direction = [1, 0]");
+    folder.write("scene.toml", &slope);
+    go(&folder, "out", &[]).good();
+    let push = &json(&folder.join("out/summary.json"))["push"];
+    let expected = 981.0 * 0.5 / (1.0 - 0.04);
+    let residual = push["residual"].as_f64().unwrap();
+    assert!((residual / expected - 1.0).abs() < 5e-3, "{residual} {expected}");
+    let way = *Table::read(&folder.join("out/push.csv")).column("displacement").last().unwrap();
+    let uplift = push["uplift"].as_f64().unwrap();
+    // The push presses the block onto the slope: two corners sink by what the normal force grows by.
+    let (cos, sin) = (1.0 / 1.01_f64.sqrt(), 0.1 / 1.01_f64.sqrt());
+    let sunk = 981.0 * (1.0 / (cos - 0.4 * sin) - cos) / (2.0 * 2e6);
+    let expected = 0.1 * way - sunk / cos;
+    assert!((uplift / expected - 1.0).abs() < 1e-3, "{uplift} m, {expected} m, in {way} m");
+
+    folder.write("scene.toml", &BLOCK.replace("\"rx\", \"ry\"", "\"rx\"").replace("[3, 4]", "[1, 0]"));
+    let tilts = ["0", "0.1"].map(|height| {
+        go(&folder, "out", &[&format!("track.push.height={height}")]).good();
+        *Table::read(&folder.join("out/history.csv")).column("sleeper_tilt").last().unwrap()
+    });
+    let lean = |height: f64| 0.4 * 981.0 * (height + 0.1) / (4.0 * 2e6 * 0.25 * 0.25);
+    println!("tilts {tilts:?}, {} {}", lean(0.0), lean(0.1));
+    assert!(
+        (tilts[0] / lean(0.0) - 1.0).abs() < 0.02 && (tilts[1] / lean(0.1) - 1.0).abs() < 0.02,
+        "{tilts:?}"
+    );
+}
+
 #[test]
 fn laws_rates_and_stiffness_of_a_bed_agree_with_its_cycles() {
     let folder = bed("laws", "");

@@ -106,6 +106,13 @@ fn soft_ground_warns_before_it_blows_up() {
     println!("{text}");
     assert!(text.contains("note: the exchange may be unstable for stone on "), "{text}");
     assert!(text.contains("coupling.substeps = "), "{text}");
+    // What would do does, and one more does not.
+    let fitting = text.split_once("coupling.substeps = ").unwrap().1;
+    let fitting: u32 = fitting.split_once(' ').unwrap().0.parse().unwrap();
+    for (count, bad) in [(fitting, false), (fitting + 1, true)] {
+        let text = check(&[&format!("coupling.substeps={count}")]);
+        assert_eq!(text.contains("unstable"), bad, "{count}: {text}");
+    }
     let (w, limit, _) = classes(&text);
     assert!(w > 10.0 * limit);
 
@@ -126,6 +133,28 @@ fn soft_ground_warns_before_it_blows_up() {
     assert_eq!(number(&s, "/coupling/substeps") as u32, found);
     assert!(!s["warnings"].to_string().contains("unstable"), "{}", s["warnings"]);
     assert!(number(&s, "/energy/relative_error") < 0.01, "{:#}", s["energy"]);
+}
+
+/// Stones of two sizes on light ground: D is that of the heavier one, C Δt/m with C = 2 ζ √(M K), and `"auto"` takes the
+/// whole number of steps that W and D leave room for, here some.
+#[test]
+fn as_many_sub_steps_as_both_limits_leave_room_for() {
+    let light = COUPLED.replace("[1.0, 1.0, 0.1, 0.1],", "[1.0, 1.0, 0.06, 0.06],");
+    let set = ["solid.material.0.young=1e6", "solid.material.0.density=300", "material.0.stiffness=1e7"];
+    let s = summary("light", &light, &[&set[..], &["coupling.substeps=\"auto\""]].concat());
+    let c = &s["coupling"]["classes"][0];
+    let (dt, k) = (number(&s, "/model/grain_step"), number(c, "/stiffness"));
+    let m = number(c, "/masses/corner");
+    let heavy = 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
+    let d = 2.0 * number(c, "/damping_ratio") * (heavy * k).sqrt() / m * dt;
+    let w = (k / m).sqrt() * dt;
+    let room = (1.0 / d).min(number(c, "/w_limit") / w);
+    let found = number(&s, "/coupling/substeps");
+    println!("{found} sub-steps, room for {room:.2}: W {w:.4}, D {d:.4} in one");
+    assert!((2.0..19.0).contains(&room));
+    assert_eq!(found, room.floor());
+    assert!((number(c, "/d") / (found * d) - 1.0).abs() < 1e-9);
+    assert!((number(c, "/stones/0") / (heavy * 0.216) - 1.0).abs() < 1e-9);
 }
 
 /// Two masses of stones and two materials of ground make their own classes.

@@ -6,6 +6,7 @@ use trackbed_coupling::step;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_fem as fem;
+use trackbed_fem::nonlinear::{NewtonOptions, PlasticWindowSolver, Variant};
 
 const RADIUS: f64 = 0.05;
 
@@ -37,6 +38,47 @@ fn soft() -> fem::Model {
         Held::Base,
         fem::Rayleigh { alpha_m: 100.0, beta_k: 1e-3 },
     )
+}
+
+/// A window that is made again begins from the same stresses: on plastic ground under a sphere that is pressed in, the
+/// end of each iterated window is that of a single step from its start under the load that was found, with the same
+/// displacements and stresses to the tolerance of Newton's iteration.
+#[test]
+fn iterated_windows_on_plastic_ground_begin_from_the_same_stresses() {
+    let law = fem::MohrCoulomb { cohesion: 500.0.into(), friction: 0.3.into(), dilation: 0.1, tension: None };
+    let elastic = fem::Elastic { young: 5e6, poisson: 0.3, density: 2000.0 };
+    let mut mesh = fem::Mesh::block([2, 2, 1], [1.0, 1.0, 0.5]);
+    mesh.coordinates.iter_mut().for_each(|x| x[2] -= 0.5);
+    let base = mesh.coordinates.iter().enumerate().filter(|(_, x)| x[2] < -0.49).map(|(n, _)| n as u32);
+    let constraints = base
+        .flat_map(|node| (0..3).map(move |direction| fem::Constraint { node, direction, value: 0.0 }))
+        .collect();
+    let solid = fem::Model::new(fem::ModelInput {
+        mesh,
+        materials: [(1, fem::Material::plastic(elastic, law))].into(),
+        quadrature: fem::Quadrature::Gauss2,
+        constraints,
+        gravity: [0.0; 3],
+        ..Default::default()
+    })
+    .unwrap();
+    let newton = NewtonOptions { force_tolerance: 1e-9, ..NewtonOptions::new(Variant::Full) };
+    let mut c = resting(&solid, 5, Scheme::Iterated { tolerance: 1e-8, passes: 20 }, 0.5);
+    c.model.newton = newton;
+    c.work = step::Work::new(&c.model, &c.state, top(&solid)).unwrap();
+    let window = c.model.window();
+    let mut alone = PlasticWindowSolver::new(&solid, c.model.theta, window, newton).unwrap();
+    for k in 0..60 {
+        let mut again = c.state.solid.clone();
+        c.step(&[(0, [0.0, 0.0, -50.0 * f64::from(k)])]);
+        alone.step(&solid, &mut again, c.work.load()).unwrap();
+        let (now, largest) = (&c.state.solid, |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs())));
+        let apart = now.u.iter().zip(&again.u).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(apart <= 1e-6 * largest(&now.u), "window {k}: {apart} of {}", largest(&now.u));
+    }
+    let plastic = step::spent(&c.state).plastic;
+    println!("{:?}, {plastic} J plastic", c.state.passes);
+    assert!(c.state.passes.passes > 2 * c.state.passes.windows && plastic > 1e-3);
 }
 
 /// A body at rest is pulled up with three times its weight for 30 ms and comes down again, in every scheme: it touches,

@@ -1,9 +1,11 @@
 //! (iv): a sphere hits a free block. Momentum, angular momentum and energy of both.
 
 use crate::support::*;
+use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::{face, step};
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
+use trackbed_dem::surface::Surface;
 use trackbed_fem as fem;
 
 const SPHERE_MASS: f64 = 1.0;
@@ -259,4 +261,42 @@ fn the_surface_moves_within_a_window() {
     let force = -c.work.mean_contact_force(c.model.window())[2];
     println!("mean force over K times overlap: {}", force / (STIFFNESS * overlap));
     assert!((force / (STIFFNESS * overlap) - 1.0).abs() < 1e-6);
+}
+
+/// In the lagged scheme the solid goes first, and the surface's velocity runs straight from that at the start of the window to
+/// that at the end: in a free cube under a steady force, from v₀ to v₀ + a Δt, of which the last of ten sub-steps begins at
+/// nine tenths.
+#[test]
+fn the_surface_speeds_up_within_a_lagged_window() {
+    let solid = cube();
+    let (speed, dt) = (1.0, 2e-6);
+    let mut c = Coupled::new(
+        &solid,
+        dem::ModelInput {
+            materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
+            shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
+            bodies: vec![dem::BodyInput {
+                position: Vec3::new(0.5 * SIDE, 0.5 * SIDE, 1.0),
+                ..Default::default()
+            }],
+            surface_material: Some(0),
+            time_step: dem::TimeStep::Fixed(dt),
+            ..Default::default()
+        },
+        10,
+    );
+    c.model.scheme = Scheme::Lagged;
+    c.state.solid.v.iter_mut().skip(2).step_by(3).for_each(|v| *v = speed);
+    // Its weight at 10,000 g: the same acceleration everywhere.
+    let acceleration = 1e5;
+    let mut force = vec![0.0; solid.dof_count()];
+    let mut unit = vec![0.0; solid.dof_count()];
+    unit.iter_mut().skip(2).step_by(3).for_each(|a| *a = acceleration);
+    solid.mass_times(&unit, &mut force);
+    c.step_loaded(&[], |_, load| load.iter_mut().zip(&force).for_each(|(l, f)| *l += f));
+    let at = [0.5 * SIDE, 0.5 * SIDE, 0.0];
+    let patch = contact(&c.work.surface, at, [0.0; 3]).patch;
+    let found = c.work.surface.closest_point(patch, at, [0.0; 2]).velocity[2];
+    let expected = speed + 0.9 * acceleration * 10.0 * dt;
+    assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }

@@ -98,3 +98,17 @@ fn shared_edges_and_corners_give_the_same_loads_from_every_side() {
     println!("{shared} shared points, largest difference {worst:.1e} F");
     assert!(shared > 100 && worst < 1e-14);
 }
+
+/// The pressure on a face is the normal part of the impulse of all contacts on it over window and area: 100 N and 60 N on
+/// one face of 0.0625 m², 150 N on the next, for half a window each, with forces along the face that do not count.
+#[test]
+fn the_pressure_on_a_face_is_its_impulse_over_its_area() {
+    let solid = block_b(4, Held::Base, Rayleigh::default());
+    let surface = top(&solid);
+    let mut transfer = trackbed_coupling::transfer::Transfer::new(&surface);
+    let at = |x: f64, y: f64, down: f64| contact(&surface, [x, y, 0.01], [30.0, -20.0, -down]);
+    let contacts = [at(0.3, 0.3, 100.0), at(0.45, 0.4, 60.0), at(0.6, 0.3, 150.0)];
+    transfer.add(&surface, &contacts, 1e-3, &mut Default::default());
+    let found = transfer.peak_face_pressure(&surface, 2e-3);
+    assert!((found / (160.0 * 1e-3 / 2e-3 / 0.0625) - 1.0).abs() < 1e-12, "{found}");
+}

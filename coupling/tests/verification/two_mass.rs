@@ -6,10 +6,10 @@
 //! node and may move vertically only. Grain steps are a twentieth of a window or less. The dashpot is chosen so that
 //! C = 2 ζ √(m' Kₙ), m' = m M/(m + M), as in the study.
 //!
-//! Reference: largest W = Δt √(Kₙ/m) with a spectral radius of at most 1 + 1e-6, from linear maps of one exchange
-//! computed apart (numpy) with the same order of the half steps as here. For A they are those of the study; for B the
-//! study moves the surface half a grain step ahead of the stone, which costs it its thresholds at ζ = 0.05 and 0.1 (0.18
-//! and 0.32 against 1.76 here), while 1.5 at 0.2 and 1.4 at 0.3 agree.
+//! Reference: largest W = Δt √(Kₙ/m) with a spectral radius of at most 1 + 1e-6, to 0.1 %, from linear maps of one exchange
+//! computed apart (`docs/two_mass.py`) with force and both places of one instant, as here. For A they are those of the
+//! study, which goes in steps of 0.02 and 0.05; for B the study has the surface a grain step ahead of the stone, which costs
+//! it its thresholds at ζ = 0.05 and 0.1 (0.19 and 0.34 against 1.77 here, M = 3 m), while those at 0.2 and 0.3 agree.
 
 use crate::support::*;
 use trackbed_coupling::scheme::Scheme;
@@ -141,22 +141,22 @@ fn thresholds_of_the_schemes_at_a_damping_of_0_2() {
     assert!(iterated < 1.0 + 1e-4);
 }
 
-/// The whole table: A and B within 10 % in W of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m; stiffened and
-/// iterated printed beside them, and the growth per window without damping.
+/// The whole table: A, B and stiffened within 7 % in W of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m (bisected to
+/// 2 %); the iterated scheme stable at 5.
 #[test]
 #[ignore = "the table of the guide, 4 min"]
 fn thresholds_of_the_schemes_in_full() {
     let damping = [0.05, 0.1, 0.2, 0.3];
     let reference = |ratio: f64, scheme: Scheme| match (scheme, ratio as u32) {
-        (Scheme::Lagged, 1) => [0.08, 0.18, 0.38, 0.58],
-        (Scheme::Lagged, 3) => [0.065, 0.14, 0.28, 0.42],
-        (Scheme::Lagged, _) => [0.06, 0.12, 0.26, 0.38],
-        (Scheme::Predicted, 1) => [1.42, 1.60, 1.50, 1.42],
-        (Scheme::Predicted, 3) => [1.76, 1.76, 1.60, 1.48],
-        (Scheme::Predicted, _) => [1.90, 1.82, 1.64, 1.50],
-        (_, 1) => [2.56, 2.52, 2.46, 2.40],
-        (_, 3) => [3.50, 3.46, 3.38, 3.30],
-        _ => [4.98, 4.94, 4.84, 4.74],
+        (Scheme::Lagged, 1) => [0.0916, 0.183, 0.366, 0.556],
+        (Scheme::Lagged, 3) => [0.0748, 0.148, 0.287, 0.409],
+        (Scheme::Lagged, _) => [0.0683, 0.135, 0.261, 0.369],
+        (Scheme::Predicted, 1) => [1.426, 1.618, 1.512, 1.424],
+        (Scheme::Predicted, 3) => [1.767, 1.767, 1.618, 1.487],
+        (Scheme::Predicted, _) => [1.918, 1.826, 1.657, 1.508],
+        (_, 1) => [2.576, 2.539, 2.474, 2.417],
+        (_, 3) => [3.519, 3.474, 3.389, 3.311],
+        _ => [4.996, 4.942, 4.840, 4.745],
     };
     let mut missed = Vec::new();
     for ratio in [1.0, 3.0, 10.0] {
@@ -169,7 +169,7 @@ fn thresholds_of_the_schemes_in_full() {
                 .collect();
             println!("M = {ratio} m, {scheme:?}: {found:.3?} against {expected:?}");
             for ((f, e), zeta) in found.iter().zip(expected).zip(damping) {
-                if (f / e - 1.0).abs() > 0.1 {
+                if (f / e - 1.0).abs() > 0.07 {
                     missed.push((ratio, scheme, zeta, *f, e));
                 }
             }

@@ -74,7 +74,7 @@ pub fn load(
     check(document, &key("cycles"), f64::from(cycles), |n| n >= 1.0, "1 or more")?;
     least_zero("rest", l.rest.si)?;
     least_zero("ramp", l.ramp.si)?;
-    let minimum = least_zero("minimum", l.minimum.map_or(0.0, |f| f.si))?;
+    let minimum = l.minimum.map_or(0.0, |f| f.si);
     if let Some(maximum) = l.maximum {
         check(document, &key("maximum"), maximum.si, |f| f > minimum, "more than the minimum")?;
     }

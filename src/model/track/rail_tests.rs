@@ -136,3 +136,59 @@ fn a_rail_on_springs_swings_at_their_frequency() {
     let expected = period * (1.0 + (2.0 * PI / 40.0_f64).powi(2) / 12.0);
     assert!((found / expected - 1.0).abs() < 2e-4, "{found} {expected}");
 }
+
+/// A long track under nothing but the rail's weight: each sleeper carries m g s.
+#[test]
+fn sleepers_share_the_weight_of_the_rail() {
+    let rail = Rail::new(RailInput { sleepers: 3, beyond: 40, gravity: 9.81, ..input() }, 1e-4).unwrap();
+    let seats = &rail.static_seats([Vec::new()].into_iter()).unwrap()[0];
+    let expected = 60.0 * 9.81 * 0.6;
+    assert!(seats.iter().all(|f| (f / expected - 1.0).abs() < 1e-9), "{seats:?} {expected}");
+}
+
+/// Under a rail too heavy to move, a seat that rises by ½ a t²: the dashpot of its pad has the speed a t of the end of the
+/// step, to rounding, and the force is C a t + k a t²/2.
+#[test]
+fn dashpots_have_the_speed_of_their_seat_at_the_end_of_a_step() {
+    let rail = Rail::new(RailInput { mass: 1e15, pad: [1e6, 40e3], ..input() }, 1e-4).unwrap();
+    let mut state = rail.laid();
+    let mut scratch = Scratch::default();
+    for n in 1..=50 {
+        let t = 1e-4 * f64::from(n);
+        rail.step(&mut state, std::iter::once(t * t), &[], 0.0, &mut scratch);
+        let expected = 40e3 * 2.0 * t + 1e6 * t * t;
+        // The first two steps do not know the motion before.
+        assert!(
+            n < 3 || (state.force(0) / expected - 1.0).abs() < 1e-9,
+            "{n}: {} {expected}",
+            state.force(0)
+        );
+    }
+}
+
+/// A limp rail on stiff pads under a sudden wheel over a sleeper beyond the model: mass and spring of that sleeper swing by
+/// w = P/k (1 − cos ωt), ω = √(k/m): once down to P/k in a quarter of the period, twice that in half of it.
+#[test]
+fn a_sleeper_beyond_swings_at_its_own_frequency() {
+    let limp = RailInput {
+        bending: 1e-3,
+        mass: 1e-3,
+        elements: 1,
+        pad: [1e12, 0.0],
+        foundation: [40e6, 0.0],
+        ..input()
+    };
+    let period = 2.0 * PI * (160.0_f64 / 40e6).sqrt();
+    let rail = Rail::new(limp, period / 4000.0).unwrap();
+    let mut state = rail.laid();
+    let mut scratch = Scratch::default();
+    let still = 1000.0 / 40e6;
+    for n in 1..=2000 {
+        rail.step(&mut state, std::iter::once(0.0), &[Wheel { at: 1.2, force: 1000.0 }], 0.0, &mut scratch);
+        if n == 1000 || n == 2000 {
+            let down = -state.line(&rail).find(|p| (p[0] - 1.2).abs() < 1e-9).unwrap()[1];
+            let expected = still * f64::from(n) / 1000.0;
+            assert!((down / expected - 1.0).abs() < 2e-3, "{down} {expected}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+use super::*;
+use crate::model::seat_load::{Course, CyclicLoad};
+use crate::run::cycles::Column;
+use crate::run::system::GrainsSystem;
+use dem::Vec3;
+
+const PLAN: JumpPlan =
+    JumpPlan { grains: true, first: 12, measure: 5, settle: 3, tolerance: 1e-3, largest: 1.0, overlap: 2.0 };
+
+/// A sphere pressed into a corner by 1 mm, and one that touches nothing.
+fn corner() -> GrainsSystem {
+    let wall =
+        |normal: Vec3| dem::Plane { point: Vec3::zeros(), normal, material: 0, velocity: Vec3::zeros() };
+    let at = |x: f64| dem::BodyInput { position: Vec3::repeat(x), ..Default::default() };
+    let input = dem::ModelInput {
+        materials: vec![dem::Material { density: 2650.0, stiffness: 1e6, ..Default::default() }],
+        shapes: vec![dem::Shape::Sphere { radius: 0.05 }],
+        bodies: vec![at(0.049), at(1.0)],
+        planes: vec![wall(Vec3::x()), wall(Vec3::y()), wall(Vec3::z())],
+        gravity: Vec3::zeros(),
+        time_step: dem::TimeStep::Fixed(1e-6),
+        ..Default::default()
+    };
+    GrainsSystem::new(dem::Model::new(input).unwrap()).unwrap()
+}
+
+/// A bed of which both spheres follow a sleeper whose settlement after N cycles is `law`; the courses of the jumps: cycles before and
+/// jumped over, and how far sphere and rattler were moved.
+fn course(plan: &JumpPlan, cycles: u32, law: impl Fn(f64) -> f64) -> (Jumper, Vec<[f64; 4]>) {
+    let wave = Course::Wave { sine: false, minimum: 0.0, maximum: 1.0, frequency: 1.0 };
+    let load = CyclicLoad { course: wave, cycles: 10_000, rest: 0.0, ramp: 0.0, places: vec![0.0] };
+    let mut recorder = CycleRecorder::new(&load, [0.2, 0.8], Column::default());
+    let (mut system, mut jumper) = (corner(), Jumper::new(plan));
+    let mut settled = 0.0;
+    let mut jumps = Vec::new();
+    recorder.record(0.0, 1.0, 0.0, 0.0, 0.0, 0.0);
+    for k in 1..=cycles {
+        let now = law(f64::from(recorder.number() + 1));
+        let down = (Vec3::new(0.0, 0.0, settled - now), UnitQuaternion::identity());
+        system.relocate(&[(0, down.0, down.1), (1, down.0, down.1)]);
+        settled = now;
+        recorder.record(f64::from(k), 1.0, -now, 1.0, 0.0, 0.0).expect("a cycle");
+        let (number, before) = (recorder.number(), [0, 1].map(|b| system.state.position(b).z));
+        if jumper.after_cycle(plan, &mut recorder, &mut system) {
+            let way = [0, 1].map(|b| before[b] - system.state.position(b).z);
+            jumps.push([number.into(), (recorder.number() - number).into(), way[0], way[1]]);
+            // What was moved has settled.
+            settled += way[0];
+        }
+    }
+    (jumper, jumps)
+}
+
+/// On a bed that follows the logarithm, s = b ln N, each jump moves the sphere by b ln(1 + ΔN/N) and leaves the rattler; nothing
+/// goes wrong, so that each jump is twice as long as the last, from a quarter of the largest on, relative to N.
+#[test]
+fn jumps_of_grains_follow_the_logarithm() {
+    let b = 1e-6;
+    let (jumper, jumps) = course(&PLAN, 40, |n| b * n.ln());
+    assert!(jumps.len() >= 3, "{jumps:?}");
+    for ([number, skipped, way, rattler], share) in jumps.iter().zip([0.25, 0.5, 1.0]) {
+        assert_eq!(*skipped, (share * number).floor(), "{jumps:?}");
+        let expected = b * (1.0 + skipped / number).ln();
+        assert!((way / expected - 1.0).abs() < 1e-6, "{way} {expected}");
+        assert_eq!(*rattler, 0.0);
+    }
+    assert!(jumper.jumps.iter().all(|j| j.error < 1e-6 * b), "{:?}", jumper.jumps);
+}
+
+/// A bed that goes on three times as fast after the first jump: the jump is wrong by 2 b ln(n/N) at the end of the next
+/// stretch, and the next one is half as long.
+#[test]
+fn a_jump_that_was_wrong_is_told_and_the_next_one_shorter() {
+    let b = 1e-6;
+    let first = 12.0 + 3.0;
+    let law = |n: f64| if n <= first { b * n.ln() } else { b * first.ln() + 3.0 * b * (n / first).ln() };
+    let (jumper, jumps) = course(&PLAN, 24, law);
+    let [number, skipped, ..] = jumps[0];
+    assert_eq!((number, skipped), (12.0, 3.0));
+    let end = first + f64::from(PLAN.settle + PLAN.measure);
+    let expected = 2.0 * b * (end / first).ln();
+    assert!((jumper.jumps[0].error / expected - 1.0).abs() < 1e-6, "{:?} {expected}", jumper.jumps[0]);
+    assert_eq!(jumps[1][1], (0.125 * jumps[1][0]).floor(), "{jumps:?}");
+}
+
+/// No jump changes the overlaps in the mean by more than the plan says: here by a two-thousandth of 1 mm over three planes, of
+/// which one is moved towards.
+#[test]
+fn jumps_stop_at_the_change_of_overlaps() {
+    let plan = JumpPlan { overlap: 1e-4, largest: 10.0, ..PLAN };
+    let b = 1e-6;
+    let (jumper, jumps) = course(&plan, 20, |n| b * n.ln());
+    let [number, skipped, way, _] = jumps[0];
+    let told = jumper.jumps[0].overlap_change.unwrap();
+    // The sphere has sunk a little into one of three planes by then.
+    let change = way / (3e-3 + b * number.ln());
+    assert!((told / change - 1.0).abs() < 1e-3, "{told} {change}");
+    assert!(told <= 1e-4 && told > 0.8e-4, "{told}");
+    assert!(skipped < (2.5 * number).floor() && skipped > 1.0, "{jumps:?}");
+}
