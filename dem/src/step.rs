@@ -140,7 +140,6 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     let (slots, applied, bonded, bonds) = (&*slots, &**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
     let gone = *drift + *wall_drift;
-    let surface_material = model.surface_material.unwrap_or(0);
     let within = |(b, (block, w)): (usize, (&mut Block, &mut BlockWork))| {
         w.ledger = Ledger::default();
         w.failure = None;
@@ -190,7 +189,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
             let done = patches::contacts::<_, _, RIGID>(
                 laws,
                 surface,
-                |_| surface_material,
+                |patch| model.patch_material(patch) as u32,
                 Partner::Patch,
                 &mut list,
                 block,

@@ -90,7 +90,7 @@ impl<'a> Push<'a> {
             mass: sleeper.mass(),
             weight: -sleeper.mass() * gravity.z,
             seats: &sleeper.seats,
-            body: track.observed(0.0)?.body,
+            body: track.body(track.observed()?),
         })
     }
 

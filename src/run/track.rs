@@ -3,7 +3,7 @@
 use super::checkpoint::{Body, Loaded};
 use super::rail::{Laid, Rails};
 use super::summary::{SleeperRecord, TrackRecord};
-use super::system::{GrainsView, System};
+use super::system::{GrainsView, MeshedView, System};
 use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, SleeperPlan};
 use crate::model::seat_load::{Course, CyclicLoad};
@@ -14,11 +14,11 @@ use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
 
-/// The sleepers of a run, which are its last bodies, and what loads them.
+/// The sleepers of a run, its last bodies or bodies of the solid, and what loads them.
 pub struct Track<'a> {
     plan: Option<&'a SleeperPlan>,
     load: Option<&'a CyclicLoad>,
-    /// Body of the first sleeper.
+    /// Body of the first sleeper, of rigid ones.
     first: usize,
     rails: Option<Rails>,
     now: RefCell<Now>,
@@ -47,10 +47,17 @@ struct Extremes {
 /// Place and load of a sleeper at one moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Sleeper {
-    /// Its body.
-    pub body: usize,
+    /// Centre [m].
+    pub place: [f64; 3],
+    /// Angle between its axis and the vertical [rad].
+    pub tilt: f64,
+    /// Height that settlements are taken from [m]: of the centre; of a meshed sleeper of the seats, less their distance
+    /// from the centre.
+    pub height: f64,
     /// Downward load [N].
     pub load: f64,
+    /// What a meshed sleeper has more.
+    pub meshed: Option<MeshedView>,
 }
 
 impl<'a> Track<'a> {
@@ -58,7 +65,7 @@ impl<'a> Track<'a> {
     pub fn new(grains: Option<&'a GrainsPart>, view: Option<GrainsView<'_>>) -> Track<'a> {
         let plan = grains.and_then(|g| g.sleeper.as_ref());
         let load = grains.and_then(|g| g.load.as_ref());
-        let count = plan.map_or(0, |p| p.centres.len());
+        let count = plan.filter(|p| !p.meshed).map_or(0, |p| p.centres.len());
         let rails = match (grains.and_then(|g| g.rail), plan, load, view) {
             (Some(input), Some(plan), Some(load), Some(view)) => {
                 Rails::new(input, plan.seats.len(), load.clone(), view.model.dt())
@@ -124,7 +131,8 @@ impl<'a> Track<'a> {
 
     /// Adds the forces that act on the sleepers at time `t` [s].
     pub fn apply(&self, t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>) {
-        let (Some(load), Some(plan)) = (self.load, self.plan) else { return };
+        // Meshed sleepers get theirs as a load on the solid.
+        let (Some(load), Some(plan)) = (self.load, self.plan.filter(|p| !p.meshed)) else { return };
         self.bring_up(model, state);
         let now = self.now.borrow();
         let share = 1.0 / plan.seats.len() as f64;
@@ -141,13 +149,15 @@ impl<'a> Track<'a> {
     /// Takes in the state at the end of a window.
     pub fn follow<S: System>(&self, t: f64, system: &S) {
         let (Some(load), Some(view)) = (self.load, system.grains()) else { return };
-        self.bring_up(view.model, view.state);
+        if self.rails.is_some() {
+            self.bring_up(view.model, view.state);
+        }
         if t + 0.5 * system.window() < load.cycles_begin() {
             return;
         }
         let mut now = self.now.borrow_mut();
         for k in 0..self.count() {
-            let height = view.state.position(self.first + k).z;
+            let Some(height) = self.height(k, system) else { continue };
             let force = self.force(&now, k, t);
             let rail = now.laid.as_ref().zip(self.rails.as_ref()).map_or(0.0, |(l, r)| l.deflection(r, k));
             match now.extremes.get_mut(k) {
@@ -180,9 +190,36 @@ impl<'a> Track<'a> {
         self.rails.is_some()
     }
 
+    /// Body of sleeper `k`, of rigid ones.
+    pub fn body(&self, k: usize) -> usize {
+        self.first + k
+    }
+
+    /// Height that the settlement of sleeper `k` is taken from [m].
+    fn height<S: System>(&self, k: usize, system: &S) -> Option<f64> {
+        match system.meshed_sleeper(k) {
+            Some(meshed) => Some(meshed.height),
+            None => system.grains().map(|g| g.state.position(self.body(k)).z),
+        }
+    }
+
     /// Sleeper `k` with its load at time `t` [s].
-    pub fn sleeper(&self, k: usize, t: f64) -> Sleeper {
-        Sleeper { body: self.first + k, load: self.force(&self.now.borrow(), k, t) }
+    pub fn sleeper<S: System>(&self, k: usize, t: f64, system: &S) -> Option<Sleeper> {
+        let load = self.force(&self.now.borrow(), k, t);
+        if let Some(meshed) = system.meshed_sleeper(k) {
+            let MeshedView { place, height, moved, .. } = meshed;
+            return Some(Sleeper { place, tilt: moved.tilt, height, load, meshed: Some(meshed) });
+        }
+        let g = system.grains()?;
+        let x = g.state.position(self.body(k));
+        let up = g.state.orientation(g.model, self.body(k)) * nalgebra::Vector3::z();
+        let tilt = up.z.clamp(-1.0, 1.0).acos();
+        Some(Sleeper { place: x.into(), tilt, height: x.z, load, meshed: None })
+    }
+
+    /// Whether the sleepers are meshed.
+    pub fn is_meshed(&self) -> bool {
+        self.plan.is_some_and(|p| p.meshed)
     }
 
     /// Deflection of the rail over sleeper `k` since it was laid, upwards, mean of all rails [m].
@@ -192,8 +229,8 @@ impl<'a> Track<'a> {
     }
 
     /// The sleeper whose settlement is followed: the one in the middle.
-    pub fn observed(&self, t: f64) -> Option<Sleeper> {
-        (self.count() > 0).then(|| self.sleeper(self.count() / 2, t))
+    pub fn observed(&self) -> Option<usize> {
+        (self.count() > 0).then(|| self.count() / 2)
     }
 
     /// Adds what rails and pads hold and have turned over [J].
