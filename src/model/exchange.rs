@@ -21,6 +21,10 @@ const PASSES: u32 = 20;
 /// Tolerance of the iterated scheme, unless the scene says otherwise.
 const TOLERANCE: f64 = 1e-6;
 
+/// Implicitness of the solid's step with meshed sleepers, unless the scene says otherwise: with 0.5 the oscillations of a stiff
+/// body that no window resolves go on for ever, and dashpots that see them a window late make them grow.
+const WITH_SLEEPERS: f64 = 0.6;
+
 /// The exchange, resolved.
 pub struct CouplingPart {
     substeps: Option<u32>,
@@ -178,7 +182,8 @@ impl CouplingPart {
     ) -> Vec<ContactClass> {
         let Some(own) = model.surface_material() else { return Vec::new() };
         let faces = &self.faces[..self.ground_faces];
-        let mut ids: Vec<u32> = faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
+        let mut ids: Vec<u32> =
+            faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
         ids.sort_unstable();
         ids.dedup();
         // A solid that grains lie on without a mass is refused elsewhere.
@@ -203,10 +208,18 @@ impl CouplingPart {
         let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
         let surface = self.spread(surface, grains);
         let faces = sleepers.telling_faces(&surface);
-        let Ok(masses) = window_masses(&body, &surface, &faces, self.theta, window) else { return Vec::new() };
+        let Ok(masses) = window_masses(&body, &surface, &faces, self.theta, window) else {
+            return Vec::new();
+        };
         let own = model.patch_material(self.ground_faces as u32);
-        let classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
-        classes.iter().map(|c| c.at(window)).collect()
+        let mut classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
+        for class in &mut classes {
+            // Of a motion that a window does not resolve θ leaves −(1 − θ)/θ, and a dashpot that sees it a window late
+            // −D/2θ of it.
+            class.d_limit = class.d_limit.map(|limit| limit.min(4.0 * self.theta - 2.0));
+            *class = class.at(window);
+        }
+        classes
     }
 
     /// Classes of all stones on materials of the solid with their masses of points, for windows of 1 s.
@@ -268,7 +281,13 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
     beyond
         .map(|c| {
             let fitting = (f64::from(substeps) / c.excess()) as u32;
+            // Only a meshed sleeper's limit is lower than that of the scheme.
+            let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_d(scheme);
             let fewer = match fitting {
+                _ if lax => {
+                    let theta = (20.0 * (0.5 + 0.25 * c.d)).ceil() / 20.0;
+                    format!("coupling.theta = {:.2} would do", theta.max(WITH_SLEEPERS))
+                }
                 0 => "not even coupling.substeps = 1 would do".into(),
                 1.. => format!("coupling.substeps = {fitting} would do (or \"auto\")"),
             };
@@ -300,8 +319,9 @@ pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Cou
             return Err(document.error("coupling.substeps", n.to_string(), "1 to 1000, or \"auto\""));
         }
     };
-    if !(0.5..=1.0).contains(&c.theta) {
-        return Err(document.error("coupling.theta", c.theta.to_string(), "0.5 to 1"));
+    let theta = c.theta.unwrap_or(if solid.sleepers.is_some() { WITH_SLEEPERS } else { 0.5 });
+    if !(0.5..=1.0).contains(&theta) {
+        return Err(document.error("coupling.theta", theta.to_string(), "0.5 to 1"));
     }
     let scheme = scheme(document, c, solid)?;
     let transfer = transfer(document, c)?;
@@ -327,7 +347,7 @@ pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Cou
         // On all sides: in the order of their elements, so sleeper by sleeper.
         faces.extend(mesh.boundary_faces().into_iter().filter(|f| f.element as usize >= ground));
     }
-    Ok(CouplingPart { substeps, scheme, transfer, theta: c.theta, faces, ground_faces })
+    Ok(CouplingPart { substeps, scheme, transfer, theta, faces, ground_faces })
 }
 
 fn scheme(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Scheme, SceneError> {

@@ -316,8 +316,10 @@ fn probe(
         (None, Some(at)) => {
             let at = vector(&at);
             let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
-            let nearest =
-                mesh.coordinates[..ground].iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+            let nearest = mesh.coordinates[..ground]
+                .iter()
+                .enumerate()
+                .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
             nearest.map_or(0, |(i, _)| i)
         }
         _ => return Err(document.error(&key("node"), "both or none of `node` and `at`", "one of them")),

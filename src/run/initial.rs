@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::model::solid::{InitialStress, InitialStressKind, SolidPart};
-use trackbed_fem::{Model, State};
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
+use trackbed_fem::{Model, State};
 
 /// The state of `model`, a solid or its ground alone, with its initial stress, and the share of the weight that this stress
 /// carries already.
@@ -33,12 +33,7 @@ pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State,
 ///
 /// # Errors
 /// There is no equilibrium.
-pub fn under_load(
-    part: &SolidPart,
-    model: &Model,
-    gravity: &[f64],
-    load: &[f64],
-) -> Result<State, Failure> {
+pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
     let (mut state, carried) = state(part, model, gravity)?;
     let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 40 };
     let mut solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;

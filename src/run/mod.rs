@@ -454,8 +454,8 @@ impl Stage<'_> {
             .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
             .map_err(|e| solid.failure(&e))?;
         if let Some(reduction) = solid.reduction {
-            let reduced = fem::reduction::Reduced::new(body.model, work.surface.faces(), reduction)
-                .map_err(|e| {
+            let reduced =
+                fem::reduction::Reduced::new(body.model, work.surface.faces(), reduction).map_err(|e| {
                     Failure::from(self.document.error("solid.reduction", e.to_string(), "another choice"))
                 })?;
             work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;

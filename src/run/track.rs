@@ -42,6 +42,8 @@ struct Extremes {
     height: [f64; 2],
     /// Least deflection of the rail over it [m].
     rail: f64,
+    /// Least and largest rise of a meshed sleeper's ends over its middle [m].
+    bend: [f64; 2],
 }
 
 /// Place and load of a sleeper at one moment.
@@ -157,15 +159,21 @@ impl<'a> Track<'a> {
         }
         let mut now = self.now.borrow_mut();
         for k in 0..self.count() {
-            let Some(height) = self.height(k, system) else { continue };
+            let meshed = system.meshed_sleeper(k);
+            let height = meshed.map_or_else(|| view.state.position(self.body(k)).z, |m| m.height);
+            let bend = meshed.map_or(0.0, |m| m.moved.bend);
             let force = self.force(&now, k, t);
             let rail = now.laid.as_ref().zip(self.rails.as_ref()).map_or(0.0, |(l, r)| l.deflection(r, k));
             match now.extremes.get_mut(k) {
-                None => now.extremes.push(Extremes { force: [force; 2], height: [height; 2], rail }),
+                None => {
+                    let bend = [bend; 2];
+                    now.extremes.push(Extremes { force: [force; 2], height: [height; 2], rail, bend });
+                }
                 Some(e) => {
                     e.force = [e.force[0].min(force), e.force[1].max(force)];
                     e.height[1] = e.height[1].min(height);
                     e.rail = e.rail.min(rail);
+                    e.bend = [e.bend[0].min(bend), e.bend[1].max(bend)];
                 }
             }
         }
@@ -193,14 +201,6 @@ impl<'a> Track<'a> {
     /// Body of sleeper `k`, of rigid ones.
     pub fn body(&self, k: usize) -> usize {
         self.first + k
-    }
-
-    /// Height that the settlement of sleeper `k` is taken from [m].
-    fn height<S: System>(&self, k: usize, system: &S) -> Option<f64> {
-        match system.meshed_sleeper(k) {
-            Some(meshed) => Some(meshed.height),
-            None => system.grains().map(|g| g.state.position(self.body(k)).z),
-        }
     }
 
     /// Sleeper `k` with its load at time `t` [s].
@@ -271,6 +271,7 @@ impl<'a> Track<'a> {
                 rail_deflection: self.rails.as_ref().map(|_| -e.rail),
                 static_force,
                 dynamic_amplification: static_force.map(|f| e.force[1] / f),
+                bend: self.is_meshed().then_some(e.bend),
             }
         };
         Some(TrackRecord { sleepers: now.extremes.iter().enumerate().map(record).collect() })

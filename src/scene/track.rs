@@ -2,7 +2,8 @@
 
 use super::after::{CycleJump, Push};
 use super::units::{
-    Bending, Dashpot, Density, Force, Frequency, Length, LineMass, Mass, Quantity, Stiffness, Stress, Time, Velocity,
+    Bending, Dashpot, Density, Force, Frequency, Length, LineMass, Mass, Quantity, Stiffness, Stress, Time,
+    Velocity,
 };
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -184,9 +184,8 @@ pub fn build(
     let faults = mesh_tools::check(&mesh, &supports.constraints);
     let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
     let weight = sleepers.as_ref().map_or(if solid.gravity { gravity } else { [0.0; 3] }, |s| s.gravity);
-    let sleepers = sleepers.map(|plan| {
-        SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints)
-    });
+    let sleepers = sleepers
+        .map(|plan| SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints));
     if let Some(s) = &sleepers {
         materials.names.insert(s.material, "sleeper".into());
     }

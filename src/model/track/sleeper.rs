@@ -1,5 +1,7 @@
 //! `[track.sleeper]` resolved: places, seats, and the elements of meshed sleepers.
 
+use crate::scene::after::JumpMethod;
+use crate::scene::solid::Integration;
 use crate::scene::track::{Motion, RailKind, Sleeper, SleeperMesh, Track};
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
@@ -123,6 +125,12 @@ pub fn meshed(
         let expected = format!("three numbers of 1 or more, {MOST_ELEMENTS} elements at most");
         return Err(document.error(&key("elements"), format!("{:?}", mesh.elements), expected));
     }
+    let reduced = scene.solid.as_ref().is_some_and(|s| s.integration == Integration::Reduced);
+    if reduced && mesh.elements.iter().filter(|n| **n > 1).count() < 2 {
+        let expected = "2 or more along two axes, or `solid.integration = \"full\"`: elements in a single row bend in ways that \
+                        the reduced rule does not see";
+        return Err(document.error(&key("elements"), format!("{:?}", mesh.elements), expected));
+    }
     let check = |k: &str, value: f64, good: bool, expected: &str| {
         if good { Ok(()) } else { Err(document.error(&key(k), value.to_string(), expected)) }
     };
@@ -174,7 +182,7 @@ fn refuse_company(document: &Document, scene: &Scene, track: &Track) -> Result<(
     if track.push.is_some() {
         return Err(document.error("track.push", "a push", "no such table beside meshed sleepers"));
     }
-    if track.jump.as_ref().is_some_and(|j| j.method == crate::scene::after::JumpMethod::Grains) {
+    if track.jump.as_ref().is_some_and(|j| j.method == JumpMethod::Grains) {
         let expected = "\"account\": sleepers of elements are not moved";
         return Err(document.error("track.jump.method", "\"grains\"", expected));
     }
