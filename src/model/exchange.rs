@@ -216,7 +216,8 @@ impl CouplingPart {
         for class in &mut classes {
             // Of a motion that a window does not resolve θ leaves −(1 − θ)/θ, and a dashpot that sees it a window late
             // −D/2θ of it.
-            class.d_limit = class.d_limit.map(|limit| limit.min(4.0 * self.theta - 2.0));
+            let own = (1e6 * (4.0 * self.theta - 2.0)).round() / 1e6;
+            class.d_limit = class.d_limit.map(|limit| limit.min(own));
             *class = class.at(window);
         }
         classes
