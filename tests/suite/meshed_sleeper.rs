@@ -406,3 +406,27 @@ fn ground_without_weight() {
     let contact = last(&table, "sleeper_contact_z");
     assert!((contact / (MASS * 9.81) - 1.0).abs() < 1e-5, "{contact}");
 }
+
+/// The scene of the guide, with few stones and one cycle.
+#[test]
+fn the_scene_of_the_guide() {
+    let folder = Folder::new("meshed_scene");
+    let (scene, out) =
+        (super::support::repository().join("inputs/track/meshed_sleeper/scene.toml"), folder.join("out"));
+    let set = [
+        "grains.0.count=100",
+        "compaction=",
+        "deposition.max_time=0.1",
+        "track.load.cycles=1",
+        "output.frames=2",
+    ];
+    run(&scene, &out, &set).good();
+    let summary = json(&out.join("summary.json"));
+    let sleeper = &summary["track"]["sleepers"][0];
+    println!("{sleeper}\nenergy {:.1e}", energy_error(&out));
+    assert!((sleeper["largest_force"].as_f64().unwrap() / 40e3 - 1.0).abs() < 1e-3, "{sleeper}");
+    assert_eq!(sleeper["bend"].as_array().unwrap().len(), 2);
+    assert!(energy_error(&out) < 0.02);
+    let classes = summary["coupling"]["classes"].as_array().unwrap();
+    assert!(classes.iter().any(|c| c["solid"] == "sleeper" && c["masses"]["corner"].as_f64().unwrap() > 1.0));
+}

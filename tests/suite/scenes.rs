@@ -473,7 +473,6 @@ fn small_scenes_run() {
         ("grains/box", &["time.end=0.15"], Some(0.02)),
         ("grains/chute", &["time.end=0.6"], Some(0.02)),
         ("grains/rolling", &["time.end=0.5"], Some(0.02)),
-        ("track/meshed_sleeper/scene", &["grains.0.count=60", "track.load.cycles=1"], Some(0.02)),
     ] {
         let dir = out.join(scene.split('/').next_back().unwrap());
         run(&repository().join("inputs").join(format!("{scene}.toml")), &dir, set).good();
