@@ -113,6 +113,29 @@ fn at_rest_it_weighs_what_it_weighs() {
     assert!(energy_error(&folder.join("out")) < 0.03);
 }
 
+/// Balls feel the material of the sleeper above, and that of the formation below: their springs in a row.
+#[test]
+fn it_has_a_material_of_its_own() {
+    let soft = "\n[[material]]\nname = \"soft\"\nstiffness = 0.4e6\nfriction = 0.5\nrestitution = 0.2\n\n[time]\nend = \"0.6 s\"\n";
+    let (folder, table) = ran(&on_balls(CONCRETE, "", soft), &["coupling.material=soft"]);
+    let z = column(&table, "sleeper_z");
+    let (sleeper, count) = (MASS * 9.81, 2.0 * ALONG as f64);
+    let ball = 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.05_f64.powi(3) * 9.81;
+    // A contact of two materials has 2 k₁ k₂/(k₁ + k₂).
+    let own = 2.0 * BALL;
+    let pair = 2.0 * own * 0.4e6 / (own + 0.4e6);
+    let expected = sleeper / count / own + (sleeper / count + ball) / pair;
+    let lowered = z[0] - z[z.len() - 1];
+    println!("lowered by {:.6} mm, springs {:.6} mm", 1e3 * lowered, 1e3 * expected);
+    assert!((lowered / expected - 1.0).abs() < 1e-4, "{lowered} {expected}");
+    let classes = json(&folder.join("out/summary.json"))["coupling"]["classes"].clone();
+    let stiffness = |k: usize| classes[k]["stiffness"].as_f64().unwrap();
+    assert!(
+        (stiffness(0) / pair - 1.0).abs() < 1e-12 && (stiffness(1) / own - 1.0).abs() < 1e-12,
+        "{classes}"
+    );
+}
+
 /// Deflection and its derivatives of a Timoshenko beam on a Winkler foundation under a force at its middle, half of it from
 /// 0 to `half`: EI w'''' − EI k/(κGA) w'' + k w = 0, φ = w' + EI/(κGA) (w''' − k/(κGA) w'), with κGA (w' − φ) = −P/2 and φ
 /// = 0 in the middle, φ' = 0 and w' = φ at the end (Hetényi, Beams on Elastic Foundation, 1946, with the shear of
