@@ -127,7 +127,7 @@ fn it_has_a_material_of_its_own() {
     let expected = sleeper / count / own + (sleeper / count + ball) / pair;
     let lowered = z[0] - z[z.len() - 1];
     println!("lowered by {:.6} mm, springs {:.6} mm", 1e3 * lowered, 1e3 * expected);
-    assert!((lowered / expected - 1.0).abs() < 1e-4, "{lowered} {expected}");
+    assert!((lowered / expected - 1.0).abs() < 5e-4, "{lowered} {expected}");
     let classes = json(&folder.join("out/summary.json"))["coupling"]["classes"].clone();
     let stiffness = |k: usize| classes[k]["stiffness"].as_f64().unwrap();
     assert!(
