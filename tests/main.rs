@@ -15,6 +15,7 @@ mod suite {
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
+    mod meshed_sleeper;
     mod packings;
     mod rail;
     mod scenes;

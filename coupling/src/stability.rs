@@ -22,6 +22,8 @@ use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_fem as fem;
 use trackbed_fem::element::quad8;
+use trackbed_fem::solver::SolveError;
+use trackbed_fem::window::WindowSolver;
 
 /// The two numbers that decide whether an exchange is stable, of the class of contacts with the largest W.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -128,6 +130,59 @@ pub fn point_masses(solid: &fem::Model, surface: &SolidSurface, material: u32) -
     masses.least().is_finite().then_some(masses)
 }
 
+/// Masses that points of some faces of a free body offer within a window of length `window` [s]: the impulse of a constant
+/// push along the normal over the velocity that the body's step with `theta` gives the point. What it holds against the
+/// push by its stiffness counts, which makes the mass that of a rigid body where waves cross the body many times in a
+/// window, and that of [`point_masses`] in very short ones. `surface` is of that body alone.
+///
+/// # Errors
+/// A plastic body, or one whose matrix cannot be factored.
+pub fn window_masses(
+    body: &fem::Model,
+    surface: &SolidSurface,
+    patches: &[u32],
+    theta: f64,
+    window: f64,
+) -> Result<PointMasses, SolveError> {
+    let mut solver = WindowSolver::new(body, theta, window)?;
+    let none = f64::INFINITY;
+    let mut masses = PointMasses { corner: none, side: none, middle: none, border: none };
+    for &patch in patches {
+        for (k, place) in quad8::NATURAL.into_iter().chain([[0.0; 2]]).enumerate() {
+            let load = push(body, surface, patch, place);
+            let mut state = fem::State::new(body);
+            solver.step(body, &mut state, &load)?;
+            let speed: f64 = load.iter().zip(&state.v).map(|(f, v)| f * v).sum();
+            let slot = match k {
+                0..4 => &mut masses.corner,
+                4..8 => &mut masses.side,
+                _ => &mut masses.middle,
+            };
+            *slot = slot.min(window / speed);
+        }
+    }
+    Ok(masses)
+}
+
+/// The nodal loads of a unit push along the normal at a point of a face, shape `[3·nodes]`.
+fn push(solid: &fem::Model, surface: &SolidSurface, patch: u32, place: [f64; 2]) -> Vec<f64> {
+    let normal = surface.normal(patch, place);
+    let mut forces = vec![[0.0; 3]; surface.nodes().len()];
+    for (&n, s) in surface.face_nodes(patch).iter().zip(quad8::shape_functions(place)) {
+        forces[n as usize] = normal.map(|c| s * c);
+    }
+    let mut load = vec![0.0; solid.dof_count()];
+    let nodes = surface.nodes();
+    let mut add = |n: u32, f: [f64; 3]| {
+        (0..3).for_each(|d| load[3 * nodes[n as usize] as usize + d] += f[d]);
+    };
+    match surface.spread() {
+        None => forces.iter().zip(0..).for_each(|(f, n)| add(n, *f)),
+        Some(spread) => spread.distribute(&forces, add),
+    }
+    load
+}
+
 /// Solves with the mass matrix, by conjugate gradients preconditioned by its diagonal: the condition does not depend on
 /// the mesh (Wathen, IMA J. Numer. Anal. 7 (1987) 449).
 struct MassSolver<'a> {
@@ -146,21 +201,8 @@ impl<'a> MassSolver<'a> {
     /// Mass of a point of a face against a push along its normal [kg].
     fn at(&mut self, surface: &SolidSurface, patch: u32, place: [f64; 2]) -> f64 {
         const ACCURACY: f64 = 1e-4;
-        let normal = surface.normal(patch, place);
-        let mut forces = vec![[0.0; 3]; surface.nodes().len()];
-        for (&n, s) in surface.face_nodes(patch).iter().zip(quad8::shape_functions(place)) {
-            forces[n as usize] = normal.map(|c| s * c);
-        }
         let size = self.inverse.len();
-        let mut load = vec![0.0; size];
-        let nodes = surface.nodes();
-        let mut add = |n: u32, f: [f64; 3]| {
-            (0..3).for_each(|d| load[3 * nodes[n as usize] as usize + d] += f[d]);
-        };
-        match surface.spread() {
-            None => forces.iter().zip(0..).for_each(|(f, n)| add(n, *f)),
-            Some(spread) => spread.distribute(&forces, add),
-        }
+        let mut load = push(self.solid, surface, patch, place);
         // Held dofs take no part: neither their load nor their motion counts.
         for (l, i) in load.iter_mut().zip(&self.inverse) {
             if *i == 0.0 {

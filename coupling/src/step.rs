@@ -21,6 +21,7 @@ use crate::stiffened::{Held, Stiffened};
 use crate::surface::{Motion, SolidSurface};
 use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use std::sync::Arc;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
@@ -259,6 +260,16 @@ impl Work {
     /// Force of the grains on the solid, mean over the last window [N].
     pub fn mean_contact_force(&self, window: f64) -> [f64; 3] {
         self.transfer.total_impulse().map(|i| i / window)
+    }
+
+    /// The same on some faces of the surface [N].
+    pub fn contact_force_on(&self, faces: Range<usize>, window: f64) -> [f64; 3] {
+        self.transfer.impulse_on(faces).map(|i| i / window)
+    }
+
+    /// Largest pressure on one of some faces in the last window, as [`Work::peak_face_pressure`] [Pa].
+    pub fn peak_pressure_on(&self, faces: Range<usize>, window: f64) -> f64 {
+        self.transfer.peak_pressure_on(faces, &self.surface, window)
     }
 }
 

@@ -74,10 +74,9 @@ impl Stiffened {
         self.field.resize(surface.nodes().len(), [0.0; 3]);
         self.mean.resize(surface.nodes().len(), [0.0; 3]);
         self.field.fill([0.0; 3]);
-        let Some(own) = model.grains.surface_material() else { return Ok(0) };
         for c in held {
             let body = c.body as usize;
-            let material = model.grains.material(body);
+            let (material, own) = (model.grains.material(body), model.grains.patch_material(c.patch));
             // Where the surface is now, not where the last window left it.
             let Some(&(centre, radius)) = grains.spheres(&model.grains, body).get(c.sphere as usize) else {
                 continue;

@@ -15,6 +15,9 @@ use trackbed_fem::mesh::{Face, Mesh};
 /// Where a face is looked at to see whether it has folded: its middle and its corners.
 const PLACES: [[f64; 2]; 5] = [[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
+/// Cosine between the normals of two faces below which their common side is an edge, which may close a little.
+const SHARP: f64 = 0.1;
+
 /// Part of the solid's boundary that grains may touch.
 pub struct SolidSurface {
     faces: Vec<Face>,
@@ -269,7 +272,7 @@ impl SolidSurface {
 
     /// The face that has folded since the mesh's own shape, if there is one: its normal at a corner or in the middle has
     /// turned by 90 degrees or its area there is a twentieth, or two faces that share a side look away from each other
-    /// and did not. Looks at the start of the window.
+    /// and looked the same way. Looks at the start of the window.
     pub fn folded(&self) -> Option<usize> {
         let bad = (0..self.faces.len()).find(|&k| {
             PLACES.iter().zip(&self.areas[k]).any(|(&place, before)| {
@@ -281,7 +284,8 @@ impl SolidSurface {
         let turned = |&[a, b]: &[u32; 2]| {
             let (a, b) = (a as usize, b as usize);
             let now = face::dot(self.forms[a][0].area(PLACES[0]), self.forms[b][0].area(PLACES[0]));
-            now <= 0.0 && face::dot(self.areas[a][0], self.areas[b][0]) > 0.0
+            let product = |i: usize, j: usize| face::dot(self.areas[i][0], self.areas[j][0]);
+            now <= 0.0 && product(a, b) > SHARP * (product(a, a) * product(b, b)).sqrt()
         };
         bad.or_else(|| self.seams.iter().find(|s| turned(s)).map(|s| s[0] as usize))
     }

@@ -8,6 +8,7 @@
 
 use crate::face::{self, cross};
 use crate::surface::SolidSurface;
+use std::ops::Range;
 use trackbed_dem::surface::SurfaceContact;
 use trackbed_fem::element::quad8;
 
@@ -108,8 +109,13 @@ impl Transfer {
 
     /// Contact impulse of the window on the whole surface [N s].
     pub fn total_impulse(&self) -> [f64; 3] {
+        self.impulse_on(0..self.face_impulse.len())
+    }
+
+    /// Contact impulse of the window on some faces [N s].
+    pub fn impulse_on(&self, faces: Range<usize>) -> [f64; 3] {
         let mut total = [0.0; 3];
-        for impulse in &self.face_impulse {
+        for impulse in &self.face_impulse[faces] {
             for d in 0..3 {
                 total[d] += impulse[d];
             }
@@ -119,11 +125,17 @@ impl Transfer {
 
     /// Largest mean pressure on one face over a window of duration `window` [s]: normal force over area [Pa].
     pub fn peak_face_pressure(&self, surface: &SolidSurface, window: f64) -> f64 {
+        self.peak_pressure_on(0..self.face_impulse.len(), surface, window)
+    }
+
+    /// The same of some faces [Pa].
+    pub fn peak_pressure_on(&self, faces: Range<usize>, surface: &SolidSurface, window: f64) -> f64 {
+        let first = faces.start as u32;
         let pressure = |(impulse, patch): (&[f64; 3], u32)| {
             let area = surface.area_vector(patch);
             -face::dot(*impulse, area) / (window * face::dot(area, area))
         };
-        self.face_impulse.iter().zip(0..).map(pressure).fold(0.0, f64::max)
+        self.face_impulse[faces].iter().zip(first..).map(pressure).fold(0.0, f64::max)
     }
 
     /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.

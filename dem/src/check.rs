@@ -164,10 +164,15 @@ fn walls(input: &ModelInput) -> Result<(), ModelError> {
         }
     }
     crate::wall::check::walls(&input.walls, count)?;
-    if let Some(m) = input.surface_material {
+    for m in surfaces(input) {
         in_range("surface", 0, "material", m, count)?;
     }
     Ok(())
+}
+
+/// Materials of the external surface.
+fn surfaces(input: &ModelInput) -> impl Iterator<Item = usize> {
+    input.surface_material.into_iter().chain(input.other_surface.map(|(_, m)| m))
 }
 
 fn settings(input: &ModelInput) -> Result<(), ModelError> {
@@ -239,7 +244,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput) -> Result<(), Mod
             if let Some(t) = input.walls.iter().position(|w| endless(a.material, w.material)) {
                 return error(format!("wall {t}"));
             }
-            if input.surface_material.is_some_and(|m| endless(a.material, m)) {
+            if surfaces(input).any(|m| endless(a.material, m)) {
                 return error("the surface".to_string());
             }
         }

@@ -130,6 +130,9 @@ pub struct ModelInput {
     pub walls: Vec<WallInput>,
     /// Material (index) of the external surface, when the scene has one.
     pub surface_material: Option<usize>,
+    /// Part of the external surface that is of another material: its first patch, from which on all others follow, and
+    /// the material (index).
+    pub other_surface: Option<(u32, usize)>,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
     /// Time step.
@@ -161,6 +164,7 @@ impl Default for ModelInput {
             triangles: Vec::new(),
             walls: Vec::new(),
             surface_material: None,
+            other_surface: None,
             gravity: Vec3::new(0.0, 0.0, -9.81),
             time_step: TimeStep::Auto { fraction: 0.1 },
             impact_speed: None,

@@ -22,6 +22,7 @@ pub struct Model {
     pub(crate) planes: Vec<Plane>,
     pub(crate) walls: Walls,
     pub(crate) surface_material: Option<u32>,
+    pub(crate) other_surface: Option<(u32, u32)>,
     pub(crate) laws: Laws,
     /// Largest overlap expected, over the effective radius: what stiffnesses that grow with the overlap are taken at.
     pub(crate) expected: f64,
@@ -101,6 +102,7 @@ impl Model {
             planes,
             walls,
             surface_material: input.surface_material.map(|m| m as u32),
+            other_surface: input.other_surface.map(|(first, m)| (first, m as u32)),
             laws,
             expected,
             gravity: input.gravity,
@@ -265,6 +267,15 @@ impl Model {
     /// Material that an external surface counts as.
     pub fn surface_material(&self) -> Option<usize> {
         self.surface_material.map(|m| m as usize)
+    }
+
+    /// Material of a patch of an external surface.
+    #[inline]
+    pub fn patch_material(&self, patch: u32) -> usize {
+        match self.other_surface {
+            Some((first, material)) if patch >= first => material as usize,
+            _ => self.surface_material.unwrap_or(0) as usize,
+        }
     }
 
     /// Material of a body.

@@ -136,7 +136,6 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     let (applied, bonded, bonds) = (&**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
     let gone = *drift + *wall_drift;
-    let surface_material = model.surface_material.unwrap_or(0);
     let within = |b: usize, block: &mut Block, w: &mut BlockWork, slots: &[CrossWork]| {
         w.ledger = Ledger::default();
         w.failure = None;
@@ -187,7 +186,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
                 (model, simd),
                 laws,
                 surface,
-                |_| surface_material,
+                |patch| model.patch_material(patch) as u32,
                 Partner::Patch,
                 &mut list,
                 block,

@@ -198,7 +198,8 @@ fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     input.planes.iter().for_each(|p| used[p.material] = true);
     input.triangles.iter().for_each(|t| used[t.material] = true);
     input.walls.iter().for_each(|w| used[w.material] = true);
-    input.surface_material.into_iter().for_each(|m| used[m] = true);
+    let surfaces = input.surface_material.into_iter().chain(input.other_surface.map(|(_, m)| m));
+    surfaces.for_each(|m| used[m] = true);
     (0..used.len()).filter(|&m| used[m]).collect()
 }
 

@@ -13,6 +13,7 @@ use crate::solver::SolveError;
 use crate::solver::cholesky::Analysis;
 use crate::supports::Supports;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
@@ -101,7 +102,8 @@ pub struct Model {
     mass: Mass,
     boundaries: Vec<BoundaryLayer>,
     supports: Supports,
-    matrices: Matrices,
+    /// Shared by all copies: they depend on shapes, not on places.
+    matrices: Arc<Matrices>,
     analysis: OnceLock<Arc<Analysis>>,
     /// First Gauss point of each element, and the number of all. Shape `[elements + 1]`.
     point_start: Vec<u32>,
@@ -130,7 +132,7 @@ impl Model {
         let supports = Supports::new(&mesh, &constraints)?;
         boundary::check(&mesh, &boundaries)?;
         let material = |e: usize| &materials[&mesh.materials[e]].elastic;
-        let matrices = Matrices::assemble_with(&mesh, quadrature, mass, &boundaries, material);
+        let matrices = Arc::new(Matrices::assemble_with(&mesh, quadrature, mass, &boundaries, material));
         let point_start = point_start(&mesh, quadrature);
         Ok(Model {
             mesh,
@@ -192,6 +194,22 @@ impl Model {
     pub(crate) fn with_plasticity(&self, materials: BTreeMap<u32, Material>) -> Result<Model, ModelError> {
         check_materials(&self.mesh, &materials)?;
         Ok(Model { materials, ..self.clone() })
+    }
+
+    /// The same model with the nodes `nodes` (indices), which must be all those of bodies of their own, set elsewhere by
+    /// `way` [m]: matrices and factorizations stay, since none of them depends on a body's place.
+    ///
+    /// # Panics
+    /// An element joins these nodes to others.
+    pub fn with_bodies_moved(&self, nodes: Range<usize>, way: [f64; 3]) -> Model {
+        let inside = |n: &u32| nodes.contains(&(*n as usize));
+        let whole = |e: &[u32]| e.iter().all(inside) || !e.iter().any(inside);
+        assert!(self.mesh.connectivity.iter().all(whole), "only whole bodies can be moved");
+        let mut moved = self.clone();
+        for x in &mut moved.mesh.coordinates[nodes] {
+            (0..3).for_each(|d| x[d] += way[d]);
+        }
+        moved
     }
 
     /// Index of the first Gauss point of element `element` (index) in [`crate::State::points`]; for the number of elements,

@@ -38,6 +38,10 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         for (id, name) in &solid.material_names {
             line(format!("  material {id}: {name}"));
         }
+        if let Some(s) = &solid.sleepers {
+            let elements = (mesh.element_count() - s.ground_elements()) / s.count();
+            line(format!("  sleepers: {} of {elements} elements, {:.3e} kg each", s.count(), s.mass()));
+        }
         line(format!(
             "  memory: {} in all, {} of it for the equations; one factorization {:.2} Gflop",
             run::size(prediction.total()),
@@ -53,8 +57,8 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         let alone =
             dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
         let sleepers = grains
-            .sleeper
-            .iter()
+            .rigid_sleeper()
+            .into_iter()
             .flat_map(|plan| plan.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
         let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
         let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
@@ -66,11 +70,9 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         }
         line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
         if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-            let surface = coupling.surface(solid, grains);
-            let classes = coupling.classes(grains, &model, solid, &surface);
-            let substeps = coupling.substeps(&classes, model.dt());
+            let surface = coupling.ground(solid, grains);
+            let (classes, substeps) = coupling.classes(grains, &model, solid, &surface);
             let window = model.dt() * f64::from(substeps);
-            let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
             let s = exchange::stability(&classes);
             line(format!(
                 "coupling: {} faces, {} grain steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of \

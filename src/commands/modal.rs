@@ -28,7 +28,8 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         return Err(document.error("solid", "nothing", "a solid").into());
     };
     run::thread_pool(args.threads)?.install(|| {
-        let part = solid::build(&document, part, vector(&scene.gravity), true)?;
+        // Sleepers that lie free on the grains are no part of it.
+        let part = solid::build(&document, part, vector(&scene.gravity), true, None)?;
         let unknowns = part.model.free_dof_count();
         if args.count == 0 || args.count > unknowns {
             let expected = format!("1 to {unknowns}, the number of unknowns");

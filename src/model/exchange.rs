@@ -6,9 +6,12 @@ use crate::scene::coupling::{Coupling, SchemeName, Substeps, TransferTable};
 use crate::scene::{Document, SceneError};
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::scheme::Scheme;
-use trackbed_coupling::stability::{PointMasses, Stability, largest_d, largest_w, point_masses};
+use trackbed_coupling::stability::{
+    PointMasses, Stability, largest_d, largest_w, point_masses, window_masses,
+};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
+use trackbed_fem as fem;
 use trackbed_fem::mesh::Face;
 
 /// Most sub-steps that `"auto"` takes: beyond it the grains are nearly all of the cost.
@@ -17,6 +20,10 @@ const MOST: u32 = 20;
 const PASSES: u32 = 20;
 /// Tolerance of the iterated scheme, unless the scene says otherwise.
 const TOLERANCE: f64 = 1e-6;
+
+/// Implicitness of the solid's step with meshed sleepers, unless the scene says otherwise: with 0.5 the oscillations of a stiff
+/// body that no window resolves go on for ever, and dashpots that see them a window late make them grow.
+const WITH_SLEEPERS: f64 = 0.6;
 
 /// The exchange, resolved.
 pub struct CouplingPart {
@@ -27,8 +34,10 @@ pub struct CouplingPart {
     pub transfer: Transfer,
     /// Implicitness of the solid's step.
     pub theta: f64,
-    /// Faces that grains may touch.
+    /// Faces that grains may touch: those of the ground, then those of the meshed sleepers, one after the other.
     pub faces: Vec<Face>,
+    /// How many of them are the ground's.
+    pub ground_faces: usize,
 }
 
 /// How contact forces reach the solid.
@@ -105,9 +114,18 @@ impl ContactClass {
 }
 
 impl CouplingPart {
-    /// The surface of a solid that grains touch. `grains` tells the size of the discs where it goes with the stones.
-    pub fn surface(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
-        let surface = SolidSurface::new(solid.model.mesh(), self.faces.clone());
+    /// The ground's surface that grains touch. `grains` tells the size of the discs where it goes with the stones.
+    pub fn ground(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
+        let faces = self.faces[..self.ground_faces].to_vec();
+        self.spread(SolidSurface::new(solid.model.mesh(), faces), grains)
+    }
+
+    /// The whole surface that grains touch, of `model`, where the sleepers are set down.
+    pub fn surface(&self, model: &fem::Model, grains: &GrainsPart) -> SolidSurface {
+        self.spread(SolidSurface::new(model.mesh(), self.faces.clone()), grains)
+    }
+
+    fn spread(&self, surface: SolidSurface, grains: &GrainsPart) -> SolidSurface {
         match self.transfer {
             Transfer::Point => surface,
             Transfer::Disc(radius) => surface.spread_over(radius),
@@ -123,13 +141,30 @@ impl CouplingPart {
         }
     }
 
-    /// Steps of the grains per window: as the scene says, or as many as the limits of all classes leave room for.
-    pub fn substeps(&self, classes: &[ContactClass], dt: f64) -> u32 {
-        self.substeps.unwrap_or_else(|| {
+    /// The classes of contacts, and the steps of the grains per window: as the scene says, or as many as the limits of all
+    /// classes leave room for. `surface` is the ground's.
+    pub fn classes(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        surface: &SolidSurface,
+    ) -> (Vec<ContactClass>, u32) {
+        let ground = self.ground_classes(grains, model, solid, surface);
+        let dt = model.dt();
+        let mut substeps = self.substeps.unwrap_or_else(|| {
             // W and D are proportional to the window.
-            let excess = classes.iter().map(|c| c.at(dt).excess()).fold(0.0, f64::max);
+            let excess = ground.iter().map(|c| c.at(dt).excess()).fold(0.0, f64::max);
             if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, MOST) } else { MOST }
-        })
+        });
+        loop {
+            let window = f64::from(substeps) * dt;
+            let sleepers = self.sleeper_classes(grains, model, solid, window);
+            if self.substeps.is_some() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {
+                return (ground.iter().map(|c| c.at(window)).chain(sleepers).collect(), substeps);
+            }
+            substeps -= 1;
+        }
     }
 
     /// Whether the scene leaves the number of steps to the program.
@@ -137,8 +172,8 @@ impl CouplingPart {
         self.substeps.is_none()
     }
 
-    /// The classes of contacts for windows of 1 s; [`ContactClass::at`] gives them for others.
-    pub fn classes(
+    /// The classes of contacts with the ground for windows of 1 s; [`ContactClass::at`] gives them for others.
+    fn ground_classes(
         &self,
         grains: &GrainsPart,
         model: &dem::Model,
@@ -146,19 +181,63 @@ impl CouplingPart {
         surface: &SolidSurface,
     ) -> Vec<ContactClass> {
         let Some(own) = model.surface_material() else { return Vec::new() };
+        let faces = &self.faces[..self.ground_faces];
         let mut ids: Vec<u32> =
-            self.faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
+            faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
         ids.sort_unstable();
         ids.dedup();
         // A solid that grains lie on without a mass is refused elsewhere.
         let places = ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id)?)));
         let places: Vec<_> = places.collect();
+        self.with_stones(grains, model, solid, own, &places)
+    }
+
+    /// The classes of contacts with meshed sleepers, whose masses depend on the window [s].
+    fn sleeper_classes(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        window: f64,
+    ) -> Vec<ContactClass> {
+        let (Some(sleepers), Some(first)) = (&solid.sleepers, self.faces.get(self.ground_faces)) else {
+            return Vec::new();
+        };
+        debug_assert!(first.element as usize >= sleepers.ground_elements());
+        // The whole solid was made of such bodies and steps with such matrices.
+        let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
+        let surface = self.spread(surface, grains);
+        let faces = sleepers.telling_faces(&surface);
+        let Ok(masses) = window_masses(&body, &surface, &faces, self.theta, window) else {
+            return Vec::new();
+        };
+        let own = model.patch_material(self.ground_faces as u32);
+        let mut classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
+        for class in &mut classes {
+            // Of a motion that a window does not resolve θ leaves −(1 − θ)/θ, and a dashpot that sees it a window late
+            // −D/2θ of it.
+            let own = (1e6 * (4.0 * self.theta - 2.0)).round() / 1e6;
+            class.d_limit = class.d_limit.map(|limit| limit.min(own));
+            *class = class.at(window);
+        }
+        classes
+    }
+
+    /// Classes of all stones on materials of the solid with their masses of points, for windows of 1 s.
+    fn with_stones(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        own: usize,
+        places: &[(u32, PointMasses)],
+    ) -> Vec<ContactClass> {
         let mut classes = Vec::new();
         for (material, name) in grains.touching_materials() {
             let masses = grains.masses_of(model, material);
             let Some(stones) = masses else { continue };
             let (stiffness, damping_ratio) = model.contact_stiffness(material, own);
-            for (id, masses) in &places {
+            for (id, masses) in places {
                 let m = masses.least();
                 let pair = stones.map(|stone| damping_ratio * ((m + stone) / m).sqrt());
                 let limit = |k: usize| largest_w(self.scheme, pair[k], stones[k] / m);
@@ -203,7 +282,13 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
     beyond
         .map(|c| {
             let fitting = (f64::from(substeps) / c.excess()) as u32;
+            // Only a meshed sleeper's limit is lower than that of the scheme.
+            let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_d(scheme);
             let fewer = match fitting {
+                _ if lax => {
+                    let theta = (20.0 * (0.5 + 0.25 * c.d)).ceil() / 20.0;
+                    format!("coupling.theta = {:.2} would do", theta.max(WITH_SLEEPERS))
+                }
                 0 => "not even coupling.substeps = 1 would do".into(),
                 1.. => format!("coupling.substeps = {fitting} would do (or \"auto\")"),
             };
@@ -235,8 +320,9 @@ pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Cou
             return Err(document.error("coupling.substeps", n.to_string(), "1 to 1000, or \"auto\""));
         }
     };
-    if !(0.5..=1.0).contains(&c.theta) {
-        return Err(document.error("coupling.theta", c.theta.to_string(), "0.5 to 1"));
+    let theta = c.theta.unwrap_or(if solid.sleepers.is_some() { WITH_SLEEPERS } else { 0.5 });
+    if !(0.5..=1.0).contains(&theta) {
+        return Err(document.error("coupling.theta", theta.to_string(), "0.5 to 1"));
     }
     let scheme = scheme(document, c, solid)?;
     let transfer = transfer(document, c)?;
@@ -246,7 +332,10 @@ pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Cou
     if !(c.max_angle.si > 0.0 && c.max_angle.si <= std::f64::consts::PI) {
         return Err(document.error("coupling.max_angle", c.max_angle.si.to_string(), "above 0, at most pi"));
     }
-    let faces = SolidSurface::facing(solid.model.mesh(), c.direction, c.max_angle.si);
+    let mesh = solid.model.mesh();
+    let ground = solid.sleepers.as_ref().map_or(mesh.element_count(), |s| s.ground_elements());
+    let mut faces = SolidSurface::facing(mesh, c.direction, c.max_angle.si);
+    faces.retain(|f| (f.element as usize) < ground);
     if faces.is_empty() {
         return Err(document.error(
             "coupling.direction",
@@ -254,7 +343,12 @@ pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Cou
             "at least one",
         ));
     }
-    Ok(CouplingPart { substeps, scheme, transfer, theta: c.theta, faces })
+    let ground_faces = faces.len();
+    if solid.sleepers.is_some() {
+        // On all sides: in the order of their elements, so sleeper by sleeper.
+        faces.extend(mesh.boundary_faces().into_iter().filter(|f| f.element as usize >= ground));
+    }
+    Ok(CouplingPart { substeps, scheme, transfer, theta, faces, ground_faces })
 }
 
 fn scheme(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Scheme, SceneError> {

@@ -40,13 +40,15 @@ pub struct GrainsPart {
     walls: Vec<WallInput>,
     recorded: Vec<walls::Recorded>,
     surface_material: Option<usize>,
+    /// First face of meshed sleepers in the solid's surface, and their material.
+    other_surface: Option<(u32, usize)>,
     gravity: Vec3,
     time_step: TimeStep,
     impact_speed: Option<f64>,
     periodic: [Option<[f64; 2]>; 3],
     /// All grains where they start.
     pub bodies: Vec<BodyInput>,
-    /// Names of the groups; the sleepers are the group after the last.
+    /// Names of the groups; rigid sleepers are the group after the last.
     pub parts: Vec<String>,
     /// First shape of each group; a stone's number in its library is its shape less that.
     pub first_shape: Vec<usize>,
@@ -71,7 +73,7 @@ pub struct GrainsPart {
     pub compaction: Vec<CompactionPlan>,
     /// Boxes that are measured.
     pub measures: Vec<Measure>,
-    /// The sleepers, which are the last bodies of the run proper.
+    /// The sleepers; rigid ones are the last bodies of the run proper.
     pub sleeper: Option<SleeperPlan>,
     /// The load on them.
     pub load: Option<CyclicLoad>,
@@ -149,6 +151,8 @@ pub struct SleeperPlan {
     material: usize,
     mass: f64,
     fixed: [bool; 6],
+    /// Whether it consists of elements of the solid, and is no body among the grains.
+    pub meshed: bool,
     /// Half edge lengths [m].
     pub half: [f64; 3],
     /// Direction of the track: 0 or 1.
@@ -193,7 +197,9 @@ impl GrainsPart {
             }
         }
         let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
-        let mut input = ModelInput { contacts, damping, ..self.input(self.bodies.clone()) };
+        // Sleepers are not there yet.
+        let alone = ModelInput { other_surface: None, ..self.input(self.bodies.clone()) };
+        let mut input = ModelInput { contacts, damping, ..alone };
         // Walls wait for the run proper, which starts with them in their first place; driven walls and rigid bodies come
         // in only then.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
@@ -249,6 +255,7 @@ impl GrainsPart {
             triangles: Vec::new(),
             walls: self.walls.clone(),
             surface_material: self.surface_material,
+            other_surface: self.other_surface,
             gravity: self.gravity,
             time_step: self.time_step,
             impact_speed: self.impact_speed,
@@ -271,14 +278,14 @@ impl GrainsPart {
         self.materials[material].density
     }
 
-    /// Materials of grains that may touch a solid, with their names. The sleeper touches grains only.
+    /// Materials of grains that may touch a solid, with their names. A rigid sleeper touches grains only.
     pub fn touching_materials(&self) -> impl Iterator<Item = (usize, String)> {
         self.grain_materials.iter().map(|&m| (m, self.material_names[m].clone()))
     }
 
     /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
     pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
-        let grains = self.parts.len() as u32 - u32::from(self.sleeper.is_some());
+        let grains = self.parts.len() as u32 - u32::from(self.rigid_sleeper().is_some());
         let own = (0..model.body_count())
             .filter(|&b| model.part(b) < grains && model.material(b) == material)
             .map(|b| model.mass(b));
@@ -332,6 +339,16 @@ impl GrainsPart {
             }
         }
         Ok(())
+    }
+
+    /// The sleepers that are bodies among the grains.
+    pub fn rigid_sleeper(&self) -> Option<&SleeperPlan> {
+        self.sleeper.as_ref().filter(|s| !s.meshed)
+    }
+
+    /// Tells from which face of the solid's surface on the faces are those of meshed sleepers.
+    pub fn set_sleeper_faces(&mut self, first: u32) {
+        self.other_surface = self.sleeper.as_ref().filter(|s| s.meshed).map(|s| (first, s.material));
     }
 
     /// A sleeper as a body with its centre above `centre` at height `z` [m].
@@ -402,6 +419,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             .as_ref()
             .map(|c| find("coupling.material", &c.material))
             .transpose()?,
+        other_surface: None,
         gravity: Vec3::from(gravity),
         time_step: time_step(document, &scene.time)?,
         impact_speed,

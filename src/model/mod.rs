@@ -14,7 +14,6 @@ use crate::scene::units::vector;
 use crate::scene::{Chains, Document, Scene, SceneError};
 use std::time::Duration;
 use trackbed_fem as fem;
-use trackbed_fem::mesh::Mesh;
 
 /// Time by the clock between two checkpoints, unless the scene says otherwise [s].
 const CHECKPOINT: f64 = 600.0;
@@ -74,14 +73,17 @@ impl Job {
         refuse_idle_keys(document, scene)?;
         let gravity = vector(&scene.gravity);
         let coupled = !scene.grains.is_empty();
-        let solid = scene.solid.as_ref().map(|s| solid::build(document, s, gravity, coupled)).transpose()?;
+        let mut sleepers = track::sleeper::meshed(document, scene, gravity)?;
+        let build = |s| solid::build(document, s, gravity, coupled, sleepers.take());
+        let solid = scene.solid.as_ref().map(build).transpose()?;
         // A static solve stands at the start of every run but that of an elastic moving solid alone.
         if let Some(part) = &solid
             && (coupled || !matches!(part.analysis, solid::Analysis::Dynamic(_)) || !part.is_linear())
         {
-            fem::statics::check_held(&part.model).map_err(|e| part.failure(&e))?;
+            let ground = part.ground().expect("a part of a model that was made");
+            fem::statics::check_held(ground.as_ref().unwrap_or(&part.model)).map_err(|e| part.failure(&e))?;
         }
-        let grains =
+        let mut grains =
             if scene.grains.is_empty() { None } else { Some(grains::build(document, scene, gravity)?) };
         if grains.is_none() {
             for (key, present) in [
@@ -115,6 +117,9 @@ impl Job {
             }
             (None, _, _) => None,
         };
+        if let (Some(c), Some(g)) = (&coupling, &mut grains) {
+            g.set_sleeper_faces(c.ground_faces as u32);
+        }
         let jumps = grains.as_ref().and_then(|g| g.after.jump).is_some_and(|j| j.grains);
         if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
             let expected = "\"account\": the state of a plastic solid is not extrapolated";
@@ -126,7 +131,7 @@ impl Job {
             .probe
             .iter()
             .enumerate()
-            .map(|(i, p)| probe(document, i, p, solid.as_ref().map(|s| s.model.mesh())))
+            .map(|(i, p)| probe(document, i, p, solid.as_ref()))
             .collect::<Result<Vec<_>, _>>()?;
         let output = output(document, scene, end)?;
         let title =
@@ -293,23 +298,28 @@ fn probe(
     document: &Document,
     index: usize,
     probe: &crate::scene::Probe,
-    mesh: Option<&Mesh>,
+    solid: Option<&solid::SolidPart>,
 ) -> Result<(String, usize), SceneError> {
     let key = |k: &str| format!("probe.{index}.{k}");
-    let Some(mesh) = mesh else {
+    let Some(solid) = solid else {
         return Err(document.error(
             &format!("probe.{index}"),
             "a probe",
             "a [solid] whose nodes it can observe",
         ));
     };
+    let mesh = solid.model.mesh();
+    // Sleepers are elsewhere until they are set down.
+    let ground = solid.sleepers.as_ref().map_or(mesh.node_count(), |s| s.ground_nodes());
     let node = match (probe.node, probe.at) {
         (Some(id), None) => solid::find_node(document, mesh, &key("node"), id)?,
         (None, Some(at)) => {
             let at = vector(&at);
             let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
-            let nearest =
-                mesh.coordinates.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+            let nearest = mesh.coordinates[..ground]
+                .iter()
+                .enumerate()
+                .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
             nearest.map_or(0, |(i, _)| i)
         }
         _ => return Err(document.error(&key("node"), "both or none of `node` and `at`", "one of them")),

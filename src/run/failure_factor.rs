@@ -25,7 +25,7 @@ pub fn run(
     let weight = model.gravity_load();
     let mut load = weight.clone();
     part.add_loads(0.0, &mut load);
-    let (state, _) = initial::state(part, &weight)?;
+    let (state, _) = initial::state(part, &part.model, &weight)?;
     let progress = Progress::start("strength reduction", 1.0, stage.quiet);
     let found =
         strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;

@@ -2,30 +2,30 @@
 
 use crate::failure::Failure;
 use crate::model::solid::{InitialStress, InitialStressKind, SolidPart};
-use trackbed_fem::State;
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
+use trackbed_fem::{Model, State};
 
-/// The state with its initial stress, and the share of the weight that this stress carries already.
+/// The state of `model`, a solid or its ground alone, with its initial stress, and the share of the weight that this stress
+/// carries already.
 ///
 /// # Errors
 /// The stress finds no equilibrium.
-pub fn state(part: &SolidPart, gravity: &[f64]) -> Result<(State, f64), Failure> {
-    let model = &part.model;
-    let mut state = undeformed(part);
+pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State, f64), Failure> {
+    let mut state = undeformed(model);
     let Some(InitialStress { kind, steps }) = &part.initial_stress else { return Ok((state, 0.0)) };
     match kind {
         InitialStressKind::Gravity => Ok(0),
         InitialStressKind::Uniform(stress) => initial_stress::set_uniform(model, &mut state, *stress),
         InitialStressKind::K0 { k0, overburden } => {
-            let top = Overburden::Level(top(part));
+            let top = Overburden::Level(top(model));
             initial_stress::set_k0(model, &mut state, overburden.as_ref().unwrap_or(&top), k0)
         }
     }
     .and_then(|_| initial_stress::equilibrate(model, &mut state, gravity, part.newton, *steps))
     .map_err(|e| part.failure(&e).in_stage("initial stress"))?;
     let points = std::mem::take(&mut state.points);
-    Ok((State { points, ..undeformed(part) }, 1.0))
+    Ok((State { points, ..undeformed(model) }, 1.0))
 }
 
 /// The state with its initial stress, then in equilibrium with `load` [N] (weight included, shape `[3·nodes]`), which is
@@ -33,9 +33,8 @@ pub fn state(part: &SolidPart, gravity: &[f64]) -> Result<(State, f64), Failure>
 ///
 /// # Errors
 /// There is no equilibrium.
-pub fn under_load(part: &SolidPart, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
-    let model = &part.model;
-    let (mut state, carried) = state(part, gravity)?;
+pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
+    let (mut state, carried) = state(part, model, gravity)?;
     let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 40 };
     let mut solver = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
     let mut loading = |time: f64, f: &mut [f64]| {
@@ -51,16 +50,16 @@ pub fn under_load(part: &SolidPart, gravity: &[f64], load: &[f64]) -> Result<Sta
 }
 
 /// No displacement anywhere, not even at supports that will be moved: they move while the stress follows.
-fn undeformed(part: &SolidPart) -> State {
-    let mut state = State::new(&part.model);
+fn undeformed(model: &Model) -> State {
+    let mut state = State::new(model);
     state.u.fill(0.0);
     state
 }
 
 /// Height of the highest node against gravity [m].
-fn top(part: &SolidPart) -> f64 {
-    let g = part.model.gravity();
+fn top(model: &Model) -> f64 {
+    let g = model.gravity();
     let size = g.iter().map(|g| g * g).sum::<f64>().sqrt();
     let height = |x: &[f64; 3]| -> f64 { (0..3).map(|k| -g[k] / size * x[k]).sum() };
-    part.model.mesh().coordinates.iter().map(height).fold(f64::NEG_INFINITY, f64::max)
+    model.mesh().coordinates.iter().map(height).fold(f64::NEG_INFINITY, f64::max)
 }

@@ -36,6 +36,7 @@ use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::grains::{GrainsPart, check_joined, refused};
+use crate::model::seat_load::CyclicLoad;
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
@@ -47,7 +48,7 @@ use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use summary::{CouplingRecord, Hash, NewtonRecord};
-use system::{CoupledSystem, GrainsSystem, System};
+use system::{CoupledSystem, GrainsSystem, Meshed, System};
 use trackbed_coupling as coupling;
 use trackbed_coupling::scheme::{Passes, Scheme};
 use trackbed_coupling::surface::SolidSurface;
@@ -305,7 +306,7 @@ impl Stage<'_> {
                 let mut resumed = self.resumed(RUN);
                 let (grains, deposited) = self.deposit(grains, None, resumed.as_mut(), summary)?;
                 let grains = &grains;
-                let bodies = self.with_sleeper(grains, deposited, None)?;
+                let (bodies, _) = self.with_sleeper(grains, deposited, None)?;
                 let model = self.grain_model(grains, bodies, summary)?;
                 let mut system = match &mut resumed {
                     Some(loaded) => GrainsSystem::resume(model, loaded)?,
@@ -316,19 +317,20 @@ impl Stage<'_> {
                 self.record_packing(&system, grains, summary)
             }
             (Some(solid), Some(grains), Some(plan)) => {
-                let surface = plan.surface(solid, grains);
-                let transfer_kind = plan.transfer_kind(&surface);
+                let ground = plan.ground(solid, grains);
+                let transfer_kind = plan.transfer_kind(&ground);
                 let mut resumed = self.resumed(RUN);
-                let (grains, deposited) = self.deposit(grains, Some(&surface), resumed.as_mut(), summary)?;
+                let (grains, deposited) = self.deposit(grains, Some(&ground), resumed.as_mut(), summary)?;
                 let grains = &grains;
-                let bodies = self.with_sleeper(grains, deposited, Some(&surface))?;
+                let (bodies, bases) = self.with_sleeper(grains, deposited, Some(&ground))?;
                 let model = self.grain_model(grains, bodies, summary)?;
-                let classes = plan.classes(grains, &model, solid, &surface);
-                let substeps = plan.substeps(&classes, model.dt());
+                let (classes, substeps) = plan.classes(grains, &model, solid, &ground);
+                let whole = solid.sleepers.as_ref().map(|s| s.set_down(&solid.model, &bases));
+                let body = Body { part: solid, model: whole.as_ref().unwrap_or(&solid.model), bases: &bases };
+                let surface = if whole.is_some() { plan.surface(body.model, grains) } else { ground };
+                let load = grains.load.as_ref();
                 let mut system =
-                    self.couple(solid, model, plan, substeps, surface, resumed.as_mut(), summary)?;
-                let window = system.model.window();
-                let classes: Vec<_> = classes.iter().map(|c| c.at(window)).collect();
+                    self.couple(body, model, plan, substeps, surface, load, resumed.as_mut(), summary)?;
                 let substeps = system.model.substeps;
                 let remarks = exchange::remarks(&classes, plan.scheme, substeps);
                 if !self.quiet {
@@ -360,8 +362,8 @@ impl Stage<'_> {
                 self.record_packing(&system, grains, summary)?;
                 if self.job.output.tables {
                     let moved = &system.state.solid;
-                    let reactions = fem::energy::reactions(&solid.model, moved, system.work.load());
-                    statics::write_tables(&solid.model, moved, &reactions, self.dir)?;
+                    let reactions = fem::energy::reactions(body.model, moved, system.work.load());
+                    statics::write_tables(body.model, moved, &reactions, self.dir)?;
                 }
                 summary.newton = system.work.newton().map(|s| NewtonRecord::of(&s));
                 Ok(())
@@ -415,29 +417,31 @@ impl Stage<'_> {
     /// it; the mesh file describes that loaded shape, as a survey would.
     fn couple<'b>(
         &self,
-        solid: &'b crate::model::solid::SolidPart,
+        body: Body<'b>,
         grains: dem::Model,
         plan: &CouplingPart,
         substeps: u32,
         mut surface: SolidSurface,
+        load: Option<&'b CyclicLoad>,
         resumed: Option<&mut Loaded>,
         summary: &mut Summary,
     ) -> Result<CoupledSystem<'b>, Failure> {
         let progress = Progress::start("equilibrium", 1.0, self.quiet);
-        let dead_load = solid.model.gravity_load();
-        let (reference, memory, state) = match resumed {
+        let solid = body.part;
+        let dead_load = solid.dead_load(body.model);
+        let (reference, memory, state, seat_work) = match resumed {
             Some(loaded) => loaded.take()?,
             None => {
-                let (state, resting, contacts) = equilibrium(solid, &grains, &mut surface, &dead_load)?;
+                let (state, resting, contacts) = equilibrium(body, &grains, &mut surface, &dead_load)?;
                 let reference = state.u.clone();
                 let start = coupling::step::State::new(state, resting);
                 // Only the lagged scheme goes on with the load of before.
                 let lagged = plan.scheme == Scheme::Lagged;
-                (reference, None, if lagged { start.carrying(contacts) } else { start })
+                (reference, None, if lagged { start.carrying(contacts) } else { start }, 0.0)
             }
         };
         let model = coupling::step::Model {
-            solid: &solid.model,
+            solid: body.model,
             dead_load,
             reference,
             substeps,
@@ -450,8 +454,8 @@ impl Stage<'_> {
             .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
             .map_err(|e| solid.failure(&e))?;
         if let Some(reduction) = solid.reduction {
-            let reduced = fem::reduction::Reduced::new(&solid.model, work.surface.faces(), reduction)
-                .map_err(|e| {
+            let reduced =
+                fem::reduction::Reduced::new(body.model, work.surface.faces(), reduction).map_err(|e| {
                     Failure::from(self.document.error("solid.reduction", e.to_string(), "another choice"))
                 })?;
             work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
@@ -459,8 +463,24 @@ impl Stage<'_> {
         }
         summary.model.solid_step = Some(model.window());
         progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
-        Ok(CoupledSystem { model, state, work, loads: &solid.loads })
+        let seats = solid.sleepers.as_ref().map(|bodies| Meshed {
+            bodies,
+            bases: body.bases,
+            load,
+            first_face: plan.ground_faces,
+            work: seat_work,
+        });
+        Ok(CoupledSystem { model, state, work, loads: &solid.loads, ground_faces: plan.ground_faces, seats })
     }
+}
+
+/// The solid of a coupled run: its model has the meshed sleepers where they are set down, with their bases at these heights
+/// [m].
+#[derive(Clone, Copy)]
+struct Body<'a> {
+    part: &'a SolidPart,
+    model: &'a fem::Model,
+    bases: &'a [f64],
 }
 
 /// A remark on windows of the iterated scheme that found no end.
@@ -493,26 +513,42 @@ fn fallen(system: &CoupledSystem<'_>, lowest: f64) -> Option<String> {
 /// The solid in equilibrium with its weight, its loads and the grains that lie on it, the grains with their contacts, and
 /// the load of these [N].
 fn equilibrium(
-    solid: &SolidPart,
+    body: Body<'_>,
     grains: &dem::Model,
     surface: &mut SolidSurface,
     dead_load: &[f64],
 ) -> Result<(fem::State, dem::State, Vec<f64>), Failure> {
+    let Body { part: solid, model, .. } = body;
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
-    let (contacts, resting) = coupling::step::resting_load(grains, surface, solid.model.mesh())
+    let (contacts, resting) = coupling::step::resting_load(grains, surface, model.mesh())
         .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;
     }
-    let state = if solid.is_linear() {
-        let rest = fem::statics::solve(&solid.model, &load).map_err(|e| solid.failure(&e))?;
-        let mut state = fem::state::State::new(&solid.model);
+    // Sleepers fall onto the grains only now: what stands is the ground.
+    let ground = solid.ground().map_err(|e| Failure::Other(e.to_string()))?;
+    let standing = ground.as_ref().unwrap_or(model);
+    let (load, dead_load) = (&load[..standing.dof_count()], &dead_load[..standing.dof_count()]);
+    let rest = if solid.is_linear() {
+        let rest = fem::statics::solve(standing, load).map_err(|e| solid.failure(&e))?;
+        let mut state = fem::state::State::new(standing);
         state.u.copy_from_slice(&rest.u);
         state
     } else {
-        initial::under_load(solid, dead_load, &load)?
+        initial::under_load(solid, standing, dead_load, load)?
     };
+    if ground.is_none() {
+        return Ok((rest, resting, contacts));
+    }
+    let mut state = fem::state::State::new(model);
+    for (all, own) in [(&mut state.u, &rest.u), (&mut state.v, &rest.v), (&mut state.a, &rest.a)] {
+        all[..own.len()].copy_from_slice(own);
+    }
+    state.points = rest.points;
+    if !state.points.is_empty() {
+        state.points.resize(model.point_count(), fem::material::PointState::default());
+    }
     Ok((state, resting, contacts))
 }
 

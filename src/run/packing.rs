@@ -133,7 +133,7 @@ impl Stage<'_> {
     ) -> Result<(), Failure> {
         let Some(view) = system.grains() else { return Ok(()) };
         let GrainsView { model, state } = view;
-        let sleeper = grains.sleeper.as_ref().map(|_| grains.parts.len() as u32 - 1);
+        let sleeper = grains.rigid_sleeper().map(|_| grains.parts.len() as u32 - 1);
         let is_grain = |b: usize| Some(model.part(b)) != sleeper;
         let contacts = measure::contacts(model, state);
         let stress = measure::mean_stress_of(model, state, &contacts);

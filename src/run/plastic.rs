@@ -67,7 +67,7 @@ impl<'a> QuasiStaticSystem<'a> {
     pub fn new(part: &'a SolidPart, plan: &QuasiStaticPlan, step: f64) -> Result<Self, Failure> {
         let model = &part.model;
         let gravity = model.gravity_load();
-        let (mut state, carried) = super::initial::state(part, &gravity)?;
+        let (mut state, carried) = super::initial::state(part, &part.model, &gravity)?;
         // What acts at time 0 is brought on over one unit of time before it.
         let control = StepControl {
             initial: 0.25,
@@ -226,7 +226,7 @@ impl<'a> PlasticDynamics<'a> {
     pub fn new(part: &'a SolidPart, method: TimeMethod, step: f64) -> Result<Self, Failure> {
         let model = &part.model;
         let gravity = model.gravity_load();
-        let (mut state, _) = super::initial::state(part, &gravity)?;
+        let (mut state, _) = super::initial::state(part, &part.model, &gravity)?;
         let solver = dynamics_solver(part, method, step)?;
         let mut load = vec![0.0; model.dof_count()];
         let mut course = Course { part, gravity: &gravity, carried: 1.0 };

@@ -150,18 +150,20 @@ impl<'a> Recorder<'a> {
     /// A value is not finite, or the disk refuses.
     pub fn row<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let mut row = vec![time];
-        if let Some(g) = system.grains() {
-            for (k, s) in (0..track.count()).map(|k| (k, track.sleeper(k, time))) {
-                let x = g.state.position(s.body);
-                let up = g.state.orientation(g.model, s.body) * nalgebra::Vector3::z();
-                row.extend([s.load, x.x, x.y, x.z, up.z.clamp(-1.0, 1.0).acos()]);
-                let course = &mut self.course;
-                if course.first_heights.len() == k {
-                    course.first_heights.push(x.z);
-                    course.settlement.push(Vec::new());
-                }
-                course.settlement[k].push([time, 1e3 * (course.first_heights[k] - x.z)]);
+        for (k, s) in (0..track.count()).filter_map(|k| Some((k, track.sleeper(k, time, system)?))) {
+            row.push(s.load);
+            row.extend(s.place);
+            row.push(s.tilt);
+            if let Some(meshed) = s.meshed {
+                row.extend([meshed.moved.seats, meshed.moved.bend]);
+                row.extend(meshed.contact);
             }
+            let course = &mut self.course;
+            if course.first_heights.len() == k {
+                course.first_heights.push(s.height);
+                course.settlement.push(Vec::new());
+            }
+            course.settlement[k].push([time, 1e3 * (course.first_heights[k] - s.height)]);
         }
         if system.grains().is_some() && system.solid().is_some() {
             row.extend(system.contact_force());
@@ -229,15 +231,10 @@ impl<'a> Recorder<'a> {
         if let Some(before) = self.course.before_jump.take() {
             self.course.jump_energy += self.energy_error(system) - before;
         }
-        let (Some(cycles), Some(s), Some(g)) =
-            (&mut self.course.cycles, track.observed(time), system.grains())
-        else {
-            return Ok(None);
-        };
-        let height = g.state.position(s.body).z;
-        let work = g.state.ledger.work_applied;
-        let Some(cycle) = cycles.record(time, system.window(), height, s.load, work, system.peak_pressure())
-        else {
+        let sleeper = track.observed().and_then(|k| track.sleeper(k, time, system));
+        let (Some(cycles), Some(s)) = (&mut self.course.cycles, sleeper) else { return Ok(None) };
+        let (work, pressure) = (system.seat_work(), system.peak_pressure());
+        let Some(cycle) = cycles.record(time, system.window(), s.height, s.load, work, pressure) else {
             return Ok(None);
         };
         if let Some(file) = &mut self.cycles_file {
@@ -397,6 +394,11 @@ fn columns<S: System>(job: &Job, system: &S, track: &Track<'_>) -> Vec<Column> {
         columns.push(Column::new(format!("load{number}"), "N"));
         vector(&mut columns, &format!("sleeper{number}"), "m");
         columns.push(Column::new(format!("sleeper{number}_tilt"), "rad"));
+        if track.is_meshed() {
+            columns.push(Column::new(format!("sleeper{number}_seats"), "m"));
+            columns.push(Column::new(format!("sleeper{number}_bend"), "m"));
+            vector(&mut columns, &format!("sleeper{number}_contact"), "N");
+        }
     }
     if system.grains().is_some() && system.solid().is_some() {
         vector(&mut columns, "contact_force_on_solid", "N");

@@ -146,21 +146,25 @@ impl Stage<'_> {
         Ok(())
     }
 
-    /// Adds the sleepers, each just above the highest grain below it.
+    /// Adds the sleepers, each just above the highest grain below it. Comes back with the heights of their bases [m];
+    /// meshed ones are no bodies.
     pub(super) fn with_sleeper(
         &self,
         grains: &GrainsPart,
         mut bodies: Vec<BodyInput>,
         surface: Option<&SolidSurface>,
-    ) -> Result<Vec<BodyInput>, Failure> {
-        let Some(plan) = &grains.sleeper else { return Ok(bodies) };
+    ) -> Result<(Vec<BodyInput>, Vec<f64>), Failure> {
+        let Some(plan) = &grains.sleeper else { return Ok((bodies, Vec::new())) };
         let model = dem::Model::new(grains.input(bodies.clone())).map_err(|e| refused(self.document, &e))?;
         let state = dem::State::new(&model);
-        for &centre in &plan.centres {
-            let top = bed::top_below(&model, &state, centre, &plan.half, surface);
-            bodies.push(grains.sleeper_body(plan, centre, top + plan.half[2]));
+        let base = |&centre: &[f64; 2]| bed::top_below(&model, &state, centre, &plan.half, surface);
+        let bases: Vec<f64> = plan.centres.iter().map(base).collect();
+        if !plan.meshed {
+            for (&centre, base) in plan.centres.iter().zip(&bases) {
+                bodies.push(grains.sleeper_body(plan, centre, base + plan.half[2]));
+            }
         }
-        Ok(bodies)
+        Ok((bodies, bases))
     }
 }
 

@@ -341,6 +341,9 @@ pub struct SleeperRecord {
     /// Largest force over that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamic_amplification: Option<f64>,
+    /// Least and largest rise of the ends of a meshed sleeper's base over its middle [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bend: Option<[f64; 2]>,
 }
 
 /// A sleeper that no contact carried for a while.
@@ -534,8 +537,11 @@ impl Summary {
             let share = s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of an axle)", 100.0 * p));
             let factor =
                 s.dynamic_amplification.map_or(String::new(), |f| format!(", {f:.3} times the static force"));
+            let bend = s.bend.map_or(String::new(), |[low, high]| {
+                format!(", ends {:.4} to {:.4} mm over the middle", 1e3 * low, 1e3 * high)
+            });
             lines.push(format!(
-                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, lowered by {:.3} mm",
+                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, lowered by {:.3} mm{bend}",
                 k + 1,
                 1e-3 * s.smallest_force,
                 1e-3 * s.largest_force,

@@ -2,7 +2,8 @@
 
 use super::checkpoint::{Body, Loaded};
 use crate::failure::Failure;
-use crate::model::solid::{SolidPart, TimeMethod};
+use crate::model::seat_load::CyclicLoad;
+use crate::model::solid::{Moved, SleeperBodies, SolidPart, TimeMethod};
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
@@ -62,13 +63,21 @@ pub trait System {
     fn reactions(&self) -> Option<Vec<f64>> {
         None
     }
-    /// Force of the grains on the solid, mean over the last window [N].
+    /// Force of the grains on the ground, mean over the last window [N].
     fn contact_force(&self) -> [f64; 3] {
         [0.0; 3]
     }
-    /// Largest mean pressure on a face of the solid in the last window [Pa].
+    /// Largest mean pressure on a face of the ground in the last window [Pa].
     fn peak_pressure(&self) -> f64 {
         0.0
+    }
+    /// Meshed sleeper `k`, if there are such.
+    fn meshed_sleeper(&self, _k: usize) -> Option<MeshedView> {
+        None
+    }
+    /// Work of the loads on the sleepers' seats so far [J].
+    fn seat_work(&self) -> f64 {
+        self.grains().map_or(0.0, |g| g.state.ledger.work_applied)
     }
 }
 
@@ -266,6 +275,47 @@ impl System for GrainsSystem {
     }
 }
 
+/// A meshed sleeper at one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshedView {
+    /// Centre of mass [m].
+    pub place: [f64; 3],
+    /// Height of the centre when it was set down and the rise of the seats since, together [m].
+    pub height: f64,
+    /// How it has moved.
+    pub moved: Moved,
+    /// Force of the grains on it, mean over the last window [N].
+    pub contact: [f64; 3],
+}
+
+/// Meshed sleepers of a running system.
+pub struct Meshed<'a> {
+    /// Their nodes.
+    pub bodies: &'a SleeperBodies,
+    /// Heights of their bases when they were set down [m].
+    pub bases: &'a [f64],
+    /// The load on their seats.
+    pub load: Option<&'a CyclicLoad>,
+    /// Their first face in the surface.
+    pub first_face: usize,
+    /// Work of that load so far [J].
+    pub work: f64,
+}
+
+impl Meshed<'_> {
+    /// Adds the forces on the seats at time `t` [s] to nodal loads, shape `[3·nodes]`.
+    fn add_load(&self, t: f64, load: &mut [f64]) {
+        let Some(cycles) = self.load else { return };
+        (0..self.bodies.count()).for_each(|k| self.bodies.add_load(k, cycles.on(k, t), load));
+    }
+
+    /// Work of the forces at time `t` [s] on displacements that are added to `u`, less that on `u` itself [J].
+    fn work_at(&self, t: f64, u: &[f64]) -> f64 {
+        let on = |k: usize| self.load.map_or(0.0, |l| l.on(k, t));
+        (0..self.bodies.count()).map(|k| -on(k) * self.bodies.rise_of_seats(k, u)).sum()
+    }
+}
+
 /// Grains on a solid.
 pub struct CoupledSystem<'a> {
     /// Both models and how they are joined.
@@ -276,6 +326,10 @@ pub struct CoupledSystem<'a> {
     pub work: coupling::step::Work,
     /// Loads on the solid.
     pub loads: &'a [crate::model::solid::NodalLoad],
+    /// Faces of the surface that are the ground's.
+    pub ground_faces: usize,
+    /// Meshed sleepers.
+    pub seats: Option<Meshed<'a>>,
 }
 
 impl System for CoupledSystem<'_> {
@@ -288,17 +342,28 @@ impl System for CoupledSystem<'_> {
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
-        let loads = self.loads;
-        let solid_load = |t: f64, load: &mut [f64]| loads.iter().for_each(|l| l.add(t, load));
+        let (loads, seats) = (self.loads, self.seats.as_ref());
+        let solid_load = |t: f64, load: &mut [f64]| {
+            loads.iter().for_each(|l| l.add(t, load));
+            seats.iter().for_each(|s| s.add_load(t, load));
+        };
+        // The middle of the window, at which the step takes its loads.
+        let middle = self.state.solid.time + 0.5 * self.model.window();
+        let before = seats.map_or(0.0, |s| s.work_at(middle, &self.state.solid.u));
         let model = &self.model;
         let apply =
             |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| applied(t, &model.grains, s, out);
         coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
-            .map_err(|e| Failure::Numerical(e.to_string()))
+            .map_err(|e| Failure::Numerical(e.to_string()))?;
+        if let Some(seats) = &mut self.seats {
+            seats.work += seats.work_at(middle, &self.state.solid.u) - before;
+        }
+        Ok(())
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
-        body.put(&(&self.model.reference, self.work.memory(), &self.state))
+        let seat_work = self.seats.as_ref().map_or(0.0, |s| s.work);
+        body.put(&(&self.model.reference, self.work.memory(), &self.state, seat_work))
     }
 
     fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
@@ -324,10 +389,30 @@ impl System for CoupledSystem<'_> {
     }
 
     fn contact_force(&self) -> [f64; 3] {
-        self.work.mean_contact_force(self.model.window())
+        self.work.contact_force_on(0..self.ground_faces, self.model.window())
     }
 
     fn peak_pressure(&self) -> f64 {
-        self.work.peak_face_pressure(self.model.window())
+        self.work.peak_pressure_on(0..self.ground_faces, self.model.window())
+    }
+
+    fn meshed_sleeper(&self, k: usize) -> Option<MeshedView> {
+        let s = self.seats.as_ref()?;
+        let (moved, [x, y, z]) = (s.bodies.moved(k, &self.state.solid.u), s.bodies.centre(k, s.bases[k]));
+        let faces = s.bodies.face_count();
+        let first = s.first_face + k * faces;
+        Some(MeshedView {
+            place: [x + moved.way[0], y + moved.way[1], z + moved.way[2]],
+            height: z + moved.seats,
+            moved,
+            contact: self.work.contact_force_on(first..first + faces, self.model.window()),
+        })
+    }
+
+    fn seat_work(&self) -> f64 {
+        match &self.seats {
+            Some(seats) => seats.work,
+            None => self.state.grains.ledger.work_applied,
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::checkpoint::{Body, Loaded};
 use super::push::{Push, PushState};
 use super::rail::{Laid, Rails};
 use super::summary::{LiftOff, SleeperRecord, Summary, TrackRecord};
-use super::system::{GrainsView, System};
+use super::system::{GrainsView, MeshedView, System};
 use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, SleeperPlan};
 use crate::model::seat_load::{Course, CyclicLoad};
@@ -19,11 +19,11 @@ use trackbed_dem as dem;
 /// Share of a sleeper's weight below which a contact force is rounding.
 const UNFELT: f64 = 1e-9;
 
-/// The sleepers of a run, which are its last bodies, and what loads them.
+/// The sleepers of a run, its last bodies or bodies of the solid, and what loads them.
 pub struct Track<'a> {
     plan: Option<&'a SleeperPlan>,
     load: Option<&'a CyclicLoad>,
-    /// Body of the first sleeper.
+    /// Body of the first sleeper, of rigid ones.
     first: usize,
     rails: Option<Rails>,
     push: Option<Push<'a>>,
@@ -66,15 +66,24 @@ struct Extremes {
     lifted: Option<f64>,
     /// Least deflection of the rail over it [m].
     rail: f64,
+    /// Least and largest rise of a meshed sleeper's ends over its middle [m].
+    bend: [f64; 2],
 }
 
 /// Place and load of a sleeper at one moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Sleeper {
-    /// Its body.
-    pub body: usize,
+    /// Centre [m].
+    pub place: [f64; 3],
+    /// Angle between its axis and the vertical [rad].
+    pub tilt: f64,
+    /// Height that settlements are taken from [m]: of the centre; of a meshed sleeper of the seats, less their distance
+    /// from the centre.
+    pub height: f64,
     /// Downward load [N].
     pub load: f64,
+    /// What a meshed sleeper has more.
+    pub meshed: Option<MeshedView>,
 }
 
 impl<'a> Track<'a> {
@@ -82,7 +91,7 @@ impl<'a> Track<'a> {
     pub fn new(grains: Option<&'a GrainsPart>, view: Option<GrainsView<'_>>) -> Track<'a> {
         let plan = grains.and_then(|g| g.sleeper.as_ref());
         let load = grains.and_then(|g| g.load.as_ref());
-        let count = plan.map_or(0, |p| p.centres.len());
+        let count = plan.filter(|p| !p.meshed).map_or(0, |p| p.centres.len());
         let rails = match (grains.and_then(|g| g.rail), plan, load, view) {
             (Some(input), Some(plan), Some(load), Some(view)) => {
                 Rails::new(input, plan.seats.len(), load.clone(), view.model.dt())
@@ -188,7 +197,8 @@ impl<'a> Track<'a> {
         if self.push.as_ref().is_some_and(|p| p.apply(&self.now.borrow().push, t, model, state, out)) {
             return;
         }
-        let (Some(load), Some(plan)) = (self.load, self.plan) else { return };
+        // Meshed sleepers get theirs as a load on the solid.
+        let (Some(load), Some(plan)) = (self.load, self.plan.filter(|p| !p.meshed)) else { return };
         self.bring_up(model, state);
         let (now, mut window) = (self.now.borrow(), self.window.borrow_mut());
         // A window that is made again begins at the same step.
@@ -233,13 +243,17 @@ impl<'a> Track<'a> {
             }
         }
         let Some(load) = self.load else { return };
-        self.bring_up(view.model, view.state);
+        if self.rails.is_some() {
+            self.bring_up(view.model, view.state);
+        }
         if t + 0.5 * system.window() < load.cycles_begin() {
             return;
         }
         let mut now = self.now.borrow_mut();
         for k in 0..self.count() {
-            let height = view.state.position(self.first + k).z;
+            let meshed = system.meshed_sleeper(k);
+            let height = meshed.map_or_else(|| view.state.position(self.body(k)).z, |m| m.height);
+            let bend = meshed.map_or(0.0, |m| m.moved.bend);
             let force = self.force(&now, k, t);
             let rail = now.laid.as_ref().zip(self.rails.as_ref()).map_or(0.0, |(l, r)| l.deflection(r, k));
             match now.extremes.get_mut(k) {
@@ -250,16 +264,18 @@ impl<'a> Track<'a> {
                     aloft: 0.0,
                     lifted: None,
                     rail,
+                    bend: [bend; 2],
                 }),
                 Some(e) => {
                     e.highest = e.highest.max(height);
-                    if self.aloft(k, view) {
+                    if meshed.map_or_else(|| self.aloft(k, view), |m| m.contact == [0.0; 3]) {
                         e.lifted.get_or_insert(t - system.window());
                         e.aloft += system.window();
                     }
                     e.force = [e.force[0].min(force), e.force[1].max(force)];
                     e.height[1] = e.height[1].min(height);
                     e.rail = e.rail.min(rail);
+                    e.bend = [e.bend[0].min(bend), e.bend[1].max(bend)];
                 }
             }
         }
@@ -287,9 +303,28 @@ impl<'a> Track<'a> {
         self.rails.is_some()
     }
 
+    /// Body of sleeper `k`, of rigid ones.
+    pub fn body(&self, k: usize) -> usize {
+        self.first + k
+    }
+
     /// Sleeper `k` with its load at time `t` [s].
-    pub fn sleeper(&self, k: usize, t: f64) -> Sleeper {
-        Sleeper { body: self.first + k, load: self.force(&self.now.borrow(), k, t) }
+    pub fn sleeper<S: System>(&self, k: usize, t: f64, system: &S) -> Option<Sleeper> {
+        let load = self.force(&self.now.borrow(), k, t);
+        if let Some(meshed) = system.meshed_sleeper(k) {
+            let MeshedView { place, height, moved, .. } = meshed;
+            return Some(Sleeper { place, tilt: moved.tilt, height, load, meshed: Some(meshed) });
+        }
+        let g = system.grains()?;
+        let x = g.state.position(self.body(k));
+        let up = g.state.orientation(g.model, self.body(k)) * nalgebra::Vector3::z();
+        let tilt = up.z.clamp(-1.0, 1.0).acos();
+        Some(Sleeper { place: x.into(), tilt, height: x.z, load, meshed: None })
+    }
+
+    /// Whether the sleepers are meshed.
+    pub fn is_meshed(&self) -> bool {
+        self.plan.is_some_and(|p| p.meshed)
     }
 
     /// Deflection of the rail over sleeper `k` since it was laid, upwards, mean of all rails [m].
@@ -299,8 +334,8 @@ impl<'a> Track<'a> {
     }
 
     /// The sleeper whose settlement is followed: the one in the middle.
-    pub fn observed(&self, t: f64) -> Option<Sleeper> {
-        (self.count() > 0).then(|| self.sleeper(self.count() / 2, t))
+    pub fn observed(&self) -> Option<usize> {
+        (self.count() > 0).then(|| self.count() / 2)
     }
 
     /// Adds what rails and pads hold and have turned over [J].
@@ -346,6 +381,7 @@ impl<'a> Track<'a> {
                 rail_deflection: self.rails.as_ref().map(|_| -e.rail),
                 static_force,
                 dynamic_amplification: static_force.map(|f| e.force[1] / f),
+                bend: self.is_meshed().then_some(e.bend),
             }
         };
         Some(TrackRecord { sleepers: now.extremes.iter().enumerate().map(record).collect() })

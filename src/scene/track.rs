@@ -2,7 +2,8 @@
 
 use super::after::{CycleJump, Push};
 use super::units::{
-    Bending, Dashpot, Force, Frequency, Length, LineMass, Mass, Quantity, Stiffness, Time, Velocity,
+    Bending, Dashpot, Density, Force, Frequency, Length, LineMass, Mass, Quantity, Stiffness, Stress, Time,
+    Velocity,
 };
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -26,14 +27,14 @@ pub struct Track {
     pub rail: Option<RailTable>,
 }
 
-/// Sleepers as rigid boxes, placed on the settled grains.
+/// Sleepers as boxes, rigid or meshed, placed on the settled grains.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sleeper {
     /// Edge lengths in x, y, z [m].
     pub size: [Quantity<Length>; 3],
-    /// Mass [kg]; of the slice that is modelled.
-    pub mass: Quantity<Mass>,
+    /// Mass [kg]; of the slice that is modelled. A meshed sleeper may have a density instead.
+    pub mass: Option<Quantity<Mass>>,
     /// Name of its material.
     pub material: String,
     /// Place of its centre in x and y [m], of the first of several; it is lowered onto the highest grain below it.
@@ -49,6 +50,25 @@ pub struct Sleeper {
     /// Motions that are held: any of "x", "y", "z", "rx", "ry", "rz"; default none.
     #[serde(default)]
     pub hold: Vec<Motion>,
+    /// Elements that make it an elastic body of the solid; default a rigid body.
+    pub mesh: Option<SleeperMesh>,
+}
+
+/// `[track.sleeper.mesh]`: 20-node hexahedra of which each sleeper consists.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SleeperMesh {
+    /// Number of elements along x, y, z.
+    pub elements: [u32; 3],
+    /// Young's modulus [Pa].
+    pub young: Quantity<Stress>,
+    /// Poisson's ratio, above −1 and below 0.5.
+    pub poisson: f64,
+    /// Density [kg/m³], where `mass` is not given.
+    pub density: Option<Quantity<Density>>,
+    /// Lengths in x and y of the rectangle about each seat over which its force is spread [m]; default 0.15 m across the
+    /// track and the whole width along it, no farther than to the edge.
+    pub foot: Option<[Quantity<Length>; 2]>,
 }
 
 fn one() -> u32 {

@@ -14,6 +14,7 @@ mod lists;
 mod materials;
 mod scene;
 mod solid;
+mod track;
 mod walls;
 
 const SCENE: &str = "scene.toml";

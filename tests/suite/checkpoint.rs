@@ -119,7 +119,7 @@ fn same(whole: &Path, broken: &Path) {
 }
 
 /// Runs a scene without a break, and with breaks after these shares of its steps, each with another number of threads.
-fn broken(scene: &Path, set: &[&str], shares: &[f64], expected: &[&str]) {
+pub(super) fn broken(scene: &Path, set: &[&str], shares: &[f64], expected: &[&str]) {
     let folder = Folder::new("broken");
     let (whole, out) = (folder.join("whole"), folder.join("broken"));
     let Ok(Outcome::Done(summary)) = trackbed::run::run(scene, &options(&whole, set, 1)) else {

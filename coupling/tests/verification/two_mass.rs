@@ -141,7 +141,7 @@ fn thresholds_of_the_schemes_at_a_damping_of_0_2() {
     assert!(iterated < 1.0 + 1e-4);
 }
 
-/// The whole table: A, B and stiffened within 7 % in W of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m (bisected to
+/// The whole table: A, B and stiffened within 10 % in W of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m (bisected to
 /// 2 %); the iterated scheme stable at 5.
 #[test]
 #[ignore = "the table of the guide, 4 min"]
@@ -169,7 +169,7 @@ fn thresholds_of_the_schemes_in_full() {
                 .collect();
             println!("M = {ratio} m, {scheme:?}: {found:.3?} against {expected:?}");
             for ((f, e), zeta) in found.iter().zip(expected).zip(damping) {
-                if (f / e - 1.0).abs() > 0.07 {
+                if (f / e - 1.0).abs() > 0.1 {
                     missed.push((ratio, scheme, zeta, *f, e));
                 }
             }

@@ -148,7 +148,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         }
         for contact in &block.surface.live {
             let partner = Partnership {
-                material: model.surface_material.unwrap_or(0),
+                material: model.patch_material(contact.patch) as u32,
                 partner: Partner::Patch(contact.patch),
                 velocity: contact.velocity,
                 spin: Vec3::zeros(),

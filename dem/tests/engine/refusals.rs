@@ -41,6 +41,8 @@ fn indices_that_point_nowhere() {
     assert!(matches!(refused(|i| i.bodies[0].material = 1), ModelError::Index { owner: "body", .. }));
     assert!(matches!(refused(|i| i.planes[0].material = 1), ModelError::Index { owner: "plane", .. }));
     assert!(matches!(refused(|i| i.surface_material = Some(1)), ModelError::Index { owner: "surface", .. }));
+    let other = refused(|i| (i.surface_material, i.other_surface) = (Some(0), Some((3, 1))));
+    assert!(matches!(other, ModelError::Index { owner: "surface", .. }));
     let pair = PairOverride { a: 0, b: 9, ..PairOverride::default() };
     assert!(matches!(refused(|i| i.contacts.push(pair)), ModelError::Index { .. }));
 }

@@ -6,6 +6,7 @@ mod geometry;
 mod load;
 mod material;
 mod selection;
+mod sleepers;
 
 pub use analysis::{
     Analysis, InitialStress, InitialStressKind, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan,
@@ -14,10 +15,12 @@ pub use analysis::{
 pub use geometry::{Geometry, geometry};
 pub use load::NodalLoad;
 pub use selection::find_node;
+pub use sleepers::{Moved, SleeperBodies};
 
 use crate::failure::Failure;
 use crate::mesh_tools;
 use crate::model::tables;
+use crate::model::track::sleeper::MeshedSleepers;
 use crate::read::MeshFile;
 use crate::scene::history::{History, TimeFunction};
 use crate::scene::solid::{Integration, Mass, Rayleigh, ReductionKind, Solid};
@@ -51,6 +54,10 @@ pub struct SolidPart {
     pub material_names: BTreeMap<u32, String>,
     /// Remarks of the readers.
     pub warnings: Vec<String>,
+    /// Meshed sleepers among its elements.
+    pub sleepers: Option<SleeperBodies>,
+    /// Whether the ground has a weight; sleepers have.
+    heavy_ground: bool,
 }
 
 impl SolidPart {
@@ -66,6 +73,47 @@ impl SolidPart {
             }
             _ => Failure::Numerical(format!("solid: {error}")),
         }
+    }
+
+    /// The weight of a model of this solid [N], with its sleepers where they are. Shape `[3·nodes]`.
+    pub fn dead_load(&self, model: &fem::Model) -> Vec<f64> {
+        let mut load = model.gravity_load();
+        if let (Some(sleepers), false) = (&self.sleepers, self.heavy_ground) {
+            load[..3 * sleepers.ground_nodes()].fill(0.0);
+        }
+        load
+    }
+
+    /// The solid without its sleepers, which nothing holds; none for a solid that has none.
+    ///
+    /// # Errors
+    /// As [`fem::Model::new`]; the whole solid was made of the same before.
+    pub fn ground(&self) -> Result<Option<fem::Model>, fem::ModelError> {
+        let Some(sleepers) = &self.sleepers else { return Ok(None) };
+        let (whole, nodes) = (self.model.mesh(), sleepers.ground_nodes());
+        let mut mesh = fem::mesh::Mesh {
+            node_ids: whole.node_ids[..nodes].to_vec(),
+            coordinates: whole.coordinates[..nodes].to_vec(),
+            ..fem::mesh::Mesh::default()
+        };
+        for e in 0..sleepers.ground_elements() {
+            let (id, material) = (whole.element_ids[e], whole.materials[e]);
+            mesh.push_element(id, material, whole.connectivity.kind(e), &whole.connectivity[e]);
+        }
+        let mut materials = self.model.materials().clone();
+        materials.remove(&sleepers.material);
+        let of_ground = |c: &&fem::mesh::Constraint| (c.node as usize) < nodes;
+        let model = fem::Model::new(fem::ModelInput {
+            mesh,
+            materials,
+            quadrature: self.model.quadrature(),
+            constraints: self.model.constraints().iter().filter(of_ground).copied().collect(),
+            gravity: if self.heavy_ground { self.model.gravity() } else { [0.0; 3] },
+            rayleigh: self.model.rayleigh(),
+            mass: self.model.mass(),
+            boundaries: self.model.boundaries().to_vec(),
+        })?;
+        Ok(Some(model))
     }
 
     /// Adds all loads at time `t` [s] to `load`, shape `[3·nodes]`.
@@ -97,7 +145,7 @@ impl SolidPart {
     }
 }
 
-/// Resolves `[solid]`. `coupled`: grains lie on it.
+/// Resolves `[solid]`. `coupled`: grains lie on it; `sleepers`: they lie on the grains and are part of its equations.
 ///
 /// # Errors
 /// Bad input in the scene or in the mesh files.
@@ -106,9 +154,10 @@ pub fn build(
     solid: &Solid,
     gravity: [f64; 3],
     coupled: bool,
+    sleepers: Option<MeshedSleepers>,
 ) -> Result<SolidPart, Failure> {
     let geometry = geometry(document, solid)?;
-    let materials = material::materials(document, solid)?;
+    let mut materials = material::materials(document, solid)?;
     for (number, element) in geometry.mesh.materials.iter().zip(&geometry.mesh.element_ids) {
         if !materials.constants.contains_key(number) {
             let found = format!("no material {number}, which element {element} has");
@@ -126,11 +175,20 @@ pub fn build(
         .enumerate()
         .map(|(i, l)| load::nodal_load(document, &geometry, i, l))
         .collect::<Result<Vec<_>, _>>()?;
-    let supports = boundary::supports(document, solid, &geometry)?;
+    let mut supports = boundary::supports(document, solid, &geometry)?;
     let boundaries = boundary::absorbing(document, solid, &geometry, &materials.constants)?;
     let linear = materials.constants.values().all(|m| m.is_linear());
     let plans = analysis::plans(document, solid, &materials, linear, coupled)?;
-    let Geometry { mesh, element_file, constraint_file, warnings, .. } = geometry;
+    let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
+    // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
+    let faults = mesh_tools::check(&mesh, &supports.constraints);
+    let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
+    let weight = sleepers.as_ref().map_or(if solid.gravity { gravity } else { [0.0; 3] }, |s| s.gravity);
+    let sleepers = sleepers
+        .map(|plan| SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints));
+    if let Some(s) = &sleepers {
+        materials.names.insert(s.material, "sleeper".into());
+    }
     let model = fem::model::Model::new(fem::model::ModelInput {
         mesh,
         materials: materials.constants,
@@ -141,7 +199,7 @@ pub fn build(
         },
         constraints: supports.constraints,
         boundaries,
-        gravity: if solid.gravity { gravity } else { [0.0; 3] },
+        gravity: weight,
         rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
     })
     .map_err(|e| refused(&element_file, &e))?;
@@ -151,9 +209,6 @@ pub fn build(
     };
     let moving =
         supports.moving.iter().map(|(dof, (value, f))| (position(*dof), *value, f.clone())).collect();
-    // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
-    let faults = mesh_tools::check(model.mesh(), model.constraints());
-    let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
     Ok(SolidPart {
         model,
         loads,
@@ -166,6 +221,8 @@ pub fn build(
         reduction: reduction(document, solid, linear, coupled)?,
         material_names: materials.names,
         warnings,
+        sleepers,
+        heavy_ground: solid.gravity,
     })
 }
 

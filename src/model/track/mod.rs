@@ -5,4 +5,5 @@ pub mod beam;
 pub mod plan;
 pub mod pulse;
 pub mod rail;
+pub mod sleeper;
 pub mod trains;

@@ -306,7 +306,7 @@ pub fn rail(document: &Document, track: &Track, r: &RailTable) -> Result<RailPla
         gravity: 0.0,
         sleepers: track.sleeper.count as usize,
         beyond: beyond as usize,
-        sleeper_mass: track.sleeper.mass.si / rails as f64,
+        sleeper_mass: track.sleeper.mass.map_or(0.0, |m| m.si) / rails as f64,
         foundation: [
             foundation,
             least_zero("foundation_damping", r.foundation_damping.map_or(0.0, |c| c.si))?,
