@@ -2,15 +2,15 @@
 //! of wall time (divan's `item/s`), on one and two threads. Below the table: contacts, rebuilt lists, and the rate per
 //! second of processor time, the figure to compare on a shared machine.
 //!
-//! `cargo bench --bench contact` (about a minute); `cargo bench --bench contact -- spheres` for one of them.
+//! `cargo bench --bench contact` (some minutes); `cargo bench --bench contact -- spheres` for one of them.
 //!
 //! * `spheres`: 10,000 spheres, radius 9 to 11 mm, in a box 0.42 m wide, open at the top; K = 1e5 N/m, tangential 2/7
 //!   of it with history, restitution 0.5 without tangential damping, friction 0.5, density 2600 kg/m³, step 2e-5 s.
 //! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
 //! * `hertz`: the same spheres after Hertz and Mindlin, E = 5e7 Pa, ν = 0.25; the bed settles anew under this law.
 //! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million.
-//! * `two_sizes`: part of the bed with its pores filled with spheres of a twentieth of the size; the figure to compare
-//!   is the rate per contact.
+//! * `two_sizes`: part of the bed among spheres of a twentieth of the size, settled (a minute or two); the figure to compare is the
+//!   rate per contact.
 //! * `triad`: what passes through memory, a = b + s c over three lists of 64 MB: 24 bytes counted per element.
 //! * `clumps`: 1,000 clumps of 10 spheres in a box 0.4 m wide, same parameters; clump-steps per second.
 //!
