@@ -1,16 +1,35 @@
 //! Triangle surfaces: no seam may be felt.
 
 use crate::scene::{Random, Run, plane, sphere, stone, weightless};
-use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TriangleSurface, Vec3, measure};
+use trackbed_dem::{BodyInput, Material, ModelInput, Plane, Shape, TriangleSurface, Vec3, measure};
+
+/// One body; a clump is shape 1.
+fn of_one(body: BodyInput) -> ModelInput {
+    let mut input = weightless(Material { stiffness: 1e6, tangential_damping_ratio: 0.3, ..stone() });
+    input.shapes.push(Shape::Clump(crate::scene::clump()));
+    input.bodies.push(body);
+    input
+}
+
+fn on_planes(planes: Vec<Plane>, body: BodyInput) -> ModelInput {
+    ModelInput { planes, ..of_one(body) }
+}
+
+/// A run under gravity that keeps its forces.
+fn heavy(mut input: ModelInput) -> Run {
+    input.gravity = Vec3::new(0.0, 0.0, -9.81);
+    let mut run = Run::new(input);
+    run.work.keep_forces(true);
+    run
+}
 
 fn on_triangles(vertices: &[[f64; 3]], triangles: &[[u32; 3]], body: BodyInput) -> ModelInput {
-    let mut input = weightless(Material { stiffness: 1e6, tangential_damping_ratio: 0.3, ..stone() });
+    let mut input = of_one(body);
     input.triangles.push(TriangleSurface {
         vertices: vertices.iter().map(|&v| v.into()).collect(),
         triangles: triangles.to_vec(),
         ..TriangleSurface::default()
     });
-    input.bodies.push(body);
     input
 }
 
@@ -51,19 +70,9 @@ fn triangulated_floor_is_a_plane() {
     };
     let stone = BodyInput { shape: 1, position: Vec3::new(0.0, 0.0, 0.02), ..ball.clone() };
     for body in [ball, stone] {
-        let prepare = |mut input: ModelInput| {
-            input.shapes.push(Shape::Clump(crate::scene::clump()));
-            input.gravity = Vec3::new(0.0, 0.0, -9.81);
-            let mut run = Run::new(input);
-            run.work.keep_forces(true);
-            run
-        };
-        let mut flat = on_triangles(&[], &[], body.clone());
-        flat.triangles.clear();
-        flat.planes.push(plane(Vec3::zeros(), Vec3::z()));
-        let mut reference = prepare(flat);
+        let mut reference = heavy(on_planes(vec![plane(Vec3::zeros(), Vec3::z())], body.clone()));
         let mut runs = [(&vertices, &triangles), (&soup_vertices, &soup_triangles)]
-            .map(|(v, t)| prepare(on_triangles(v, t, body.clone())));
+            .map(|(v, t)| heavy(on_triangles(v, t, body.clone())));
         // Contact by contact the difference is rounding; a tumbling clump doubles it with each bounce.
         let bounce = if body.shape == 0 { 1e-10 } else { 1e-6 };
         let mut forces = 0.0_f64;
@@ -166,18 +175,13 @@ fn corner_of_triangles_is_one_of_planes() {
         }
     }
     let body = sphere(Vec3::new(0.031, 0.047, 0.009_999_8), Vec3::new(0.9, 0.6, 0.0));
-    let prepare = |mut input: ModelInput| {
-        input.gravity = Vec3::new(0.0, 0.0, -9.81);
-        let mut run = Run::new(input);
-        run.work.keep_forces(true);
-        run
-    };
-    let mut flat = on_triangles(&[], &[], body.clone());
-    flat.triangles.clear();
-    flat.planes.push(plane(Vec3::zeros(), Vec3::z()));
-    flat.planes.push(plane(Vec3::x() * 0.1, -Vec3::x()));
-    flat.planes.push(plane(Vec3::y() * 0.1, -Vec3::y()));
-    let (mut reference, mut run) = (prepare(flat), prepare(on_triangles(&vertices, &triangles, body)));
+    let planes = vec![
+        plane(Vec3::zeros(), Vec3::z()),
+        plane(Vec3::x() * 0.1, -Vec3::x()),
+        plane(Vec3::y() * 0.1, -Vec3::y()),
+    ];
+    let mut reference = heavy(on_planes(planes, body.clone()));
+    let mut run = heavy(on_triangles(&vertices, &triangles, body));
     // Rounding grows with each bounce.
     let (mut forces, mut walls, mut worst) = (0.0_f64, [0, 0], 0.0_f64);
     while reference.state.time < 0.3 {
