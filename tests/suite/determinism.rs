@@ -5,6 +5,18 @@
 use super::support::{Folder, SOLID, json, repository, results, scene_folder, trackbed};
 use std::path::Path;
 
+/// Makes the main scene small, yet with more than the 2500 spheres from which on the grains share their work.
+pub(super) const SMALL: [&str; 8] = [
+    "grains.0.count=250",
+    "deposition.max_time=0.06",
+    "deposition.level=9",
+    "track.load.cycles=1",
+    "track.load.frequency=200",
+    "track.load.rest=0.004",
+    "track.load.ramp=0.004",
+    "output.frames=2",
+];
+
 /// Runs a scene with 1, 2 and 3 threads; all files must be the same, and those of `expected` must be there.
 pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder {
     let folder = Folder::new("threads");
@@ -35,17 +47,6 @@ pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder
 
 #[test]
 fn clumps_and_sleeper_on_an_embankment() {
-    // The main scene made small, yet with more than the 2500 spheres from which on the grains share their work.
-    let set = [
-        "grains.0.count=250",
-        "deposition.max_time=0.06",
-        "deposition.level=9",
-        "track.load.cycles=1",
-        "track.load.frequency=200",
-        "track.load.rest=0.004",
-        "track.load.ramp=0.004",
-        "output.frames=2",
-    ];
     let expected = [
         "history.csv",
         "cycles.csv",
@@ -54,7 +55,7 @@ fn clumps_and_sleeper_on_an_embankment() {
         "frames/chains_00002.vtp",
         "tecplot/solid_00002.dat",
     ];
-    let folder = same_bits(&repository().join("inputs/track/cyclic/scene.toml"), &set, &expected);
+    let folder = same_bits(&repository().join("inputs/track/cyclic/scene.toml"), &SMALL, &expected);
     let summary = json(&folder.join("2/summary.json"));
     assert!(summary["model"]["spheres"].as_u64().unwrap() >= 2500, "{}", summary["model"]);
     // Grains did press on the solid, so that its results depend on theirs.

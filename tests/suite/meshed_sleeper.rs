@@ -1,6 +1,6 @@
 //! Sleepers of elements that lie free on the grains.
 
-use super::determinism::same_bits;
+use super::determinism::{SMALL, same_bits};
 use super::support::{Folder, Table, json, run};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 use std::fmt::Write;
@@ -367,17 +367,8 @@ fn on_a_bed() -> String {
 
 #[test]
 fn the_same_bits_on_any_threads() {
-    let set = [
-        "track.sleeper.mesh={ elements = [10, 2, 2], young = 3e10, poisson = 0.2 }",
-        "grains.0.count=250",
-        "deposition.max_time=0.06",
-        "deposition.level=9",
-        "track.load.cycles=1",
-        "track.load.frequency=200",
-        "track.load.rest=0.004",
-        "track.load.ramp=0.004",
-        "output.frames=2",
-    ];
+    let mesh = "track.sleeper.mesh={ elements = [10, 2, 2], young = 3e10, poisson = 0.2 }";
+    let set: Vec<&str> = SMALL.into_iter().chain([mesh]).collect();
     let scene = super::support::repository().join("inputs/track/cyclic/scene.toml");
     let folder = same_bits(&scene, &set, &["history.csv", "cycles.csv", "frames/solid_00002.vtu"]);
     let table = Table::read(&folder.join("1/history.csv"));

@@ -47,20 +47,17 @@ fn heap() -> dem::ModelInput {
     }
 }
 
+fn ground() -> fem::Model {
+    let damping = fem::Rayleigh { alpha_m: 1.0, beta_k: 1e-4 };
+    block([3, 3, 2], [1.0, 1.0, 0.5], 5e6, 0.3, 2000.0, Held::Base, damping)
+}
+
 /// With every scheme but the iterated and the stiffened one the solid alone, stepped by the same windows under the same
 /// load, and the grains alone, without a surface, have every bit of the coupled run: 300 windows of five steps. So they
 /// have with those two as well, the repeated window included: nothing of the other side enters.
 #[test]
 fn sides_that_do_not_touch_have_the_bits_of_each_alone() {
-    let solid = block(
-        [3, 3, 2],
-        [1.0, 1.0, 0.5],
-        5e6,
-        0.3,
-        2000.0,
-        Held::Base,
-        fem::Rayleigh { alpha_m: 1.0, beta_k: 1e-4 },
-    );
+    let solid = ground();
     let load = solid.gravity_load().len();
     let push = |load: &mut [f64]| load[load.len() - 1] -= 1e3;
     const WINDOWS: usize = 300;
@@ -116,15 +113,7 @@ fn sides_that_do_not_touch_have_the_bits_of_each_alone() {
 /// A different pair, here 0.3025 and 0.6, is another method: it differs by more than 1e-3.
 #[test]
 fn a_solid_under_grains_that_do_not_touch_moves_as_newmarks_does() {
-    let solid = block(
-        [3, 3, 2],
-        [1.0, 1.0, 0.5],
-        5e6,
-        0.3,
-        2000.0,
-        Held::Base,
-        fem::Rayleigh { alpha_m: 1.0, beta_k: 1e-4 },
-    );
+    let solid = ground();
     const STEPS: usize = 500;
     let n = solid.dof_count();
     let load = |t: f64, load: &mut [f64]| {
