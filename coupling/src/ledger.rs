@@ -59,6 +59,10 @@ pub struct Spent {
     pub solid_load_work: f64,
     /// Dissipated by contact dashpots.
     pub dashpot: f64,
+    /// The part of it by which those at the solid's surface took more than their law has for the motion they knew: they act on
+    /// the velocity that the surface was said to have in a window, the solid answers with another. Below zero as a rule.
+    #[serde(default)]
+    pub dashpot_lag: f64,
     /// Dissipated by friction.
     pub friction: f64,
     /// Dissipated by the dashpots of bonds.

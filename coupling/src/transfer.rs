@@ -28,6 +28,11 @@ pub struct TransferAudit {
 pub struct Transfer {
     /// Impulse at each surface node [N s]. Shape `[surface nodes]`.
     impulse: Vec<[f64; 3]>,
+    /// The part of it that dashpots made, and of that what they made in the first sub-step [N s].
+    drag: Vec<[f64; 3]>,
+    first_drag: Vec<[f64; 3]>,
+    /// Sub-steps of this window so far.
+    steps: u32,
     /// Load at each surface node in the present sub-step [N], zero outside `loaded`.
     load: Vec<[f64; 3]>,
     loaded: Vec<u32>,
@@ -41,6 +46,9 @@ impl Transfer {
         let n = surface.nodes().len();
         Transfer {
             impulse: vec![[0.0; 3]; n],
+            drag: vec![[0.0; 3]; n],
+            first_drag: vec![[0.0; 3]; n],
+            steps: 0,
             load: vec![[0.0; 3]; n],
             loaded: Vec::with_capacity(n),
             face_impulse: vec![[0.0; 3]; surface.faces().len()],
@@ -50,6 +58,9 @@ impl Transfer {
     /// Forgets the impulses of the last window.
     pub fn begin_window(&mut self) {
         self.impulse.fill([0.0; 3]);
+        self.drag.fill([0.0; 3]);
+        self.first_drag.fill([0.0; 3]);
+        self.steps = 0;
         self.face_impulse.fill([0.0; 3]);
     }
 
@@ -61,6 +72,7 @@ impl Transfer {
         dt: f64,
         audit: &mut TransferAudit,
     ) {
+        self.steps += 1;
         if contacts.is_empty() {
             return;
         }
@@ -75,8 +87,10 @@ impl Transfer {
                 if *load == [0.0; 3] {
                     self.loaded.push(node);
                 }
+                let drag = &mut self.drag[node as usize];
                 for d in 0..3 {
                     load[d] += n * contact.force[d];
+                    drag[d] += n * contact.dashpot[d] * dt;
                 }
             }
             let arm = cross(contact.point, contact.force);
@@ -100,6 +114,9 @@ impl Transfer {
             }
         }
         self.loaded.clear();
+        if self.steps == 1 {
+            self.first_drag.copy_from_slice(&self.drag);
+        }
         audit.exchanges += 1;
         if force_scale > 0.0 {
             audit.force = audit.force.max(norm(force) / force_scale);
@@ -140,16 +157,26 @@ impl Transfer {
 
     /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.
     pub fn add_mean_load(&self, surface: &SolidSurface, window: f64, load: &mut [f64]) {
-        let nodes = surface.nodes();
-        let mut add = |node: u32, impulse: [f64; 3]| {
-            for d in 0..3 {
-                load[3 * nodes[node as usize] as usize + d] += impulse[d] / window;
-            }
-        };
-        match surface.spread() {
-            None => self.impulse.iter().zip(0..).for_each(|(impulse, node)| add(node, *impulse)),
-            Some(spread) => spread.distribute(&self.impulse, add),
-        }
+        on_solid(surface, &self.impulse, |dof, impulse| load[dof] += impulse / window);
+    }
+
+    /// Energy [J] that the dashpots of the window took beyond what they were booked with, as far as the solid's motion goes:
+    /// they knew its surface to move at `rate`, after `last` in the window before, and it moved at `found` in the mean
+    /// [m/s]. All of shape `[3·nodes]` of the solid.
+    ///
+    /// A dashpot is booked with the approach speed extrapolated by half a grain step, which the first sub-step of a window
+    /// does across the surface's change of speed.
+    pub fn dashpot_lag(
+        &self,
+        surface: &SolidSurface,
+        rate: impl Fn(usize) -> f64,
+        last: impl Fn(usize) -> f64,
+        found: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let mut lag = 0.0;
+        on_solid(surface, &self.drag, |i, drag| lag += drag * (rate(i) - found(i)));
+        on_solid(surface, &self.first_drag, |i, drag| lag += drag * 0.5 * (rate(i) - last(i)));
+        lag
     }
 
     /// Audits the mean nodal load of a window, shape `[3·nodes]` of the solid, after it was spread: sums of force and
@@ -176,6 +203,19 @@ impl Transfer {
             audit.force = audit.force.max(norm(force) / scales[0]);
             audit.moment = audit.moment.max(norm(moment) / scales[1].max(f64::MIN_POSITIVE));
         }
+    }
+}
+
+/// Calls `f` with each degree of freedom of the solid and what of `impulse` at the surface's nodes is its.
+fn on_solid(surface: &SolidSurface, impulse: &[[f64; 3]], mut f: impl FnMut(usize, f64)) {
+    let nodes = surface.nodes();
+    let mut all = |node: u32, impulse: [f64; 3]| {
+        let first = 3 * nodes[node as usize] as usize;
+        (0..3).for_each(|d| f(first + d, impulse[d]));
+    };
+    match surface.spread() {
+        None => impulse.iter().zip(0..).for_each(|(impulse, node)| all(node, *impulse)),
+        Some(spread) => spread.distribute(impulse, all),
     }
 }
 

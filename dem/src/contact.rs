@@ -169,6 +169,9 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// Energy stored in the normal spring, and in the tangential, rolling and twisting springs together [J].
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
+    /// Force of the normal spring, adhesion taken off [N], and stiffness of the tangential spring [N/m].
+    fn springs(&self, overlap: f64, radius: f64) -> (f64, f64);
+
     /// Energy that contacts which end leave in their tangential, rolling and twisting springs [J], given the effective
     /// radius [m] and the effective mass [kg].
     fn left<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;

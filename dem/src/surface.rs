@@ -45,6 +45,8 @@ pub struct SurfaceContact {
     pub point: [f64; 3],
     /// Force on the surface [N].
     pub force: [f64; 3],
+    /// The part of it that the contact's dashpots make [N].
+    pub dashpot: [f64; 3],
     /// Overlap [m].
     pub overlap: f64,
 }

@@ -110,7 +110,7 @@ fn at_rest_it_weighs_what_it_weighs() {
     );
     assert!((contact / weight - 1.0).abs() < 1e-6, "{contact} {weight}");
     assert!((ground / (weight + balls) - 1.0).abs() < 1e-6, "{ground}");
-    assert!(energy_error(&folder.join("out")) < 0.03);
+    assert!(energy_error(&folder.join("out")) < 3e-4);
 }
 
 /// Balls feel the material of the sleeper above, and that of the formation below: their springs in a row.
@@ -323,7 +323,9 @@ fn on_layers(mesh: &str) -> String {
          kind = \"haversine\"\nminimum = \"500 N\"\nmaximum = \"10 kN\"\nfrequency = 10\ncycles = 3\nrest = 0.08\n\
          ramp = 0.02\nseats = [[-0.2, 0], [0.2, 0]]\n"
     );
+    // Rayleigh's part in the mass would damp the sleeper's own motion, which a rigid box does not have.
     on_ground([0.35, 0.25], &format!("spheres = [{spheres}]\n"), &track)
+        .replace("rayleigh = { damping_ratio = 0.03, frequencies = [20, 200] }\n", "")
 }
 
 /// On stones, too, in an order that leaves nothing to chance.
@@ -349,10 +351,9 @@ fn a_stiff_one_on_stones_is_a_rigid_one() {
         assert!((resilient[i] / r[i] - 1.0).abs() < 0.002, "{resilient:?}");
         assert!((stiffness[i] / k[i] - 1.0).abs() < 0.002, "{stiffness:?}");
         assert!((settled[i] - s[i]).abs() < 0.002 * r[i], "{settled:?}");
-        assert!((energy[i] / e[i] - 1.0).abs() < 0.05, "{energy:?}");
+        assert!((energy[i] / e[i] - 1.0).abs() < 0.02, "{energy:?}");
     }
-    // The account of contacts with a surface is of first order in the step of the grains.
-    assert!(rigid.1 < 0.01 && meshed.1 < 0.05);
+    assert!(rigid.1 < 1e-3 && meshed.1 < 1e-3);
 }
 
 /// Two short sleepers on a bed that settles.
@@ -440,7 +441,7 @@ fn the_scene_of_the_guide() {
     println!("{sleeper}\nenergy {:.1e}", energy_error(&out));
     assert!((sleeper["largest_force"].as_f64().unwrap() / 40e3 - 1.0).abs() < 1e-3, "{sleeper}");
     assert_eq!(sleeper["bend"].as_array().unwrap().len(), 2);
-    assert!(energy_error(&out) < 0.02);
+    assert!(energy_error(&out) < 3e-3);
     let classes = summary["coupling"]["classes"].as_array().unwrap();
     assert!(classes.iter().any(|c| c["solid"] == "sleeper" && c["masses"]["corner"].as_f64().unwrap() > 1.0));
 }

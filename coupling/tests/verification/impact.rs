@@ -114,7 +114,7 @@ impl<'a> Hit<'a> {
 }
 
 /// Central hit: momentum to 1e-10; sphere's speed after within 0.5 % of (m − M)/(m + M), the rigid
-/// limit of an elastic contact; less than 1 % of the energy stays in the block as vibration; energy to 0.1 %.
+/// limit of an elastic contact; less than 1 % of the energy stays in the block as vibration; energy to 1e-5.
 #[test]
 fn central_hit_keeps_momentum_and_energy() {
     let solid = cube();
@@ -131,7 +131,7 @@ fn central_hit_keeps_momentum_and_energy() {
     assert!(linear < 1e-10);
     assert!((after / rigid - 1.0).abs() < 0.005);
     assert!(hit.vibration() < 0.01);
-    assert!(hit.energy_error() < 1e-3);
+    assert!(hit.energy_error() < 1e-5);
 }
 
 /// Off centre by d = 0.06 m: impulse J = (1 + e) v/(1/m + 1/M + d²/I) within 1 %.
@@ -159,12 +159,12 @@ fn off_centre_hit_keeps_angular_momentum() {
     }
 }
 
-/// Sub-stepping: drift of energy for 1, 10 and 100 grain steps per solid step of the same grain step; less than 0.1 %
-/// at 1 and 1 % at 10, interface work (grains against solid) counted as an error. That part is printed by itself.
+/// Sub-stepping: drift of energy for 1, 10 and 100 grain steps per solid step of the same grain step; less than 2e-6
+/// at 1 and 10 and 1e-4 at 100, interface work (grains against solid) counted as an error. That part is printed by itself.
 #[test]
 fn energy_drift_with_sub_stepping_is_small() {
     let solid = cube();
-    for (substeps, bound) in [(1, 1e-3), (10, 1e-2), (100, f64::INFINITY)] {
+    for (substeps, bound) in [(1, 2e-6), (10, 2e-6), (100, 1e-4)] {
         let mut hit = Hit::new(&solid, 0.0, 1.0, substeps, 2e-6);
         hit.run();
         let error = hit.energy_error();
@@ -243,7 +243,8 @@ fn the_surface_moves_within_a_window() {
             materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
             shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
             bodies: vec![dem::BodyInput {
-                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap),
+                // Velocities, and with them the block, are those of half a step before the sphere's place.
+                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap + 0.5 * dt * speed),
                 velocity: Vec3::new(0.0, 0.0, speed),
                 // So heavy that the force does not move it.
                 mass: Some(1e9),
@@ -264,8 +265,8 @@ fn the_surface_moves_within_a_window() {
 }
 
 /// In the lagged scheme the solid goes first, and the surface's velocity runs straight from that at the start of the window to
-/// that at the end: in a free cube under a steady force, from v₀ to v₀ + a Δt, of which the last of ten sub-steps begins at
-/// nine tenths.
+/// that at the end: in a free cube under a steady force, from v₀ to v₀ + a Δt, of which the last of ten sub-steps has its
+/// middle at 0.95.
 #[test]
 fn the_surface_speeds_up_within_a_lagged_window() {
     let solid = cube();
@@ -297,6 +298,6 @@ fn the_surface_speeds_up_within_a_lagged_window() {
     let at = [0.5 * SIDE, 0.5 * SIDE, 0.0];
     let patch = contact(&c.work.surface, at, [0.0; 3]).patch;
     let found = c.work.surface.closest_point(patch, at, [0.0; 2]).velocity[2];
-    let expected = speed + 0.9 * acceleration * 10.0 * dt;
+    let expected = speed + 0.95 * acceleration * 10.0 * dt;
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }

@@ -121,7 +121,7 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
         let patch = k % surface.faces().len() as u32;
         let x = surface.face_nodes(patch).map(|n| surface.position(n));
         let point = trackbed_coupling::face::interpolate(&x, local);
-        let c = SurfaceContact { sphere: 0, body: 0, patch, local, point, force, overlap: 0.0 };
+        let c = SurfaceContact { sphere: 0, body: 0, patch, local, point, force, dashpot: [0.0; 3], overlap: 0.0 };
         let (load, audit) = spread_load(&solid, &surface, &c);
         worst = (worst.0.max(audit.force), worst.1.max(audit.moment));
         let outside = surface.faces()[patch as usize].nodes;
@@ -167,7 +167,7 @@ fn motion_comes_back_by_the_transpose() {
 }
 
 /// A sphere bounces and slides over a soft block with its force spread over 0.6 of an edge: the account stays closed to
-/// 0.1 % of the energy turned over, as with a point force, and the interface's own error stays small.
+/// 3e-4 of the energy turned over, as with a point force, and the interface's own error stays small.
 #[test]
 fn spreading_adds_no_energy() {
     for radius in [0.0, 0.15] {
@@ -212,7 +212,7 @@ fn spreading_adds_no_energy() {
             (spent.dashpot + spent.friction) / at_start,
             c.state.audit
         );
-        assert!(error.abs() < 1e-3 * at_start && spent.interface().abs() < 0.01 * at_start);
+        assert!(error.abs() < 3e-4 * at_start && spent.interface().abs() < 0.01 * at_start);
         assert!(c.state.audit.force < 1e-12 && c.state.audit.moment < 1e-12);
         assert!(c.state.grains.position(0).x > 0.45);
     }

@@ -100,6 +100,7 @@ pub fn contact(surface: &SolidSurface, centre: [f64; 3], force: [f64; 3]) -> Sur
         local: nearest.1.local,
         point: nearest.1.point,
         force,
+        dashpot: [0.0; 3],
         overlap: 0.0,
     }
 }

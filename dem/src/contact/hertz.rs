@@ -171,6 +171,12 @@ impl ContactLaw for Hertz {
         (8.0 / 15.0 * self.modulus * circle * overlap * overlap - self.pull * radius * overlap, held)
     }
 
+    #[inline(always)]
+    fn springs(&self, overlap: f64, radius: f64) -> (f64, f64) {
+        let circle = (radius * overlap).sqrt();
+        (4.0 / 3.0 * self.modulus * circle * overlap - self.pull * radius, 8.0 * self.shear * circle)
+    }
+
     /// Nothing: the stiffness, and with it the energy, has gone to zero with the overlap, and was booked on the way
     /// but for the last step's.
     #[inline(always)]

@@ -168,6 +168,11 @@ impl ContactLaw for Linear {
     }
 
     #[inline(always)]
+    fn springs(&self, overlap: f64, radius: f64) -> (f64, f64) {
+        (self.normal * overlap - self.pull * radius, self.tangential)
+    }
+
+    #[inline(always)]
     fn left<R: Real, const ROLL: bool>(law: &Linear<R>, memory: &Memory<R>) -> R {
         let mut length2 = memory.spring.norm2();
         if ROLL {

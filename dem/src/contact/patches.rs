@@ -303,7 +303,12 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             exchange.impulse.add(&contact.point, &(force * dt));
             exchange.impulse.angular += moment * dt;
             let member = if RIGID { contact.i - w.first[a] } else { 0 };
+            // What springs do not explain; a spring that slides holds what the limit has left to it.
+            let law = laws.get(block.spin[a][3] as u32, material(contact.patch));
+            let (normal, tangential) = law.springs(contact.overlap, hit.radius());
+            let sprung = contact.normal * normal - contact.history.spring * tangential;
             w.contacts.push(SurfaceContact {
+                dashpot: (sprung - force).into(),
                 sphere: member,
                 body: block.bodies[a],
                 patch: contact.patch,
