@@ -45,7 +45,8 @@ pub struct SurfaceContact {
     pub point: [f64; 3],
     /// Force on the surface [N].
     pub force: [f64; 3],
-    /// The part of it that the contact's dashpots make [N].
+    /// The part of it that the contact's dashpots make [N]; in the first step of a sticky contact also what its adhesion
+    /// lacks yet.
     pub dashpot: [f64; 3],
     /// Overlap [m].
     pub overlap: f64,

@@ -50,6 +50,7 @@ use std::sync::Arc;
 use summary::{CouplingRecord, Hash, NewtonRecord};
 use system::{CoupledSystem, GrainsSystem, Meshed, System};
 use trackbed_coupling as coupling;
+use trackbed_coupling::ledger::Spent;
 use trackbed_coupling::scheme::{Passes, Scheme};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -357,6 +358,7 @@ impl Stage<'_> {
                     record.interface_work_error = system.spent().interface();
                 }
                 summary.warnings.extend(unconverged(&system.state.passes));
+                summary.warnings.extend(late(&system.spent()));
                 summary.warnings.extend(fallen(&system, lowest));
                 outcome?;
                 self.record_packing(&system, grains, summary)?;
@@ -490,6 +492,24 @@ fn unconverged(passes: &Passes) -> Option<String> {
             "{} of {} windows had not converged after the last pass allowed: raise coupling.max_passes, or take fewer \
              coupling.substeps",
             passes.unconverged, passes.windows
+        )
+    })
+}
+
+/// Part of what was turned over, above which dashpots that act late are remarked on.
+const LATE: f64 = 0.05;
+
+/// A remark on dashpots at the solid's surface that take much less than their law has, because the solid does not move as
+/// they were told.
+fn late(spent: &Spent) -> Option<String> {
+    let law = spent.dissipated() - spent.dashpot_lag;
+    let part = -spent.dashpot_lag / spent.work().abs().max(law);
+    (part > LATE).then(|| {
+        format!(
+            "the dashpots at the solid's surface took {:.3e} J less than their law has, {:.1} % of what was turned over: they act on \
+             the surface's velocity at the start of a window; take fewer coupling.substeps, or coupling.theta above 0.5",
+            -spent.dashpot_lag,
+            100.0 * part
         )
     })
 }

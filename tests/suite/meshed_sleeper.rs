@@ -356,6 +356,18 @@ fn a_stiff_one_on_stones_is_a_rigid_one() {
     assert!(rigid.1 < 1e-3 && meshed.1 < 1e-3);
 }
 
+/// Windows ten times too long for the dashpots on the ground are remarked on before the run, and after it with what they did.
+#[test]
+fn dashpots_that_act_late_are_remarked_on() {
+    let (folder, _) = ran(&on_layers(""), &["coupling.substeps=60"]);
+    let summary = json(&folder.join("out/summary.json"));
+    let warnings = summary["warnings"].to_string();
+    assert!(warnings.contains("the exchange may be unstable"), "{warnings}");
+    assert!(warnings.contains("the dashpots at the solid's surface took "), "{warnings}");
+    let spent = |key: &str| summary["energy"]["spent"][key].as_f64().unwrap();
+    assert!(spent("dashpot_lag") < -spent("dashpot"), "{}", summary["energy"]);
+}
+
 /// Two short sleepers on a bed that settles.
 fn on_a_bed() -> String {
     let grains = "count = 220\nsize = [\"80 mm\", \"100 mm\"]\nfill = { low = [-0.5, -0.3, 0.0], high = [0.5, 0.3] }\nseed = 5\n";

@@ -121,7 +121,16 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
         let patch = k % surface.faces().len() as u32;
         let x = surface.face_nodes(patch).map(|n| surface.position(n));
         let point = trackbed_coupling::face::interpolate(&x, local);
-        let c = SurfaceContact { sphere: 0, body: 0, patch, local, point, force, dashpot: [0.0; 3], overlap: 0.0 };
+        let c = SurfaceContact {
+            sphere: 0,
+            body: 0,
+            patch,
+            local,
+            point,
+            force,
+            dashpot: [0.0; 3],
+            overlap: 0.0,
+        };
         let (load, audit) = spread_load(&solid, &surface, &c);
         worst = (worst.0.max(audit.force), worst.1.max(audit.moment));
         let outside = surface.faces()[patch as usize].nodes;

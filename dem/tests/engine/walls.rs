@@ -1,9 +1,10 @@
 //! Walls that move or open, fixed bodies, applied forces, an external surface.
 
 use crate::scene::{Run, plane, sphere, stone, weightless};
+use trackbed_dem::material::PairOverride;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
 use trackbed_dem::{
-    AppliedForce, BodyInput, Model, Shape, State, StepError, TriangleSurface, Vec3, Work, measure,
+    AppliedForce, BodyInput, Model, Shape, State, StepError, TimeStep, TriangleSurface, Vec3, Work, measure,
 };
 
 /// A sphere on a belt is dragged along until it rolls with 2/7 of the belt's speed.
@@ -132,6 +133,64 @@ impl Surface for Lift {
     }
     fn one_sided(&self) -> bool {
         true
+    }
+}
+
+/// A contact with an external surface tells which part of its force dashpots make: the power of that part, at the speeds
+/// of the contact's instant, is what the ledger loses to them; and without dashpots there is none, sticking, sliding, sticky
+/// or not.
+#[test]
+fn the_force_of_dashpots_is_told_apart() {
+    let young =
+        trackbed_dem::Material { young: Some(1e7), poisson: 0.3, stiffness: f64::INFINITY, ..stone() };
+    for material in [stone(), young] {
+        for (restitution, tangential, friction, adhesion) in [
+            (1.0, 0.0, 0.5, None),
+            (1.0, 0.0, 0.05, None),
+            (1.0, 0.0, 0.5, Some(2.0)),
+            (0.4, 0.0, 0.5, None),
+            (0.4, 0.5, 1e3, None),
+            (0.4, 0.5, 1e3, Some(2.0)),
+        ] {
+            let mut input = weightless(trackbed_dem::Material {
+                restitution,
+                tangential_damping_ratio: tangential,
+                friction,
+                ..material
+            });
+            input.contacts.push(PairOverride { a: 0, b: 0, adhesion, ..PairOverride::default() });
+            input.surface_material = Some(0);
+            input.time_step = TimeStep::Auto { fraction: 0.005 };
+            input.bodies.push(sphere(Vec3::new(0.0, 0.0, 0.01), Vec3::new(0.3, 0.0, -0.5)));
+            let model = Model::new(input).unwrap();
+            let (mut state, surface) = (State::new(&model), Lift { height: 0.0, speed: 0.0 });
+            let mut work = Work::new(&model, &state);
+            let (mut power, mut force, mut met) = (0.0, 0.0_f64, false);
+            while state.time < 0.3 * std::f64::consts::PI * (model.mass(0) / 1e5).sqrt() {
+                let motion = |state: &State| {
+                    let arm = Vec3::new(0.0, 0.0, -state.position(0).z);
+                    state.velocity(0) + state.spin(0).cross(&arm)
+                };
+                let before = motion(&state);
+                trackbed_dem::step(&model, &mut state, &mut work, &surface, &[]).unwrap();
+                for c in work.surface_contacts() {
+                    let dashpot = Vec3::from(c.dashpot);
+                    power += dashpot.dot(&(0.5 * (before + motion(&state)))) * model.dt();
+                    // Adhesion comes up within the first step.
+                    if adhesion.is_none() || met {
+                        force = force.max(dashpot.norm() / Vec3::from(c.force).norm());
+                    }
+                    met = true;
+                }
+            }
+            let lost = state.ledger.dissipated_dashpot;
+            if restitution == 1.0 {
+                assert!(force < 1e-9 && lost == 0.0, "{friction} {adhesion:?}: {force} {lost}");
+            } else {
+                let ratio = power / lost;
+                assert!((ratio - 1.0).abs() < 0.01, "{restitution} {tangential} {adhesion:?}: {ratio}");
+            }
+        }
     }
 }
 
