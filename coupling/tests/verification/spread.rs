@@ -176,10 +176,11 @@ fn motion_comes_back_by_the_transpose() {
 }
 
 /// A sphere bounces and slides over a soft block with its force spread over 0.6 of an edge: the account stays closed to
-/// 3e-4 of the energy turned over, as with a point force, and the interface's own error stays small.
+/// 3e-4 of the energy turned over, as with a point force, and the interface's own error stays small. With windows of a single
+/// grain step it stays closed to 1e-5.
 #[test]
 fn spreading_adds_no_energy() {
-    for radius in [0.0, 0.15] {
+    for (radius, substeps, bound) in [(0.0, 5, 3e-4), (0.15, 5, 3e-4), (0.0, 1, 1e-5)] {
         let solid = block(
             [4, 4, 2],
             [1.0, 1.0, 0.5],
@@ -203,25 +204,25 @@ fn spreading_adds_no_energy() {
                 time_step: dem::TimeStep::Fixed(4e-5),
                 ..Default::default()
             },
-            5,
+            substeps,
             spread_top(&solid, radius),
         );
         let start = step::stored(&c.model, &c.state).total();
         let at_start = step::stored(&c.model, &c.state).grains_kinetic + c.model.grains.mass(0) * 9.81 * 0.04;
-        for _ in 0..1500 {
+        for _ in 0..7500 / substeps {
             c.step(&[]);
         }
         let spent = step::spent(&c.state);
         let error = step::stored(&c.model, &c.state).total() - start + spent.dissipated() - spent.work();
         println!(
-            "radius {radius}: to x = {:.3}, energy error {:.1e} of {at_start:.3} J, interface {:.1e}, dashpot and friction {:.3}, {:?}",
+            "radius {radius}, {substeps} sub-steps: to x = {:.3}, energy error {:.1e} of {at_start:.3} J, interface {:.1e}, dashpot and friction {:.3}, {:?}",
             c.state.grains.position(0).x,
             error / at_start,
             spent.interface() / at_start,
             (spent.dashpot + spent.friction) / at_start,
             c.state.audit
         );
-        assert!(error.abs() < 3e-4 * at_start && spent.interface().abs() < 0.01 * at_start);
+        assert!(error.abs() < bound * at_start && spent.interface().abs() < 0.01 * at_start);
         assert!(c.state.audit.force < 1e-12 && c.state.audit.moment < 1e-12);
         assert!(c.state.grains.position(0).x > 0.45);
     }
