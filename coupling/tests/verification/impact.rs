@@ -301,3 +301,84 @@ fn the_surface_speeds_up_within_a_lagged_window() {
     let expected = speed + 0.95 * acceleration * 10.0 * dt;
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
+
+/// A block that is hit from below leaps within its window, further than its velocity told: a sphere just above its top is touched
+/// from the first sub-step of the next window on.
+#[test]
+fn a_surface_that_leaps_is_touched_at_once() {
+    let solid = cube();
+    let (dt, substeps) = (2e-6, 10);
+    let window = dt * f64::from(substeps);
+    let leap = 2e-3;
+    let mut c = Coupled::new(
+        &solid,
+        dem::ModelInput {
+            materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
+            shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
+            bodies: vec![dem::BodyInput {
+                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 + 0.9 * leap),
+                ..Default::default()
+            }],
+            gravity: Vec3::zeros(),
+            surface_material: Some(0),
+            time_step: dem::TimeStep::Fixed(dt),
+            ..Default::default()
+        },
+        substeps,
+    );
+    let mut force = vec![0.0; solid.dof_count()];
+    let mut unit = vec![0.0; solid.dof_count()];
+    unit.iter_mut().skip(2).step_by(3).for_each(|a| *a = 2.0 * leap / (window * window));
+    solid.mass_times(&unit, &mut force);
+    c.step_loaded(&[], |_, load| load.iter_mut().zip(&force).for_each(|(l, f)| *l += f));
+    assert!((c.state.solid.u[2] / leap - 1.0).abs() < 1e-6 && c.work.grains.surface_contacts().is_empty());
+    // It goes on no further: what touches the sphere is the leap alone.
+    c.state.solid.v.fill(0.0);
+    c.step(&[]);
+    let mean = -c.work.mean_contact_force(window)[2];
+    let all = STIFFNESS * 0.1 * leap;
+    println!("mean force over that of ten sub-steps in touch: {:.4}", mean / all);
+    assert!(mean > 0.95 * all, "{mean} {all}");
+}
+
+/// The prediction of the stiffened scheme knows how a stone slides and spins: a block under a sphere that turns on it, or is dragged
+/// over it, goes where it was told to, a thousand times closer than with its present velocity.
+#[test]
+fn the_stiffened_prediction_knows_slip_and_spin() {
+    let solid = cube();
+    let overlap = 1e-4;
+    for (velocity, spin) in [(Vec3::x(), Vec3::zeros()), (Vec3::zeros(), 30.0 * Vec3::y())] {
+        let missed = |scheme: Scheme| {
+            let mut c = Coupled::new(
+                &solid,
+                dem::ModelInput {
+                    materials: vec![material(2650.0, STIFFNESS, 1e3, 1.0)],
+                    shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
+                    bodies: vec![dem::BodyInput {
+                        position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap),
+                        velocity,
+                        spin,
+                        mass: Some(1e9),
+                        ..Default::default()
+                    }],
+                    gravity: Vec3::zeros(),
+                    surface_material: Some(0),
+                    time_step: dem::TimeStep::Fixed(2e-6),
+                    ..Default::default()
+                },
+                10,
+            );
+            c.model.scheme = scheme;
+            // The first window predicts nothing.
+            c.step(&[]);
+            let before = step::spent(&c.state).interface();
+            c.step(&[]);
+            step::spent(&c.state).interface() - before
+        };
+        let (told, present) = (missed(Scheme::Stiffened), missed(Scheme::Predicted));
+        println!(
+            "velocity {velocity:?}, spin {spin:?}: interface {told:.2e} J stiffened, {present:.2e} J predicted"
+        );
+        assert!(told.abs() < 1e-3 * present.abs(), "{told} {present}");
+    }
+}
