@@ -116,7 +116,7 @@ impl DepositionPlan {
         speed < self.settled_speed
             && self
                 .unbalanced_ratio
-                .is_none_or(|most| unbalanced_ratio(model, &contacts(model, state)) < most)
+                .is_none_or(|most| unbalanced_ratio(model, state, &contacts(model, state)) < most)
     }
 }
 
