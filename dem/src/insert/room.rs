@@ -18,13 +18,13 @@ const PURPOSE: u64 = 7;
 /// Random places tried per grain.
 const TRIES: usize = 1000;
 /// Gap to all that is there, as a share of the grain's radius.
-const GAP: f64 = 1e-3;
+pub const GAP: f64 = 1e-3;
 
 /// A box of a running state, as it is now.
-pub struct Room<'a, S> {
+pub struct Room<'a> {
     model: &'a Model,
     state: &'a State,
-    surface: &'a S,
+    surface: &'a dyn Surface,
     region: BoxRegion,
     spheres: Grid,
     /// Centre, orientation and half sides of the boxes.
@@ -32,17 +32,17 @@ pub struct Room<'a, S> {
     patches: Vec<u32>,
 }
 
-impl<'a, S: Surface> Room<'a, S> {
+impl<'a> Room<'a> {
     /// The room that all bodies but those `without` leave in a box; grains of bounding radii up to `largest` [m] are to be
-    /// put there.
+    /// put there, as well as those that come in with them.
     pub fn new(
         model: &'a Model,
         state: &'a State,
-        surface: &'a S,
+        surface: &'a dyn Surface,
         region: BoxRegion,
         largest: f64,
         without: impl Fn(usize) -> bool,
-    ) -> Room<'a, S> {
+    ) -> Room<'a> {
         let mut near: Vec<(Vec3, f64)> = Vec::new();
         let mut boxes = Vec::new();
         let meets = |x: &Vec3, r: f64| (0..3).all(|d| x[d] + r > region.low[d] && x[d] - r < region.high[d]);
@@ -68,10 +68,15 @@ impl<'a, S: Surface> Room<'a, S> {
                 }
             }
         }
-        let radii = near.iter().map(|s| s.1).fold(largest, f64::max);
+        let radii = near.iter().map(|s| s.1).fold(largest, f64::max) * (1.0 + GAP);
         let mut spheres = Grid::new(region.low, region.high, 2.0 * radii, radii);
         near.into_iter().for_each(|(x, r)| spheres.add(x, r));
         Room { model, state, surface, region, spheres, boxes, patches: Vec::new() }
+    }
+
+    /// Takes up the place of a grain of bounding radius `radius` [m] that comes in at the same time.
+    pub fn fill(&mut self, x: &Vec3, radius: f64) {
+        self.spheres.add(*x, radius);
     }
 
     /// A random place for a grain of bounding radius `radius` [m] wholly inside the box, and a random orientation. The
@@ -112,7 +117,7 @@ impl<'a, S: Surface> Room<'a, S> {
 }
 
 /// Whether a sphere is clear of a surface, and on its outer side where it has one.
-fn clear_of<S: Surface>(surface: &S, x: &Vec3, r: f64, patches: &mut Vec<u32>) -> bool {
+fn clear_of(surface: &dyn Surface, x: &Vec3, r: f64, patches: &mut Vec<u32>) -> bool {
     if surface.is_empty() {
         return true;
     }
