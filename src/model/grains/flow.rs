@@ -5,7 +5,7 @@ use super::sizes::SizeSource;
 use super::{GradedGroup, GrainsPart, check, groups};
 use crate::failure::Failure;
 use crate::scene::flow::{Inlet, Outlet};
-use crate::scene::grains::{GrainShape, Grains};
+use crate::scene::grains::Grains;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
 use trackbed_dem::insert::random::Random;
@@ -109,6 +109,29 @@ pub enum OutletRegion {
         /// The normal.
         normal: Vec3,
     },
+}
+
+impl FlowPlan {
+    /// Lines that tell of it before a run; `waiting` is the number of grains of a group that wait at the start.
+    pub fn lines(&self, waiting: impl Fn(u32) -> usize) -> Vec<String> {
+        let mut lines = Vec::new();
+        for i in &self.inlets {
+            let per = if i.rate.unit() == "kg" { "kg/s" } else { "grains/s" };
+            let stop = if i.stop.is_finite() { format!(" to {} s", i.stop) } else { String::new() };
+            lines.push(format!(
+                "inlet of {}: {} {per} from {} s{stop} on, {} grains wait for it at the start",
+                i.group,
+                i.rate.value(),
+                i.start,
+                waiting(i.part)
+            ));
+        }
+        for o in &self.outlets {
+            let what = if o.again { "come again" } else { "are gone" };
+            lines.push(format!("{}: grains of {} groups, which then {what}", o.name, o.parts.len()));
+        }
+        lines
+    }
 }
 
 impl OutletRegion {
@@ -227,9 +250,6 @@ fn inlet(
     if group.motion.is_some() {
         let expected = "no inlet for a group with `motion`";
         return Err(document.error(&key(""), "an inlet", expected));
-    }
-    if group.shape == GrainShape::Bonded {
-        return Err(document.error(&key(""), "an inlet", "no inlet for bonded stones"));
     }
     let region = region(document, &key(".box"), &inlet.region)?;
     let own = part.bodies.iter().filter(|b| b.part == index as u32);

@@ -27,6 +27,10 @@ pub(super) fn add(
         group.lattice.is_some(),
         group.region.is_some(),
     ];
+    if group.inlet.is_some() && group.shape == GrainShape::Bonded {
+        let key = format!("grains.{index}.shape");
+        return Err(document.error(&key, "\"bonded\"", "no inlet for bonded stones").into());
+    }
     let waits = flow::waits(group);
     if sources.iter().filter(|s| **s).count() != 1 && !waits {
         let expected = "exactly one of `spheres`, `packing`, `fill`, `lattice` and `region`";
