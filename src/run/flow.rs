@@ -88,13 +88,17 @@ pub struct Flow<'a> {
 
 impl<'a> Flow<'a> {
     /// Those of a scene that has any, at the start of its run proper of length `end` [s].
-    pub fn new(part: Option<&'a GrainsPart>, view: Option<GrainsView<'_>>, window: f64, end: f64) -> Option<Self> {
+    pub fn new(
+        part: Option<&'a GrainsPart>,
+        view: Option<GrainsView<'_>>,
+        window: f64,
+        end: f64,
+    ) -> Option<Self> {
         let (part, view) = (part?, view?);
         let plan = part.flow.as_ref()?;
         let waiting = |inlet: &InletPlan| {
-            let waits = |b: &u32| {
-                !view.state.present(*b as usize) && view.model.part(*b as usize) == inlet.part
-            };
+            let waits =
+                |b: &u32| !view.state.present(*b as usize) && view.model.part(*b as usize) == inlet.part;
             Inlet {
                 waiting: (0..view.model.body_count() as u32).filter(waits).collect(),
                 places: Places::new(inlet.seed),
@@ -263,10 +267,7 @@ impl<'a> Flow<'a> {
             all.fold(Amount::default(), |s, a| Amount { grains: s.grains + a.grains, mass: s.mass + a.mass })
         };
         let course = &self.course;
-        [
-            sum(&mut course.inlets.iter().map(|i| i.amount)),
-            sum(&mut course.outlets.iter().map(|o| o.amount)),
-        ]
+        [sum(&mut course.inlets.iter().map(|i| i.amount)), sum(&mut course.outlets.iter().map(|o| o.amount))]
     }
 
     /// Columns of the history.
@@ -298,7 +299,8 @@ impl<'a> Flow<'a> {
         let [half, half_in, half_out] = self.course.half.unwrap_or([time, come.mass, gone.mass]);
         let inlets: Vec<InletRecord> =
             self.plan.inlets.iter().zip(&self.course.inlets).map(|(p, i)| record(p, i, time)).collect();
-        let outlets: Vec<OutletRecord> = self.plan.outlets.iter().zip(&self.course.outlets).map(outlet).collect();
+        let outlets: Vec<OutletRecord> =
+            self.plan.outlets.iter().zip(&self.course.outlets).map(outlet).collect();
         summary.warnings.extend(inlets.iter().filter_map(InletRecord::remark));
         let interval = self.every as f64 * self.window;
         summary.warnings.extend(outlets.iter().filter_map(|o| o.remark(interval)));

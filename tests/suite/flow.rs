@@ -216,7 +216,10 @@ fn grains_come_again_at_twice_the_rate_at_most() {
     assert!(come.last().unwrap() > &20.0 && inlet["without_room"] == 0, "{inlet}");
     assert!(inlet["without_grains"].as_u64().unwrap() > 100, "{inlet}");
     let notes = summary["warnings"].to_string();
-    assert!(notes.contains("the inlet of \\\"drops\\\" let in") && notes.contains("none waited at"), "{notes}");
+    assert!(
+        notes.contains("the inlet of \\\"drops\\\" let in") && notes.contains("none waited at"),
+        "{notes}"
+    );
 }
 
 /// An inlet without room waits; what it owes is told.
@@ -260,11 +263,14 @@ fn a_box_that_is_flown_through() {
     adds_up(&out);
     let summary = json(&out.join("summary.json"));
     let outlet = &summary["flow"]["outlets"][0];
-    let (seen, missed) =
-        (outlet["amount"]["grains"].as_u64().unwrap(), outlet["missed"].as_u64().unwrap());
+    let (seen, missed) = (outlet["amount"]["grains"].as_u64().unwrap(), outlet["missed"].as_u64().unwrap());
     // At 3 m/s a grain is in it at one look of three.
     assert!(missed > seen && seen > 5, "{outlet}");
-    assert!(summary["warnings"].to_string().contains("a smaller time.flow_interval"), "{}", summary["warnings"]);
+    assert!(
+        summary["warnings"].to_string().contains("a smaller time.flow_interval"),
+        "{}",
+        summary["warnings"]
+    );
     let fine = folder.join("fine");
     run(&scene, &fine, &[&set[..3], &["time.end=0.5"]].concat()).good();
     assert_eq!(json(&fine.join("summary.json"))["flow"]["outlets"][0]["missed"], 0);
@@ -284,7 +290,9 @@ fn an_outlet_out_of_reach() {
         results(&folder.join(name))
     });
     assert!(outs[0].keys().eq(outs[1].keys()), "{:?}", outs[1].keys());
-    for (name, bytes) in outs[0].iter().filter(|(name, _)| name.starts_with("frames") || *name == "packing.csv") {
+    for (name, bytes) in
+        outs[0].iter().filter(|(name, _)| name.starts_with("frames") || *name == "packing.csv")
+    {
         assert!(*bytes == outs[1][name], "{name} differs");
     }
     let rows = |k: usize| String::from_utf8(outs[k]["history.csv"].clone()).unwrap();
@@ -407,7 +415,8 @@ fn in_a_periodic_box_above_a_settled_bed() {
     let text = text
         .replace("point = [0, 0, 0]\nnormal = [1, 0, 0]", "point = [0, 0, 0.4]\nnormal = [0, 0, 1]")
         .replace("point = [0.1, 0, 0]\nnormal = [-1, 0, 0]", "point = [0, 0, 0]\nnormal = [0, 1, 0]");
-    let more = "[periodic]\nx = [0.0, 0.1]\n\n[deposition]\nmax_time = 0.3\nlayers = 2\nlevel = 0.6\n\n[time]";
+    let more =
+        "[periodic]\nx = [0.0, 0.1]\n\n[deposition]\nmax_time = 0.3\nlayers = 2\nlevel = 0.6\n\n[time]";
     let text = text.replace("[time]", more) + "packing = true\n";
     let scene = folder.write("scene.toml", &text);
     let out = folder.join("out");

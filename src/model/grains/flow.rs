@@ -185,8 +185,9 @@ pub(super) fn waiting(
 /// Adds the inlets of all groups and the outlets, once all grains are there.
 pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> Result<(), SceneError> {
     let inlets = scene.grains.iter().enumerate().filter_map(|(i, g)| Some((i, g, g.inlet.as_ref()?)));
-    let inlets =
-        inlets.map(|(i, g, inlet)| self::inlet(document, scene, part, i, g, inlet)).collect::<Result<Vec<_>, _>>()?;
+    let inlets = inlets
+        .map(|(i, g, inlet)| self::inlet(document, scene, part, i, g, inlet))
+        .collect::<Result<Vec<_>, _>>()?;
     let outlets = scene.outlet.iter().enumerate();
     let outlets = outlets.map(|(i, o)| outlet(document, scene, i, o)).collect::<Result<Vec<_>, _>>()?;
     let interval = scene.time.flow_interval.map(|t| t.si);
@@ -205,7 +206,11 @@ pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> 
         let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
         if !waits(group) && !fed {
             let expected = "an [[outlet]] with `again = true` for this group, or no grains at the start";
-            return Err(document.error(&format!("grains.{i}.inlet"), "an inlet that nothing comes to", expected));
+            return Err(document.error(
+                &format!("grains.{i}.inlet"),
+                "an inlet that nothing comes to",
+                expected,
+            ));
         }
     }
     let first = match scene.grains.iter().position(|g| g.inlet.is_some()) {
@@ -232,10 +237,7 @@ pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> 
 /// Whether all grains of a group wait for their inlet.
 pub(super) fn waits(group: &Grains) -> bool {
     let sources = [group.spheres.is_some(), group.packing.is_some(), group.fill.is_some()];
-    group.inlet.is_some()
-        && !sources.contains(&true)
-        && group.lattice.is_none()
-        && group.region.is_none()
+    group.inlet.is_some() && !sources.contains(&true) && group.lattice.is_none() && group.region.is_none()
 }
 
 fn inlet(
@@ -327,8 +329,7 @@ fn outlet(
             return Err(document.error(&format!("outlet.{index}"), "another choice of keys", expected));
         }
     };
-    let free: Vec<usize> =
-        (0..scene.grains.len()).filter(|&i| scene.grains[i].motion.is_none()).collect();
+    let free: Vec<usize> = (0..scene.grains.len()).filter(|&i| scene.grains[i].motion.is_none()).collect();
     let parts: Vec<usize> = match &outlet.groups {
         None => free,
         Some(names) => names

@@ -59,9 +59,9 @@ fn inlet_that_starts_before_the_run_or_after_it() {
     flow()
         .scene("rate = \"2 kg/s\"", "rate = 2, start = -1")
         .refused("scene.toml:15: grains.0.inlet.start: found -1, expected 0 or more");
-    flow().scene("rate = \"2 kg/s\"", "rate = 2, start = 1").refused(
-        "scene.toml:15: grains.0.inlet.start: found 1 s, expected a time before the end at 0.02 s",
-    );
+    flow()
+        .scene("rate = \"2 kg/s\"", "rate = 2, start = 1")
+        .refused("scene.toml:15: grains.0.inlet.start: found 1 s, expected a time before the end at 0.02 s");
 }
 
 #[test]
@@ -81,9 +81,9 @@ fn inlet_that_nothing_comes_to() {
 
 #[test]
 fn inlet_of_a_grip() {
-    flow()
-        .scene(INLET, &format!("motion = [0, 0, 0]\n{INLET}"))
-        .refused("scene.toml:16: grains.0.inlet: found an inlet, expected no inlet for a group with `motion`");
+    flow().scene(INLET, &format!("motion = [0, 0, 0]\n{INLET}")).refused(
+        "scene.toml:16: grains.0.inlet: found an inlet, expected no inlet for a group with `motion`",
+    );
 }
 
 #[test]
@@ -95,9 +95,9 @@ fn inlet_of_bonded_stones() {
 
 #[test]
 fn grains_that_wait_without_a_number() {
-    waiting()
-        .scene("count = 5\n", "")
-        .refused("scene.toml:10: grains.0.count: found nothing, expected the number of grains that may come in");
+    waiting().scene("count = 5\n", "").refused(
+        "scene.toml:10: grains.0.count: found nothing, expected the number of grains that may come in",
+    );
 }
 
 #[test]
