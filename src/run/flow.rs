@@ -1,7 +1,7 @@
 //! Inlets and outlets of a run: looked at every so many windows, with an account of what came and went.
 //!
-//! What an inlet has let in never exceeds its rate times the time since its start, and falls behind by less than a grain
-//! unless there is no room, or no grain waits. What it owes then is not forgotten: it is made up at twice the rate as soon
+//! What an inlet has let in never exceeds its rate times the time since its start, and is behind by less than a grain after
+//! each look, unless there is no room, or no grain waits. What it owes then is not forgotten: it is made up at twice the rate as soon
 //! as it can be.
 
 use super::checkpoint::{Body, Loaded};

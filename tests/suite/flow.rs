@@ -445,3 +445,39 @@ fn in_a_periodic_box_above_a_settled_bed() {
         summary["packing"]["neighbours"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).sum();
     assert_eq!(counted as usize, there);
 }
+
+/// Beside a sleeper under its load, which is no grain and stays, after a settling in which those that wait do not take part.
+#[test]
+fn rain_beside_a_sleeper() {
+    let flow = r#"[[grains]]
+name = "rain"
+shape = "sphere"
+material = "stone"
+count = 30
+size = ["100 mm", "150 mm"]
+inlet = { box = [[0.1, 0.1, 0.6], [1.9, 1.9, 1.0]], grains_per_second = 250, velocity = [2, 0, -6] }
+
+[[outlet]]
+point = [1.7, 0, 0]
+normal = [1, 0, 0]
+again = true
+groups = ["rain"]
+
+[deposition]
+max_time = 0.03
+
+[track.sleeper]"#;
+    let folder = scene_folder("rain_and_sleeper", &COUPLED.replace("[track.sleeper]", flow));
+    let scene = folder.join("scene.toml");
+    broken(&scene, &[], &[0.2, 0.5, 0.9], &["history.csv", "cycles.csv"]);
+    let out = folder.join("out");
+    run(&scene, &out, &[]).good();
+    let history = adds_up(&out);
+    assert_eq!(history.column("grains_present")[0], 5.0);
+    let summary = json(&out.join("summary.json"));
+    println!("{} {} {}", summary["flow"], summary["energy"]["relative_error"], summary["momentum"]);
+    assert!(summary["flow"]["came_in"]["grains"].as_u64().unwrap() > 15, "{}", summary["flow"]);
+    assert!(summary["flow"]["went_out"]["grains"].as_u64().unwrap() > 0, "{}", summary["flow"]);
+    assert!(float(&summary["energy"]["relative_error"]) < 0.05, "{}", summary["energy"]);
+    assert!(float(&summary["momentum"]["linear"]) < 1e-10, "{}", summary["momentum"]);
+}

@@ -112,14 +112,15 @@ pub enum OutletRegion {
 }
 
 impl FlowPlan {
-    /// Lines that tell of it before a run; `waiting` is the number of grains of a group that wait at the start.
-    pub fn lines(&self, waiting: impl Fn(u32) -> usize) -> Vec<String> {
+    /// Lines that tell of it before a run, with the names of all groups; `waiting` is the number of grains of a group that wait
+    /// at the start.
+    pub fn lines(&self, groups: &[String], waiting: impl Fn(u32) -> usize) -> Vec<String> {
         let mut lines = Vec::new();
         for i in &self.inlets {
             let per = if i.rate.unit() == "kg" { "kg/s" } else { "grains/s" };
-            let stop = if i.stop.is_finite() { format!(" to {} s", i.stop) } else { String::new() };
+            let stop = if i.stop.is_finite() { format!("to {} s", i.stop) } else { "on".into() };
             lines.push(format!(
-                "inlet of {}: {} {per} from {} s{stop} on, {} grains wait for it at the start",
+                "inlet of {}: {} {per} from {} s {stop}, {} grains wait for it at the start",
                 i.group,
                 i.rate.value(),
                 i.start,
@@ -128,7 +129,8 @@ impl FlowPlan {
         }
         for o in &self.outlets {
             let what = if o.again { "come again" } else { "are gone" };
-            lines.push(format!("{}: grains of {} groups, which then {what}", o.name, o.parts.len()));
+            let names: Vec<&str> = o.parts.iter().map(|p| groups[*p as usize].as_str()).collect();
+            lines.push(format!("{}: takes out {}, which then {what}", o.name, names.join(", ")));
         }
         lines
     }
