@@ -60,6 +60,7 @@ fn grains_touch_nothing() {
             let mut found = Vec::new();
             while let Some((x, _)) = room.place(RADIUS, &mut places) {
                 found.push(x);
+                assert!(found.len() < 10_000, "places without end");
             }
             found
         };
