@@ -248,15 +248,19 @@ fn a_run_without_any_body() {
     assert!(measure::coordination_of(&run.model, &run.state, &none, |_| true).distribution.is_empty());
     assert_eq!(measure::region_stress(&run.model, &run.state, &vec![[1.0; 6]; 160], &region), [0.0; 6]);
     assert!(measure::radial_distribution(&run.model, &run.state, &region, |_| true, 0.03, 4).is_none());
-    let position = Vec3::repeat(0.05);
+    let position = Vec3::new(0.05, 0.05, 0.0112);
     let (orientation, zero) = (UnitQuaternion::identity(), Vec3::zeros());
     let arrive = [Arrival { body: 77, position, orientation, velocity: zero, spin: zero }];
     run.exchange(&[], &arrive).unwrap();
-    run.steps(20);
-    assert!(run.state.present_count() == 1 && run.state.position(77).z < 0.05);
-    // A single contact: the mean is that of the one body there.
-    run.steps(2000);
-    assert!(measure::coordination(&run.model, &run.state) <= 3.0);
+    run.steps(4000);
+    assert!(run.state.present_count() == 1 && run.state.position(77).z < 0.011);
+    // It rests on the floor, and none but itself counts.
+    assert_eq!(measure::coordination(&run.model, &run.state), 1.0);
+    let found = contacts(&run.model, &run.state);
+    let all = measure::coordination_of(&run.model, &run.state, &found, |_| true);
+    assert_eq!((all.mean, all.distribution), (1.0, vec![0, 1]));
+    let ratio = measure::unbalanced_ratio(&run.model, &run.state, &found);
+    assert!(ratio < 1e-3, "{ratio}");
 }
 
 /// A run sorted anew after the change goes on with the same bits from a copy with fresh scratch.

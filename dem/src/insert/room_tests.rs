@@ -115,5 +115,9 @@ fn room_for_one() {
     assert_eq!(room.place(0.06, &mut places), None);
     let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     assert_eq!(room.place(0.11, &mut places), None);
-    assert!(room.place(0.06, &mut places).is_some());
+    let first = room.place(0.06, &mut places).unwrap();
+    // The next look finds the room as it was, and takes another place in it.
+    let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
+    let second = room.place(0.06, &mut places).unwrap();
+    assert!(first.0 != second.0 && first.1 != second.1);
 }
