@@ -415,8 +415,8 @@ fn in_a_periodic_box_above_a_settled_bed() {
     let text = text
         .replace("point = [0, 0, 0]\nnormal = [1, 0, 0]", "point = [0, 0, 0.4]\nnormal = [0, 0, 1]")
         .replace("point = [0.1, 0, 0]\nnormal = [-1, 0, 0]", "point = [0, 0, 0]\nnormal = [0, 1, 0]");
-    let more =
-        "[periodic]\nx = [0.0, 0.1]\n\n[deposition]\nmax_time = 0.3\nlayers = 2\nlevel = 0.6\n\n[time]";
+    let more = "[periodic]\nx = [0.0, 0.1]\n\n[deposition]\nmax_time = 0.3\nlayers = 2\nlevel = 0.6\n\n[[measure]]\n\
+                name = \"bed\"\nbox = [[0, 0, 0.4], [0.1, 0.1, 0.6]]\n\n[time]";
     let text = text.replace("[time]", more) + "packing = true\n";
     let scene = folder.write("scene.toml", &text);
     let out = folder.join("out");
@@ -437,6 +437,8 @@ fn in_a_periodic_box_above_a_settled_bed() {
     assert!(float(&summary["energy"]["relative_error"]) < 0.02, "{}", summary["energy"]);
     assert!(float(&summary["momentum"]["linear"]) < 1e-10, "{}", summary["momentum"]);
     assert!(float(&summary["momentum"]["angular"]) < 1e-10, "{}", summary["momentum"]);
+    let inside = summary["packing"]["measures"][0]["grains"].as_u64().unwrap();
+    assert!((30..=flow["at_end"]["grains"].as_u64().unwrap()).contains(&inside), "{}", summary["packing"]);
     // Those that are there go to the packings, the others do not.
     let rows = |name: &str| fs::read_to_string(out.join(name)).unwrap().lines().count() - 1;
     let there = flow["at_end"]["grains"].as_u64().unwrap() as usize;
