@@ -361,7 +361,7 @@ size = ["150 mm", "200 mm"]
 inlet = { box = [[0.2, 0.2, 0.5], [1.8, 1.8, 1.0]], grains_per_second = 150, velocity = [2, 0, -6] }
 
 [[outlet]]
-box = [[-1, -1, -1], [3, 3, 0.12]]
+box = [[-1, -1, -1], [3, 3, 0.085]]
 groups = ["rain"]
 again = true
 
