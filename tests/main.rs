@@ -11,6 +11,7 @@ mod suite {
     mod determinism;
     mod exchange;
     mod fem_cases;
+    mod flow;
     mod grain_limits;
     mod mesh_forms;
     mod mesh_forms_files;

@@ -53,7 +53,8 @@ impl Stored {
 pub struct Spent {
     /// Work of applied loads on grains and sleeper.
     pub applied_work: f64,
-    /// Work of moving walls, and of what holds motions fixed, on grains.
+    /// Work of moving walls, and of what holds motions fixed, on grains; and the energy that grains brought in through
+    /// inlets less what they took out.
     pub wall_work: f64,
     /// Work of the loads on the solid other than contact and gravity.
     pub solid_load_work: f64,

@@ -539,13 +539,35 @@ pub fn spent(state: &State) -> Spent {
     }
 }
 
+/// Takes grains out and puts grains in between two windows, as [`dem::flow::exchange`] does.
+///
+/// # Errors
+/// A grain that cannot leave or come.
+pub fn exchange(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    leave: &[usize],
+    arrive: &[dem::flow::Arrival],
+) -> Result<(), dem::flow::FlowError> {
+    dem::flow::exchange(&model.grains, &mut state.grains, &mut work.grains, leave, arrive)?;
+    // Contacts of grains that have left load the solid no more, not even in a prediction.
+    state.held.retain(|c| !leave.contains(&c.body()));
+    Ok(())
+}
+
 /// The grains' share of [`spent`].
 pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
         applied_work: ledger.work_applied,
-        // Grains put back at the upper end of a periodic slope have their potential energy anew.
-        wall_work: ledger.work_walls + ledger.work_servo + ledger.work_constraints + ledger.work_periodic,
+        // Grains put back at the upper end of a periodic slope have their potential energy anew, and those that come in
+        // bring all of theirs.
+        wall_work: ledger.work_walls
+            + ledger.work_servo
+            + ledger.work_constraints
+            + ledger.work_periodic
+            + ledger.work_flow,
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
         bonds: ledger.dissipated_bonds,

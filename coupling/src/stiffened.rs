@@ -31,6 +31,13 @@ pub(crate) struct Held {
     force: [f64; 3],
 }
 
+impl Held {
+    /// The grain.
+    pub fn body(&self) -> usize {
+        self.body as usize
+    }
+}
+
 impl From<&SurfaceContact> for Held {
     fn from(c: &SurfaceContact) -> Held {
         Held { body: c.body, sphere: c.sphere, patch: c.patch, local: c.local, force: c.force }

@@ -65,6 +65,8 @@ pub(crate) struct Bodies {
     orientations: Vec<UnitQuaternion<f64>>,
     velocities: Vec<Vec3>,
     spins: Vec<Vec3>,
+    /// Bodies that are not there at the start; empty where all are.
+    absent: Vec<bool>,
 }
 
 impl Bodies {
@@ -105,6 +107,9 @@ impl Bodies {
         }
         if input.bodies.iter().any(|b| b.spin != Vec3::zeros()) {
             bodies.spins = input.bodies.iter().map(|b| b.spin).collect();
+        }
+        if input.bodies.iter().any(|b| b.absent) {
+            bodies.absent = input.bodies.iter().map(|b| b.absent).collect();
         }
         Ok(bodies)
     }
@@ -162,6 +167,11 @@ impl Bodies {
 
     pub fn spin(&self, k: usize) -> Vec3 {
         self.spins.get(k).copied().unwrap_or_default()
+    }
+
+    /// Whether a body is not there at the start.
+    pub fn absent(&self, k: usize) -> bool {
+        self.absent.get(k).is_some_and(|a| *a)
     }
 }
 

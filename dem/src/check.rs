@@ -136,11 +136,22 @@ fn bodies(input: &ModelInput) -> Result<(), ModelError> {
                 return Err(error(quantity, value, "be finite"));
             }
         }
+        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. }) {
+            return Err(ModelError::Absent { body: index, problem: "it is a box" });
+        }
         if (b.orientation.norm() - 1.0).abs() > 1e-6 || b.orientation.norm().is_nan() {
             return Err(error("norm of the orientation", b.orientation.norm(), "be 1"));
         }
     }
     Ok(())
+}
+
+/// Bodies that are absent at the start have no bonds.
+pub(crate) fn absent_bonds(input: &ModelInput) -> Result<(), ModelError> {
+    match input.bonds.iter().flat_map(|b| [b.a, b.b]).find(|&b| input.bodies[b].absent) {
+        Some(body) => Err(ModelError::Absent { body, problem: "a bond holds it" }),
+        None => Ok(()),
+    }
 }
 
 fn walls(input: &ModelInput) -> Result<(), ModelError> {

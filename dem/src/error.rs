@@ -71,6 +71,14 @@ pub enum ModelError {
         /// What is wrong.
         problem: &'static str,
     },
+    /// A body cannot be absent at the start.
+    #[error("body {body} is to be absent at the start, but {problem}")]
+    Absent {
+        /// Index of the body.
+        body: usize,
+        /// Why it cannot.
+        problem: &'static str,
+    },
     /// Two rigid partners may touch.
     #[error(
         "{a} and {b} may touch but both are rigid (infinite stiffness); give one a stiffness, or the pair one"
@@ -227,7 +235,9 @@ pub enum StepError {
         walls: [usize; 2],
     },
     /// An applied force names no body, or is not finite.
-    #[error("at t = {time} s applied force {index} (body {body}) names no body or is not finite")]
+    #[error(
+        "at t = {time} s applied force {index} (body {body}) names no body that is there, or is not finite"
+    )]
     Applied {
         /// Time [s].
         time: f64,

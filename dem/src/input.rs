@@ -31,6 +31,9 @@ pub struct BodyInput {
     pub fixed: [bool; 6],
     /// Mass instead of density × volume [kg]; the inertia scales along.
     pub mass: Option<f64>,
+    /// Whether the body is not there at the start: it waits until [`crate::flow::exchange`] puts it in.
+    #[serde(default)]
+    pub absent: bool,
 }
 
 impl Default for BodyInput {
@@ -47,6 +50,7 @@ impl Default for BodyInput {
             spin: Vec3::zeros(),
             fixed: [false; 6],
             mass: None,
+            absent: false,
         }
     }
 }

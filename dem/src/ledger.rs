@@ -61,6 +61,10 @@ pub struct Ledger {
     pub work_periodic: f64,
     /// Work of what keeps fixed motions at their speed [J].
     pub work_constraints: f64,
+    /// Energy that bodies brought along when they were put in, less what went with those taken out [J]: kinetic, of gravity,
+    /// and of the contact springs that ceased to be.
+    #[serde(default)]
+    pub work_flow: f64,
     /// Impulse of gravity.
     pub gravity: Impulse,
     /// Impulse of planes and walls, rigid bodies excepted: they count among the bodies.
@@ -80,6 +84,9 @@ pub struct Ledger {
     /// Change of momentum by bodies that were set elsewhere.
     #[serde(default)]
     pub jumps: Impulse,
+    /// Momentum that bodies brought along when they were put in, less that of those taken out.
+    #[serde(default)]
+    pub flow: Impulse,
 }
 
 impl Ledger {
@@ -100,13 +107,14 @@ impl Ledger {
             + self.work_surface
             + self.work_constraints
             + self.work_periodic
+            + self.work_flow
     }
 
     /// Sum of all impulses: the change of momentum since the start.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
         let own = [self.walls, self.surface, self.applied, self.constraints];
-        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps]) {
+        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps, self.flow]) {
             sum += &part;
         }
         sum
@@ -125,6 +133,7 @@ impl AddAssign<&Ledger> for Ledger {
         self.work_servo += other.work_servo;
         self.work_surface += other.work_surface;
         self.work_constraints += other.work_constraints;
+        self.work_flow += other.work_flow;
         self.work_periodic += other.work_periodic;
         self.gravity += &other.gravity;
         self.walls += &other.walls;
@@ -134,5 +143,6 @@ impl AddAssign<&Ledger> for Ledger {
         self.periodic += &other.periodic;
         self.local_damping += &other.local_damping;
         self.jumps += &other.jumps;
+        self.flow += &other.flow;
     }
 }

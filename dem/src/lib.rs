@@ -9,6 +9,7 @@ mod check;
 pub mod contact;
 pub mod detect;
 pub mod error;
+pub mod flow;
 pub mod input;
 pub mod insert;
 pub mod integrate;

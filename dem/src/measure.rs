@@ -22,6 +22,7 @@ pub use coordination::{
     Coordination, StrongNetwork, coordination_of, fabric, neighbours, strong_network, unbalanced_ratio,
 };
 pub use energy::{Energies, energies, momentum};
+pub(crate) use energy::{energies_of, momentum_of};
 pub use footprint::{bytes, kernels};
 pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
 pub use radial::radial_distribution;

@@ -78,6 +78,7 @@ impl Model {
         crate::periodic::check(&input, &bodies, skin)?;
         let periodic = crate::periodic::Periodic::new(&input);
         let bonds = crate::bond::resolve(&input, &bodies)?;
+        check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
         walls.join(&mut limit, &bodies, &input.planes, &laws, expected, radii);

@@ -10,16 +10,19 @@ use crate::Vec3;
 use crate::bond;
 use crate::contact::History;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Cross, ImageName, ImagePair, PatchContact, PatchPair, State};
+use crate::state::{
+    Block, Cross, ImageName, ImagePair, Lanes, PatchContact, PatchPair, Rotation, State, xyz,
+};
+use std::collections::BTreeMap;
 
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
 
-/// Numbers of the bodies of each block.
-pub(crate) fn blocks(model: &Model, positions: &[Vec3]) -> Vec<Vec<u32>> {
+/// Numbers of the bodies of each block, of those that are `present`; the positions of others do not matter.
+pub(crate) fn blocks(model: &Model, positions: &[Vec3], present: impl Fn(usize) -> bool) -> Vec<Vec<u32>> {
     let of_kind = |boxes: bool| -> Vec<u32> {
         (0..positions.len() as u32)
-            .filter(|&b| (model.bodies.kind(b as usize) == Kind::Box) == boxes)
+            .filter(|&b| present(b as usize) && (model.bodies.kind(b as usize) == Kind::Box) == boxes)
             .collect()
     };
     let mut round = of_kind(false);
@@ -56,8 +59,44 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
     halve(right, positions, size, cell, out);
 }
 
-/// Sorts a state anew; contacts go along with their bodies.
-pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
+/// A body on its way in: what its block will hold of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    pub centre: Lanes,
+    pub velocity: Lanes,
+    pub spin: Lanes,
+    pub rotation: Rotation,
+}
+
+/// Who is there after a new order.
+pub(crate) struct Turnover {
+    /// Whether a body was there and stays. Shape `[bodies]`.
+    pub stays: Vec<bool>,
+    /// Bodies that come in; those that were there and do not stay may come in anew.
+    pub come: BTreeMap<u32, Row>,
+}
+
+impl Turnover {
+    /// All stay, none comes.
+    pub fn none(state: &State) -> Turnover {
+        Turnover { stays: (0..state.places.len()).map(|b| state.present(b)).collect(), come: BTreeMap::new() }
+    }
+
+    /// Where all those are that will be there [m]; zero for others. Shape `[bodies]`.
+    pub fn positions(&self, state: &State) -> Vec<Vec3> {
+        let of = |b: usize| match self.come.get(&(b as u32)) {
+            Some(row) => xyz(&row.centre),
+            None if self.stays[b] => state.position(b),
+            None => Vec3::zeros(),
+        };
+        (0..self.stays.len()).map(of).collect()
+    }
+}
+
+/// Sorts a state anew by the given positions; contacts go along with their bodies. Those of bodies that do not stay are forgotten.
+pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turnover: &Turnover) {
+    let Turnover { stays, come } = turnover;
+    let present = |b: usize| stays[b] || come.contains_key(&(b as u32));
     let turning = model.laws.rolls();
     let members: Vec<u32> = (0..positions.len()).map(|b| model.member_count(b)).collect();
     let lists: Vec<_> = state.blocks.iter_mut().map(|b| std::mem::take(&mut b.bonds)).collect();
@@ -74,9 +113,18 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         })
         .collect();
 
-    for bodies in blocks(model, positions) {
+    for bodies in blocks(model, positions, present) {
         let mut block = Block::new(turning);
         for &body in &bodies {
+            if let Some(row) = come.get(&body) {
+                block.centre.push(row.centre);
+                block.velocity.push(row.velocity);
+                block.spin.push(row.spin);
+                if model.rigid {
+                    block.rotation.push(row.rotation);
+                }
+                continue;
+            }
             let [b, k] = old_places[body as usize];
             let (from, k) = (&old[b as usize], k as usize);
             block.centre.push(from.centre[k]);
@@ -104,9 +152,12 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
         }
     }
     let places = state.places.clone();
-    let new = |[body, member]: [u32; 2]| (places[body as usize][0], first[body as usize] + member);
+    let new = |[body, member]: [u32; 2]| {
+        stays[body as usize].then(|| (places[body as usize][0], first[body as usize] + member))
+    };
 
-    let mut file = |a: (u32, u32), b: (u32, u32), history: History| {
+    let mut file = |a: Option<(u32, u32)>, b: Option<(u32, u32)>, history: History| {
+        let (Some(a), Some(b)) = (a, b) else { return };
         // The spring is that of the first against the second.
         let turned = history.turned();
         let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
@@ -129,6 +180,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     for (b, pairs) in cross.iter().enumerate() {
         for &ImagePair { name, history } in &pairs.images {
             let (x, y) = (new(named[b][name.i as usize]), new(named[name.block as usize][name.j as usize]));
+            let (Some(x), Some(y)) = (x, y) else { continue };
             let turned = (name.shift.map(|s| -s), history.turned());
             let (x, y, (shift, history)) =
                 if x <= y { (x, y, (name.shift, history)) } else { (y, x, turned) };
@@ -138,7 +190,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     }
     for (b, pairs) in cross.iter().enumerate() {
         for ([i, from, j], history) in pairs.boxes.iter() {
-            let (block, i) = new(named[b][i as usize]);
+            let Some((block, i)) = new(named[b][i as usize]) else { continue };
             let box_body = old[from as usize].bodies[j as usize];
             let [box_block, j] = places[box_body as usize];
             state.cross[block as usize].boxes.push([i, box_block, j], &history);
@@ -147,20 +199,21 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3]) {
     for (block, names) in old.iter().zip(&named) {
         for ([i, plane], history) in block.planes.iter() {
             // A block of boxes keeps its corners: boxes never change places among themselves.
-            let (b, i) = match names.get(i as usize) {
+            let place = match names.get(i as usize) {
                 Some(&name) => new(name),
-                None => (state.blocks.len() as u32 - 1, i),
+                None => Some((state.blocks.len() as u32 - 1, i)),
             };
+            let Some((b, i)) = place else { continue };
             state.blocks[b as usize].planes.push([i, plane], &history);
         }
         for (from, pick) in [(&block.walls, true), (&block.surface, false)] {
             for p in &from.live {
-                let (b, i) = new(names[p.i as usize]);
+                let Some((b, i)) = new(names[p.i as usize]) else { continue };
                 let to = &mut state.blocks[b as usize];
                 (if pick { &mut to.walls } else { &mut to.surface }).live.push(PatchContact { i, ..*p });
             }
             for p in &from.pairs {
-                let (b, i) = new(names[p.i as usize]);
+                let Some((b, i)) = new(names[p.i as usize]) else { continue };
                 let to = &mut state.blocks[b as usize];
                 (if pick { &mut to.walls } else { &mut to.surface }).pairs.push(PatchPair { i, ..*p });
             }

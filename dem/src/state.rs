@@ -12,7 +12,7 @@ use crate::contact::History;
 use crate::contact::groups::Groups;
 use crate::ledger::Ledger;
 use crate::model::Model;
-use crate::order;
+use crate::order::{self, Turnover};
 use crate::wall::state::{WallMotion, WallState};
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
@@ -193,6 +193,9 @@ pub struct State {
     pub(crate) stale: bool,
 }
 
+/// Place of a body that is absent: in no block.
+pub(crate) const NOWHERE: [u32; 2] = [u32::MAX, 0];
+
 #[inline(always)]
 pub(crate) fn xyz(lanes: &Lanes) -> Vec3 {
     Vec3::new(lanes[0], lanes[1], lanes[2])
@@ -210,6 +213,13 @@ pub(crate) fn set_xyz(lanes: &mut Lanes, v: &Vec3) {
 pub(crate) fn spin_of(rotation: &Rotation, inertia: &Vec3) -> Vec3 {
     rotation.orientation
         * rotation.orientation.inverse_transform_vector(&rotation.momentum).component_div(inertia)
+}
+
+/// The leapfrog's velocity half a step before a moment at which the body moves at `velocity` [m/s], free to fall.
+pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3) -> Vec3 {
+    let fixed = model.body(body).fixed;
+    let kick = Vec3::from_fn(|d, _| if fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
+    velocity - kick * (0.5 * model.dt())
 }
 
 impl State {
@@ -239,7 +249,7 @@ impl State {
             stale: true,
         };
         let positions = model.bodies.positions().expect("a model that has not given its start up");
-        for members in order::blocks(model, positions) {
+        for members in order::blocks(model, positions, |b| !model.bodies.absent(b)) {
             let mut block = Block::new(model.laws.rolls());
             for &body in &members {
                 let b = model.body(body as usize);
@@ -261,17 +271,27 @@ impl State {
         state.cross.resize_with(state.blocks.len(), || Cross::new(model.laws.rolls()));
         state.number(model);
         bond::store::start(model, &mut state);
-        for (k, b) in model.bodies.iter().enumerate() {
-            let kick = Vec3::from_fn(|d, _| if b.fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
-            let velocity = model.bodies.velocity(k) - kick * (0.5 * model.dt());
+        for k in (0..model.bodies.len()).filter(|&k| !model.bodies.absent(k)) {
+            let velocity = half_a_step_ago(model, k, &model.bodies.velocity(k));
             state.set_velocity(model, k, velocity, model.bodies.spin(k));
         }
         state
     }
 
+    /// Whether a body is there. Those that are not have no position, velocity or orientation, and take part in nothing.
+    pub fn present(&self, body: usize) -> bool {
+        self.places[body] != NOWHERE
+    }
+
+    /// Number of bodies that are there.
+    pub fn present_count(&self) -> usize {
+        self.blocks.iter().map(|b| b.bodies.len()).sum()
+    }
+
     /// Writes down where each body is.
     pub(crate) fn number(&mut self, model: &Model) {
-        self.places.resize(model.bodies.len(), [0; 2]);
+        self.places.clear();
+        self.places.resize(model.bodies.len(), NOWHERE);
         for (b, block) in self.blocks.iter().enumerate() {
             for (k, &body) in block.bodies.iter().enumerate() {
                 self.places[body as usize] = [b as u32, k as u32];
@@ -430,7 +450,8 @@ impl State {
         if let Some(periodic) = &model.periodic {
             crate::periodic::wrap(periodic, model, self);
         }
-        let positions: Vec<Vec3> = (0..self.places.len()).map(|b| self.position(b)).collect();
-        order::reorder(self, model, &positions);
+        let all = Turnover::none(self);
+        let positions = all.positions(self);
+        order::reorder(self, model, &positions, &all);
     }
 }

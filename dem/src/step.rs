@@ -242,7 +242,8 @@ fn place_loads(
 ) -> Result<(), StepError> {
     work.applied.clear();
     for (index, a) in applied.iter().enumerate() {
-        if a.body >= model.bodies.len() || !a.force.iter().chain(a.point.iter()).all(|x| x.is_finite()) {
+        let there = a.body < model.bodies.len() && state.present(a.body);
+        if !there || !a.force.iter().chain(a.point.iter()).all(|x| x.is_finite()) {
             return Err(StepError::Applied { time: state.time, index, body: a.body });
         }
         let [block, place] = state.places[a.body];

@@ -69,6 +69,10 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
             line(format!("  settling: at most {} s, {:.0} steps", d.max_time, d.max_time / model.dt()));
         }
         line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
+        let waiting = |part| grains.bodies.iter().filter(|b| b.absent && b.part == part).count();
+        for text in grains.flow.iter().flat_map(|f| f.lines(&grains.parts, waiting)) {
+            line(format!("  {text}"));
+        }
         if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
             let surface = coupling.ground(solid, grains);
             let (classes, substeps) = coupling.classes(grains, &model, solid, &surface);

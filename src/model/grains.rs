@@ -3,6 +3,7 @@
 mod bonded;
 mod bonds;
 mod compaction;
+mod flow;
 mod groups;
 mod materials;
 mod periodic;
@@ -19,6 +20,7 @@ use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
 pub use compaction::{CompactionPlan, Measure, Press, Radial};
+pub use flow::{FlowPlan, InletPlan, InletRate, OutletPlan, OutletRegion};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::shape::Shape;
@@ -81,6 +83,8 @@ pub struct GrainsPart {
     pub after: AfterPlan,
     /// The rail, where it is a beam; one on each seat.
     pub rail: Option<RailInput>,
+    /// Inlets and outlets.
+    pub flow: Option<FlowPlan>,
 }
 
 /// A group of prescribed motion.
@@ -116,7 +120,7 @@ impl DepositionPlan {
         speed < self.settled_speed
             && self
                 .unbalanced_ratio
-                .is_none_or(|most| unbalanced_ratio(model, &contacts(model, state)) < most)
+                .is_none_or(|most| unbalanced_ratio(model, state, &contacts(model, state)) < most)
     }
 }
 
@@ -442,6 +446,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         load: None,
         after: AfterPlan::default(),
         rail: None,
+        flow: None,
     };
     for (i, group) in scene.grains.iter().enumerate() {
         let material = find(&format!("grains.{i}.material"), &group.material)?;
@@ -463,6 +468,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
     }
     periodic::add(document, scene, &mut part)?;
+    flow::add(document, scene, &mut part)?;
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(&format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();

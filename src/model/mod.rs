@@ -91,6 +91,7 @@ impl Job {
                 ("contact", !scene.contact.is_empty()),
                 ("walls", !scene.walls.is_empty()),
                 ("periodic", scene.periodic.is_some()),
+                ("outlet", !scene.outlet.is_empty()),
                 ("deposition", scene.deposition.is_some()),
                 ("compaction", !scene.compaction.is_empty()),
                 ("measure", !scene.measure.is_empty()),
@@ -149,6 +150,7 @@ fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError
             ("time.grain_step_fraction", time.grain_step_fraction.is_some()),
             ("time.accept_step_above_limit", time.accept_step_above_limit),
             ("time.impact_speed", time.impact_speed.is_some()),
+            ("time.flow_interval", time.flow_interval.is_some()),
         ] {
             if present {
                 return Err(document.error(key, "a value", "no such key without [[grains]]"));

@@ -75,22 +75,29 @@ impl<'a> Bed<'a> {
 
     /// The first bodies of the model where they are now, at rest: as many as `inputs`, which tell all else.
     pub fn at_rest(&self, inputs: &[BodyInput]) -> Vec<BodyInput> {
-        let place = |(b, input): (usize, &BodyInput)| BodyInput {
+        let place = |(b, input): (usize, &BodyInput)| match input.absent {
+            true => input.clone(),
+            false => self.placed(b, input),
+        };
+        inputs.iter().enumerate().map(place).collect()
+    }
+
+    fn placed(&self, b: usize, input: &BodyInput) -> BodyInput {
+        BodyInput {
             position: self.state.position(b),
             orientation: self.state.orientation(&self.model, b),
             velocity: dem::Vec3::zeros(),
             spin: dem::Vec3::zeros(),
             ..input.clone()
-        };
-        inputs.iter().enumerate().map(place).collect()
+        }
     }
 }
 
 /// Root-mean-square speed of all bodies [m/s].
 pub fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
-    let n = model.body_count();
-    let sum: f64 = (0..n).map(|b| state.velocity(b).norm_squared()).sum();
-    (sum / n.max(1) as f64).sqrt()
+    let present = (0..model.body_count()).filter(|&b| state.present(b));
+    let sum: f64 = present.map(|b| state.velocity(b).norm_squared()).sum();
+    (sum / state.present_count().max(1) as f64).sqrt()
 }
 
 /// Height at which a box with half sides `half`, let down at `centre` in plan, meets the highest sphere below it [m];
@@ -103,7 +110,7 @@ pub fn top_below(
     surface: Option<&SolidSurface>,
 ) -> f64 {
     let mut top = f64::NEG_INFINITY;
-    for body in 0..model.body_count() {
+    for body in (0..model.body_count()).filter(|&b| state.present(b)) {
         for (x, r) in state.spheres(model, body) {
             let over = [0, 1].map(|d| ((x[d] - centre[d]).abs() - half[d]).max(0.0));
             let reach = r * r - over[0] * over[0] - over[1] * over[1];

@@ -47,7 +47,7 @@ pub fn values(part: &GrainsPart, view: GrainsView<'_>, stored: &Stored, spent: &
         row.extend([stored.bonds, spent.bonds, spent.breaks]);
     }
     for &group in &part.recorded_groups {
-        let of = |body: usize| model.part(body) == group;
+        let of = |body: usize| state.present(body) && model.part(body) == group;
         let (mut sum, mut count) = (dem::Vec3::zeros(), 0.0_f64);
         for body in (0..model.body_count()).filter(|&b| of(b)) {
             sum += state.position(body);

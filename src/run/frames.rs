@@ -70,7 +70,7 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
     let force = dem::measure::contact_forces(view.model, view.state);
     let fragments = dem::bond::fragments(view.model, view.state).of;
     let mut frame = GrainFrame::default();
-    for body in 0..view.model.body_count() {
+    for body in (0..view.model.body_count()).filter(|&b| view.state.present(b)) {
         let q = view.state.orientation(view.model, body);
         let (x, v, w) = (view.state.position(body), view.state.velocity(body), view.state.spin(body));
         let back = into_box(view, body);
@@ -195,7 +195,10 @@ fn push(frame: &mut WallFrame, id: u32, points: &[dem::Vec3], polygons: &[&[u32]
 fn extent(view: GrainsView<'_>) -> (dem::Vec3, f64) {
     let mut low = dem::Vec3::repeat(f64::INFINITY);
     let mut high = dem::Vec3::repeat(f64::NEG_INFINITY);
-    for body in 0..view.model.body_count() {
+    if view.state.present_count() == 0 {
+        return (dem::Vec3::zeros(), 1.0);
+    }
+    for body in (0..view.model.body_count()).filter(|&b| view.state.present(b)) {
         let x = view.state.position(body);
         let r = dem::Vec3::repeat(view.model.radius(body));
         low = low.inf(&(x - r));

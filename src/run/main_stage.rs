@@ -4,6 +4,7 @@ use super::Stage;
 use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
 use super::cycles::Cycle;
+use super::flow::Flow;
 use super::record::Recorder;
 use super::summary::{BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
 use super::system::System;
@@ -66,7 +67,8 @@ impl Stage<'_> {
         let ledger = &system.grains().expect("a system with grains").state.ledger;
         let impulse = ledger.impulse();
         let (mut linear, mut angular) = (0.0, 0.0);
-        for part in [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.constraints] {
+        let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied];
+        for part in outside.into_iter().chain([&ledger.constraints, &ledger.flow]) {
             linear += part.linear.norm();
             angular += part.angular.norm();
         }
@@ -95,6 +97,7 @@ impl Stage<'_> {
         let every = ((interval / window).round() as u64).max(1);
 
         let mut track = Track::new(grains, system.grains());
+        let mut flow = Flow::new(grains, system.grains(), window, job.end);
         let load = grains.and_then(|g| g.load.as_ref());
         // What follows the cycles, whenever they end.
         let tail = load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows));
@@ -102,12 +105,13 @@ impl Stage<'_> {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
                 track = track.resume(&mut loaded)?;
+                flow = flow.map(|f| f.resume(&mut loaded)).transpose()?;
                 windows = from.windows;
                 (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
             }
             None => {
                 let mut recorder = Recorder::start(job, self.dir, system, &track)?;
-                recorder.row(0.0, system, &track)?;
+                recorder.row(0.0, system, &track, flow.as_ref())?;
                 recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
             }
@@ -135,6 +139,9 @@ impl Stage<'_> {
                 track.begin_window();
                 system.advance(&apply)?;
                 track.follow(time, system);
+                if let Some(flow) = &mut flow {
+                    flow.follow(k, time, system).map_err(|e| e.at(time))?;
+                }
                 if let Some(cycle) = recorder.follow(time, system, &track)? {
                     progress.message(format!(
                         "cycle {}: settlement {:.3} mm",
@@ -149,7 +156,7 @@ impl Stage<'_> {
                     }
                 }
                 if k % every == 0 || k == windows {
-                    recorder.row(time, system, &track).map_err(|e| e.at(time))?;
+                    recorder.row(time, system, &track, flow.as_ref()).map_err(|e| e.at(time))?;
                 }
                 let (come, whole) = share(k, windows, &recorder);
                 if frames > 0 && come * frames >= next_frame * whole && next_frame <= frames {
@@ -174,6 +181,9 @@ impl Stage<'_> {
                         }
                         body.put(&Place { done, next_frame, seconds: progress.seconds(), windows })?;
                         track.save(body)?;
+                        if let Some(flow) = &flow {
+                            flow.save(body)?;
+                        }
                         recorder.save(body)
                     },
                 )
@@ -185,7 +195,7 @@ impl Stage<'_> {
             && system.keeps_its_state()
             && let Some(time) = system.solid().map(|s| s.state.time)
         {
-            recorder.row(time, system, &track)?;
+            recorder.row(time, system, &track, flow.as_ref())?;
             recorder.frame(time, system, &track)?;
         }
         if let (Some(part), Some(view)) = (grains, system.grains())
@@ -203,6 +213,9 @@ impl Stage<'_> {
             solid_steps: done * solid_steps,
         });
         track.finish(self.dir, summary)?;
+        if let (Some(flow), Some(view)) = (&flow, system.grains()) {
+            flow.finish(done as f64 * window, view, summary);
+        }
         summary.settlement = settlement(recorder.cycles(), grains, &recorder);
         summary.track = track.record();
         summary.warnings.extend(summary.track.iter().flat_map(|t| t.remarks()));

@@ -7,6 +7,7 @@ mod compact;
 mod cycles;
 mod failure_factor;
 mod fit;
+mod flow;
 mod frames;
 mod initial;
 mod jump;
@@ -517,7 +518,8 @@ fn late(spent: &Spent) -> Option<String> {
 /// A remark on grains that have left the solid and lie or fall below its surface, whose lowest point was at `lowest` [m].
 fn fallen(system: &CoupledSystem<'_>, lowest: f64) -> Option<String> {
     let (model, state) = (&system.model.grains, &system.state.grains);
-    let mut below = (0..model.body_count()).filter(|&b| state.position(b).z < lowest - model.radius(b));
+    let fell = |b: &usize| state.present(*b) && state.position(*b).z < lowest - model.radius(*b);
+    let mut below = (0..model.body_count()).filter(fell);
     let first = below.next()?;
     let x = state.position(first);
     Some(format!(

@@ -136,9 +136,13 @@ impl Stage<'_> {
         surface: Option<&SolidSurface>,
         bed: &mut Settled,
     ) -> Result<(), Failure> {
-        let mut order: Vec<usize> = (0..grains.bodies.len()).collect();
+        // Grains that wait for their inlet do not fall.
+        let mut order: Vec<usize> = (0..grains.bodies.len()).filter(|&b| !grains.bodies[b].absent).collect();
         let height = |b: &usize| grains.bodies[*b].position.z;
         order.sort_by(|a, b| height(a).total_cmp(&height(b)));
+        if order.is_empty() {
+            return Ok(());
+        }
         let layers: Vec<&[usize]> = order.chunks(order.len().div_ceil(plan.layers as usize)).collect();
         let progress = Progress::start("layers", layers.len() as f64, self.quiet);
         let mut steps = 0;

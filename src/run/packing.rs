@@ -134,17 +134,18 @@ impl Stage<'_> {
         let Some(view) = system.grains() else { return Ok(()) };
         let GrainsView { model, state } = view;
         let sleeper = grains.rigid_sleeper().map(|_| grains.parts.len() as u32 - 1);
-        let is_grain = |b: usize| Some(model.part(b)) != sleeper;
+        // Those that are not there at the end do not count.
+        let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
         let contacts = measure::contacts(model, state);
         let stress = measure::mean_stress_of(model, state, &contacts);
-        let all = measure::coordination_of(model, &contacts, is_grain);
+        let all = measure::coordination_of(model, state, &contacts, is_grain);
         let strong = measure::strong_network(&contacts);
-        let ratio = measure::unbalanced_ratio(model, &contacts);
+        let ratio = measure::unbalanced_ratio(model, state, &contacts);
         let between =
             |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
         let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
             let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
-            let own = measure::coordination_of(model, &contacts, inside);
+            let own = measure::coordination_of(model, state, &contacts, inside);
             MeasureRecord {
                 name: name.clone(),
                 porosity: porosity(view, region, is_grain),
@@ -155,9 +156,9 @@ impl Stage<'_> {
                 stress: measure::region_stress(model, state, &stress, region),
             }
         });
-        let gradations = grains.graded.iter().map(|g| graded(model, g)).collect::<Vec<_>>();
+        let gradations = grains.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
         if !gradations.is_empty() {
-            write_gradations(self.dir, &self.job.title, model, &grains.graded)?;
+            write_gradations(self.dir, &self.job.title, view, &grains.graded)?;
         }
         if grains.measures.iter().any(|m| m.radial.is_some()) {
             write_radial(self.dir, view, &grains.measures, is_grain)?;
@@ -205,10 +206,15 @@ fn fouling(
         (name.clone(), skeleton, share)
     });
     Some(FoulingRecord {
-        fouling_index: fines / (stones + fines),
-        relative_fouling_ratio: sum(dem::Model::volume, true) / sum(dem::Model::volume, false),
+        fouling_index: share_of(fines, stones + fines),
+        relative_fouling_ratio: share_of(sum(dem::Model::volume, true), sum(dem::Model::volume, false)),
         boxes: boxes.collect(),
     })
+}
+
+/// A ratio; zero where there is nothing to compare with.
+fn share_of(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
 }
 
 /// Share of a box that grains leave.
@@ -218,8 +224,8 @@ fn porosity(view: GrainsView<'_>, region: &BoxRegion, is_grain: impl Fn(usize) -
     1.0 - solid / region.volume()
 }
 
-fn graded(model: &dem::Model, group: &GradedGroup) -> GradationRecord {
-    let stones = measure::stones(model, |b| model.part(b) == group.part);
+fn graded(view: GrainsView<'_>, group: &GradedGroup) -> GradationRecord {
+    let stones = stones(view, group);
     let curve = &group.grading.curve;
     let sieves = curve.sizes().to_vec();
     let points = curve_sizes(group);
@@ -232,6 +238,11 @@ fn graded(model: &dem::Model, group: &GradedGroup) -> GradationRecord {
         largest_deviation: far.map(|(d, a)| (a - curve.passing_at(*d)).abs()).fold(0.0, f64::max),
         sieves,
     }
+}
+
+/// Sieve size [m] and mass [kg] of the stones of a group that are there.
+fn stones(view: GrainsView<'_>, group: &GradedGroup) -> Vec<(f64, f64)> {
+    measure::stones(view.model, |b| view.state.present(b) && view.model.part(b) == group.part)
 }
 
 /// Sizes from the smallest sieve to the largest, evenly on the logarithmic scale, a little beyond at both ends [m].
@@ -266,7 +277,7 @@ fn write_radial(
 fn write_gradations(
     dir: &Path,
     title: &str,
-    model: &dem::Model,
+    view: GrainsView<'_>,
     groups: &[GradedGroup],
 ) -> Result<(), Failure> {
     let columns = [
@@ -281,7 +292,7 @@ fn write_gradations(
     let mut file = History::create(&dir.join("gradation.csv"), columns)?;
     let mut series = Vec::new();
     for group in groups {
-        let stones = measure::stones(model, |b| model.part(b) == group.part);
+        let stones = stones(view, group);
         let limits = &group.grading.limits;
         let sieves: Vec<f64> = limits.iter().map(|l| l[0]).collect();
         for (&[size, low, high], achieved) in limits.iter().zip(achieved_passing(&sieves, &stones)) {
@@ -328,7 +339,7 @@ fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPart) -> Resu
 /// written in the shortest form that reads back to the same bits.
 fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
     let GrainsView { model, state } = view;
-    let own = || (0..model.body_count()).filter(|&b| model.part(b) == part);
+    let own = || (0..model.body_count()).filter(|&b| state.present(b) && model.part(b) == part);
     let single = |b: usize| matches!(model.shape(b), dem::Shape::Sphere { .. });
     let mut text = String::new();
     let mut line = |row: &[f64]| {

@@ -5,6 +5,7 @@ use super::bond_output;
 use super::checkpoint::{Body, Loaded};
 use super::cycles::{self, Cycle, CycleRecorder};
 use super::fit;
+use super::flow::Flow;
 use super::frames;
 use super::jump::{JumpSummary, Jumper};
 use super::system::System;
@@ -148,7 +149,13 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// A value is not finite, or the disk refuses.
-    pub fn row<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
+    pub fn row<S: System>(
+        &mut self,
+        time: f64,
+        system: &S,
+        track: &Track<'_>,
+        flow: Option<&Flow<'_>>,
+    ) -> Result<(), Failure> {
         let mut row = vec![time];
         for (k, s) in (0..track.count()).filter_map(|k| Some((k, track.sleeper(k, time, system)?))) {
             row.push(s.load);
@@ -212,6 +219,9 @@ impl<'a> Recorder<'a> {
         }
         if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
             wall_output::values(part, view, &mut row);
+        }
+        if let (Some(flow), Some(view)) = (flow, system.grains()) {
+            flow.values(view, &mut row);
         }
         self.history.row(&row)?;
         Ok(())
@@ -428,6 +438,9 @@ fn columns<S: System>(job: &Job, system: &S, track: &Track<'_>) -> Vec<Column> {
         vector(&mut columns, &format!("{name}_v"), "m/s");
     }
     columns.extend(job.grains.iter().flat_map(wall_output::columns));
+    if job.grains.as_ref().is_some_and(|g| g.flow.is_some()) {
+        columns.extend(Flow::columns());
+    }
     columns
 }
 
@@ -452,7 +465,9 @@ fn cycle_recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleR
     let between = part.and_then(|g| g.after.between).unwrap_or(load.range());
     let column = match (part.and_then(|g| g.sleeper.as_ref()), system.grains()) {
         (Some(sleeper), Some(g)) => {
-            let spheres = (0..g.model.body_count()).flat_map(|b| g.state.spheres(g.model, b));
+            let spheres = (0..g.model.body_count())
+                .filter(|&b| g.state.present(b))
+                .flat_map(|b| g.state.spheres(g.model, b));
             let bottom = spheres.map(|(x, r)| x.z - r).fold(f64::INFINITY, f64::min);
             let area = 4.0 * sleeper.half[0] * sleeper.half[1];
             let below = -sleeper.half[2] - bottom;

@@ -129,7 +129,7 @@ impl Stage<'_> {
         let (bodies, removed) = at_rest(&grains.bodies, &model, &state, plan);
         let seconds = progress.finish(&format!(
             "{} grains at rest after {:.2} s, {removed} above the level taken away",
-            bodies.len(),
+            bodies.iter().filter(|b| !b.absent).count(),
             state.time
         ));
         if bodies.is_empty() {
@@ -177,6 +177,10 @@ fn at_rest(
 ) -> (Vec<BodyInput>, usize) {
     let mut bodies = Vec::with_capacity(inputs.len());
     for (b, input) in inputs.iter().enumerate() {
+        if input.absent {
+            bodies.push(input.clone());
+            continue;
+        }
         let position = model.wrap(&state.position(b));
         if plan.level.is_some_and(|level| position.z > level) {
             continue;

@@ -1,6 +1,7 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
 use super::fit::Fit;
+use super::flow::FlowRecord;
 use super::jump::JumpSummary;
 use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
 use super::push::PushSummary;
@@ -69,6 +70,9 @@ pub struct Summary {
     /// Sleepers under load.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub track: Option<TrackRecord>,
+    /// Grains that came in and went out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<FlowRecord>,
     /// Groups that have grown to their size.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthRecord>,
@@ -548,6 +552,7 @@ impl Summary {
                 1e3 * s.lowering
             ));
         }
+        lines.extend(self.flow.iter().flat_map(FlowRecord::report));
         lines.extend(packing::report(self));
         for warning in &self.warnings {
             lines.push(format!("note: {warning}"));

@@ -43,6 +43,17 @@ pub trait System {
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
     /// Sets grains elsewhere: body, shift [m], rotation in world axes.
     fn relocate(&mut self, _moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {}
+    /// Takes grains out and puts grains in.
+    ///
+    /// # Errors
+    /// A grain that cannot leave or come.
+    fn exchange(&mut self, _leave: &[usize], _arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// The surface of the solid that grains may touch.
+    fn surface(&self) -> &dyn dem::surface::Surface {
+        &dem::surface::NoSurface
+    }
     /// Energy stored now [J].
     fn stored(&self) -> Stored;
     /// Work and dissipation so far [J].
@@ -255,6 +266,11 @@ impl System for GrainsSystem {
         self.state.forget_neighbours();
     }
 
+    fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
+        dem::flow::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+    }
+
     fn stored(&self) -> Stored {
         let e = dem::measure::energies(&self.model, &self.state);
         Stored {
@@ -370,6 +386,15 @@ impl System for CoupledSystem<'_> {
         let grains = &mut self.state.grains;
         moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
         grains.forget_neighbours();
+    }
+
+    fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
+        coupling::step::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+    }
+
+    fn surface(&self) -> &dyn dem::surface::Surface {
+        &self.work.surface
     }
 
     fn stored(&self) -> Stored {

@@ -47,6 +47,8 @@ pub struct Grains {
     pub motion: Option<[Quantity<Velocity>; 3]>,
     /// Whether the mean place of the grains and the force on them go to `history.csv`; default: with `motion`.
     pub record: Option<bool>,
+    /// Where and how fast grains of the group come in during the run proper.
+    pub inlet: Option<super::flow::Inlet>,
     /// Whether these grains foul the bed: fines in the voids of the others; default false.
     #[serde(default)]
     pub fouling: bool,

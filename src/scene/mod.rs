@@ -10,6 +10,7 @@ pub mod compaction;
 pub mod coupling;
 pub mod deposition;
 mod document;
+pub mod flow;
 pub mod grains;
 pub mod history;
 pub mod material;
@@ -47,6 +48,9 @@ pub struct Scene {
     /// Groups of grains.
     #[serde(default)]
     pub grains: Vec<grains::Grains>,
+    /// Where grains are taken out of the run.
+    #[serde(default)]
+    pub outlet: Vec<flow::Outlet>,
     /// Bonds between grains.
     #[serde(default)]
     pub bond: Vec<bonds::BondTable>,
@@ -101,6 +105,8 @@ pub struct TimeControl {
     /// Largest speed at which grains are expected to meet [m/s], for the step limit of contacts after Hertz;
     /// default: an estimate.
     pub impact_speed: Option<Quantity<Velocity>>,
+    /// Time between two looks at inlets and outlets of grains [s]; default 1 ms, at least one step or window.
+    pub flow_interval: Option<Quantity<Time>>,
 }
 
 fn yes() -> bool {

@@ -66,6 +66,8 @@ dimensions! {
     Frequency: "a frequency in Hz, such as 10 or \"10 Hz\"", [("Hz", 1.0), ("kHz", 1e3), ("1/s", 1.0)];
     /// Mass [kg].
     Mass: "a mass in kg, such as 300 or \"300 kg\"", [("kg", 1.0), ("t", 1e3), ("g", 1e-3)];
+    /// Mass per time [kg/s].
+    MassRate: "a mass per time in kg/s, such as 2 or \"2 kg/s\"", [("kg/s", 1.0), ("g/s", 1e-3), ("t/h", 1.0 / 3.6), ("kg/min", 1.0 / 60.0)];
     /// Density [kg/m³].
     Density: "a density in kg/m3, such as 2000 or \"2 t/m3\"", [("kg/m3", 1.0), ("t/m3", 1e3), ("g/cm3", 1e3)];
     /// Stress or pressure [Pa].

@@ -9,6 +9,7 @@ use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder,
 use std::fs;
 
 mod bonds;
+mod flow;
 mod grains;
 mod lists;
 mod materials;

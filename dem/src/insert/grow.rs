@@ -136,7 +136,8 @@ pub fn grow(
             }
             let found = contacts(&model, &state);
             grown.overlap = found.iter().map(|c| c.overlap / c.radius).fold(0.0, f64::max);
-            grown.unbalanced = if grown.overlap > 0.0 { unbalanced_ratio(&model, &found) } else { 0.0 };
+            grown.unbalanced =
+                if grown.overlap > 0.0 { unbalanced_ratio(&model, &state, &found) } else { 0.0 };
             if grown.overlap < APART || grown.unbalanced < ratio {
                 break;
             }

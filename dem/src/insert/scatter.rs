@@ -85,8 +85,8 @@ pub fn orientations(n: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
     (0..n).map(|_| random.orientation()).collect()
 }
 
-/// Spheres by cells.
-struct Grid {
+/// Spheres by cells; those outside the bounds fall into the outermost.
+pub(super) struct Grid {
     low: Vec3,
     width: f64,
     counts: [usize; 3],
@@ -95,7 +95,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(low: Vec3, high: Vec3, width: f64, largest: f64) -> Grid {
+    pub fn new(low: Vec3, high: Vec3, width: f64, largest: f64) -> Grid {
         let counts = std::array::from_fn(|d| (((high[d] - low[d]) / width) as usize).clamp(1, 200));
         let cells = vec![Vec::new(); counts.iter().product()];
         // Cells may be wider than asked for where there would be too many.
@@ -113,7 +113,7 @@ impl Grid {
         (c[0] * self.counts[1] + c[1]) * self.counts[2] + c[2]
     }
 
-    fn free(&self, p: &Vec3, r: f64) -> bool {
+    pub fn free(&self, p: &Vec3, r: f64) -> bool {
         let reach = r + self.largest;
         let (from, to) = (self.cell(&p.add_scalar(-reach)), self.cell(&p.add_scalar(reach)));
         for i in from[0]..=to[0] {
@@ -129,7 +129,7 @@ impl Grid {
         true
     }
 
-    fn add(&mut self, p: Vec3, r: f64) {
+    pub fn add(&mut self, p: Vec3, r: f64) {
         let at = self.index(self.cell(&p));
         self.cells[at].push((p, r));
     }

@@ -288,7 +288,7 @@ pub fn coordination(model: &Model, state: &State) -> f64 {
         .filter(|c| c.normal_force > 0.0)
         .map(|c| usize::from(free(c.a)) + usize::from(matches!(c.b, Partner::Body(b) if free(b))))
         .sum();
-    let bodies = (0..model.body_count()).filter(|&b| free(b)).count();
+    let bodies = (0..model.body_count()).filter(|&b| state.present(b) && free(b)).count();
     if bodies == 0 { 0.0 } else { count as f64 / bodies as f64 }
 }
 

@@ -3,6 +3,7 @@
 use super::contacts::ContactRecord;
 use crate::error::Partner;
 use crate::model::Model;
+use crate::state::State;
 
 /// Coordination of a packing. A contact counts when it carries a force; several contacts of one pair of clumps are one
 /// neighbour; walls and surfaces are neighbours, those of one wall (or patch) one.
@@ -41,11 +42,12 @@ pub fn neighbours(model: &Model, contacts: &[ContactRecord]) -> Vec<u32> {
 /// Coordination of the bodies of which `counted` is true (all others still are neighbours).
 pub fn coordination_of(
     model: &Model,
+    state: &State,
     contacts: &[ContactRecord],
     counted: impl Fn(usize) -> bool,
 ) -> Coordination {
     let counts = neighbours(model, contacts);
-    let free = |&body: &usize| model.body(body).inverse_mass > 0.0 && counted(body);
+    let free = |&body: &usize| state.present(body) && model.body(body).inverse_mass > 0.0 && counted(body);
     let mut distribution = Vec::new();
     for n in (0..model.body_count()).filter(free).map(|body| counts[body] as usize) {
         if distribution.len() <= n {
@@ -106,7 +108,7 @@ pub fn strong_network(contacts: &[ContactRecord]) -> StrongNetwork {
 
 /// Unbalanced-force ratio: mean of |sum of contact forces and weight| over the bodies that are free to move, over the
 /// mean of |contact force|. It tends to 0 in equilibrium; without contacts it is infinite.
-pub fn unbalanced_ratio(model: &Model, contacts: &[ContactRecord]) -> f64 {
+pub fn unbalanced_ratio(model: &Model, state: &State, contacts: &[ContactRecord]) -> f64 {
     let mut net: Vec<crate::Vec3> =
         (0..model.body_count()).map(|b| model.gravity() * model.mass(b)).collect();
     let mut carried = 0.0;
@@ -122,8 +124,8 @@ pub fn unbalanced_ratio(model: &Model, contacts: &[ContactRecord]) -> f64 {
     }
     let mut sum = 0.0;
     let mut free = 0;
-    for (force, body) in net.iter().zip(model.bodies.iter()) {
-        if body.inverse_mass > 0.0 {
+    for (b, (force, body)) in net.iter().zip(model.bodies.iter()).enumerate() {
+        if state.present(b) && body.inverse_mass > 0.0 {
             // What is held fixed is balanced by its support.
             let d = |k: usize| if body.fixed >> k & 1 == 1 { 0.0 } else { force[k] * force[k] };
             sum += (d(0) + d(1) + d(2)).sqrt();

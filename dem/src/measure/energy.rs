@@ -1,6 +1,7 @@
 //! Energies and momentum at the last half step.
 
-use super::contacts::visit;
+use super::contacts::{Visited, visit};
+use crate::error::Partner;
 use crate::ledger::Impulse;
 use crate::model::Model;
 use crate::state::{State, xyz};
@@ -45,19 +46,7 @@ impl Energies {
 /// kinetic energy of their prescribed motion.
 pub fn energies(model: &Model, state: &State) -> Energies {
     let mut e = Energies::default();
-    let back = 0.5 * model.dt();
-    for block in &state.blocks {
-        for (k, &body) in block.bodies.iter().enumerate() {
-            let b = model.body(body as usize);
-            let (v, w) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
-            e.kinetic_translation += 0.5 * b.mass * v.norm_squared();
-            e.kinetic_rotation += match block.rotation.get(k) {
-                Some(r) if b.kind != crate::model::Kind::Sphere => 0.5 * w.dot(&r.momentum),
-                _ => 0.5 * b.inertia.x * w.norm_squared(),
-            };
-            e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
-        }
-    }
+    bodies(model, state, |_| true, &mut e);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
         let Some(body) = &wall.body else { continue };
         let [translation, rotation, gravity] = body.energies(own, &model.gravity, model.dt());
@@ -68,7 +57,45 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_normal += normal;
         e.elastic_tangential += tangential;
     }
+    contacts(model, state, |_| true, &mut e);
+    e.elastic_bonds = crate::bond::elastic(model, state);
+    e
+}
+
+/// Energies of the bodies of which `counted` is true and of all contacts that they have.
+pub(crate) fn energies_of(model: &Model, state: &State, counted: impl Fn(usize) -> bool) -> Energies {
+    let mut e = Energies::default();
+    bodies(model, state, &counted, &mut e);
+    let touches =
+        |c: &Visited<'_>| counted(c.body as usize) || matches!(c.partner, Partner::Body(b) if counted(b));
+    contacts(model, state, touches, &mut e);
+    e
+}
+
+/// Adds what bodies have by themselves.
+fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut Energies) {
+    let back = 0.5 * model.dt();
+    for block in &state.blocks {
+        for (k, &body) in block.bodies.iter().enumerate().filter(|(_, b)| counted(**b as usize)) {
+            let b = model.body(body as usize);
+            let (v, w) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
+            e.kinetic_translation += 0.5 * b.mass * v.norm_squared();
+            e.kinetic_rotation += match block.rotation.get(k) {
+                Some(r) if b.kind != crate::model::Kind::Sphere => 0.5 * w.dot(&r.momentum),
+                _ => 0.5 * b.inertia.x * w.norm_squared(),
+            };
+            e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
+        }
+    }
+}
+
+/// Adds the springs of contacts.
+fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool, e: &mut Energies) {
+    let back = 0.5 * model.dt();
     visit(model, state, back, |c| {
+        if !counted(c) {
+            return;
+        }
         // The spring belongs to the last full step: half a step of sliding brings it to the half step.
         let n = &c.geometry.normal;
         let slip = c.velocity - n * c.velocity.dot(n);
@@ -87,27 +114,31 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_normal += normal;
         e.elastic_tangential += tangential;
     });
-    e.elastic_bonds = crate::bond::elastic(model, state);
-    e
 }
 
 /// Momentum [kg m/s] and angular momentum about the origin [kg m²/s] at the last half step. With
 /// [`Ledger::impulse`](crate::ledger::Ledger::impulse) they balance to rounding.
 pub fn momentum(model: &Model, state: &State) -> Impulse {
+    let mut sum = momentum_of(model, state, |_| true);
+    for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
+        if let Some(body) = &wall.body {
+            body.momentum(own, &mut sum);
+        }
+    }
+    sum
+}
+
+/// The same of the bodies of which `counted` is true.
+pub(crate) fn momentum_of(model: &Model, state: &State, counted: impl Fn(usize) -> bool) -> Impulse {
     let mut sum = Impulse::default();
     for block in &state.blocks {
-        for (k, &body) in block.bodies.iter().enumerate() {
+        for (k, &body) in block.bodies.iter().enumerate().filter(|(_, b)| counted(**b as usize)) {
             let b = model.body(body as usize);
             sum.add(&xyz(&block.centre[k]), &(xyz(&block.velocity[k]) * b.mass));
             sum.angular += match block.rotation.get(k) {
                 Some(r) if b.kind != crate::model::Kind::Sphere => r.momentum,
                 _ => xyz(&block.spin[k]) * b.inertia.x,
             };
-        }
-    }
-    for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
-        if let Some(body) = &wall.body {
-            body.momentum(own, &mut sum);
         }
     }
     sum

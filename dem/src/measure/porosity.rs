@@ -16,8 +16,11 @@ use crate::state::State;
 pub const COLUMNS: usize = 40;
 
 /// Volume of one body inside a box [m³]; along periodic axes that of the body between the borders and of its images
-/// one box length away.
+/// one box length away. That of a body that is absent is zero.
 pub fn body_volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f64 {
+    if !state.present(body) {
+        return 0.0;
+    }
     let periodic = model.periodic();
     if periodic.iter().all(Option::is_none) {
         return volume_in(model, state, body, region);

@@ -28,7 +28,7 @@ pub fn radial_distribution(
         return None;
     }
     let centres: Vec<Vec3> = (0..model.body_count())
-        .filter(|&b| counted(b))
+        .filter(|&b| state.present(b) && counted(b))
         .map(|b| model.wrap(&state.position(b)))
         .filter(|x| region.holds(x))
         .collect();

@@ -49,7 +49,7 @@ pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) 
 pub fn region_stress(model: &Model, state: &State, bodies: &[[f64; 6]], region: &BoxRegion) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (body, stress) in bodies.iter().enumerate() {
-        if region.holds(&model.wrap(&state.position(body))) {
+        if state.present(body) && region.holds(&model.wrap(&state.position(body))) {
             let volume = model.volume(body);
             sum.iter_mut().zip(stress).for_each(|(s, x)| *s += volume * x);
         }

@@ -41,7 +41,7 @@ fn mean_stress_of_a_squeezed_box_is_the_pressure_on_its_walls() {
     let mut ratio = 1.0;
     while ratio > 1e-10 && run.state.steps < 200_000 {
         (0..200).for_each(|_| run.step());
-        ratio = measure::unbalanced_ratio(&run.model, &measure::contacts(&run.model, &run.state));
+        ratio = measure::unbalanced_ratio(&run.model, &run.state, &measure::contacts(&run.model, &run.state));
     }
     assert!(ratio < 1e-10, "{ratio:e} after {} steps", run.state.steps);
 
@@ -95,9 +95,9 @@ fn one_sphere_between_two_planes() {
     assert!((stress[2] / expected - 1.0).abs() < 1e-12, "{stress:?} {expected}");
     assert!([0, 1, 3, 4, 5].iter().all(|&k| stress[k].abs() < 1e-9 * stress[2].abs()));
     let contacts = measure::contacts(&run.model, &run.state);
-    assert!(measure::unbalanced_ratio(&run.model, &contacts) < 1e-12);
+    assert!(measure::unbalanced_ratio(&run.model, &run.state, &contacts) < 1e-12);
     assert_eq!(measure::fabric(&contacts, |_| true), [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
-    let c = measure::coordination_of(&run.model, &contacts, |_| true);
+    let c = measure::coordination_of(&run.model, &run.state, &contacts, |_| true);
     assert_eq!((c.mean, c.mechanical, c.rattlers, c.distribution), (2.0, 2.0, 0.0, vec![0, 0, 1]));
 }
 
@@ -119,7 +119,7 @@ fn unbalanced_force_of_a_resting_sphere() {
         )
         .unwrap();
         let contacts = measure::contacts(&run.model, &run.state);
-        let ratio = measure::unbalanced_ratio(&run.model, &contacts);
+        let ratio = measure::unbalanced_ratio(&run.model, &run.state, &contacts);
         // The dashpot sees half a step of free fall: a part in a hundred.
         assert!((ratio - expected).abs() < 0.02, "{share}: {ratio}");
     }
@@ -147,13 +147,13 @@ fn coordination_and_fabric_of_lattices() {
         )
         .unwrap();
         let contacts = measure::contacts(&run.model, &run.state);
-        let all = measure::coordination_of(&run.model, &contacts, |_| true);
+        let all = measure::coordination_of(&run.model, &run.state, &contacts, |_| true);
         assert_eq!(all.distribution.iter().sum::<usize>(), 515);
         assert_eq!(all.distribution[..2], [1, 2]);
         assert!((all.rattlers - 3.0 / 515.0).abs() < 1e-15);
         // 512 carry all contacts but the one of the pair, which counts for both.
         assert!((all.mechanical * 512.0 - (all.mean * 515.0 - 2.0)).abs() < 1e-9);
-        let core = measure::coordination_of(&run.model, &contacts, |b| {
+        let core = measure::coordination_of(&run.model, &run.state, &contacts, |b| {
             b < 512 && [b % n, b / n % n, b / n / n].iter().all(|k| (1..n - 1).contains(k))
         });
         assert_eq!((core.mean, core.distribution.len()), (f64::from(inside), inside as usize + 1));

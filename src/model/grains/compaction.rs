@@ -162,7 +162,8 @@ fn radial(
     Ok(Some(Radial { reach, bins: r.bins }))
 }
 
-fn region(
+/// A box with a volume.
+pub(super) fn region(
     document: &Document,
     key: &str,
     corners: &[[Quantity<Length>; 3]; 2],

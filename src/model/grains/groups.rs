@@ -1,7 +1,7 @@
 //! `[[grains]]` resolved: grains by hand or from a packing, stacked in a box, on a lattice, or in a container.
 
 use super::sizes::SizeSource;
-use super::{GradedGroup, GrainsPart, Moving, bonded, check, regions};
+use super::{GradedGroup, GrainsPart, Moving, bonded, check, flow, regions};
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::grains::{FillBox, GrainShape, Grains};
@@ -27,7 +27,12 @@ pub(super) fn add(
         group.lattice.is_some(),
         group.region.is_some(),
     ];
-    if sources.iter().filter(|s| **s).count() != 1 {
+    if group.inlet.is_some() && group.shape == GrainShape::Bonded {
+        let key = format!("grains.{index}.shape");
+        return Err(document.error(&key, "\"bonded\"", "no inlet for bonded stones").into());
+    }
+    let waits = flow::waits(group);
+    if sources.iter().filter(|s| **s).count() != 1 && !waits {
         let expected = "exactly one of `spheres`, `packing`, `fill`, `lattice` and `region`";
         return Err(document.error(&format!("grains.{index}"), "another number of sources", expected).into());
     }
@@ -41,6 +46,9 @@ pub(super) fn add(
     refuse_idle_keys(document, index, group)?;
     prescribed(document, index, group, part)?;
     part.first_shape.push(part.shapes.len());
+    if waits {
+        return flow::waiting(document, index, group, &model, part);
+    }
     if let Some(fill) = &group.fill {
         return filled(document, index, group, fill, &model, part);
     }
@@ -83,7 +91,7 @@ fn prescribed(
 
 /// Refuses keys that the source of the grains has no use for.
 fn refuse_idle_keys(document: &Document, index: usize, group: &Grains) -> Result<(), SceneError> {
-    let random = group.fill.is_some() || group.region.is_some();
+    let random = group.fill.is_some() || group.region.is_some() || flow::waits(group);
     let shapes = random || (group.packing.is_some() && group.shape == GrainShape::Clump);
     for (k, present, used, needs) in [
         ("count", group.count.is_some(), random, "`fill` or `region`"),
@@ -253,7 +261,7 @@ pub(super) fn deal(sizes: &[f64], shapes: usize) -> Vec<usize> {
 /// Height above which a box is free of the grains that earlier groups have put there [m].
 fn top_of(part: &GrainsPart, low: [f64; 3], high: [f64; 2]) -> f64 {
     let mut top = f64::NEG_INFINITY;
-    for body in &part.bodies {
+    for body in part.bodies.iter().filter(|b| !b.absent) {
         let r = body.scale * bounding_radius(&part.shapes[body.shape]);
         let over = (0..2).all(|d| body.position[d] + r > low[d] && body.position[d] - r < high[d]);
         if over && body.position.z + r > low[2] {

@@ -24,7 +24,7 @@ pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> 
         }
         part.periodic[d] = Some([low, high]);
         let slack = 1e-9 * (high - low);
-        for body in &part.bodies {
+        for body in part.bodies.iter().filter(|b| !b.absent) {
             let group = &scene.grains[body.part as usize];
             let by_hand = group.spheres.is_some() || group.packing.is_some();
             let reach = if by_hand { 0.0 } else { part.reach(body) };

@@ -1,0 +1,170 @@
+//! Room in a box: random places where a sphere touches nothing that is there, for grains that come in during a run.
+//!
+//! A clump on its way in stands for its bounding sphere; what is there counts with its own spheres, boxes, planes, walls
+//! and the external surface. Across periodic borders images count.
+
+use super::random::Random;
+use super::scatter::Grid;
+use crate::Vec3;
+use crate::measure::BoxRegion;
+use crate::model::{Kind, Model};
+use crate::shape::cuboid;
+use crate::state::{State, xyz};
+use crate::surface::Surface;
+use nalgebra::UnitQuaternion;
+
+/// Purpose of the stream of places and turns.
+const PURPOSE: u64 = 7;
+/// Random places tried per grain.
+const TRIES: usize = 1000;
+/// Gap to all that is there, as a share of the grain's radius.
+pub const GAP: f64 = 1e-3;
+
+/// A box of a running state, as it is now.
+pub struct Room<'a> {
+    model: &'a Model,
+    state: &'a State,
+    surface: &'a dyn Surface,
+    region: BoxRegion,
+    spheres: Grid,
+    /// Centre, orientation and half sides of the boxes.
+    boxes: Vec<(Vec3, UnitQuaternion<f64>, Vec3)>,
+    patches: Vec<u32>,
+}
+
+impl<'a> Room<'a> {
+    /// The room that all bodies but those `without` leave in a box; grains of bounding radii up to `largest` [m] are to be
+    /// put there, as well as those that come in with them.
+    pub fn new(
+        model: &'a Model,
+        state: &'a State,
+        surface: &'a dyn Surface,
+        region: BoxRegion,
+        largest: f64,
+        without: impl Fn(usize) -> bool,
+    ) -> Room<'a> {
+        let mut near: Vec<(Vec3, f64)> = Vec::new();
+        let mut boxes = Vec::new();
+        let meets = |x: &Vec3, r: f64| (0..3).all(|d| x[d] + r > region.low[d] && x[d] - r < region.high[d]);
+        let images = images(model);
+        for block in &state.blocks {
+            for (k, &body) in block.bodies.iter().enumerate() {
+                let body = body as usize;
+                if without(body) {
+                    continue;
+                }
+                let (centre, reach) = (xyz(&block.centre[k]), block.centre[k][3]);
+                if model.bodies.kind(body) == Kind::Box {
+                    boxes.push((centre, block.rotation[k].orientation, model.half(body)));
+                    continue;
+                }
+                let back = model.wrap(&centre) - centre;
+                if !images.iter().any(|way| meets(&(centre + back + way), reach)) {
+                    continue;
+                }
+                for (x, r) in state.spheres(model, body) {
+                    let all = images.iter().map(|way| x + back + way);
+                    near.extend(all.filter(|x| meets(x, r)).map(|x| (x, r)));
+                }
+            }
+        }
+        let radii = near.iter().map(|s| s.1).fold(largest, f64::max) * (1.0 + GAP);
+        let mut spheres = Grid::new(region.low, region.high, 2.0 * radii, radii);
+        near.into_iter().for_each(|(x, r)| spheres.add(x, r));
+        Room { model, state, surface, region, spheres, boxes, patches: Vec::new() }
+    }
+
+    /// Takes up the place of a grain of bounding radius `radius` [m] that comes in at the same time.
+    pub fn fill(&mut self, x: &Vec3, radius: f64) {
+        self.spheres.add(*x, radius);
+    }
+
+    /// A random place for a grain of bounding radius `radius` [m] wholly inside the box, and a random orientation. The
+    /// grain then takes up its place. None where no place was found.
+    pub fn place(&mut self, radius: f64, random: &mut Places) -> Option<(Vec3, UnitQuaternion<f64>)> {
+        let r = radius * (1.0 + GAP);
+        let (low, high) = (self.region.low.add_scalar(r), self.region.high.add_scalar(-r));
+        let mut stream = random.next();
+        if (0..3).any(|d| low[d] > high[d]) {
+            return None;
+        }
+        let place = (0..TRIES).find_map(|_| {
+            let x = Vec3::from_fn(|d, _| low[d] + stream.uniform() * (high[d] - low[d]));
+            self.free(&x, r).then_some(x)
+        })?;
+        self.spheres.add(place, r);
+        Some((place, stream.orientation()))
+    }
+
+    fn free(&mut self, x: &Vec3, r: f64) -> bool {
+        let Room { model, state, .. } = *self;
+        let clear_of_planes = model
+            .planes
+            .iter()
+            .zip(&state.planes)
+            .all(|(plane, now)| now.open || (x - plane.point - now.offset).dot(&plane.normal) >= r);
+        let clear_of_boxes = || {
+            self.boxes.iter().all(|(centre, turn, half)| {
+                cuboid::closest_point(half, &turn.inverse_transform_vector(&(x - centre))).2 >= r
+            })
+        };
+        if !(clear_of_planes && self.spheres.free(x, r) && clear_of_boxes()) {
+            return false;
+        }
+        let walls = model.walls.placed(&state.walls);
+        clear_of(&walls, x, r, &mut self.patches) && clear_of(self.surface, x, r, &mut self.patches)
+    }
+}
+
+/// Whether a sphere is clear of a surface, and on its outer side where it has one.
+fn clear_of(surface: &dyn Surface, x: &Vec3, r: f64, patches: &mut Vec<u32>) -> bool {
+    if surface.is_empty() {
+        return true;
+    }
+    patches.clear();
+    surface.candidates(x.add_scalar(-r).into(), x.add_scalar(r).into(), patches);
+    patches.iter().all(|&patch| {
+        let closest = surface.closest_point(patch, (*x).into(), [0.0; 2]);
+        let away = x - Vec3::from(closest.point);
+        let outside = !surface.one_sided_patch(patch) || away.dot(&Vec3::from(closest.normal)) > 0.0;
+        away.norm() >= r && outside
+    })
+}
+
+/// Ways from a body to itself and its images next to it across periodic borders [m].
+fn images(model: &Model) -> Vec<Vec3> {
+    let periodic = model.periodic();
+    let mut ways = vec![Vec3::zeros()];
+    for (d, borders) in periodic.iter().enumerate() {
+        let Some([low, high]) = borders else { continue };
+        let mut way = Vec3::zeros();
+        way[d] = high - low;
+        ways = ways.iter().flat_map(|w| [*w, w - way, w + way]).collect();
+    }
+    ways
+}
+
+/// Streams of random numbers, a new one for every grain: what one is given depends on the seed and on how many have been
+/// asked for before, whether in this start of the program or in an earlier one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Places {
+    seed: u64,
+    asked: u64,
+}
+
+impl Places {
+    /// The streams that a seed starts.
+    pub fn new(seed: u64) -> Places {
+        Places { seed, asked: 0 }
+    }
+
+    fn next(&mut self) -> Random {
+        self.asked += 1;
+        // Odd multipliers keep grains and purposes apart.
+        Random::new(self.seed ^ self.asked.wrapping_mul(0xd134_2543_de82_ef95), PURPOSE)
+    }
+}
+
+#[cfg(test)]
+#[path = "room_tests.rs"]
+mod tests;

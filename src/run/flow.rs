@@ -1,0 +1,486 @@
+//! Inlets and outlets of a run: looked at every so many windows, with an account of what came and went.
+//!
+//! What an inlet has let in never exceeds its rate times the time since its start, and is behind by less than a grain after
+//! each look, unless there is no room, or no grain waits. What it owes then is not forgotten: it is made up at twice the rate as soon
+//! as it can be.
+
+use super::checkpoint::{Body, Loaded};
+use super::summary::Summary;
+use super::system::{GrainsView, System};
+use crate::failure::Failure;
+use crate::model::grains::{FlowPlan, GrainsPart, InletPlan, OutletPlan, OutletRegion};
+use crate::write::csv::Column;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use std::io;
+use trackbed_dem as dem;
+use trackbed_dem::flow::Arrival;
+use trackbed_dem::insert::room::{Places, Room};
+use trackbed_dem::measure::BoxRegion;
+
+/// Most that an inlet lets in over what its rate asks for, while it makes up for what it owes.
+const CATCH_UP: f64 = 2.0;
+/// Share of a grain by which rounding may have the amount owed fall short.
+const SLACK: f64 = 1e-9;
+
+/// Number and mass [kg] of grains.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Amount {
+    /// Number.
+    pub grains: u64,
+    /// Mass [kg].
+    pub mass: f64,
+}
+
+impl Amount {
+    fn add(&mut self, mass: f64) {
+        self.grains += 1;
+        self.mass += mass;
+    }
+}
+
+/// One inlet in progress.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Inlet {
+    /// Bodies that wait, the next one first.
+    waiting: VecDeque<u32>,
+    places: Places,
+    /// What it may have let in by now and what it has, in the measure of its rate.
+    allowed: f64,
+    given: f64,
+    amount: Amount,
+    /// Looks at which a grain that was due found no room, and at which none waited.
+    full: u64,
+    empty: u64,
+}
+
+/// One outlet in progress.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Outlet {
+    amount: Amount,
+    /// Grains that seem to have flown through it between two looks.
+    missed: u64,
+}
+
+/// What a checkpoint needs of inlets and outlets.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Course {
+    start: Amount,
+    inlets: Vec<Inlet>,
+    outlets: Vec<Outlet>,
+    /// Time, mass in and mass out at the first look in the second half of the run.
+    half: Option<[f64; 3]>,
+}
+
+/// Inlets and outlets of a run in progress.
+pub struct Flow<'a> {
+    plan: &'a FlowPlan,
+    /// Number of groups: bodies of other parts are sleepers.
+    groups: u32,
+    /// Windows between two looks.
+    every: u64,
+    window: f64,
+    end: f64,
+    /// Mean grain of each inlet, in the measure of its rate.
+    usual: Vec<f64>,
+    course: Course,
+}
+
+impl<'a> Flow<'a> {
+    /// Those of a scene that has any, at the start of its run proper of length `end` [s].
+    pub fn new(
+        part: Option<&'a GrainsPart>,
+        view: Option<GrainsView<'_>>,
+        window: f64,
+        end: f64,
+    ) -> Option<Self> {
+        let (part, view) = (part?, view?);
+        let plan = part.flow.as_ref()?;
+        let waiting = |inlet: &InletPlan| {
+            let waits =
+                |b: &u32| !view.state.present(*b as usize) && view.model.part(*b as usize) == inlet.part;
+            Inlet {
+                waiting: (0..view.model.body_count() as u32).filter(waits).collect(),
+                places: Places::new(inlet.seed),
+                allowed: 0.0,
+                given: 0.0,
+                amount: Amount::default(),
+                full: 0,
+                empty: 0,
+            }
+        };
+        let usual = |inlet: &InletPlan| {
+            let own = (0..view.model.body_count()).filter(|&b| view.model.part(b) == inlet.part);
+            let masses: Vec<f64> = own.map(|b| view.model.mass(b)).collect();
+            inlet.rate.of(masses.iter().sum::<f64>() / masses.len().max(1) as f64)
+        };
+        let mut flow = Flow {
+            plan,
+            groups: part.first_shape.len() as u32,
+            every: ((plan.interval / window).round() as u64).max(1),
+            window,
+            end,
+            usual: plan.inlets.iter().map(usual).collect(),
+            course: Course {
+                start: Amount::default(),
+                inlets: plan.inlets.iter().map(waiting).collect(),
+                outlets: vec![Outlet::default(); plan.outlets.len()],
+                half: None,
+            },
+        };
+        flow.course.start = flow.present(view);
+        Some(flow)
+    }
+
+    /// Goes on from a checkpoint.
+    ///
+    /// # Errors
+    /// A checkpoint of something else.
+    pub fn resume(self, loaded: &mut Loaded) -> Result<Self, Failure> {
+        Ok(Flow { course: loaded.take()?, ..self })
+    }
+
+    /// Puts into a checkpoint what [`Flow::resume`] goes on from.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&self.course)
+    }
+
+    /// Grains that are there.
+    fn present(&self, view: GrainsView<'_>) -> Amount {
+        let mut sum = Amount::default();
+        let there = |b: &usize| view.state.present(*b) && view.model.part(*b) < self.groups;
+        (0..view.model.body_count()).filter(there).for_each(|b| sum.add(view.model.mass(b)));
+        sum
+    }
+
+    /// After window `k`, when the grains are at `time` [s]: takes out and puts in what is due.
+    ///
+    /// # Errors
+    /// A grain that cannot leave or come.
+    pub fn follow<S: System>(&mut self, k: u64, time: f64, system: &mut S) -> Result<(), Failure> {
+        if !k.is_multiple_of(self.every) {
+            return Ok(());
+        }
+        let Some(view) = system.grains() else { return Ok(()) };
+        let leave = self.leaving(view);
+        let arrive = self.arriving(time, view, system.surface(), &leave);
+        if !leave.is_empty() || !arrive.is_empty() {
+            system.exchange(&leave, &arrive)?;
+        }
+        if self.course.half.is_none() && 2.0 * time >= self.end {
+            let [come, gone] = self.sums();
+            self.course.half = Some([time, come.mass, gone.mass]);
+        }
+        Ok(())
+    }
+
+    /// What the outlets take.
+    fn leaving(&mut self, view: GrainsView<'_>) -> Vec<usize> {
+        let GrainsView { model, state } = view;
+        let interval = self.every as f64 * self.window;
+        let mut leave = Vec::new();
+        for b in (0..model.body_count()).filter(|&b| state.present(b)) {
+            let (part, x) = (model.part(b), model.wrap(&state.position(b)));
+            for (plan, outlet) in self.plan.outlets.iter().zip(&mut self.course.outlets) {
+                if !plan.parts.contains(&part) {
+                    continue;
+                }
+                if plan.region.holds(&x) {
+                    outlet.amount.add(model.mass(b));
+                    leave.push(b);
+                    if plan.again
+                        && let Some(k) = self.plan.inlets.iter().position(|i| i.part == part)
+                    {
+                        self.course.inlets[k].waiting.push_back(b as u32);
+                    }
+                    break;
+                }
+                if let OutletRegion::Box(region) = &plan.region {
+                    outlet.missed += u64::from(flown_through(region, &x, &(state.velocity(b) * interval)));
+                }
+            }
+        }
+        leave
+    }
+
+    /// What the inlets let in.
+    fn arriving(
+        &mut self,
+        time: f64,
+        view: GrainsView<'_>,
+        surface: &dyn dem::surface::Surface,
+        leave: &[usize],
+    ) -> Vec<Arrival> {
+        let GrainsView { model, state } = view;
+        let interval = self.every as f64 * self.window;
+        let mut arrive: Vec<Arrival> = Vec::new();
+        // Ascending, as they were found.
+        let leaves = |b: usize| leave.binary_search(&b).is_ok();
+        let inlets = self.plan.inlets.iter().zip(&mut self.course.inlets);
+        for ((plan, inlet), &usual) in inlets.zip(&self.usual) {
+            if time > plan.stop {
+                continue;
+            }
+            let rate = plan.rate.value();
+            let owed = rate * (time - plan.start).max(0.0);
+            inlet.allowed = owed.min(inlet.allowed + CATCH_UP * rate * interval);
+            let mut room = None;
+            loop {
+                let Some(&body) = inlet.waiting.front() else {
+                    inlet.empty += u64::from(owed >= inlet.given + usual);
+                    inlet.allowed = inlet.allowed.min(inlet.given + usual);
+                    break;
+                };
+                let body = body as usize;
+                let amount = plan.rate.of(model.mass(body));
+                if inlet.given + (1.0 - SLACK) * amount > inlet.allowed {
+                    break;
+                }
+                let room = room.get_or_insert_with(|| {
+                    let largest = inlet.waiting.iter().map(|&b| model.radius(b as usize)).fold(0.0, f64::max);
+                    let mut room = Room::new(model, state, surface, plan.region, largest, leaves);
+                    arrive.iter().for_each(|a| room.fill(&a.position, model.radius(a.body)));
+                    room
+                });
+                let Some((position, orientation)) = room.place(model.radius(body), &mut inlet.places) else {
+                    inlet.full += 1;
+                    // A grain that waits for room saves up no more than its own due.
+                    inlet.allowed = inlet.allowed.min(inlet.given + amount);
+                    break;
+                };
+                inlet.waiting.pop_front();
+                inlet.given += amount;
+                inlet.amount.add(model.mass(body));
+                let (velocity, spin) = (plan.velocity, dem::Vec3::zeros());
+                arrive.push(Arrival { body, position, orientation, velocity, spin });
+            }
+        }
+        arrive
+    }
+
+    /// All that came in and all that went out.
+    fn sums(&self) -> [Amount; 2] {
+        let sum = |all: &mut dyn Iterator<Item = Amount>| {
+            all.fold(Amount::default(), |s, a| Amount { grains: s.grains + a.grains, mass: s.mass + a.mass })
+        };
+        let course = &self.course;
+        [sum(&mut course.inlets.iter().map(|i| i.amount)), sum(&mut course.outlets.iter().map(|o| o.amount))]
+    }
+
+    /// Columns of the history.
+    pub fn columns() -> Vec<Column> {
+        [
+            ("grains_present", ""),
+            ("mass_present", "kg"),
+            ("grains_in", ""),
+            ("mass_in", "kg"),
+            ("grains_out", ""),
+            ("mass_out", "kg"),
+        ]
+        .map(|(name, unit)| Column::new(name, unit))
+        .to_vec()
+    }
+
+    /// Their values.
+    pub fn values(&self, view: GrainsView<'_>, row: &mut Vec<f64>) {
+        let [come, gone] = self.sums();
+        for amount in [self.present(view), come, gone] {
+            row.extend([amount.grains as f64, amount.mass]);
+        }
+    }
+
+    /// Tells the summary, at `time` [s].
+    pub fn finish(&self, time: f64, view: GrainsView<'_>, summary: &mut Summary) {
+        let [come, gone] = self.sums();
+        let over = |mass: f64, time: f64| if time > 0.0 { mass / time } else { 0.0 };
+        let [half, half_in, half_out] = self.course.half.unwrap_or([time, come.mass, gone.mass]);
+        let inlets: Vec<InletRecord> =
+            self.plan.inlets.iter().zip(&self.course.inlets).map(|(p, i)| record(p, i, time)).collect();
+        let outlets: Vec<OutletRecord> =
+            self.plan.outlets.iter().zip(&self.course.outlets).map(outlet).collect();
+        summary.warnings.extend(inlets.iter().filter_map(InletRecord::remark));
+        let interval = self.every as f64 * self.window;
+        summary.warnings.extend(outlets.iter().filter_map(|o| o.remark(interval)));
+        summary.flow = Some(FlowRecord {
+            interval,
+            at_start: self.course.start,
+            at_end: self.present(view),
+            came_in: come,
+            went_out: gone,
+            energy_in: view.state.ledger.work_flow,
+            mean_rate_in: over(come.mass, time),
+            mean_rate_out: over(gone.mass, time),
+            later_rate_in: over(come.mass - half_in, time - half),
+            later_rate_out: over(gone.mass - half_out, time - half),
+            inlets,
+            outlets,
+        });
+    }
+}
+
+/// Whether a body at `x` that came the straight way `way` has passed through a box that its way is longer than wide.
+fn flown_through(region: &BoxRegion, x: &dem::Vec3, way: &dem::Vec3) -> bool {
+    if way.norm() < (region.high - region.low).min() {
+        return false;
+    }
+    // Shares of the way back at which it is between each pair of sides.
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for d in 0..3 {
+        let (a, b) = ((x[d] - region.low[d]) / way[d], (x[d] - region.high[d]) / way[d]);
+        if way[d] == 0.0 {
+            if x[d] < region.low[d] || x[d] > region.high[d] {
+                return false;
+            }
+        } else {
+            (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+        }
+    }
+    from < to
+}
+
+/// Grains that came and went.
+#[derive(Debug, Serialize)]
+pub struct FlowRecord {
+    /// Time between two looks at inlets and outlets [s].
+    pub interval: f64,
+    /// Grains at the start of the run proper.
+    pub at_start: Amount,
+    /// Grains at its end.
+    pub at_end: Amount,
+    /// Grains that came in.
+    pub came_in: Amount,
+    /// Grains that were taken out; one that comes and goes again and again counts every time.
+    pub went_out: Amount,
+    /// Energy that they brought in less what they took out: kinetic, of gravity (zero at the origin) and of springs [J].
+    /// The energy account counts it as work of walls.
+    pub energy_in: f64,
+    /// Mean mass flow in over the whole run [kg/s].
+    pub mean_rate_in: f64,
+    /// Mean mass flow out over the whole run [kg/s].
+    pub mean_rate_out: f64,
+    /// The same in its second half, in [kg/s].
+    pub later_rate_in: f64,
+    /// And out [kg/s].
+    pub later_rate_out: f64,
+    /// Inlets.
+    pub inlets: Vec<InletRecord>,
+    /// Outlets.
+    pub outlets: Vec<OutletRecord>,
+}
+
+/// One inlet.
+#[derive(Debug, Serialize)]
+pub struct InletRecord {
+    /// Its group.
+    pub group: String,
+    /// What it let in.
+    pub amount: Amount,
+    /// What `asked` and `owed` count: `"kg"` or `"grains"`.
+    pub unit: &'static str,
+    /// What its rate asked for.
+    pub asked: f64,
+    /// What of it has not come in.
+    pub owed: f64,
+    /// Grains that still wait.
+    pub waiting: usize,
+    /// Looks at which a grain that was due found no room.
+    pub without_room: u64,
+    /// Looks at which one was due and none waited.
+    pub without_grains: u64,
+}
+
+/// One outlet.
+#[derive(Debug, Serialize)]
+pub struct OutletRecord {
+    /// Its name.
+    pub name: String,
+    /// What it took.
+    pub amount: Amount,
+    /// Grains whose straight way between two looks led through it without their being seen there.
+    pub missed: u64,
+}
+
+fn record(plan: &InletPlan, inlet: &Inlet, time: f64) -> InletRecord {
+    let asked = plan.rate.value() * (time.min(plan.stop) - plan.start).max(0.0);
+    InletRecord {
+        group: plan.group.clone(),
+        amount: inlet.amount,
+        unit: plan.rate.unit(),
+        asked,
+        owed: asked - inlet.given,
+        waiting: inlet.waiting.len(),
+        without_room: inlet.full,
+        without_grains: inlet.empty,
+    }
+}
+
+fn outlet((plan, outlet): (&OutletPlan, &Outlet)) -> OutletRecord {
+    OutletRecord { name: plan.name.clone(), amount: outlet.amount, missed: outlet.missed }
+}
+
+impl InletRecord {
+    /// What to say about an inlet that fell behind.
+    fn remark(&self) -> Option<String> {
+        (self.without_room + self.without_grains > 0).then(|| {
+            format!(
+                "the inlet of \"{}\" let in {:.4} {unit} less than the {:.4} {unit} asked for: a grain that was due found no room at {} \
+                 looks, and none waited at {}",
+                self.group,
+                self.owed,
+                self.asked,
+                self.without_room,
+                self.without_grains,
+                unit = self.unit,
+            )
+        })
+    }
+}
+
+impl OutletRecord {
+    /// What to say about grains that were too fast for it.
+    fn remark(&self, interval: f64) -> Option<String> {
+        (self.missed > 0).then(|| {
+            format!(
+                "{} grains seem to have flown through the outlet \"{}\" between two looks, {interval:.3e} s apart: take a smaller \
+                 time.flow_interval, or a larger box",
+                self.missed, self.name
+            )
+        })
+    }
+}
+
+impl FlowRecord {
+    /// Lines of the report.
+    pub fn report(&self) -> Vec<String> {
+        let (a, b) = (&self.came_in, &self.went_out);
+        let mut lines = vec![format!(
+            "flow: {} grains ({:.4} kg) came in, {} ({:.4} kg) went out, {} at the start, {} at the end; {:.4} kg/s in and {:.4} \
+             kg/s out in the second half",
+            a.grains,
+            a.mass,
+            b.grains,
+            b.mass,
+            self.at_start.grains,
+            self.at_end.grains,
+            self.later_rate_in,
+            self.later_rate_out
+        )];
+        for i in &self.inlets {
+            lines.push(format!(
+                "  inlet of {}: {:.4} of {:.4} {}, {} grains wait",
+                i.group,
+                i.asked - i.owed,
+                i.asked,
+                i.unit,
+                i.waiting
+            ));
+        }
+        for o in &self.outlets {
+            lines.push(format!("  {}: {} grains, {:.4} kg", o.name, o.amount.grains, o.amount.mass));
+        }
+        lines
+    }
+}
