@@ -185,6 +185,29 @@ pub(crate) fn prefetch<T>(list: &[T]) {
     let _ = list;
 }
 
+/// The same for the first `count` of a list.
+#[inline]
+pub(crate) fn prefetch_first<T>(list: &[T], count: usize) {
+    prefetch(&list[..list.len().min(count)]);
+}
+
+/// Has the processor fetch `count` of a list from place `at` on, which may lie beyond its end, into its first cache. Its own
+/// foresight stops at every page.
+#[inline(always)]
+pub(crate) fn ahead<T>(list: &[T], at: usize, count: usize) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let from = list.as_ptr().wrapping_add(at).cast::<i8>();
+        for line in (0..count * size_of::<T>()).step_by(64) {
+            // SAFETY: a prefetch of any address changes nothing that a program sees.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_add(line)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (list, at, count);
+}
+
 /// A loop over lanes.
 pub(crate) trait Kernel {
     /// What it returns.

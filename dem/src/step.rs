@@ -5,6 +5,7 @@ use crate::bond;
 use crate::contact::{ContactLaw, PairTable, pass, passes, patches, planes, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
+use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
@@ -122,6 +123,8 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     let between = |b: usize, all: &[Block], scratch: &[BlockWork], pairs: &mut Cross, out: &mut CrossWork| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
         passes::fetch(&all[b]);
+        lanes::prefetch_first(&all[b].pairs.groups, pass::FAR);
+        lanes::prefetch_first(&scratch[b].gather, 8 * pass::FAR);
         passes::between(model, simd, (all, scratch), material, b, pairs, out);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
@@ -221,6 +224,12 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         } else {
             let lists = lists.iter_mut().zip(out).enumerate();
             lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
+        }
+        if let (1, Some(next)) = (threads, blocks.get(range.end)) {
+            // What the next block begins with, while this one reckons.
+            passes::fetch(next);
+            lanes::prefetch_first(&cross[range.end].spheres.groups, pass::FAR);
+            lanes::prefetch_first(&slots[range.end].slots, 2 * pass::FAR);
         }
         let (blocks, works, slots) = (&mut blocks[range.clone()], &mut works[range], &*slots);
         if threads > 1 {

@@ -426,6 +426,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
         for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
             let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
             let turns = if ROLL {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
@@ -464,6 +465,9 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         }
     }
 }
+
+/// Groups between the fetching of groups and their use: more than a page.
+pub(crate) const FAR: usize = 32;
 
 /// Groups between the fetching of records and their use: those of other blocks lie far away in large beds.
 const AHEAD: usize = 4;
@@ -512,6 +516,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
         assert!(RIGID || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
         let mut deepest = None;
         for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
             if !RIGID {
                 for ahead in pairs.groups.iter().skip(g + AHEAD).take(R::GROUPS) {
                     fetch(blocks, ahead);
@@ -536,6 +541,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
             }
             let (there, springs) = (R::below(count), (first, second));
             let width = if RIGID || ROLL { 3 } else { 2 };
+            lanes::ahead(&out.slots, (4 * g + 2 * FAR) * width, R::LANES * width);
             let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
             match contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt) {
                 None => slots.fill(Lanes::default()),
@@ -638,7 +644,10 @@ impl<const WIDE: bool> Kernel for Gathering<'_, WIDE> {
         let Gathering { w, cross } = self;
         let width = if WIDE { 3 } else { 2 };
         let three = R::Quad::load(&[1.0, 1.0, 1.0, 0.0]);
-        for entry in &w.gather {
+        for (k, entry) in w.gather.iter().enumerate() {
+            if let Some(next) = w.gather.get(k + FAR / 2) {
+                lanes::ahead(&cross[next.block as usize].slots, next.slot().0 * width, width);
+            }
             let (slot, first) = entry.slot();
             let slot = &cross[entry.block as usize].slots[slot * width..][..width];
             let sums = &mut w.sums[entry.place as usize].0;
