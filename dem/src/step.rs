@@ -15,7 +15,7 @@ use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
 use crate::wall::advance::{self, WallSum};
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Sums, Work};
-use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// Blocks per thread whose contacts are found before they move: one in unit tests, whose beds are small.
 const WAVE: usize = if cfg!(test) { 1 } else { 32 };
@@ -218,9 +218,8 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         let (all, scratch) = (&*blocks, &*works);
         let (lists, out) = (&mut cross[range.clone()], &mut slots[range.clone()]);
         if threads > 1 {
-            // One block at a time, so that a thread that comes late leaves little to wait for.
-            let lists = lists.par_iter_mut().zip(out).enumerate().with_max_len(1);
-            lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
+            let lists = lists.iter_mut().zip(out).enumerate();
+            share(lists, |(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
         } else {
             let lists = lists.iter_mut().zip(out).enumerate();
             lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
@@ -233,13 +232,24 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         }
         let (blocks, works, slots) = (&mut blocks[range.clone()], &mut works[range], &*slots);
         if threads > 1 {
-            let blocks = blocks.par_iter_mut().zip(works).enumerate().with_max_len(1);
-            blocks.for_each(|(k, (block, w))| within(from + k, block, w, slots));
+            let blocks = blocks.iter_mut().zip(works).enumerate();
+            share(blocks, |(k, (block, w))| within(from + k, block, w, slots));
         } else {
             let blocks = blocks.iter_mut().zip(works).enumerate();
             blocks.for_each(|(k, (block, w))| within(from + k, block, w, slots));
         }
     }
+}
+
+/// Shares blocks among the threads of the current pool: each takes the next one when it is through with its last, so that
+/// one with dear blocks gets few of them.
+fn share<I: Iterator + Send>(blocks: I, work: impl Fn(I::Item) + Sync) {
+    let queue = Mutex::new(blocks);
+    rayon::broadcast(|_| {
+        while let Some(block) = queue.lock().ok().and_then(|mut q| q.next()) {
+            work(block);
+        }
+    });
 }
 
 /// Brings the applied forces into block order.
