@@ -382,3 +382,39 @@ fn the_stiffened_prediction_knows_slip_and_spin() {
         assert!(told.abs() < 1e-3 * present.abs(), "{told} {present}");
     }
 }
+
+/// A grain that is taken out while it touches the solid loads it no more, under any scheme: one of two like spheres that are
+/// pressed in leaves half of the force.
+#[test]
+fn a_grain_taken_out_loads_the_solid_no_more() {
+    let solid = cube();
+    let iterated = Scheme::Iterated { tolerance: 1e-9, passes: 30 };
+    for scheme in [Scheme::Predicted, Scheme::Lagged, Scheme::Stiffened, iterated] {
+        let sphere = |x: f64| dem::BodyInput {
+            position: Vec3::new(x * SIDE, 0.5 * SIDE, 0.03 - 1e-5),
+            mass: Some(1e6),
+            ..Default::default()
+        };
+        let mut c = Coupled::new(
+            &solid,
+            dem::ModelInput {
+                materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
+                shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
+                bodies: vec![sphere(0.3), sphere(0.7)],
+                gravity: Vec3::zeros(),
+                surface_material: Some(0),
+                time_step: dem::TimeStep::Fixed(2e-6),
+                ..Default::default()
+            },
+            10,
+        );
+        c.model.scheme = scheme;
+        (0..2).for_each(|_| c.step(&[]));
+        let both = c.work.mean_contact_force(c.model.window())[2];
+        step::exchange(&c.model, &mut c.state, &mut c.work, &[0], &[]).unwrap();
+        c.step(&[]);
+        let one = c.work.mean_contact_force(c.model.window())[2];
+        assert!(c.work.grains.surface_contacts().iter().all(|c| c.body == 1));
+        assert!((one / both - 0.5).abs() < 0.01, "{scheme:?}: {one} of {both}");
+    }
+}
