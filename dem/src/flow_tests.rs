@@ -1,12 +1,12 @@
 use super::*;
 use crate::error::Partner;
-use crate::input::{BodyInput, ModelInput, Plane, TimeStep};
+use crate::input::{BodyInput, ModelInput};
 use crate::insert::room::{Places, Room};
 use crate::material::Material;
 use crate::measure::{BoxRegion, contacts};
 use crate::shape::Shape;
-use crate::shape::clump::Clump;
 use crate::surface::NoSurface;
+use crate::testing::{SOFT, dumbbells, push, shaft};
 use crate::{Model, ModelError, step};
 
 const SIDE: f64 = 0.12;
@@ -14,41 +14,22 @@ const SIDE: f64 = 0.12;
 /// Spheres and dumbbells in a shaft with a floor, or one that repeats itself along x; every fifth is absent at the start.
 fn input(periodic: bool) -> ModelInput {
     let material = Material {
-        density: 2600.0,
         stiffness: 2e4,
-        tangential_ratio: 0.5,
         tangential_damping_ratio: 0.1,
-        friction: 0.5,
         restitution: 0.6,
         rolling_friction: 0.05,
-        ..Material::RIGID
+        ..SOFT
     };
-    let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
-    let mut input = ModelInput {
-        materials: vec![material],
-        time_step: TimeStep::Auto { fraction: 0.5 },
-        shapes: vec![
-            Shape::Clump(dumbbell),
-            Shape::Sphere { radius: 0.011 },
-            Shape::Box { half: [0.02, 0.02, 0.02] },
-        ],
-        ..ModelInput::default()
-    };
-    let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
-    for d in [Vec3::x(), Vec3::y()] {
-        if !(periodic && d == Vec3::x()) {
-            input.planes.extend([wall(Vec3::zeros(), d), wall(d * SIDE, -d)]);
-        }
-    }
+    let mut input = dumbbells(material, [0.02; 3]);
+    let walled: &[Vec3] = if periodic { &[Vec3::y()] } else { &[Vec3::x(), Vec3::y()] };
+    input.planes = shaft(SIDE, walled);
     input.periodic[0] = periodic.then_some([0.0, SIDE]);
-    input.planes.push(wall(Vec3::zeros(), Vec3::z()));
     for k in 0..160_usize {
         let cell = Vec3::new((k % 4) as f64 + 0.5, (k / 4 % 4) as f64 + 0.5, (k / 16) as f64 + 0.6);
-        let push = Vec3::new((k as f64 * 1.7).sin(), (k as f64 * 2.9).cos(), -1.0);
         input.bodies.push(BodyInput {
             shape: k % 2,
             position: cell * 0.029,
-            velocity: push * 0.5,
+            velocity: push(k) * 0.5,
             absent: k % 5 == 4,
             ..BodyInput::default()
         });

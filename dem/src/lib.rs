@@ -25,6 +25,8 @@ pub mod shape;
 pub mod state;
 pub mod step;
 pub mod surface;
+#[cfg(test)]
+mod testing;
 pub mod timestep;
 pub mod wall;
 pub mod work;

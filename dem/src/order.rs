@@ -239,46 +239,20 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
 mod tests {
     use super::*;
     use crate::error::Partner;
-    use crate::input::{BodyInput, ModelInput, Plane, TimeStep};
-    use crate::material::Material;
+    use crate::input::BodyInput;
     use crate::measure;
-    use crate::shape::Shape;
-    use crate::shape::clump::Clump;
     use crate::surface::NoSurface;
+    use crate::testing::{SOFT, dumbbells, push, shaft};
     use crate::work::Work;
 
     /// Every contact keeps its force when the bodies are sorted anew, whichever of its two bodies comes first.
     #[test]
     fn contacts_survive_a_new_order() {
-        let material = Material {
-            density: 2600.0,
-            stiffness: 1e5,
-            tangential_ratio: 0.5,
-            tangential_damping_ratio: 0.0,
-            friction: 0.5,
-            restitution: 0.5,
-            ..Material::RIGID
-        };
-        let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
-        let mut input = ModelInput {
-            materials: vec![material],
-            time_step: TimeStep::Auto { fraction: 0.5 },
-            shapes: vec![
-                Shape::Clump(dumbbell),
-                Shape::Sphere { radius: 0.011 },
-                Shape::Box { half: [0.09, 0.09, 0.01] },
-            ],
-            ..ModelInput::default()
-        };
-        let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
-        for d in [Vec3::x(), Vec3::y()] {
-            input.planes.extend([wall(Vec3::zeros(), d), wall(d * 0.2, -d)]);
-        }
-        input.planes.push(wall(Vec3::zeros(), Vec3::z()));
+        let mut input = dumbbells(SOFT, [0.09, 0.09, 0.01]);
+        input.planes = shaft(0.2, &[Vec3::x(), Vec3::y()]);
         for k in 0..1500_usize {
             let cell = Vec3::new((k % 7) as f64 + 0.5, (k / 7 % 7) as f64 + 0.5, (k / 49) as f64 + 0.6);
-            let push = Vec3::new((k as f64 * 1.7).sin(), (k as f64 * 2.9).cos(), -1.0);
-            let (position, velocity) = (cell * 0.028, push * 0.5);
+            let (position, velocity) = (cell * 0.028, push(k) * 0.5);
             input.bodies.push(BodyInput { shape: k % 2, position, velocity, ..BodyInput::default() });
         }
         let position = Vec3::new(0.1, 0.1, 0.9);

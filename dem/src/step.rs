@@ -219,7 +219,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         let (lists, out) = (&mut cross[range.clone()], &mut slots[range.clone()]);
         if threads > 1 {
             let lists = lists.iter_mut().zip(out).enumerate();
-            share(lists, |(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
+            share(threads, lists, |(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
         } else {
             let lists = lists.iter_mut().zip(out).enumerate();
             lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
@@ -233,7 +233,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         let (blocks, works, slots) = (&mut blocks[range.clone()], &mut works[range], &*slots);
         if threads > 1 {
             let blocks = blocks.iter_mut().zip(works).enumerate();
-            share(blocks, |(k, (block, w))| within(from + k, block, w, slots));
+            share(threads, blocks, |(k, (block, w))| within(from + k, block, w, slots));
         } else {
             let blocks = blocks.iter_mut().zip(works).enumerate();
             blocks.for_each(|(k, (block, w))| within(from + k, block, w, slots));
@@ -242,14 +242,22 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
 }
 
 /// Shares blocks among the threads of the current pool: each takes the next one when it is through with its last, so that
-/// one with dear blocks gets few of them.
-fn share<I: Iterator + Send>(blocks: I, work: impl Fn(I::Item) + Sync) {
+/// one with dear blocks gets few of them. Threads that do something else are not waited for.
+fn share<I: Iterator + Send>(threads: usize, blocks: I, work: impl Fn(I::Item) + Sync) {
     let queue = Mutex::new(blocks);
-    rayon::broadcast(|_| {
+    crew(threads, &|| {
         while let Some(block) = queue.lock().ok().and_then(|mut q| q.next()) {
             work(block);
         }
     });
+}
+
+/// Does `work` `count` times, on as many threads as are free.
+fn crew(count: usize, work: &(impl Fn() + Sync)) {
+    match count {
+        0 | 1 => work(),
+        _ => _ = rayon::join(|| crew(count / 2, work), || crew(count - count / 2, work)),
+    }
 }
 
 /// Brings the applied forces into block order.

@@ -28,6 +28,34 @@ fn cube() -> fem::Model {
     block([4, 4, 4], [SIDE; 3], 200e9, 0.3, BLOCK_MASS / SIDE.powi(3), Held::Free, fem::Rayleigh::default())
 }
 
+/// Spheres of 3 cm that meet the cube, without gravity, in windows of `substeps` steps of `dt` [s].
+fn on_cube(
+    solid: &fem::Model,
+    friction: f64,
+    bodies: Vec<dem::BodyInput>,
+    (substeps, dt): (u32, f64),
+) -> Coupled<'_> {
+    let grains = dem::ModelInput {
+        materials: vec![material(2650.0, STIFFNESS, friction, 1.0)],
+        shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
+        bodies,
+        gravity: Vec3::zeros(),
+        surface_material: Some(0),
+        time_step: dem::TimeStep::Fixed(dt),
+        ..Default::default()
+    };
+    Coupled::new(solid, grains, substeps)
+}
+
+/// Makes a window in which the whole cube is accelerated upwards [m/s²].
+fn push(c: &mut Coupled, acceleration: f64) {
+    let solid = c.model.solid;
+    let (mut unit, mut force) = (vec![0.0; solid.dof_count()], vec![0.0; solid.dof_count()]);
+    unit.iter_mut().skip(2).step_by(3).for_each(|a| *a = acceleration);
+    solid.mass_times(&unit, &mut force);
+    c.step_loaded(&[], |_, load| load.iter_mut().zip(&force).for_each(|(l, f)| *l += f));
+}
+
 fn momentum(c: &Coupled) -> (Vec3, Vec3) {
     let grains = dem::measure::momentum(&c.model.grains, &c.state.grains);
     let (linear, angular) = fem::energy::momentum(c.model.solid, &c.state.solid);
@@ -36,25 +64,13 @@ fn momentum(c: &Coupled) -> (Vec3, Vec3) {
 
 impl<'a> Hit<'a> {
     fn new(solid: &'a fem::Model, offset: f64, speed: f64, substeps: u32, dt: f64) -> Hit<'a> {
-        let radius = 0.03;
-        let volume = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
-        let coupled = Coupled::new(
-            solid,
-            dem::ModelInput {
-                materials: vec![material(SPHERE_MASS / volume, STIFFNESS, 0.0, 1.0)],
-                shapes: vec![dem::Shape::Sphere { radius }],
-                bodies: vec![dem::BodyInput {
-                    position: Vec3::new(0.5 * SIDE + offset, 0.5 * SIDE, radius + 1e-5 * speed),
-                    velocity: Vec3::new(0.0, 0.0, -speed),
-                    ..Default::default()
-                }],
-                gravity: Vec3::zeros(),
-                surface_material: Some(0),
-                time_step: dem::TimeStep::Fixed(dt),
-                ..Default::default()
-            },
-            substeps,
-        );
+        let sphere = dem::BodyInput {
+            position: Vec3::new(0.5 * SIDE + offset, 0.5 * SIDE, 0.03 + 1e-5 * speed),
+            velocity: Vec3::new(0.0, 0.0, -speed),
+            mass: Some(SPHERE_MASS),
+            ..Default::default()
+        };
+        let coupled = on_cube(solid, 0.0, vec![sphere], (substeps, dt));
         let momentum = momentum(&coupled);
         let energy = step::stored(&coupled.model, &coupled.state).total();
         Hit { coupled, momentum, energy, geometric: Vec3::zeros() }
@@ -237,26 +253,15 @@ fn the_surface_moves_within_a_window() {
     let solid = cube();
     let speed = 1.0;
     let (overlap, dt) = (1e-6, 2e-6);
-    let mut c = Coupled::new(
-        &solid,
-        dem::ModelInput {
-            materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
-            shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
-            bodies: vec![dem::BodyInput {
-                // Velocities, and with them the block, are those of half a step before the sphere's place.
-                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap + 0.5 * dt * speed),
-                velocity: Vec3::new(0.0, 0.0, speed),
-                // So heavy that the force does not move it.
-                mass: Some(1e9),
-                ..Default::default()
-            }],
-            gravity: Vec3::zeros(),
-            surface_material: Some(0),
-            time_step: dem::TimeStep::Fixed(dt),
-            ..Default::default()
-        },
-        10,
-    );
+    let sphere = dem::BodyInput {
+        // Velocities, and with them the block, are those of half a step before the sphere's place.
+        position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap + 0.5 * dt * speed),
+        velocity: Vec3::new(0.0, 0.0, speed),
+        // So heavy that the force does not move it.
+        mass: Some(1e9),
+        ..Default::default()
+    };
+    let mut c = on_cube(&solid, 0.0, vec![sphere], (10, dt));
     c.state.solid.v.iter_mut().skip(2).step_by(3).for_each(|v| *v = speed);
     c.step(&[]);
     let force = -c.work.mean_contact_force(c.model.window())[2];
@@ -271,30 +276,14 @@ fn the_surface_moves_within_a_window() {
 fn the_surface_speeds_up_within_a_lagged_window() {
     let solid = cube();
     let (speed, dt) = (1.0, 2e-6);
-    let mut c = Coupled::new(
-        &solid,
-        dem::ModelInput {
-            materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
-            shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
-            bodies: vec![dem::BodyInput {
-                position: Vec3::new(0.5 * SIDE, 0.5 * SIDE, 1.0),
-                ..Default::default()
-            }],
-            surface_material: Some(0),
-            time_step: dem::TimeStep::Fixed(dt),
-            ..Default::default()
-        },
-        10,
-    );
+    let position = Vec3::new(0.5 * SIDE, 0.5 * SIDE, 1.0);
+    let far = dem::BodyInput { position, ..Default::default() };
+    let mut c = on_cube(&solid, 0.0, vec![far], (10, dt));
     c.model.scheme = Scheme::Lagged;
     c.state.solid.v.iter_mut().skip(2).step_by(3).for_each(|v| *v = speed);
     // Its weight at 10,000 g: the same acceleration everywhere.
     let acceleration = 1e5;
-    let mut force = vec![0.0; solid.dof_count()];
-    let mut unit = vec![0.0; solid.dof_count()];
-    unit.iter_mut().skip(2).step_by(3).for_each(|a| *a = acceleration);
-    solid.mass_times(&unit, &mut force);
-    c.step_loaded(&[], |_, load| load.iter_mut().zip(&force).for_each(|(l, f)| *l += f));
+    push(&mut c, acceleration);
     let at = [0.5 * SIDE, 0.5 * SIDE, 0.0];
     let patch = contact(&c.work.surface, at, [0.0; 3]).patch;
     let found = c.work.surface.closest_point(patch, at, [0.0; 2]).velocity[2];
@@ -310,27 +299,10 @@ fn a_surface_that_leaps_is_touched_at_once() {
     let (dt, substeps) = (2e-6, 10);
     let window = dt * f64::from(substeps);
     let leap = 2e-3;
-    let mut c = Coupled::new(
-        &solid,
-        dem::ModelInput {
-            materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
-            shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
-            bodies: vec![dem::BodyInput {
-                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 + 0.9 * leap),
-                ..Default::default()
-            }],
-            gravity: Vec3::zeros(),
-            surface_material: Some(0),
-            time_step: dem::TimeStep::Fixed(dt),
-            ..Default::default()
-        },
-        substeps,
-    );
-    let mut force = vec![0.0; solid.dof_count()];
-    let mut unit = vec![0.0; solid.dof_count()];
-    unit.iter_mut().skip(2).step_by(3).for_each(|a| *a = 2.0 * leap / (window * window));
-    solid.mass_times(&unit, &mut force);
-    c.step_loaded(&[], |_, load| load.iter_mut().zip(&force).for_each(|(l, f)| *l += f));
+    let position = Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 + 0.9 * leap);
+    let above = dem::BodyInput { position, ..Default::default() };
+    let mut c = on_cube(&solid, 0.0, vec![above], (substeps, dt));
+    push(&mut c, 2.0 * leap / (window * window));
     assert!((c.state.solid.u[2] / leap - 1.0).abs() < 1e-6 && c.work.grains.surface_contacts().is_empty());
     // It goes on no further: what touches the sphere is the leap alone.
     c.state.solid.v.fill(0.0);
@@ -349,25 +321,14 @@ fn the_stiffened_prediction_knows_slip_and_spin() {
     let overlap = 1e-4;
     for (velocity, spin) in [(Vec3::x(), Vec3::zeros()), (Vec3::zeros(), 30.0 * Vec3::y())] {
         let missed = |scheme: Scheme| {
-            let mut c = Coupled::new(
-                &solid,
-                dem::ModelInput {
-                    materials: vec![material(2650.0, STIFFNESS, 1e3, 1.0)],
-                    shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
-                    bodies: vec![dem::BodyInput {
-                        position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap),
-                        velocity,
-                        spin,
-                        mass: Some(1e9),
-                        ..Default::default()
-                    }],
-                    gravity: Vec3::zeros(),
-                    surface_material: Some(0),
-                    time_step: dem::TimeStep::Fixed(2e-6),
-                    ..Default::default()
-                },
-                10,
-            );
+            let sphere = dem::BodyInput {
+                position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap),
+                velocity,
+                spin,
+                mass: Some(1e9),
+                ..Default::default()
+            };
+            let mut c = on_cube(&solid, 1e3, vec![sphere], (10, 2e-6));
             c.model.scheme = scheme;
             // The first window predicts nothing.
             c.step(&[]);
@@ -395,19 +356,7 @@ fn a_grain_taken_out_loads_the_solid_no_more() {
             mass: Some(1e6),
             ..Default::default()
         };
-        let mut c = Coupled::new(
-            &solid,
-            dem::ModelInput {
-                materials: vec![material(2650.0, STIFFNESS, 0.0, 1.0)],
-                shapes: vec![dem::Shape::Sphere { radius: 0.03 }],
-                bodies: vec![sphere(0.3), sphere(0.7)],
-                gravity: Vec3::zeros(),
-                surface_material: Some(0),
-                time_step: dem::TimeStep::Fixed(2e-6),
-                ..Default::default()
-            },
-            10,
-        );
+        let mut c = on_cube(&solid, 0.0, vec![sphere(0.3), sphere(0.7)], (10, 2e-6));
         c.model.scheme = scheme;
         (0..2).for_each(|_| c.step(&[]));
         let both = c.work.mean_contact_force(c.model.window())[2];

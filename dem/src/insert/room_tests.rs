@@ -1,24 +1,16 @@
 use super::*;
 use crate::input::{BodyInput, ModelInput, Plane, TriangleSurface};
-use crate::material::Material;
 use crate::shape::Shape;
 use crate::surface::NoSurface;
+use crate::testing::SOFT;
 
 const RADIUS: f64 = 0.05;
 
 /// Two spheres, a box, a plane and a slanting triangle in and about the unit cube.
 fn model(periodic: bool) -> Model {
-    let soft = Material {
-        density: 1000.0,
-        stiffness: 1e5,
-        tangential_ratio: 0.5,
-        friction: 0.5,
-        restitution: 0.5,
-        ..Material::RIGID
-    };
     let at = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
     let mut input = ModelInput {
-        materials: vec![soft],
+        materials: vec![SOFT],
         shapes: vec![Shape::Sphere { radius: 0.25 }, Shape::Box { half: [0.1, 0.15, 0.3] }],
         bodies: vec![
             BodyInput { position: at(0.0, 0.3, 0.5), ..BodyInput::default() },

@@ -1,8 +1,7 @@
 //! Inlets of `[[grains]]` and `[[outlet]]` resolved.
 
 use super::compaction::region;
-use super::sizes::SizeSource;
-use super::{GradedGroup, GrainsPart, check, groups};
+use super::{GrainsPart, check, groups};
 use crate::failure::Failure;
 use crate::scene::flow::{Inlet, Outlet};
 use crate::scene::grains::Grains;
@@ -154,33 +153,19 @@ pub(super) fn waiting(
     model: &BodyInput,
     part: &mut GrainsPart,
 ) -> Result<(), Failure> {
-    let key = |k: &str| format!("grains.{index}.{k}");
-    let count = group
-        .count
-        .ok_or_else(|| document.error(&key("count"), "nothing", "the number of grains that may come in"))?;
-    check(document, &key("count"), Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
     for (k, present) in [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())] {
         if present {
             let expected = "no such key for grains that wait for their inlet: see `inlet.velocity`";
-            return Err(document.error(&key(k), "a value", expected).into());
+            return Err(document.error(&format!("grains.{index}.{k}"), "a value", expected).into());
         }
     }
-    let first = part.shapes.len();
-    let unit_scale = groups::shapes(document, index, group, part)?;
-    let source = SizeSource::of(document, index, group)?;
-    let sizes = source.sample(count, group.seed);
-    let dealt = groups::deal(&sizes, unit_scale.len());
+    let grains = groups::sampled(document, index, group, part, "the number of grains that may come in")?;
     // A range gives sizes in rising order: without this the small ones would come first.
-    let order = Random::new(group.seed, ORDER).permutation(count);
-    part.bodies.extend(order.into_iter().map(|i| BodyInput {
-        shape: first + dealt[i],
-        scale: sizes[i] * unit_scale[dealt[i]],
-        absent: true,
-        ..model.clone()
+    let order = Random::new(group.seed, ORDER).permutation(grains.len());
+    part.bodies.extend(order.into_iter().map(|i| {
+        let groups::Sampled { shape, scale } = grains[i];
+        BodyInput { shape, scale, absent: true, ..model.clone() }
     }));
-    if let SizeSource::Graded(grading) = source {
-        part.graded.push(GradedGroup { part: model.part, name: group.name.clone(), grading });
-    }
     Ok(())
 }
 

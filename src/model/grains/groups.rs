@@ -186,41 +186,59 @@ fn filled(
     part: &mut GrainsPart,
 ) -> Result<(), Failure> {
     let key = |k: &str| format!("grains.{index}.{k}");
-    let count = group
-        .count
-        .ok_or_else(|| document.error(&key("count"), "nothing", "the number of grains to fill in"))?;
-    check(document, &key("count"), Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
     let (first, first_body) = (part.shapes.len(), part.bodies.len());
-    let unit_scale = shapes(document, index, group, part)?;
-    let source = SizeSource::of(document, index, group)?;
-    let sizes = source.sample(count, group.seed);
-    let dealt = deal(&sizes, unit_scale.len());
-    let shape = |i: usize| first + dealt[i];
-    let scale: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| s * unit_scale[*d]).collect();
-    let radii: Vec<f64> =
-        scale.iter().enumerate().map(|(i, s)| s * bounding_radius(&part.shapes[shape(i)])).collect();
+    let grains = sampled(document, index, group, part, "the number of grains to fill in")?;
+    let radii: Vec<f64> = grains.iter().map(|b| b.scale * bounding_radius(&part.shapes[b.shape])).collect();
 
     let mut low = vector(&fill.low);
     let high = [fill.high[0].si, fill.high[1].si];
     low[2] = low[2].max(top_of(part, low, high));
     let placed = place::place_loose(low, high, &radii, group.seed)
         .map_err(|e| document.error(&key("fill"), e.to_string(), "a box that holds the grains"))?;
-    part.bodies.extend(placed.iter().enumerate().map(|(i, place)| BodyInput {
-        shape: shape(i),
-        scale: scale[i],
+    part.bodies.extend(placed.iter().zip(&grains).map(|(place, grain)| BodyInput {
+        shape: grain.shape,
+        scale: grain.scale,
         position: place.position,
         orientation: place.orientation,
         ..model.clone()
     }));
-    if let SizeSource::Graded(grading) = source
-        && group.shape != GrainShape::Bonded
-    {
-        part.graded.push(GradedGroup { part: model.part, name: group.name.clone(), grading });
-    }
     if group.shape == GrainShape::Bonded {
         bonded::expand(document, index, group, first_body, first, part)?;
     }
     Ok(())
+}
+
+/// Shape and scale of a grain.
+#[derive(Clone, Copy)]
+pub(super) struct Sampled {
+    pub shape: usize,
+    pub scale: f64,
+}
+
+/// Adds the shapes of a group of `count` grains and draws their sizes; `asked` says what the count is. A group with a
+/// gradation is noted, so that the run tells how its grains meet the curve.
+pub(super) fn sampled(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    part: &mut GrainsPart,
+    asked: &str,
+) -> Result<Vec<Sampled>, Failure> {
+    let key = format!("grains.{index}.count");
+    let count = group.count.ok_or_else(|| document.error(&key, "nothing", asked))?;
+    check(document, &key, Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
+    let first = part.shapes.len();
+    let unit_scale = shapes(document, index, group, part)?;
+    let source = SizeSource::of(document, index, group)?;
+    let sizes = source.sample(count, group.seed);
+    let dealt = deal(&sizes, unit_scale.len());
+    if let SizeSource::Graded(grading) = source
+        && group.shape != GrainShape::Bonded
+    {
+        part.graded.push(GradedGroup { part: index as u32, name: group.name.clone(), grading });
+    }
+    let grains = sizes.iter().zip(dealt);
+    Ok(grains.map(|(size, d)| Sampled { shape: first + d, scale: size * unit_scale[d] }).collect())
 }
 
 /// Adds the shapes of a filled group; returns the scale that gives each a sieve size of 1 m, so that the scale of a

@@ -1,0 +1,41 @@
+//! What several unit tests are made of.
+
+use crate::Vec3;
+use crate::input::{ModelInput, Plane, TimeStep};
+use crate::material::Material;
+use crate::shape::Shape;
+use crate::shape::clump::Clump;
+
+/// A soft material with friction.
+pub(crate) const SOFT: Material = Material {
+    density: 2600.0,
+    stiffness: 1e5,
+    tangential_ratio: 0.5,
+    tangential_damping_ratio: 0.0,
+    friction: 0.5,
+    restitution: 0.5,
+    ..Material::RIGID
+};
+
+/// Dumbbells (shape 0), spheres (shape 1) and a box (shape 2) of one material, without bodies, at half the limit of the step.
+pub(crate) fn dumbbells(material: Material, half: [f64; 3]) -> ModelInput {
+    let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
+    ModelInput {
+        materials: vec![material],
+        time_step: TimeStep::Auto { fraction: 0.5 },
+        shapes: vec![Shape::Clump(dumbbell), Shape::Sphere { radius: 0.011 }, Shape::Box { half }],
+        ..ModelInput::default()
+    }
+}
+
+/// A floor at z = 0 and walls at 0 and `side` across `axes`.
+pub(crate) fn shaft(side: f64, axes: &[Vec3]) -> Vec<Plane> {
+    let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
+    let walls = axes.iter().flat_map(|&d| [wall(Vec3::zeros(), d), wall(d * side, -d)]);
+    walls.chain([wall(Vec3::zeros(), Vec3::z())]).collect()
+}
+
+/// A push that differs from body to body, downwards on the whole.
+pub(crate) fn push(k: usize) -> Vec3 {
+    Vec3::new((k as f64 * 1.7).sin(), (k as f64 * 2.9).cos(), -1.0)
+}
