@@ -4,6 +4,7 @@
 //! ([`ContactLaw::answer`]), walls, boxes and measures for one ([`ContactLaw::respond`]). Both give the same bits.
 
 pub mod adhesion;
+pub(crate) mod coming;
 pub(crate) mod groups;
 pub mod hertz;
 pub(crate) mod hits;

@@ -195,13 +195,25 @@ pub(crate) fn prefetch_first<T>(list: &[T], count: usize) {
 /// foresight stops at every page.
 #[inline(always)]
 pub(crate) fn ahead<T>(list: &[T], at: usize, count: usize) {
+    // `_MM_HINT_T0`.
+    ahead_into::<T, 3>(list, at, count);
+}
+
+/// The same into its second cache.
+#[inline(always)]
+pub(crate) fn far_ahead<T>(list: &[T], at: usize, count: usize) {
+    // `_MM_HINT_T1`.
+    ahead_into::<T, 2>(list, at, count);
+}
+
+#[inline(always)]
+fn ahead_into<T, const HINT: i32>(list: &[T], at: usize, count: usize) {
     #[cfg(target_arch = "x86_64")]
     {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let from = list.as_ptr().wrapping_add(at).cast::<i8>();
         for line in (0..count * size_of::<T>()).step_by(64) {
             // SAFETY: a prefetch of any address changes nothing that a program sees.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_add(line)) };
+            unsafe { std::arch::x86_64::_mm_prefetch::<HINT>(from.wrapping_add(line)) };
         }
     }
     #[cfg(not(target_arch = "x86_64"))]

@@ -20,6 +20,7 @@ pub mod measure;
 pub mod model;
 mod order;
 mod periodic;
+mod run;
 pub mod search;
 pub mod shape;
 pub mod state;

@@ -16,6 +16,7 @@ use crate::detect;
 use crate::error::{ModelError, Partner};
 use crate::input::ModelInput;
 use crate::model::Model;
+use crate::run::Part;
 use crate::search::candidates::spheres;
 use crate::search::cells::Cells;
 use crate::shape::Shape;
@@ -179,8 +180,8 @@ pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = Image
 pub(crate) fn contacts<L: ContactLaw, const RIGID: bool>(
     periodic: &Periodic,
     laws: &PairTable<L>,
-    blocks: &[Block],
-    works: &[BlockWork],
+    blocks: Part<'_, Block>,
+    works: Part<'_, BlockWork>,
     b: usize,
     lists: &mut Cross,
     out: &mut CrossWork,

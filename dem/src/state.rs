@@ -167,6 +167,14 @@ impl Cross {
     }
 }
 
+impl Cross {
+    /// No partner lies in a later block than this.
+    pub fn last_block(&self) -> usize {
+        let images = self.images.iter().map(|p| p.name.block).max().unwrap_or(0);
+        self.spheres.most()[1].max(self.boxes.most()[1]).max(images) as usize
+    }
+}
+
 /// The state. Build it with [`State::new`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct State {

@@ -2,23 +2,20 @@
 
 use crate::Vec3;
 use crate::bond;
+use crate::contact::coming::Coming;
 use crate::contact::{ContactLaw, PairTable, pass, passes, patches, planes, with_law};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
-use crate::lanes;
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
 use crate::periodic;
+use crate::run::{self, Lists, Part, Slots};
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
 use crate::wall::advance::{self, WallSum};
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Sums, Work};
-use std::sync::Mutex;
-
-/// Blocks per thread whose contacts are found before they move: one in unit tests, whose beds are small.
-const WAVE: usize = if cfg!(test) { 1 } else { 32 };
 
 /// Advances `state` by one step of [`Model::dt`].
 ///
@@ -107,6 +104,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         parallel,
         planes,
         simd,
+        beyond,
         buffers,
         keep_forces,
         bonds: bonded,
@@ -120,11 +118,12 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     let (material, plane_material, slot_width) = (*material, *plane_material, *slot_width);
 
     // Contacts between blocks: they read their own block and later ones, and write slots.
-    let between = |b: usize, all: &[Block], scratch: &[BlockWork], pairs: &mut Cross, out: &mut CrossWork| {
+    let between = |b: usize,
+                   all: Part<'_, Block>,
+                   scratch: Part<'_, BlockWork>,
+                   pairs: &mut Cross,
+                   out: &mut CrossWork| {
         (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
-        passes::fetch(&all[b]);
-        lanes::prefetch_first(&all[b].pairs.groups, pass::FAR);
-        lanes::prefetch_first(&scratch[b].gather, 8 * pass::FAR);
         passes::between(model, simd, (all, scratch), material, b, pairs, out);
         if !pairs.boxes.is_empty() {
             pass::boxes(laws, all, scratch, b, pairs, out, dt);
@@ -139,14 +138,13 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     let (applied, bonded, bonds) = (&**applied, &*bonded, &*bonds);
     let walls = model.walls.placed(wall_states);
     let gone = *drift + *wall_drift;
-    let within = |b: usize, block: &mut Block, w: &mut BlockWork, slots: &[CrossWork]| {
+    let within = |b: usize, block: &mut Block, w: &mut BlockWork, slots: Slots<'_>, coming: Coming<'_>| {
         w.ledger = Ledger::default();
         w.failure = None;
         w.contacts.clear();
         w.sums = buffers.take();
         w.sums.clear();
         w.sums.resize(block.bodies.len(), Sums::default());
-        passes::fetch(block);
         passes::gather(model, simd, w, slots);
         if !model.bonds.is_empty() {
             bond::pass::within(model, b, block, w, bonded, bonds.fresh);
@@ -154,7 +152,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         let (mut pairs, mut plane_pairs) =
             (std::mem::take(&mut block.pairs), std::mem::take(&mut block.planes));
         if !pairs.is_empty() {
-            passes::interior(model, simd, block, &mut pairs, w);
+            passes::interior(model, simd, block, &mut pairs, w, coming);
         }
         if RIGID && w.kind.first() == Some(&Kind::Box) {
             planes::corners(model, laws, motions, block, &mut plane_pairs, w, dt);
@@ -209,55 +207,9 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
             buffers.give_back(std::mem::take(&mut w.sums));
         }
     };
-    // A block may move once the contacts of all blocks up to it are known: so many blocks at a time that the second loop finds
-    // in the cache what the first has read.
     let threads = if *parallel { rayon::current_num_threads() } else { 1 };
-    let wave = if threads > 1 { WAVE * threads } else { 1 };
-    for from in (0..blocks.len()).step_by(wave) {
-        let range = from..(from + wave).min(blocks.len());
-        let (all, scratch) = (&*blocks, &*works);
-        let (lists, out) = (&mut cross[range.clone()], &mut slots[range.clone()]);
-        if threads > 1 {
-            let lists = lists.iter_mut().zip(out).enumerate();
-            share(threads, lists, |(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
-        } else {
-            let lists = lists.iter_mut().zip(out).enumerate();
-            lists.for_each(|(k, (pairs, out))| between(from + k, all, scratch, pairs, out));
-        }
-        if let (1, Some(next)) = (threads, blocks.get(range.end)) {
-            // What the next block begins with, while this one reckons.
-            passes::fetch(next);
-            lanes::prefetch_first(&cross[range.end].spheres.groups, pass::FAR);
-            lanes::prefetch_first(&slots[range.end].slots, 2 * pass::FAR);
-        }
-        let (blocks, works, slots) = (&mut blocks[range.clone()], &mut works[range], &*slots);
-        if threads > 1 {
-            let blocks = blocks.iter_mut().zip(works).enumerate();
-            share(threads, blocks, |(k, (block, w))| within(from + k, block, w, slots));
-        } else {
-            let blocks = blocks.iter_mut().zip(works).enumerate();
-            blocks.for_each(|(k, (block, w))| within(from + k, block, w, slots));
-        }
-    }
-}
-
-/// Shares blocks among the threads of the current pool: each takes the next one when it is through with its last, so that
-/// one with dear blocks gets few of them. Threads that do something else are not waited for.
-fn share<I: Iterator + Send>(threads: usize, blocks: I, work: impl Fn(I::Item) + Sync) {
-    let queue = Mutex::new(blocks);
-    crew(threads, &|| {
-        while let Some(block) = queue.lock().ok().and_then(|mut q| q.next()) {
-            work(block);
-        }
-    });
-}
-
-/// Does `work` `count` times, on as many threads as are free.
-fn crew(count: usize, work: &(impl Fn() + Sync)) {
-    match count {
-        0 | 1 => work(),
-        _ => _ = rayon::join(|| crew(count / 2, work), || crew(count - count / 2, work)),
-    }
+    let lists = Lists { blocks, works, cross, slots };
+    run::through(threads, lists, beyond, slot_width, between, within);
 }
 
 /// Brings the applied forces into block order.
@@ -385,7 +337,7 @@ mod tests {
             material: 0,
             velocity: Vec3::zeros(),
         });
-        for k in 0..3001_u32 {
+        for k in 0..5001_u32 {
             let (x, y, z) = (f64::from(k % 15), f64::from(k / 15 % 15), f64::from(k / 225));
             let shift = 0.002 * (f64::from(k) * 1.7).sin();
             let position = Vec3::new(0.021 * x + shift, 0.021 * y - shift, 0.012 + 0.0205 * z);

@@ -221,6 +221,8 @@ pub(crate) struct Applied {
 pub struct Work {
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossWork>,
+    /// Scratch of [`run::through`](crate::run::through).
+    pub(crate) beyond: Vec<CrossWork>,
     pub(crate) bonds: BondWork,
     /// Pairs that are not for the ordinary contacts.
     pub(crate) held: Held,
@@ -262,6 +264,7 @@ impl Work {
         let mut work = Work {
             blocks: Vec::new(),
             cross: Vec::new(),
+            beyond: Vec::new(),
             bonds: BondWork::default(),
             held: Held::default(),
             applied: Vec::new(),

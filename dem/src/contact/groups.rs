@@ -1,7 +1,7 @@
 //! Lists of contacts with their memory, four to a group: what the loops over lanes work on.
 //!
-//! Groups come in twos, for loops over eight lanes. The last ones may hold fewer than four; the other lanes name body 0
-//! and have no contact.
+//! Groups come in twos, for loops over eight lanes. The last ones may hold fewer than four; the other lanes bear the
+//! names of the first contact of the two and have none.
 
 use super::{FRESH, History};
 use crate::Vec3;
@@ -91,7 +91,7 @@ impl<const N: usize> Groups<N> {
     pub fn push(&mut self, name: [u32; N], history: &History) {
         let (g, lane) = (self.len / 4, self.len % 4);
         if self.len.is_multiple_of(8) {
-            self.groups.extend([Group::EMPTY; 2]);
+            self.groups.extend([Group { names: name.map(|n| [n; 4]), ..Group::EMPTY }; 2]);
             if self.turning {
                 self.turns.extend([[Lanes::default(); 4]; 2]);
             }

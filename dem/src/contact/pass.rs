@@ -2,12 +2,14 @@
 //! bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps and boxes, and in whether rolling
 //! is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
 
+use super::coming::Coming;
 use super::groups::{Group, Groups, Springs};
 use super::{Answer, ContactLaw, FRESH, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
 use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
+use crate::run::{Part, Slots};
 use crate::state::{Block, Cross, Lanes, xyz};
 use crate::work::{BlockWork, CrossWork, Failure, Sums};
 
@@ -120,8 +122,8 @@ impl<const RIGID: bool> End for Own<'_, RIGID> {
 
 /// Bodies of several blocks.
 struct Far<'a> {
-    blocks: &'a [Block],
-    works: &'a [BlockWork],
+    blocks: Part<'a, Block>,
+    works: Part<'a, BlockWork>,
     rigid: bool,
     block: [&'a [u32; 4]; 2],
     sphere: [&'a [u32; 4]; 2],
@@ -406,6 +408,7 @@ pub(crate) struct Interior<'a, L, const RIGID: bool, const ROLL: bool> {
     pub block: &'a Block,
     pub pairs: &'a mut Groups<2>,
     pub w: &'a mut BlockWork,
+    pub coming: Coming<'a>,
     pub dt: f64,
 }
 
@@ -414,7 +417,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
 
     #[inline(always)]
     fn run<R: Pack>(self) {
-        let Interior { laws, block, pairs, w, dt } = self;
+        let Interior { laws, block, pairs, w, coming, dt } = self;
         let [i, j] = pairs.most();
         assert!(RIGID || within(block, w, i.max(j)), "names of contacts are places of bodies");
         let mut sums = std::mem::take(&mut w.sums);
@@ -425,8 +428,10 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         let len = pairs.len();
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
+        let mut coming = coming.portions(len.div_ceil(R::LANES));
         for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
             lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
+            coming.fetch::<RIGID>();
             let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
             let turns = if ROLL {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
@@ -474,7 +479,7 @@ const AHEAD: usize = 4;
 
 /// Has the records of single spheres in other blocks fetched.
 #[inline(always)]
-fn fetch(blocks: &[Block], group: &Group<3>) {
+fn fetch(blocks: Part<'_, Block>, group: &Group<3>) {
     let [_, block, sphere] = group.names();
     for l in 0..4 {
         let other = &blocks[block[l] as usize];
@@ -488,8 +493,8 @@ fn fetch(blocks: &[Block], group: &Group<3>) {
 /// Contacts of block `b`'s spheres with spheres of other blocks: forces go to slots.
 pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
-    pub blocks: &'a [Block],
-    pub works: &'a [BlockWork],
+    pub blocks: Part<'a, Block>,
+    pub works: Part<'a, BlockWork>,
     /// The material of all bodies, where there is only one.
     pub material: Option<u32>,
     pub b: usize,
@@ -585,8 +590,8 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
 /// Contacts of block `b`'s spheres with boxes, one by one; their slots follow those of the spheres.
 pub(crate) fn boxes<L: ContactLaw>(
     laws: &PairTable<L>,
-    blocks: &[Block],
-    works: &[BlockWork],
+    blocks: Part<'_, Block>,
+    works: Part<'_, BlockWork>,
     b: usize,
     lists: &mut Cross,
     out: &mut CrossWork,
@@ -633,7 +638,7 @@ pub(crate) fn boxes<L: ContactLaw>(
 /// Adds the slots of contacts with other blocks, in their fixed order. `WIDE`: slots hold both torques.
 pub(crate) struct Gathering<'a, const WIDE: bool> {
     pub w: &'a mut BlockWork,
-    pub cross: &'a [CrossWork],
+    pub cross: Slots<'a>,
 }
 
 impl<const WIDE: bool> Kernel for Gathering<'_, WIDE> {
@@ -646,10 +651,10 @@ impl<const WIDE: bool> Kernel for Gathering<'_, WIDE> {
         let three = R::Quad::load(&[1.0, 1.0, 1.0, 0.0]);
         for (k, entry) in w.gather.iter().enumerate() {
             if let Some(next) = w.gather.get(k + FAR / 2) {
-                lanes::ahead(&cross[next.block as usize].slots, next.slot().0 * width, width);
+                lanes::ahead(&cross.of(next.block as usize).slots, next.slot().0 * width, width);
             }
             let (slot, first) = entry.slot();
-            let slot = &cross[entry.block as usize].slots[slot * width..][..width];
+            let slot = &cross.of(entry.block as usize).slots[slot * width..][..width];
             let sums = &mut w.sums[entry.place as usize].0;
             let sign = three * R::Quad::splat(if first { 1.0 } else { -1.0 });
             let force = R::Quad::load(&slot[0]) * sign;

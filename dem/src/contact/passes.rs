@@ -1,7 +1,9 @@
 //! The loops of a step on one block, chosen by law and kind of body. Nothing here depends on the type of the external
 //! surface, so these loops are compiled once, with this crate.
 
+use super::coming::Coming;
 use super::hits::{Ask, Hit};
+pub(crate) use super::pass::FAR;
 use super::pass::{Between, Gathering, Interior};
 use super::planes::{PlaneNow, Planes};
 use super::with_law;
@@ -9,6 +11,7 @@ use crate::contact::groups::Groups;
 use crate::integrate::leapfrog::Advance;
 use crate::lanes::{self, Simd};
 use crate::model::Model;
+use crate::run::{Part, Slots};
 use crate::state::{Block, Cross};
 use crate::work::{Applied, BlockWork, CrossWork};
 
@@ -16,7 +19,7 @@ use crate::work::{Applied, BlockWork, CrossWork};
 pub(crate) fn between(
     model: &Model,
     simd: Simd,
-    (blocks, works): (&[Block], &[BlockWork]),
+    (blocks, works): (Part<'_, Block>, Part<'_, BlockWork>),
     material: Option<u32>,
     b: usize,
     lists: &mut Cross,
@@ -39,7 +42,7 @@ pub(crate) fn fetch(block: &Block) {
 }
 
 /// Adds up what other blocks left for a block.
-pub(crate) fn gather(model: &Model, simd: Simd, w: &mut BlockWork, cross: &[CrossWork]) {
+pub(crate) fn gather(model: &Model, simd: Simd, w: &mut BlockWork, cross: Slots<'_>) {
     if model.rigid || model.laws.rolls() {
         lanes::run(simd, Gathering::<true> { w, cross });
     } else {
@@ -48,13 +51,20 @@ pub(crate) fn gather(model: &Model, simd: Simd, w: &mut BlockWork, cross: &[Cros
 }
 
 /// Contacts between spheres of a block.
-pub(crate) fn interior(model: &Model, simd: Simd, block: &Block, pairs: &mut Groups<2>, w: &mut BlockWork) {
+pub(crate) fn interior(
+    model: &Model,
+    simd: Simd,
+    block: &Block,
+    pairs: &mut Groups<2>,
+    w: &mut BlockWork,
+    coming: Coming<'_>,
+) {
     let dt = model.dt();
     with_law!(&model.laws, laws => match (model.rigid, laws.rolls()) {
-        (false, false) => lanes::run(simd, Interior::<_, false, false> { laws, block, pairs, w, dt }),
-        (false, true) => lanes::run(simd, Interior::<_, false, true> { laws, block, pairs, w, dt }),
-        (true, false) => lanes::run(simd, Interior::<_, true, false> { laws, block, pairs, w, dt }),
-        (true, true) => lanes::run(simd, Interior::<_, true, true> { laws, block, pairs, w, dt }),
+        (false, false) => lanes::run(simd, Interior::<_, false, false> { laws, block, pairs, w, coming, dt }),
+        (false, true) => lanes::run(simd, Interior::<_, false, true> { laws, block, pairs, w, coming, dt }),
+        (true, false) => lanes::run(simd, Interior::<_, true, false> { laws, block, pairs, w, coming, dt }),
+        (true, true) => lanes::run(simd, Interior::<_, true, true> { laws, block, pairs, w, coming, dt }),
     });
 }
 
