@@ -93,6 +93,12 @@ pub trait Surface: Sync {
         false
     }
 
+    /// Of a flat patch with two sides, told without a search: where `centre` stands above its inside, the normal, and the
+    /// velocity there. `None` tells nothing.
+    fn foot(&self, _patch: u32, _centre: [f64; 3]) -> Option<[Vec3; 3]> {
+        None
+    }
+
     /// Rigid wall that a patch belongs to, below [`Surface::groups`]; forces are summed for each.
     fn group(&self, _patch: u32) -> usize {
         0

@@ -6,8 +6,8 @@ use crate::Vec3;
 use crate::lanes::{Kernel, Pack, V3};
 use crate::state::{Block, Lanes, xyz};
 
-/// A contact of a sphere with a patch: what the law asks, and what it answers.
-#[derive(Clone, Copy, Debug, Default)]
+/// A contact of a sphere with a patch: what the law asks, and what it answers in the same places.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
     /// Body within the block.
     pub body: u32,
@@ -15,21 +15,16 @@ pub(crate) struct Hit {
     pub local: [f64; 2],
     /// Where they touch, and the overlap.
     point: Lanes,
-    /// The normal, and the sphere's radius.
+    /// The normal, and the sphere's radius. Then the part of the torque that is a moment of its own.
     normal: Lanes,
-    /// Velocity of the patch there, and one over the mass of its wall.
+    /// Velocity of the patch there, and one over the mass of its wall. Then the force on the body, and what dashpots took.
     velocity: Lanes,
-    /// Angular velocity of its wall, and its material.
+    /// Angular velocity of its wall, and its material. Then the torque about the body's centre, and what sliding took.
     spin: Lanes,
     /// Tangential spring, and approach speed before.
     memory: Lanes,
     /// Rolling and twisting springs.
     turn: Lanes,
-    /// Force on the body, and what dashpots took; torque about its centre, and what sliding took; the part of the torque that is
-    /// a moment of its own.
-    force: Lanes,
-    torque: Lanes,
-    moment: Lanes,
 }
 
 fn record(v: &Vec3, last: f64) -> Lanes {
@@ -56,7 +51,6 @@ impl Hit {
             spin: record(spin, f64::from(material)),
             memory: record(&history.spring, history.rate),
             turn: Lanes(history.turn),
-            ..Hit::default()
         }
     }
 
@@ -75,25 +69,25 @@ impl Hit {
     /// Force on the body [N].
     #[inline(always)]
     pub fn force(&self) -> Vec3 {
-        xyz(&self.force)
+        xyz(&self.velocity)
     }
 
     /// Torque on the body about its centre [N m].
     #[inline(always)]
     pub fn torque(&self) -> Vec3 {
-        xyz(&self.torque)
+        xyz(&self.spin)
     }
 
     /// Moment of rolling and twisting resistance on the body [N m].
     #[inline(always)]
     pub fn moment(&self) -> Vec3 {
-        xyz(&self.moment)
+        xyz(&self.normal)
     }
 
     /// Energy that dashpots and that sliding took [J].
     #[inline(always)]
     pub fn dissipated(&self) -> (f64, f64) {
-        (self.force[3], self.torque[3])
+        (self.velocity[3], self.spin[3])
     }
 }
 
@@ -150,18 +144,16 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for Ask<'_, L, ROLL> {
             }
             let answers = R::records(four(force, dashpot), four(torque, friction));
             let springs = R::records(four(memory.spring, memory.rate), four(memory.roll, memory.twist));
-            let moments = R::records(four(moment, R::zero()), four(V3::zero(), R::zero()));
+            let moments = R::records(four(moment, radius), four(V3::zero(), R::zero()));
             for l in 0..count {
                 let hit = &mut hits[at + l];
                 let mut two = [Lanes::default(); 2];
                 R::put(answers[l], &mut two);
-                [hit.force, hit.torque] = two;
+                [hit.velocity, hit.spin] = two;
                 R::put(springs[l], &mut two);
                 [hit.memory, hit.turn] = two;
-                if ROLL {
-                    R::put(moments[l], &mut two);
-                    hit.moment = two[0];
-                }
+                R::put(moments[l], &mut two);
+                hit.normal = two[0];
             }
             at += count;
         }

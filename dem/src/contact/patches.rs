@@ -140,31 +140,30 @@ fn touches<S: Surface>(
     keep_deepest(out);
 }
 
-/// The touch of a sphere that stays inside a patch, where all patches near it lie in one plane and the overlap is so small
-/// that whatever else it touches of them differs by less than [`SMOOTH`]: the others need not be asked. That is how a bed
-/// rests on a floor of triangles.
-#[inline]
-fn level<S: Surface>(
+/// The contact of a sphere that stays inside a patch and on its side of it, where all patches near it lie in one plane and the
+/// overlap is so small that whatever else it touches of them differs by less than [`SMOOTH`]: the others need not be
+/// asked. That is how a bed rests on a floor of triangles.
+#[inline(always)]
+fn resting<S: Surface>(
     surface: &S,
     x: &Vec3,
     r: f64,
     pairs: &[PatchPair],
     before: &[PatchContact],
-) -> Option<Touch> {
-    let [PatchContact { patch, .. }] = *before else { return None };
-    if !pairs.iter().all(|p| surface.level(p.patch, patch)) || surface.one_sided_patch(patch) {
+) -> Option<PatchContact> {
+    let [old] = before else { return None };
+    if old.history.is_fresh() || !pairs.iter().all(|p| surface.level(p.patch, old.patch)) {
         return None;
     }
-    let closest = surface.closest_point(patch, [x.x, x.y, x.z], [0.0; 2]);
-    let (point, outward) = (Vec3::from(closest.point), Vec3::from(closest.normal));
+    let [point, outward, velocity] = surface.foot(old.patch, [x.x, x.y, x.z])?;
     let along = (x - point).dot(&outward);
     let distance = along.abs();
-    if closest.feature != Feature::Face || distance >= r || distance <= SMOOTH * r {
+    let normal = if along < 0.0 { -outward } else { outward };
+    if distance >= r || distance <= SMOOTH * r || normal.dot(&old.normal) <= 0.0 {
         return None;
     }
-    let normal = if along < 0.0 { -outward } else { outward };
-    let geometry = ContactGeometry { point, normal, overlap: r - distance, radius: r };
-    Some(Touch { patch, closest, geometry, behind: false, counts: true })
+    let side = normal.dot(&outward);
+    Some(PatchContact { point, normal, velocity, overlap: r - distance, side, ..*old })
 }
 
 /// Of contacts whose normals differ little keeps the deepest, the first of equals.
@@ -217,6 +216,12 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         }
         laws.get(block.spin[owner(c.i)][3] as u32, material(c.patch)).release(&mut c.history)
     };
+    let hit = |body: usize, c: &PatchContact, radius: f64, local: [f64; 2]| {
+        let (mass, material) = (surface.inverse_mass(c.patch), material(c.patch));
+        let (point, velocity) = ((&c.point, c.overlap), (&c.velocity, mass));
+        let spin = (&surface.spin(c.patch), material);
+        Hit::new(body as u32, point, (&c.normal, radius), velocity, spin, local, &c.history)
+    };
     let (mut dashpot, mut friction) = (0.0, 0.0);
     let mut failure = w.failure;
     let sharp = surface.sharp();
@@ -236,11 +241,14 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         let from = at;
         at += old[from..].iter().take_while(|c| c.i == sphere).count();
         let before = &mut old[from..at];
-        touched.clear();
-        match if sharp { level(surface, &x, r, pairs, before) } else { None } {
-            Some(touch) => touched.push(touch),
-            None => touches(surface, &x, r, gone, pairs, &mut touched),
+        let a = owner(sphere);
+        if sharp && let Some(contact) = resting(surface, &x, r, pairs, before) {
+            hits.push(hit(a, &contact, r, [0.0; 2]));
+            live.push(contact);
+            continue;
         }
+        touched.clear();
+        touches(surface, &x, r, gone, pairs, &mut touched);
         if touched.is_empty() && before.is_empty() {
             continue;
         }
@@ -254,7 +262,6 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             before.iter_mut().for_each(|c| friction += end(c));
         }
 
-        let a = owner(sphere);
         for (t, contact) in touched.iter().filter(|t| t.counts).zip(now) {
             let g = &t.geometry;
             let side = g.normal.dot(&Vec3::from(t.closest.normal));
@@ -274,15 +281,7 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             contact.velocity = t.closest.velocity.into();
             contact.overlap = g.overlap;
             contact.side = side;
-            hits.push(Hit::new(
-                a as u32,
-                (&g.point, g.overlap),
-                (&g.normal, g.radius),
-                (&contact.velocity, surface.inverse_mass(t.patch)),
-                (&surface.spin(t.patch), material(t.patch)),
-                t.closest.local,
-                &contact.history,
-            ));
+            hits.push(hit(a, contact, g.radius, t.closest.local));
         }
     }
     old[at..].iter_mut().for_each(|c| friction += end(c));

@@ -398,6 +398,19 @@ impl Surface for PlacedWalls<'_> {
         self.walls.entries[a as usize].flat == self.walls.entries[b as usize].flat
     }
 
+    #[inline(always)]
+    fn foot(&self, patch: u32, centre: [f64; 3]) -> Option<[Vec3; 3]> {
+        let (kind, wall, state) = self.parts(patch);
+        let Kind::Triangle(t) = kind else { return None };
+        if state.open {
+            return None;
+        }
+        let t = &self.walls.triangles[t as usize];
+        let foot = t.foot(&state.to_local(&wall.centre, &Vec3::from(centre)))?;
+        let point = state.to_world(&wall.centre, &foot);
+        Some([point, state.turn(&t.normal()), state.velocity_at(&wall.centre, &point)])
+    }
+
     fn group(&self, patch: u32) -> usize {
         self.walls.wall_of(patch)
     }

@@ -65,13 +65,20 @@ impl Triangle {
         (up * up + out * out).sqrt() * (1.0 - SLACK)
     }
 
+    /// Where `x` stands above the inside, if the edges tell that it does.
+    #[inline(always)]
+    pub fn foot(&self, x: &Vec3) -> Option<Vec3> {
+        let inside = self.rims.iter().all(|rim| height(rim, x) <= 0.0);
+        inside.then(|| x - self.normal() * height(&self.plane, x))
+    }
+
     /// Closest point, and where on the triangle it lies.
     #[inline(always)]
     pub fn closest(&self, x: &Vec3) -> (Vec3, Region) {
-        if self.rims.iter().all(|rim| height(rim, x) <= 0.0) {
-            return (x - self.normal() * height(&self.plane, x), Region::Face);
+        match self.foot(x) {
+            Some(foot) => (foot, Region::Face),
+            None => self.beside(x),
         }
-        self.beside(x)
     }
 
     /// The closest point where that is not told inside by the edges.
