@@ -48,7 +48,12 @@ impl Portions<'_> {
         let Coming { blocks, groups, slots, width } = self.coming;
         let Some(own) = blocks.list.first() else { return };
         for list in [&own.centre, &own.velocity, &own.spin] {
-            lanes::far_ahead(list, self.body, self.bodies);
+            // Mostly; without a loop.
+            if self.bodies <= 4 {
+                lanes::far_ahead(list, self.body, 4);
+            } else {
+                lanes::far_ahead(list, self.body, self.bodies);
+            }
         }
         self.body += self.bodies;
         self.due += self.rate;
