@@ -350,6 +350,12 @@ mod tests {
                 ..BodyInput::default()
             });
         }
+        if clumps && !hertz {
+            // A plate that falls on top.
+            input.shapes.push(Shape::Box { half: [0.1, 0.1, 0.01] });
+            let (position, velocity) = (Vec3::new(0.15, 0.15, 0.5), Vec3::new(0.0, 0.0, -1.5));
+            input.bodies.push(BodyInput { shape: 2, position, velocity, ..BodyInput::default() });
+        }
         Model::new(input).unwrap()
     }
 
@@ -423,17 +429,19 @@ mod tests {
         }
     }
 
-    /// One, two, three and seven threads: the same bits, with memory of rolling and rebuilt lists.
+    /// One, two, three and seven threads: the same bits, with memory of rolling and rebuilt lists, or with a box.
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
-        let model = heap(true, true);
-        let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| bits(&model, 600, true, Simd::best()))
-        };
-        let one = run(1);
-        for threads in [2, 3, 7] {
-            assert!(run(threads) == one, "{threads} threads");
+        for hertz in [true, false] {
+            let model = heap(hertz, true);
+            let run = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| bits(&model, 600, true, Simd::best()))
+            };
+            let one = run(1);
+            for threads in [2, 3, 7] {
+                assert!(run(threads) == one, "{threads} threads, hertz {hertz}");
+            }
         }
     }
 }

@@ -140,7 +140,7 @@ fn touches<S: Surface>(
     keep_deepest(out);
 }
 
-/// The contact of a sphere that stays inside a patch and on its side of it, where all patches near it lie in one plane and the
+/// The contact of a sphere that stays inside a patch, where all patches near it lie in one plane and the
 /// overlap is so small that whatever else it touches of them differs by less than [`SMOOTH`]: the others need not be
 /// asked. That is how a bed rests on a floor of triangles.
 #[inline(always)]
@@ -152,14 +152,15 @@ fn resting<S: Surface>(
     before: &[PatchContact],
 ) -> Option<PatchContact> {
     let [old] = before else { return None };
-    if old.history.is_fresh() || !pairs.iter().all(|p| surface.level(p.patch, old.patch)) {
+    if !pairs.iter().all(|p| surface.level(p.patch, old.patch)) {
         return None;
     }
     let [point, outward, velocity] = surface.foot(old.patch, [x.x, x.y, x.z])?;
     let along = (x - point).dot(&outward);
     let distance = along.abs();
     let normal = if along < 0.0 { -outward } else { outward };
-    if distance >= r || distance <= SMOOTH * r || normal.dot(&old.normal) <= 0.0 {
+    // Nothing moves so far in a step that it could have passed.
+    if distance >= r || distance <= SMOOTH * r {
         return None;
     }
     let side = normal.dot(&outward);

@@ -285,3 +285,28 @@ fn face_before_edge_beside_a_seam() {
         assert!(force.xy().norm() < 1e-12 * force.z, "{force}");
     }
 }
+
+/// Two plates in one plane with a slot between them: a sphere beside it, pressed down on one, comes to touch the rim of the other.
+#[test]
+fn a_slot_in_a_floor_is_felt() {
+    let plate = |from: f64, to: f64| [[from, -0.1, 0.0], [to, -0.1, 0.0], [to, 0.1, 0.0], [from, 0.1, 0.0]];
+    let vertices = [plate(-0.1, 0.0005), plate(0.0025, 0.1)].concat();
+    let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    let start = Vec3::new(0.0, 0.03, 0.00999);
+    let body = BodyInput { velocity: Vec3::new(0.0, 0.0, -10.0), ..sphere(start, Vec3::zeros()) };
+    let mut run = heavy(on_triangles(&vertices, &triangles, body));
+    let mut seen = [false; 2];
+    while run.state.velocity(0).z < 0.0 {
+        run.step();
+        let x = run.state.position(0);
+        let gap = x.z.hypot(x.x - 0.0025);
+        let count = measure::contacts(&run.model, &run.state).len();
+        let expected = contact_count(&vertices, &triangles, x).0;
+        // Contacts are those of the step before the last motion.
+        if (gap - 0.01).abs() > 1e-4 {
+            assert_eq!(count, expected, "{x}");
+            seen[count - 1] = true;
+        }
+    }
+    assert_eq!(seen, [true; 2]);
+}
