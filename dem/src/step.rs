@@ -351,9 +351,9 @@ mod tests {
             });
         }
         if clumps && !hertz {
-            // A plate that falls on top.
+            // A plate that falls on top, also of the last block of spheres.
             input.shapes.push(Shape::Box { half: [0.1, 0.1, 0.01] });
-            let (position, velocity) = (Vec3::new(0.15, 0.1, 0.4832), Vec3::new(0.0, 0.0, -3.0));
+            let (position, velocity) = (Vec3::new(0.15, 0.2, 0.4627), Vec3::new(0.0, 0.0, -3.0));
             input.bodies.push(BodyInput { shape: 2, position, velocity, ..BodyInput::default() });
         }
         Model::new(input).unwrap()
