@@ -31,6 +31,10 @@ pub(crate) struct Portions<'a> {
 const NAMES: usize = 4;
 
 impl<'a> Coming<'a> {
+    pub fn is_empty(&self) -> bool {
+        self.blocks.list.is_empty()
+    }
+
     #[inline(always)]
     pub fn portions(self, count: usize) -> Portions<'a> {
         let own = self.blocks.list.first().map_or(0, |b| b.centre.len());
@@ -48,12 +52,7 @@ impl Portions<'_> {
         let Coming { blocks, groups, slots, width } = self.coming;
         let Some(own) = blocks.list.first() else { return };
         for list in [&own.centre, &own.velocity, &own.spin] {
-            // Mostly; without a loop.
-            if self.bodies <= 4 {
-                lanes::far_ahead(list, self.body, 4);
-            } else {
-                lanes::far_ahead(list, self.body, self.bodies);
-            }
+            lanes::far_ahead(list, self.body, self.bodies);
         }
         self.body += self.bodies;
         self.due += self.rate;

@@ -428,36 +428,41 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         let len = pairs.len();
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Lanes::default(); 4], [Lanes::default(); 4]);
-        let mut coming = coming.portions(len.div_ceil(R::LANES));
-        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
-            lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
+        let count = len.div_ceil(4);
+        // Groups per portion of what is coming; with nothing to fetch, one loop over all.
+        let some = if coming.is_empty() { count.max(1) } else { PORTION * R::GROUPS };
+        let mut coming = coming.portions(count.div_ceil(some));
+        for from in (0..count).step_by(some) {
             coming.fetch::<RIGID>();
-            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
-            let turns = if ROLL {
-                side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
-            } else {
-                (&mut no_turn, &mut spare_turn)
-            };
-            let ((p, first), (q, second)) = (p.parts(), q.parts());
-            // SAFETY: compared above.
-            let a = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[0], &q[0]]) };
-            let b = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[1], &q[1]]) };
-            let (there, springs) = (R::below(len - 4 * g), (first, second));
-            let Some(out) =
-                contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt)
-            else {
-                continue;
-            };
-            let (on_a, on_b) = R::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
-            for l in 0..R::LANES {
+            for g in (from..count.min(from + some)).step_by(R::GROUPS) {
+                lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
+                let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+                let turns = if ROLL {
+                    side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
+                } else {
+                    (&mut no_turn, &mut spare_turn)
+                };
+                let ((p, first), (q, second)) = (p.parts(), q.parts());
                 // SAFETY: compared above.
-                unsafe {
-                    give::<R, RIGID>(on_a[l], &mut sums, a.body(l));
-                    give::<R, RIGID>(on_b[l], &mut sums, b.body(l));
+                let a = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[0], &q[0]]) };
+                let b = unsafe { Own::<RIGID>::new::<R>(block, own, [&p[1], &q[1]]) };
+                let (there, springs) = (R::below(len - 4 * g), (first, second));
+                let Some(out) =
+                    contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut taken, dt)
+                else {
+                    continue;
+                };
+                let (on_a, on_b) = R::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
+                for l in 0..R::LANES {
+                    // SAFETY: compared above.
+                    unsafe {
+                        give::<R, RIGID>(on_a[l], &mut sums, a.body(l));
+                        give::<R, RIGID>(on_b[l], &mut sums, b.body(l));
+                    }
                 }
-            }
-            if out.deep != 0 && deepest.is_none() {
-                deepest = Some(out.too_deep(g));
+                if out.deep != 0 && deepest.is_none() {
+                    deepest = Some(out.too_deep(g));
+                }
             }
         }
         w.sums = sums;
@@ -470,6 +475,9 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         }
     }
 }
+
+/// Passes of the loop between two portions of what is coming.
+const PORTION: usize = 4;
 
 /// Groups between the fetching of groups and their use: more than a page.
 pub(crate) const FAR: usize = 32;
