@@ -206,3 +206,57 @@ fn crew(count: usize, work: &(impl Fn() + Sync)) {
         _ => _ = rayon::join(|| crew(count / 2, work), || crew(count - count / 2, work)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::input::{BodyInput, ModelInput};
+    use crate::model::Model;
+    use crate::shape::Shape;
+    use crate::state::State;
+    use crate::surface::NoSurface;
+    use crate::testing::{SOFT, push, shaft};
+    use crate::work::Work;
+    use crate::{Material, Vec3};
+
+    /// Spinning spheres of unlike sizes: forces and torques across blocks are those within a block, to rounding.
+    #[test]
+    fn blocks_do_not_show() {
+        for rolling_friction in [0.0, 0.1] {
+            let run = |block: usize| {
+                let material = Material { rolling_friction, ..SOFT };
+                let mut input = ModelInput {
+                    materials: vec![material],
+                    planes: shaft(0.1, &[]),
+                    ..ModelInput::default()
+                };
+                input.shapes.push(Shape::Sphere { radius: 0.01 });
+                for k in 0..216_usize {
+                    let cell = Vec3::new((k % 6) as f64, (k / 6 % 6) as f64, (k / 36) as f64 + 0.6);
+                    input.bodies.push(BodyInput {
+                        scale: 1.0 + 0.4 * push(k).x.signum(),
+                        position: cell * 0.019,
+                        spin: push(k) * 30.0,
+                        ..BodyInput::default()
+                    });
+                }
+                let mut model = Model::new(input).unwrap();
+                model.block = block;
+                let mut state = State::new(&model);
+                let mut work = Work::new(&model, &state);
+                assert_eq!(state.blocks.len(), 216_usize.div_ceil(block));
+                for _ in 0..20 {
+                    crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
+                }
+                let across: usize = state.cross.iter().map(|c| c.spheres.len()).sum();
+                let motion = (0..216).map(|b| [state.velocity(b), state.spin(b) * 0.01]);
+                (motion.collect::<Vec<_>>(), across)
+            };
+            let ((one, none), (many, across)) = (run(216), run(20));
+            assert!(none == 0 && across > 100, "{none} {across}");
+            let size = one.iter().flatten().map(Vec3::norm).fold(0.0, f64::max);
+            let off = one.iter().flatten().zip(many.iter().flatten()).map(|(a, b)| (a - b).norm());
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-10 * size, "{off:e} of {size:e}");
+        }
+    }
+}

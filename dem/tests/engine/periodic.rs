@@ -93,7 +93,7 @@ fn a_bed_does_not_feel_where_the_borders_are() {
     }
 }
 
-/// Two bodies that meet across a border, an edge or a corner of the box part as in its middle.
+/// Two bodies of unlike sizes that meet across a border, an edge or a corner of the box part as in its middle.
 #[test]
 fn two_meet_across_a_border_as_in_the_middle() {
     const L: f64 = 0.25;
@@ -108,7 +108,8 @@ fn two_meet_across_a_border_as_in_the_middle() {
             for (side, spin) in [(1.0, Vec3::new(9.0, -30.0, 20.0)), (-1.0, Vec3::new(-14.0, 3.0, 8.0))] {
                 let position = middle + apart * side;
                 let position = Vec3::from_fn(|d, _| position[d].rem_euclid(L));
-                input.bodies.push(BodyInput { shape, spin, ..sphere(position, velocity * side) });
+                let scale = if side < 0.0 { 0.9 } else { 1.1 };
+                input.bodies.push(BodyInput { shape, scale, spin, ..sphere(position, velocity * side) });
             }
             if swapped {
                 input.bodies.swap(0, 1);
