@@ -108,7 +108,7 @@ fn two_meet_across_a_border_as_in_the_middle() {
             for (side, spin) in [(1.0, Vec3::new(9.0, -30.0, 20.0)), (-1.0, Vec3::new(-14.0, 3.0, 8.0))] {
                 let position = middle + apart * side;
                 let position = Vec3::from_fn(|d, _| position[d].rem_euclid(L));
-                let scale = if side < 0.0 { 0.9 } else { 1.1 };
+                let scale = if side < 0.0 { 0.9 } else { 1.0 };
                 input.bodies.push(BodyInput { shape, scale, spin, ..sphere(position, velocity * side) });
             }
             if swapped {
