@@ -20,7 +20,6 @@ pub mod measure;
 pub mod model;
 mod order;
 mod periodic;
-mod run;
 pub mod search;
 pub mod shape;
 pub mod state;
@@ -28,6 +27,7 @@ pub mod step;
 pub mod surface;
 #[cfg(test)]
 mod testing;
+mod threads;
 pub mod timestep;
 pub mod wall;
 pub mod work;

@@ -16,11 +16,11 @@ use crate::detect;
 use crate::error::{ModelError, Partner};
 use crate::input::ModelInput;
 use crate::model::Model;
-use crate::run::Part;
 use crate::search::candidates::spheres;
 use crate::search::cells::Cells;
 use crate::shape::Shape;
 use crate::state::{Block, Cross, ImageName, ImagePair, Lanes, State, set_xyz, xyz};
+use crate::threads::Part;
 use crate::work::{BlockWork, CrossWork, Failure};
 
 /// Whole box lengths along x, y and z.

@@ -165,9 +165,7 @@ impl Cross {
     pub fn new(turning: bool) -> Cross {
         Cross { spheres: Groups::new(turning), boxes: Groups::new(turning), images: Vec::new() }
     }
-}
 
-impl Cross {
     /// No partner lies in a later block than this.
     pub fn last_block(&self) -> usize {
         let images = self.images.iter().map(|p| p.name.block).max().unwrap_or(0);

@@ -10,10 +10,10 @@ use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
 use crate::periodic;
-use crate::run::{self, Lists, Part, Slots};
 use crate::search::near;
 use crate::state::{Block, Cross, State, xyz};
 use crate::surface::Surface;
+use crate::threads::{self, Lists, Part, Slots};
 use crate::wall::advance::{self, WallSum};
 use crate::work::{Applied, BlockWork, CrossWork, Failure, Sums, Work};
 
@@ -209,7 +209,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     };
     let threads = if *parallel { rayon::current_num_threads() } else { 1 };
     let lists = Lists { blocks, works, cross, slots };
-    run::through(threads, lists, beyond, slot_width, between, within);
+    threads::through(threads, lists, beyond, slot_width, between, within);
 }
 
 /// Brings the applied forces into block order.

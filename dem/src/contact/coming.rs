@@ -3,8 +3,8 @@
 
 use super::groups::Group;
 use crate::lanes;
-use crate::run::Part;
 use crate::state::{Block, Lanes};
+use crate::threads::Part;
 
 /// The next block and those after it, its contacts with them, and their slots of `width` records each. By default nothing.
 #[derive(Clone, Copy, Default)]
@@ -31,10 +31,12 @@ pub(crate) struct Portions<'a> {
 const NAMES: usize = 4;
 
 impl<'a> Coming<'a> {
+    /// Whether there is nothing to fetch.
     pub fn is_empty(&self) -> bool {
         self.blocks.list.is_empty()
     }
 
+    /// Splits it.
     #[inline(always)]
     pub fn portions(self, count: usize) -> Portions<'a> {
         let own = self.blocks.list.first().map_or(0, |b| b.centre.len());
@@ -61,15 +63,21 @@ impl Portions<'_> {
             lanes::far_ahead(groups, self.group + NAMES, 1);
             lanes::far_ahead(slots, 4 * self.group * width, 4 * width);
             if let (false, Some(group)) = (RIGID, groups.get(self.group)) {
-                let [_, block, sphere] = group.names();
-                for l in 0..4 {
-                    let Some(other) = blocks.get(block[l] as usize) else { continue };
-                    for list in [&other.centre, &other.velocity, &other.spin] {
-                        lanes::far_ahead(list, sphere[l] as usize, 1);
-                    }
-                }
+                partners(blocks, group);
             }
             self.group += 1;
+        }
+    }
+}
+
+/// Has the records of single spheres in other blocks fetched, as far as these are given.
+#[inline(always)]
+pub(crate) fn partners(blocks: Part<'_, Block>, group: &Group<3>) {
+    let [_, block, sphere] = group.names();
+    for l in 0..4 {
+        let Some(other) = blocks.get(block[l] as usize) else { continue };
+        for list in [&other.centre, &other.velocity, &other.spin] {
+            lanes::far_ahead(list, sphere[l] as usize, 1);
         }
     }
 }

@@ -203,16 +203,7 @@ mod tests {
     use super::*;
     use crate::Vec3;
     use crate::contact::ContactGeometry;
-
-    const STONE: Material = Material {
-        density: 2600.0,
-        stiffness: 1e5,
-        tangential_ratio: 0.5,
-        tangential_damping_ratio: 0.0,
-        friction: 0.5,
-        restitution: 0.5,
-        ..Material::RIGID
-    };
+    use crate::testing::SOFT;
 
     fn touch(overlap: f64) -> ContactGeometry {
         ContactGeometry { point: Vec3::zeros(), normal: Vec3::z(), overlap, radius: 0.01 }
@@ -220,15 +211,15 @@ mod tests {
 
     #[test]
     fn stiffness_of_like_pair_and_rigid_wall() {
-        let wall = Material { stiffness: f64::INFINITY, ..STONE };
-        assert_eq!(Linear::mix(&STONE, &STONE, None).normal, 1e5);
-        assert_eq!(Linear::mix(&STONE, &wall, None).normal, 2e5);
+        let wall = Material { stiffness: f64::INFINITY, ..SOFT };
+        assert_eq!(Linear::mix(&SOFT, &SOFT, None).normal, 1e5);
+        assert_eq!(Linear::mix(&SOFT, &wall, None).normal, 2e5);
         assert!(Linear::mix(&wall, &wall, None).normal.is_infinite());
     }
 
     #[test]
     fn coulomb_limit_in_every_direction_and_spring_shortened() {
-        let law = Linear::mix(&STONE, &STONE, None);
+        let law = Linear::mix(&SOFT, &SOFT, None);
         for k in 0..8 {
             let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
             let velocity = Vec3::new(angle.cos(), angle.sin(), 0.0);
@@ -245,7 +236,7 @@ mod tests {
 
     #[test]
     fn spring_turns_with_the_tangent_plane_and_keeps_its_length() {
-        let law = Linear::mix(&STONE, &STONE, None);
+        let law = Linear::mix(&SOFT, &SOFT, None);
         let mut h = History { spring: Vec3::new(1e-6, 0.0, 0.0), rate: 0.0, ..History::NONE };
         for k in 0..=100 {
             let a = f64::from(k) * 0.01;

@@ -2,15 +2,15 @@
 //! bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps and boxes, and in whether rolling
 //! is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
 
-use super::coming::Coming;
+use super::coming::{self, Coming};
 use super::groups::{Group, Groups, Springs};
 use super::{Answer, ContactLaw, FRESH, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
 use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
-use crate::run::{Part, Slots};
 use crate::state::{Block, Cross, Lanes, xyz};
+use crate::threads::{Part, Slots};
 use crate::work::{BlockWork, CrossWork, Failure, Sums};
 
 /// Motion of one body as a contact needs it.
@@ -485,19 +485,6 @@ pub(crate) const FAR: usize = 32;
 /// Groups between the fetching of records and their use: those of other blocks lie far away in large beds.
 const AHEAD: usize = 4;
 
-/// Has the records of single spheres in other blocks fetched.
-#[inline(always)]
-fn fetch(blocks: Part<'_, Block>, group: &Group<3>) {
-    let [_, block, sphere] = group.names();
-    for l in 0..4 {
-        let other = &blocks[block[l] as usize];
-        let k = sphere[l] as usize;
-        for list in [&other.centre, &other.velocity, &other.spin] {
-            lanes::prefetch(&list[k..k + 1]);
-        }
-    }
-}
-
 /// Contacts of block `b`'s spheres with spheres of other blocks: forces go to slots.
 pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
@@ -532,7 +519,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
             lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
             if !RIGID {
                 for ahead in pairs.groups.iter().skip(g + AHEAD).take(R::GROUPS) {
-                    fetch(blocks, ahead);
+                    coming::partners(blocks, ahead);
                 }
             }
             let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);

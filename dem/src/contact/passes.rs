@@ -3,7 +3,6 @@
 
 use super::coming::Coming;
 use super::hits::{Ask, Hit};
-pub(crate) use super::pass::FAR;
 use super::pass::{Between, Gathering, Interior};
 use super::planes::{PlaneNow, Planes};
 use super::with_law;
@@ -11,8 +10,8 @@ use crate::contact::groups::Groups;
 use crate::integrate::leapfrog::Advance;
 use crate::lanes::{self, Simd};
 use crate::model::Model;
-use crate::run::{Part, Slots};
 use crate::state::{Block, Cross};
+use crate::threads::{Part, Slots};
 use crate::work::{Applied, BlockWork, CrossWork};
 
 /// Contacts of spheres of block `b` with spheres of others.

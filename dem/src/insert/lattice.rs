@@ -78,9 +78,9 @@ impl Lattice {
 mod tests {
     use super::*;
     use crate::input::{BodyInput, ModelInput};
-    use crate::material::Material;
     use crate::measure::{BoxRegion, porosity};
     use crate::shape::Shape;
+    use crate::testing::SOFT;
     use crate::{Model, State};
     use std::f64::consts::PI;
 
@@ -112,18 +112,9 @@ mod tests {
         let radius = 0.01;
         for lattice in ALL {
             let counts = [10, 12, 14];
-            let material = Material {
-                density: 2600.0,
-                stiffness: 1e5,
-                tangential_ratio: 0.5,
-                tangential_damping_ratio: 0.0,
-                friction: 0.5,
-                restitution: 0.5,
-                ..Material::default()
-            };
             let at = |position| BodyInput { position, ..BodyInput::default() };
             let model = Model::new(ModelInput {
-                materials: vec![material],
+                materials: vec![SOFT],
                 shapes: vec![Shape::Sphere { radius }],
                 bodies: lattice.block(Vec3::zeros(), radius, counts).into_iter().map(at).collect(),
                 ..ModelInput::default()

@@ -9,6 +9,7 @@
 //! their run come first, for all runs: then no thread reads a body that another one moves.
 
 use crate::contact::coming::Coming;
+use crate::contact::pass::FAR;
 use crate::contact::passes;
 use crate::lanes;
 use crate::state::{Block, Cross};
@@ -108,8 +109,8 @@ pub(crate) fn through(
             if k == 0 || !large {
                 passes::fetch(&blocks[k]);
             }
-            lanes::prefetch_first(&blocks[k].pairs.groups, passes::FAR);
-            lanes::prefetch_first(&works[k].gather, 8 * passes::FAR);
+            lanes::prefetch_first(&blocks[k].pairs.groups, FAR);
+            lanes::prefetch_first(&works[k].gather, 8 * FAR);
             if cross[k].last_block() < end {
                 let (all, scratch) = (Part { first, list: &*blocks }, Part { first, list: &*works });
                 between(b, all, scratch, &mut cross[k], &mut slots[k]);
@@ -126,8 +127,8 @@ pub(crate) fn through(
                 } else {
                     passes::fetch(next);
                 }
-                lanes::prefetch_first(&cross[k + 1].spheres.groups, passes::FAR);
-                lanes::prefetch_first(&slots[k + 1].slots, 2 * passes::FAR);
+                lanes::prefetch_first(&cross[k + 1].spheres.groups, FAR);
+                lanes::prefetch_first(&slots[k + 1].slots, 2 * FAR);
             }
             let slots = Slots { own: Part { first, list: slots }, beyond };
             within(b, &mut done[k], &mut works[k], slots, coming);
