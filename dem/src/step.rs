@@ -301,6 +301,10 @@ mod tests {
 
     /// A tumbling heap of spheres, or of spheres and clumps, under either law.
     fn heap(hertz: bool, clumps: bool) -> Model {
+        Model::new(heap_input(hertz, clumps)).unwrap()
+    }
+
+    fn heap_input(hertz: bool, clumps: bool) -> ModelInput {
         let soft = Material {
             density: 2600.0,
             tangential_ratio: 0.5,
@@ -356,7 +360,7 @@ mod tests {
             let (position, velocity) = (Vec3::new(0.15, 0.2, 0.4627), Vec3::new(0.0, 0.0, -3.0));
             input.bodies.push(BodyInput { shape: 2, position, velocity, ..BodyInput::default() });
         }
-        Model::new(input).unwrap()
+        input
     }
 
     fn bits(model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
@@ -398,13 +402,17 @@ mod tests {
         }
     }
 
-    /// Local damping of four bodies at a time moves them and is booked as that of one by one, which any applied force
-    /// calls for.
+    /// Four bodies at a time are moved and booked as one by one, which a force on any of them calls for, be it zero: with
+    /// local damping and without, with forces on some and motions of others fixed.
     #[test]
-    fn damping_of_four_is_that_of_one() {
-        for clumps in [false, true] {
-            let mut model = heap(false, clumps);
-            model.damping = 0.3;
+    fn four_move_as_one() {
+        for (clumps, damping) in [(false, 0.0), (false, 0.3), (true, 0.0), (true, 0.3)] {
+            let mut input = heap_input(false, clumps);
+            for body in input.bodies.iter_mut().skip(5).step_by(31) {
+                body.fixed = [true, false, false, false, true, false];
+            }
+            let mut model = Model::new(input).unwrap();
+            model.damping = damping;
             let run = |applied: &[AppliedForce]| {
                 let mut state = State::new(&model);
                 let mut work = Work::new(&model, &state);
@@ -414,18 +422,26 @@ mod tests {
                 let far = (0..model.body_count()).flat_map(|b| [state.velocity(b), state.spin(b)]).collect();
                 (far, state.ledger)
             };
-            let nothing: Vec<AppliedForce> = (0..model.body_count())
-                .map(|body| AppliedForce { body, force: Vec3::zeros(), point: Vec3::zeros() })
-                .collect();
-            let ((four, a), (one, b)): ((Vec<Vec3>, _), (Vec<Vec3>, _)) = (run(&[]), run(&nothing));
+            let force = |body: usize, force: Vec3| AppliedForce { body, force, point: Vec3::zeros() };
+            let some: Vec<_> = (0..5001).step_by(44).map(|b| force(b, Vec3::new(0.1, 0.3, -0.2))).collect();
+            let all = (0..model.body_count()).map(|b| force(b, Vec3::zeros())).chain(some.clone());
+            let ((four, a), (one, b)): ((Vec<Vec3>, _), (Vec<Vec3>, _)) =
+                (run(&some), run(&all.collect::<Vec<_>>()));
+            let case = format!("clumps {clumps}, damping {damping}");
             let size = one.iter().map(Vec3::norm).fold(0.0, f64::max);
             let off = four.iter().zip(&one).map(|(x, y)| (x - y).norm()).fold(0.0, f64::max);
-            assert!(off < 1e-9 * size, "clumps {clumps}: {off:e} of {size:e}");
-            let like = |x: f64, y: f64| assert!((x - y).abs() < 1e-9 * y.abs(), "clumps {clumps}: {x} {y}");
+            assert!(off < 1e-9 * size, "{case}: {off:e} of {size:e}");
+            let like = |x: f64, y: f64| assert!((x - y).abs() <= 1e-9 * y.abs(), "{case}: {x} {y}");
             like(a.dissipated_local_damping, b.dissipated_local_damping);
             like(a.local_damping.linear.norm(), b.local_damping.linear.norm());
             like(a.local_damping.angular.norm(), b.local_damping.angular.norm());
-            assert!(b.dissipated_local_damping > 0.01, "{}", b.dissipated_local_damping);
+            assert!(b.dissipated_local_damping > 0.01 || damping == 0.0, "{}", b.dissipated_local_damping);
+            like(a.work_applied, b.work_applied);
+            like(a.applied.angular.norm(), b.applied.angular.norm());
+            like(a.constraints.linear.x, b.constraints.linear.x);
+            like(a.constraints.angular.norm(), b.constraints.angular.norm());
+            like(a.gravity.angular.norm(), b.gravity.angular.norm());
+            assert!(b.work_applied.abs() > 1e-3 && b.constraints.linear.x.abs() > 1e-6, "{b:?}");
         }
     }
 

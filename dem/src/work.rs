@@ -156,8 +156,8 @@ pub(crate) struct CrossWork {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockWork {
     // Constants of the bodies, in block order.
-    /// Whether no motion is fixed and no body is a box.
-    pub free: bool,
+    /// Whether no body is a box.
+    pub round: bool,
     pub mass_sum: f64,
     /// The material of all bodies, where there is only one.
     pub material: Option<u32>,
@@ -378,11 +378,17 @@ impl BlockWork {
             self.first.push(self.owner.len() as u32);
         }
         let moving = self.fixed.iter().all(|&f| f == 0);
-        self.free = moving && self.kind.iter().all(|&k| k != Kind::Box);
+        self.round = self.kind.iter().all(|&k| k != Kind::Box);
         if moving {
             self.fixed = Vec::new();
         }
         self.sums = Vec::new();
+    }
+
+    /// Whether the bodies k to k + 3 are no boxes and have no fixed motion.
+    #[inline(always)]
+    pub(crate) fn all_free(&self, k: usize) -> bool {
+        self.round && (self.fixed.is_empty() || self.fixed[k..k + 4] == [0; 4])
     }
 
     /// The body of a sphere.

@@ -7,7 +7,7 @@ use super::store::{BondList, Entry, Group};
 use super::{Break, BreakMode};
 use crate::Vec3;
 use crate::contact::History;
-use crate::lanes::{self, Four, Kernel, Pack, Portable, Simd, V3};
+use crate::lanes::{self, Four, Kernel, Pack, Portable, Real, Simd, V3};
 use crate::model::Model;
 use crate::state::{Block, Lanes, State, xyz};
 use crate::work::{BlockWork, Failure, Sums, Work};
@@ -142,193 +142,180 @@ fn motion(block: &Block, k: usize) -> Motion<f64> {
     Motion { x: vector(&block.centre[k]), v: vector(&block.velocity[k]), w: vector(&block.spin[k]) }
 }
 
-/// A group of four bonds: new memory, forces as rows, which lanes hold, power.
+/// Forces of the bonds in lanes, and which of them hold.
+struct Outcome<P: Pack> {
+    force: V3<P>,
+    torque_a: V3<P>,
+    torque_b: V3<P>,
+    holds: P::Mask,
+}
+
+/// The bonds in lanes: forces, and new memory.
 #[inline(always)]
-fn group<R: Four>(
-    a: &Motion<R>,
-    b: &Motion<R>,
-    constants: &[Lanes; COUNT],
-    g: &mut Group,
-    dt: R,
-) -> ([R; 4], [R; 4], [R; 4], u32, R) {
+fn bonds<P: Pack>(
+    a: &Motion<P>,
+    b: &Motion<P>,
+    constants: (&[Lanes; COUNT], &[Lanes; COUNT]),
+    (g, h): (&mut Group, &mut Group),
+    dt: P,
+    power: &mut P::Quad,
+) -> Outcome<P> {
     // No closures here: what is not inlined into the kernel's entry becomes a call per operation.
-    let mut k = [R::zero(); COUNT];
-    for (k, constant) in k.iter_mut().zip(constants) {
-        *k = R::load(constant);
+    let mut k = [P::zero(); COUNT];
+    for (k, (p, q)) in k.iter_mut().zip(constants.0.iter().zip(constants.1)) {
+        *k = P::join(p, q);
     }
-    let mut memory = Memory { shear: load(&g.shear), turn: load(&g.turn) };
+    let mut memory = Memory { shear: load::<P>(&g.shear, &h.shear), turn: load(&g.turn, &h.turn) };
     let frame = carry(k[kernel::OFFSET], a, b, &mut memory, dt);
-    store(memory.shear, &mut g.shear);
-    store(memory.turn, &mut g.turn);
+    store(memory.shear, &mut g.shear, &mut h.shear);
+    store(memory.turn, &mut g.turn, &mut h.turn);
     let r = respond(&k, a, b, &frame, &memory);
     // A share that is not a number counts as holding: the bodies then fail the check of their speed.
-    let holds = !R::splat(1.0).le(r.share);
-    (
-        rows(r.force.only(holds)),
-        rows(r.torque_a.only(holds)),
-        rows(r.torque_b.only(holds)),
-        R::bits(holds),
-        r.power.only(holds),
-    )
+    let holds = !P::splat(1.0).le(r.share);
+    *power = r.power.only(holds).add_to(*power);
+    Outcome {
+        force: r.force.only(holds),
+        torque_a: r.torque_a.only(holds),
+        torque_b: r.torque_b.only(holds),
+        holds,
+    }
 }
 
 #[inline(always)]
-fn load<R: Four>(v: &[Lanes; 3]) -> V3<R> {
-    V3::new(R::load(&v[0]), R::load(&v[1]), R::load(&v[2]))
+fn load<P: Pack>(v: &[Lanes; 3], w: &[Lanes; 3]) -> V3<P> {
+    V3::new(P::join(&v[0], &w[0]), P::join(&v[1], &w[1]), P::join(&v[2], &w[2]))
 }
 
 #[inline(always)]
-fn store<R: Four>(v: V3<R>, to: &mut [Lanes; 3]) {
-    v.x.store(&mut to[0]);
-    v.y.store(&mut to[1]);
-    v.z.store(&mut to[2]);
-}
-
-/// A record per lane.
-#[inline(always)]
-fn rows<R: Four>(v: V3<R>) -> [R; 4] {
-    R::transpose([v.x, v.y, v.z, R::zero()])
-}
-
-/// The records of four bodies.
-#[inline(always)]
-fn pick<R: Four>(records: &[Lanes], at: &[u32; 4]) -> [R; 4] {
-    [
-        R::load(&records[at[0] as usize]),
-        R::load(&records[at[1] as usize]),
-        R::load(&records[at[2] as usize]),
-        R::load(&records[at[3] as usize]),
-    ]
-}
-
-/// Four bodies of one block.
-#[inline(always)]
-fn four<R: Four>(centre: &[Lanes], velocity: &[Lanes], spin: &[Lanes], at: &[u32; 4]) -> Motion<R> {
-    Motion { x: vectors(pick(centre, at)), v: vectors(pick(velocity, at)), w: vectors(pick(spin, at)) }
+fn store<P: Pack>(v: V3<P>, to: &mut [Lanes; 3], and: &mut [Lanes; 3]) {
+    v.x.split(&mut to[0], &mut and[0]);
+    v.y.split(&mut to[1], &mut and[1]);
+    v.z.split(&mut to[2], &mut and[2]);
 }
 
 /// Three numbers of each record.
 #[inline(always)]
-fn vectors<R: Four>(records: [R; 4]) -> V3<R> {
-    let [x, y, z, _] = R::transpose(records);
+fn vectors<P: Pack>(rows: [P; 4]) -> V3<P> {
+    let [x, y, z, _] = P::columns(rows);
     V3::new(x, y, z)
 }
 
-struct Interior<'a> {
-    groups: &'a mut [Group],
-    constants: &'a [[Lanes; COUNT]],
-    count: usize,
-    centre: &'a [Lanes],
-    velocity: &'a [Lanes],
-    spin: &'a [Lanes],
+/// Bodies of one block, by lane.
+#[inline(always)]
+fn own<P: Pack>(block: &Block, at: [&[u32; 4]; 2]) -> Motion<P> {
+    let (x, v, w) = (&block.centre[..], &block.velocity[..], &block.spin[..]);
+    Motion {
+        x: vectors(P::rows(|l| &x[at[l / 4][l % 4] as usize])),
+        v: vectors(P::rows(|l| &v[at[l / 4][l % 4] as usize])),
+        w: vectors(P::rows(|l| &w[at[l / 4][l % 4] as usize])),
+    }
+}
+
+/// Bodies of several blocks, by lane.
+#[inline(always)]
+fn far<P: Pack>(blocks: &[Block], block: [&[u32; 4]; 2], at: [&[u32; 4]; 2]) -> Motion<P> {
+    Motion {
+        x: vectors(P::rows(|l| &blocks[block[l / 4][l % 4] as usize].centre[at[l / 4][l % 4] as usize])),
+        v: vectors(P::rows(|l| &blocks[block[l / 4][l % 4] as usize].velocity[at[l / 4][l % 4] as usize])),
+        w: vectors(P::rows(|l| &blocks[block[l / 4][l % 4] as usize].spin[at[l / 4][l % 4] as usize])),
+    }
+}
+
+/// The bodies of a list's bonds. (A trait, since closures with operations on lanes are not inlined into the kernel's entry.)
+trait Bodies {
+    /// How the bodies of the bonds of two groups move, of which the second counts only where lanes are eight.
+    fn motions<P: Pack>(&self, groups: [&Group; 2]) -> (Motion<P>, Motion<P>);
+    /// Takes the forces of so many bonds, from position `first` of the list on.
+    fn take<P: Pack>(&mut self, groups: [&Group; 2], out: &Outcome<P>, first: usize, count: usize);
+}
+
+/// Bodies of one block.
+struct Within<'a> {
+    block: &'a Block,
     sums: &'a mut [Sums],
-    found: &'a mut Vec<u32>,
-    dt: f64,
 }
 
-impl Kernel for Interior<'_> {
-    type Output = f64;
-
+impl Bodies for Within<'_> {
     #[inline(always)]
-    fn run<P: Pack>(self) -> f64 {
-        self.by_four::<P::Quad>()
+    fn motions<P: Pack>(&self, [g, h]: [&Group; 2]) -> (Motion<P>, Motion<P>) {
+        (own(self.block, [&g.i, &h.i]), own(self.block, [&g.j, &h.j]))
     }
-}
 
-impl Interior<'_> {
     #[inline(always)]
-    fn by_four<R: Four>(self) -> f64 {
-        let n = self.centre.len();
-        let (centre, velocity, spin) = (&self.centre[..n], &self.velocity[..n], &self.spin[..n]);
-        let sums = &mut self.sums[..n];
-        let dt = R::splat(self.dt);
-        let mut power = R::zero();
-        for (number, (g, constants)) in self.groups.iter_mut().zip(self.constants).enumerate() {
-            let (i, j) = (g.i, g.j);
-            let (a, b) = (four(centre, velocity, spin, &i), four(centre, velocity, spin, &j));
-            let (f, ta, tb, holds, p) = group(&a, &b, constants, g, dt);
-            power = power + p;
-            let live = (self.count - 4 * number).min(4);
-            for l in 0..live {
-                let (a, b) = (i[l] as usize, j[l] as usize);
-                let (force, torque) = sums[a].both();
-                add(force, f[l]);
-                add(torque, ta[l]);
-                let (force, torque) = sums[b].both();
-                subtract(force, f[l]);
-                add(torque, tb[l]);
-            }
-            if holds != 15 {
-                self.found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));
-            }
+    fn take<P: Pack>(&mut self, [g, h]: [&Group; 2], out: &Outcome<P>, _: usize, count: usize) {
+        let (on_a, on_b) = P::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
+        let (i, j) = ([&g.i, &h.i], [&g.j, &h.j]);
+        for l in 0..count {
+            P::give(on_a[l], &mut self.sums[i[l / 4][l % 4] as usize].0);
+            P::give(on_b[l], &mut self.sums[j[l / 4][l % 4] as usize].0);
         }
-        power.sum()
     }
 }
 
-struct Cross<'a> {
-    groups: &'a mut [Group],
-    constants: &'a [[Lanes; COUNT]],
-    count: usize,
+/// A body of one block and one of any.
+struct Across<'a> {
     own: &'a Block,
     blocks: &'a [Block],
     slots: &'a mut [BondSlot],
+}
+
+impl Bodies for Across<'_> {
+    #[inline(always)]
+    fn motions<P: Pack>(&self, [g, h]: [&Group; 2]) -> (Motion<P>, Motion<P>) {
+        (own(self.own, [&g.i, &h.i]), far(self.blocks, [&g.block, &h.block], [&g.j, &h.j]))
+    }
+
+    #[inline(always)]
+    fn take<P: Pack>(&mut self, _: [&Group; 2], out: &Outcome<P>, first: usize, count: usize) {
+        let zero = P::zero();
+        let [f, a, b] = [out.force, out.torque_a, out.torque_b];
+        let on_a = P::records([f.x, f.y, f.z, zero], [a.x, a.y, a.z, zero]);
+        let on_b = P::records([b.x, b.y, b.z, zero], [zero; 4]);
+        for (l, slot) in self.slots[first..][..count].iter_mut().enumerate() {
+            let (mut a, mut b) = ([Lanes::default(); 2], [Lanes::default(); 2]);
+            P::put(on_a[l], &mut a);
+            P::put(on_b[l], &mut b);
+            *slot = BondSlot { force: a[0], torque_a: a[1], torque_b: b[0] };
+        }
+    }
+}
+
+/// The bonds of one list; returns the power of their dashpots.
+struct Bonds<'a, B> {
+    groups: &'a mut [Group],
+    constants: &'a [[Lanes; COUNT]],
+    count: usize,
+    bodies: B,
     found: &'a mut Vec<u32>,
     dt: f64,
 }
 
-impl Kernel for Cross<'_> {
+impl<B: Bodies> Kernel for Bonds<'_, B> {
     type Output = f64;
 
     #[inline(always)]
     fn run<P: Pack>(self) -> f64 {
-        self.by_four::<P::Quad>()
-    }
-}
-
-impl Cross<'_> {
-    #[inline(always)]
-    fn by_four<R: Four>(self) -> f64 {
-        let dt = R::splat(self.dt);
-        let mut power = R::zero();
-        for (number, (g, constants)) in self.groups.iter_mut().zip(self.constants).enumerate() {
-            let a = four(&self.own.centre, &self.own.velocity, &self.own.spin, &g.i);
-            let (p, q) = (&self.blocks[g.block[0] as usize], &self.blocks[g.block[1] as usize]);
-            let (r, s) = (&self.blocks[g.block[2] as usize], &self.blocks[g.block[3] as usize]);
-            let [i, j, k, l] = g.j;
-            let (i, j, k, l) = (i as usize, j as usize, k as usize, l as usize);
-            let b = Motion {
-                x: vectors([
-                    R::load(&p.centre[i]),
-                    R::load(&q.centre[j]),
-                    R::load(&r.centre[k]),
-                    R::load(&s.centre[l]),
-                ]),
-                v: vectors([
-                    R::load(&p.velocity[i]),
-                    R::load(&q.velocity[j]),
-                    R::load(&r.velocity[k]),
-                    R::load(&s.velocity[l]),
-                ]),
-                w: vectors([
-                    R::load(&p.spin[i]),
-                    R::load(&q.spin[j]),
-                    R::load(&r.spin[k]),
-                    R::load(&s.spin[l]),
-                ]),
+        let Bonds { groups, constants, count, mut bodies, found, dt } = self;
+        let Some(&spare) = groups.first() else { return 0.0 };
+        // Lanes without a bond: a real pair, so that its arithmetic is harmless, with constants that are zero.
+        let (mut spare, none) = (spare, [Lanes::default(); COUNT]);
+        let constants = &constants[..groups.len()];
+        let dt = P::splat(dt);
+        let mut power = P::Quad::zero();
+        for number in (0..groups.len()).step_by(P::GROUPS) {
+            let k = (&constants[number], constants.get(number + 1).unwrap_or(&none));
+            let (g, h) = match &mut groups[number..] {
+                [g, h, ..] => (g, h),
+                [g] => (g, &mut spare),
+                [] => break,
             };
-            let (f, ta, tb, holds, p) = group(&a, &b, constants, g, dt);
-            power = power + p;
-            let live = (self.count - 4 * number).min(4);
-            for l in 0..live {
-                self.slots[4 * number + l] = BondSlot {
-                    force: Lanes(f[l].array()),
-                    torque_a: Lanes(ta[l].array()),
-                    torque_b: Lanes(tb[l].array()),
-                };
-            }
-            if holds != 15 {
-                self.found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));
+            let (a, b) = bodies.motions([g, h]);
+            let out = bonds(&a, &b, k, (g, h), dt, &mut power);
+            let live = (count - 4 * number).min(P::LANES);
+            bodies.take([g, h], &out, 4 * number, live);
+            if !P::all(out.holds) {
+                let holds = P::mask_bits(out.holds);
+                found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));
             }
         }
         power.sum()
@@ -372,13 +359,11 @@ pub(crate) fn cross(model: &Model, state: &mut State, work: &mut Work) {
     let one = |(b, (list, w)): (usize, (&mut BondList, &mut ListWork))| {
         w.reset();
         if list.count > 0 {
-            let kernel = Cross {
+            let kernel = Bonds {
                 groups: &mut list.groups,
                 constants: &w.constants,
                 count: list.count as usize,
-                own: &blocks[b],
-                blocks,
-                slots: &mut w.slots,
+                bodies: Across { own: &blocks[b], blocks, slots: &mut w.slots },
                 found: &mut w.found,
                 dt,
             };
@@ -421,14 +406,11 @@ pub(crate) fn within(
     let mut list = std::mem::take(&mut block.bonds);
     w.bonds.reset();
     if list.count > 0 {
-        let kernel = Interior {
+        let kernel = Bonds {
             groups: &mut list.groups,
             constants: &w.bonds.constants,
             count: list.count as usize,
-            centre: &block.centre,
-            velocity: &block.velocity,
-            spin: &block.spin,
-            sums: &mut w.sums,
+            bodies: Within { block, sums: &mut w.sums },
             found: &mut w.bonds.found,
             dt: if fresh { 0.0 } else { model.dt() },
         };

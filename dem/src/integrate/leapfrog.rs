@@ -20,7 +20,7 @@ use crate::state::{Block, Lanes, Rotation, set_xyz, spin_of, xyz};
 use crate::work::{Applied, BlockWork, Failure};
 use nalgebra::UnitQuaternion;
 
-/// Moves all bodies of a block by one step: four at a time where all are free, else one by one.
+/// Moves all bodies of a block by one step: four at a time where all four are free, else one by one.
 pub(crate) struct Advance<'a, const RIGID: bool> {
     pub model: &'a Model,
     pub block: &'a mut Block,
@@ -45,46 +45,45 @@ impl<const RIGID: bool> Advance<'_, RIGID> {
         let Advance { model, block, w, mut applied, dt } = self;
         let bound = 0.5 * model.radii.0 / dt;
         let n = block.bodies.len();
-        let quick = if w.free && applied.is_empty() { n - n % 4 } else { 0 };
         let mut sums = Sums::<R>::new();
-        if model.damping == 0.0 {
-            for k in (0..quick).step_by(4) {
-                four::<R, RIGID, false>(model, block, w, k, dt, &mut sums);
+        let (mut moment, mut fastest2) = (Vec3::zeros(), 0.0_f64);
+        // Above the bound, or not a number, which a maximum does not show.
+        let wild = |v2: f64| v2.is_nan() || v2 > bound * bound;
+        let mut too_fast = false;
+        for k in (0..n).step_by(4) {
+            if k + 4 <= n && w.all_free(k) && applied.first().is_none_or(|a| a.place as usize >= k + 4) {
+                if model.damping == 0.0 {
+                    four::<R, RIGID, false>(model, block, w, k, dt, &mut sums);
+                } else {
+                    four::<R, RIGID, true>(model, block, w, k, dt, &mut sums);
+                }
+                continue;
             }
-        } else {
-            for k in (0..quick).step_by(4) {
-                four::<R, RIGID, true>(model, block, w, k, dt, &mut sums);
+            for k in k..n.min(k + 4) {
+                moment += xyz(&block.centre[k]) * model.body(block.bodies[k] as usize).mass;
+                let own = applied.iter().take_while(|a| a.place as usize == k).count();
+                let (loads, rest) = applied.split_at(own);
+                applied = rest;
+                let v2 = general::<RIGID>(model, block, w, k, loads, dt);
+                if RIGID {
+                    let q = block.rotation[k].orientation;
+                    let centre = block.centre[k];
+                    w.place_spheres(k, &centre, &q);
+                }
+                too_fast |= wild(v2);
+                fastest2 = fastest2.max(v2);
             }
+        }
+        if model.damping != 0.0 {
             sums.book_damping(&mut w.ledger, dt);
         }
-        let moment = &sums.moment;
-        let mut moment = Vec3::new(moment.x.sum(), moment.y.sum(), moment.z.sum());
-        let mut fastest2 = sums.fastest2.largest();
-        // A maximum does not show a velocity that is not a number.
-        let mut too_fast = None;
-        if !sums.sound || fastest2 > bound * bound {
-            too_fast = (0..quick)
-                .map(|k| (k, speed2::<RIGID>(block, w, k)))
-                .find(|(_, v)| v.is_nan() || *v > bound * bound);
-        }
-        for k in quick..n {
-            moment += xyz(&block.centre[k]) * model.body(block.bodies[k] as usize).mass;
-            let own = applied.iter().take_while(|a| a.place as usize == k).count();
-            let (loads, rest) = applied.split_at(own);
-            applied = rest;
-            let v2 = general::<RIGID>(model, block, w, k, loads, dt);
-            if RIGID {
-                let q = block.rotation[k].orientation;
-                let centre = block.centre[k];
-                w.place_spheres(k, &centre, &q);
+        moment += Vec3::new(sums.moment.x.sum(), sums.moment.y.sum(), sums.moment.z.sum());
+        fastest2 = fastest2.max(sums.fastest2.largest());
+        if (too_fast || !sums.sound || wild(fastest2)) && w.failure.is_none() {
+            let mut speeds = (0..n).map(|k| (k, speed2::<RIGID>(block, w, k)));
+            if let Some((k, v2)) = speeds.find(|(_, v2)| wild(*v2)) {
+                w.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
             }
-            if v2.is_nan() || v2 > bound * bound {
-                too_fast = too_fast.or(Some((k, v2)));
-            }
-            fastest2 = fastest2.max(v2);
-        }
-        if let (Some((k, v2)), true) = (too_fast, w.failure.is_none()) {
-            w.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
         }
         w.fastest = fastest2.sqrt();
         let impulse = model.gravity * dt;
