@@ -385,6 +385,11 @@ impl BlockWork {
         self.sums = Vec::new();
     }
 
+    /// Whether no body is a box or has a fixed motion.
+    pub(crate) fn plain(&self) -> bool {
+        self.round && self.fixed.is_empty()
+    }
+
     /// Whether the bodies k to k + 3 are no boxes and have no fixed motion.
     #[inline(always)]
     pub(crate) fn all_free(&self, k: usize) -> bool {

@@ -99,9 +99,10 @@ pub(crate) fn hits(model: &Model, simd: Simd, block: &Block, hits: &mut [Hit]) {
 /// Moves the bodies of a block.
 pub(crate) fn advance(model: &Model, simd: Simd, block: &mut Block, w: &mut BlockWork, applied: &[Applied]) {
     let dt = model.dt();
-    if model.rigid {
-        lanes::run(simd, Advance::<true> { model, block, w, applied, dt });
-    } else {
-        lanes::run(simd, Advance::<false> { model, block, w, applied, dt });
+    match (model.rigid, w.plain() && applied.is_empty()) {
+        (false, false) => lanes::run(simd, Advance::<false, false> { model, block, w, applied, dt }),
+        (false, true) => lanes::run(simd, Advance::<false, true> { model, block, w, applied, dt }),
+        (true, false) => lanes::run(simd, Advance::<true, false> { model, block, w, applied, dt }),
+        (true, true) => lanes::run(simd, Advance::<true, true> { model, block, w, applied, dt }),
     }
 }
