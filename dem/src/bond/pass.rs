@@ -150,13 +150,14 @@ struct Outcome<P: Pack> {
     holds: P::Mask,
 }
 
-/// The bonds in lanes: forces, and new memory.
+/// The bonds in lanes: forces, and new memory. `there`: the lanes that hold one.
 #[inline(always)]
 fn bonds<P: Pack>(
     a: &Motion<P>,
     b: &Motion<P>,
     constants: (&[Lanes; COUNT], &[Lanes; COUNT]),
     (g, h): (&mut Group, &mut Group),
+    there: P::Mask,
     dt: P,
     power: &mut P::Quad,
 ) -> Outcome<P> {
@@ -172,7 +173,7 @@ fn bonds<P: Pack>(
     let r = respond(&k, a, b, &frame, &memory);
     // A share that is not a number counts as holding: the bodies then fail the check of their speed.
     let holds = !P::splat(1.0).le(r.share);
-    *power = r.power.only(holds).add_to(*power);
+    *power = r.power.only(holds & there).add_to(*power);
     Outcome {
         force: r.force.only(holds),
         torque_a: r.torque_a.only(holds),
@@ -310,8 +311,8 @@ impl<B: Bodies> Kernel for Bonds<'_, B> {
                 [] => break,
             };
             let (a, b) = bodies.motions([g, h]);
-            let out = bonds(&a, &b, k, (g, h), dt, &mut power);
             let live = (count - 4 * number).min(P::LANES);
+            let out = bonds(&a, &b, k, (g, h), P::below(live), dt, &mut power);
             bodies.take([g, h], &out, 4 * number, live);
             if !P::all(out.holds) {
                 let holds = P::mask_bits(out.holds);
@@ -450,13 +451,12 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
             let list = if across { &mut state.bonds.cross[b] } else { &mut state.blocks[b].bonds };
             let mut list = std::mem::take(list);
             let entries: Vec<Entry> = broken.iter().map(|k| list.get(k.at as usize)).collect();
-            list.remove(broken.iter().map(|k| k.at));
+            list.remove(&mut w.constants, broken.iter().map(|k| k.at));
             for (one, e) in broken.iter().zip(&entries) {
                 let other = if across { e.block as usize } else { b };
                 list.remnants.extend(part(model, state, one, e, b, other));
             }
             list.remnants.sort_by_key(|r| (r.i, r.block, r.j));
-            list.constants(model, &mut w.constants);
             *(if across { &mut state.bonds.cross[b] } else { &mut state.blocks[b].bonds }) = list;
             w.broken = broken;
             changed |= across;

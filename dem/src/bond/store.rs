@@ -108,12 +108,34 @@ impl BondList {
         }
     }
 
-    /// Takes out the bonds at the given positions, ascending.
-    pub fn remove(&mut self, positions: impl Iterator<Item = u32> + Clone) {
+    /// Takes out the bonds at the given positions, ascending, and their constants; those behind move up.
+    pub fn remove(
+        &mut self,
+        constants: &mut Vec<[Lanes; COUNT]>,
+        positions: impl Iterator<Item = u32> + Clone,
+    ) {
         let mut gone = positions.peekable();
-        let left: Vec<Entry> =
-            (0..self.count).filter(|k| gone.next_if_eq(k).is_none()).map(|k| self.get(k as usize)).collect();
-        self.fill(left.into_iter());
+        let Some(&first) = gone.peek() else { return };
+        let mut to = first as usize;
+        for k in first..self.count {
+            if gone.next_if_eq(&k).is_some() {
+                continue;
+            }
+            let e = self.get(k as usize);
+            self.set(to, &e);
+            let own = constants[k as usize / 4].map(|c| c[k as usize % 4]);
+            set_constants(constants, to, own);
+            to += 1;
+        }
+        self.count = to as u32;
+        self.groups.truncate(to.div_ceil(4));
+        constants.truncate(to.div_ceil(4));
+        while !to.is_multiple_of(4) {
+            let e = Entry { number: NONE, memory: Memory::NONE, ..self.get(to / 4 * 4) };
+            self.set(to, &e);
+            set_constants(constants, to, [0.0; COUNT]);
+            to += 1;
+        }
     }
 
     /// The constants of the bonds, group by group.
@@ -128,6 +150,13 @@ impl BondList {
             }
             k
         }));
+    }
+}
+
+/// Sets the constants at a position.
+fn set_constants(constants: &mut [[Lanes; COUNT]], at: usize, own: [f64; COUNT]) {
+    for (to, x) in constants[at / 4].iter_mut().zip(own) {
+        to[at % 4] = x;
     }
 }
 
@@ -286,5 +315,42 @@ impl Held {
         let (a, b) = (a.min(b), a.max(b));
         let row = self.start[a as usize] as usize..self.start[a as usize + 1] as usize;
         self.partner[row].contains(&b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is left keeps its order, its memory and its constants, and lanes without a bond have none.
+    #[test]
+    fn bonds_move_up_when_others_are_taken_out() {
+        let memory = |k: f64| Memory { shear: V3::new(k, 2.0 * k, -k), turn: V3::new(-k, k, 0.5 * k) };
+        let entry = |k: u32| Entry { number: k, i: k + 1, block: 7, j: k + 2, memory: memory(f64::from(k)) };
+        for gone in
+            [&[0][..], &[12], &[3, 4, 5], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], &[1, 7, 8, 11], &[]]
+        {
+            let mut list = BondList::default();
+            list.fill((0..13).map(entry));
+            let mut constants = vec![[Lanes::default(); COUNT]; list.groups.len()];
+            (0..13).for_each(|k| set_constants(&mut constants, k, [k as f64 + 0.5; COUNT]));
+            list.remove(&mut constants, gone.iter().copied());
+            let left: Vec<u32> = (0..13).filter(|k| !gone.contains(k)).collect();
+            assert_eq!(list.count as usize, left.len());
+            assert_eq!(
+                (list.groups.len(), constants.len()),
+                (left.len().div_ceil(4), left.len().div_ceil(4))
+            );
+            for at in 0..4 * constants.len() {
+                let (e, own) = (list.get(at), constants[at / 4].map(|c| c[at % 4]));
+                let Some(&k) = left.get(at) else {
+                    assert_eq!((e.number, e.i, own), (NONE, list.get(at / 4 * 4).i, [0.0; COUNT]));
+                    continue;
+                };
+                assert_eq!((e.number, e.i, e.block, e.j), (k, k + 1, 7, k + 2));
+                assert_eq!((e.memory.shear.y, e.memory.turn.z), (2.0 * f64::from(k), 0.5 * f64::from(k)));
+                assert_eq!(own, [f64::from(k) + 0.5; COUNT]);
+            }
+        }
     }
 }
