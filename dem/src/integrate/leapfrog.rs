@@ -13,10 +13,10 @@
 
 use super::rotation::{self, Turn};
 use crate::Vec3;
-use crate::lanes::{Four, Kernel, Pack, V3};
+use crate::lanes::{Four, Kernel, Pack, Real, V3};
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
-use crate::state::{Block, Lanes, Rotation, set_xyz, spin_of, xyz};
+use crate::state::{Block, Rotation, set_xyz, spin_of, xyz};
 use crate::work::{Applied, BlockWork, Failure};
 use nalgebra::UnitQuaternion;
 
@@ -36,17 +36,17 @@ impl<const RIGID: bool, const PLAIN: bool> Kernel for Advance<'_, RIGID, PLAIN> 
 
     #[inline(always)]
     fn run<P: Pack>(self) {
-        self.by_four::<P::Quad>();
+        self.by_four::<P>();
     }
 }
 
 impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
     #[inline(always)]
-    fn by_four<R: Four>(self) {
+    fn by_four<P: Pack>(self) {
         let Advance { model, block, w, mut applied, dt } = self;
         let bound = 0.5 * model.radii.0 / dt;
         let n = block.bodies.len();
-        let mut sums = Sums::<R>::new();
+        let mut sums = Sums::<P::Quad>::new();
         let (mut moment, mut fastest2) = (Vec3::zeros(), 0.0_f64);
         // Above the bound, or not a number, which a maximum does not show.
         let wild = |v2: f64| v2.is_nan() || v2 > bound * bound;
@@ -54,11 +54,17 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
         let quick = if PLAIN { n - n % 4 } else { 0 };
         if model.damping == 0.0 {
             for k in (0..quick).step_by(4) {
-                four::<R, RIGID, false>(model, block, w, k, dt, &mut sums);
+                four::<P::Quad, RIGID, false>(model, block, w, k, dt, &mut sums);
             }
         } else {
             for k in (0..quick).step_by(4) {
-                four::<R, RIGID, true>(model, block, w, k, dt, &mut sums);
+                four::<P::Quad, RIGID, true>(model, block, w, k, dt, &mut sums);
+            }
+        }
+        if RIGID {
+            // A loop of its own, so that the processor works on several turns at once.
+            for k in (0..quick).step_by(4) {
+                place_four::<P>(block, w, k);
             }
         }
         for k in (quick..n).step_by(4) {
@@ -68,9 +74,12 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
                 && applied.first().is_none_or(|a| a.place as usize >= k + 4)
             {
                 if model.damping == 0.0 {
-                    four::<R, RIGID, false>(model, block, w, k, dt, &mut sums);
+                    four::<P::Quad, RIGID, false>(model, block, w, k, dt, &mut sums);
                 } else {
-                    four::<R, RIGID, true>(model, block, w, k, dt, &mut sums);
+                    four::<P::Quad, RIGID, true>(model, block, w, k, dt, &mut sums);
+                }
+                if RIGID {
+                    place_four::<P>(block, w, k);
                 }
                 continue;
             }
@@ -163,12 +172,12 @@ fn speed2<const RIGID: bool>(block: &Block, w: &BlockWork, k: usize) -> f64 {
     (v + turn) * (v + turn)
 }
 
-/// Moves the free bodies k to k + 3; `DAMPED`: with local damping.
+/// Moves the free bodies k to k + 3; `DAMPED`: with local damping. Their spheres stay behind.
 #[inline(always)]
 fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     model: &Model,
     block: &mut Block,
-    w: &mut BlockWork,
+    w: &BlockWork,
     k: usize,
     dt: f64,
     sums: &mut Sums<R>,
@@ -230,11 +239,6 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     }
     sums.sound &= R::all(speed2.le(R::splat(f64::MAX)));
     sums.fastest2 = sums.fastest2.max(speed2);
-    if RIGID {
-        for l in k..k + 4 {
-            place::<R>(w, l, &block.centre[l], &block.rotation[l].orientation);
-        }
-    }
 }
 
 /// Kicks and turns the free bodies k to k + 3, clumps and perhaps single spheres among them, by torques and the parts
@@ -311,20 +315,40 @@ fn turn_four<R: Four, const DAMPED: bool>(
     speed * speed
 }
 
-/// Puts the spheres of a body where its centre and orientation say.
+/// Puts the spheres of the bodies k to k + 3 where centres and orientations say, as many at a time as there are groups of lanes.
 #[inline(always)]
-fn place<R: Four>(w: &mut BlockWork, k: usize, centre: &Lanes, orientation: &UnitQuaternion<f64>) {
-    let turn = orientation.to_rotation_matrix();
-    let m = turn.matrix();
-    let x = R::load(&[m[(0, 0)], m[(1, 0)], m[(2, 0)], 0.0]);
-    let y = R::load(&[m[(0, 1)], m[(1, 1)], m[(2, 1)], 0.0]);
-    let z = R::load(&[m[(0, 2)], m[(1, 2)], m[(2, 2)], 0.0]);
-    let centre = R::load(&[centre[0], centre[1], centre[2], 0.0]);
-    let radius = R::load(&[0.0, 0.0, 0.0, 1.0]);
-    let (from, to) = (w.first[k] as usize, w.first[k + 1] as usize);
-    for (local, sphere) in w.local[from..to].iter().zip(&mut w.spheres[from..to]) {
-        let p = (x * R::splat(local[0]) + y * R::splat(local[1])) + z * R::splat(local[2]);
-        (p + (centre + R::load(local) * radius)).store(sphere);
+fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, k: usize) {
+    let (centre, rotation) = (&block.centre[k..k + 4], &block.rotation[k..k + 4]);
+    let quaternion = |l: usize| &rotation[l].orientation.coords.data.0[0];
+    let [i, j, n, s] = P::Quad::transpose([
+        P::Quad::load(quaternion(0)),
+        P::Quad::load(quaternion(1)),
+        P::Quad::load(quaternion(2)),
+        P::Quad::load(quaternion(3)),
+    ]);
+    let (two, zero) = (P::Quad::splat(2.0), P::Quad::zero());
+    let (ii, jj, kk, ss) = (i * i, j * j, n * n, s * s);
+    let (ij, ik, jk) = (i * j * two, i * n * two, j * n * two);
+    let (si, sj, sk) = (s * i * two, s * j * two, s * n * two);
+    // Columns of the matrix of each body.
+    let x = P::Quad::transpose([ss + ii - jj - kk, sk + ij, ik - sj, zero]);
+    let y = P::Quad::transpose([ij - sk, ss - ii + jj - kk, si + jk, zero]);
+    let z = P::Quad::transpose([sj + ik, jk - si, ss - ii - jj + kk, zero]);
+    let radius = P::zero().lt(P::record(&[0.0, 0.0, 0.0, 1.0]));
+    for l in 0..4 {
+        let (x, y, z) = (P::twice(x[l]), P::twice(y[l]), P::twice(z[l]));
+        let centre = P::record(&centre[l]);
+        let (from, to) = (w.first[k + l] as usize, w.first[k + l + 1] as usize);
+        let (local, spheres) = (&w.local[from..to], &mut w.spheres[from..to]);
+        for at in (0..local.len()).step_by(P::GROUPS) {
+            let next = (at + P::GROUPS - 1).min(local.len() - 1);
+            let p = P::join(&local[at], &local[next]);
+            let turned = (x * p.spread::<0>() + y * p.spread::<1>()) + z * p.spread::<2>();
+            let placed = turned + P::select(radius, p, centre);
+            let [first, second] = placed.quads();
+            second.store(&mut spheres[next]);
+            first.store(&mut spheres[at]);
+        }
     }
 }
 

@@ -20,6 +20,11 @@ impl Avx2 {
     pub(super) fn of(x: __m256d) -> Avx2 {
         Avx2(x)
     }
+
+    #[inline(always)]
+    pub(super) fn register(self) -> __m256d {
+        self.0
+    }
 }
 
 macro_rules! lanewise {

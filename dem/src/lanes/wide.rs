@@ -25,6 +25,10 @@ pub(crate) trait Pack: Real {
     fn add_to(self, sum: Self::Quad) -> Self::Quad;
     /// The lanes of each group; of one group only, the second is a copy.
     fn quads(self) -> [Self::Quad; 2];
+    /// The same lanes in each group.
+    fn twice(quad: Self::Quad) -> Self;
+    /// The lane K of each group in all of its lanes.
+    fn spread<const K: usize>(self) -> Self;
     /// Numbers for the lanes; those beyond the last lane are not used.
     fn of(x: &[f64; 8]) -> Self;
     /// The lanes as numbers, zeros beyond the last.
@@ -90,6 +94,14 @@ impl<F: Four> Pack for F {
     #[inline(always)]
     fn quads(self) -> [F; 2] {
         [self, self]
+    }
+    #[inline(always)]
+    fn twice(quad: F) -> F {
+        quad
+    }
+    #[inline(always)]
+    fn spread<const K: usize>(self) -> F {
+        F::splat(self.array()[K])
     }
     #[inline(always)]
     fn of(x: &[f64; 8]) -> F {
@@ -331,6 +343,21 @@ mod avx512 {
             unsafe {
                 [Avx2::of(_mm512_castpd512_pd256(self.0)), Avx2::of(_mm512_extractf64x4_pd::<1>(self.0))]
             }
+        }
+        #[inline(always)]
+        fn twice(quad: Avx2) -> Avx512 {
+            Avx512(unsafe { _mm512_broadcast_f64x4(quad.register()) })
+        }
+        #[inline(always)]
+        fn spread<const K: usize>(self) -> Avx512 {
+            Avx512(unsafe {
+                match K {
+                    0 => _mm512_permutex_pd::<0x00>(self.0),
+                    1 => _mm512_permutex_pd::<0x55>(self.0),
+                    2 => _mm512_permutex_pd::<0xaa>(self.0),
+                    _ => _mm512_permutex_pd::<0xff>(self.0),
+                }
+            })
         }
         #[inline(always)]
         fn of(x: &[f64; 8]) -> Avx512 {
