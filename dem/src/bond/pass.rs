@@ -150,14 +150,13 @@ struct Outcome<P: Pack> {
     holds: P::Mask,
 }
 
-/// The bonds in lanes: forces, and new memory. `there`: the lanes that hold one.
+/// The bonds in lanes: forces, and new memory.
 #[inline(always)]
 fn bonds<P: Pack>(
     a: &Motion<P>,
     b: &Motion<P>,
     constants: (&[Lanes; COUNT], &[Lanes; COUNT]),
     (g, h): (&mut Group, &mut Group),
-    there: P::Mask,
     dt: P,
     power: &mut P::Quad,
 ) -> Outcome<P> {
@@ -173,7 +172,7 @@ fn bonds<P: Pack>(
     let r = respond(&k, a, b, &frame, &memory);
     // A share that is not a number counts as holding: the bodies then fail the check of their speed.
     let holds = !P::splat(1.0).le(r.share);
-    *power = r.power.only(holds & there).add_to(*power);
+    *power = r.power.only(holds).add_to(*power);
     Outcome {
         force: r.force.only(holds),
         torque_a: r.torque_a.only(holds),
@@ -312,7 +311,7 @@ impl<B: Bodies> Kernel for Bonds<'_, B> {
             };
             let (a, b) = bodies.motions([g, h]);
             let live = (count - 4 * number).min(P::LANES);
-            let out = bonds(&a, &b, k, (g, h), P::below(live), dt, &mut power);
+            let out = bonds(&a, &b, k, (g, h), dt, &mut power);
             bodies.take([g, h], &out, 4 * number, live);
             if !P::all(out.holds) {
                 let holds = P::mask_bits(out.holds);
