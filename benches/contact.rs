@@ -8,7 +8,8 @@
 //!   of it with history, restitution 0.5 without tangential damping, friction 0.5, density 2600 kg/m³, step 2e-5 s.
 //! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
 //! * `hertz`: the same spheres after Hertz and Mindlin, E = 5e7 Pa, ν = 0.25; the bed settles anew under this law.
-//! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million.
+//! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million; `scale_hertz` the same after
+//!   Hertz and Mindlin, `scale_clumps` with clumps of ten spheres.
 //! * `two_sizes`: part of the bed among spheres of a twentieth of the size, settled (a minute or two); the figure to compare is the
 //!   rate per contact.
 //! * `triad`: what passes through memory, a = b + s c over three lists of 64 MB: 24 bytes counted per element.
@@ -40,7 +41,7 @@ use bed::Bed;
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
 use rayon::prelude::*;
-use trackbed_dem::measure;
+use trackbed_dem::{Material, measure};
 use watch::Watch;
 
 fn main() {
@@ -58,13 +59,44 @@ fn hertz(bencher: Bencher<'_, '_>, threads: usize) {
     advance(bencher, "hertz", threads, Bed::tiled(1, elastic::elastic()), 200);
 }
 
-#[divan::bench(args = [1_000, 10_000, 90_000, 1_000_000], sample_count = 3, sample_size = 1)]
+#[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
 fn scale(bencher: Bencher<'_, '_>, count: usize) {
-    let bed = match count {
-        1_000 => unlike::cut(count),
-        _ => Bed::tiled((count as f64 / 1e4).sqrt() as usize, grains::stone()),
+    by_size(bencher, "scale", count, grains::stone());
+}
+
+#[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
+fn scale_hertz(bencher: Bencher<'_, '_>, count: usize) {
+    by_size(bencher, "scale_hertz", count, elastic::elastic());
+}
+
+#[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
+fn scale_clumps(bencher: Bencher<'_, '_>, spheres: usize) {
+    let bed = match spheres {
+        1_000 => unlike::cut_clumps(spheres / 10),
+        _ => Bed::clumps(tiles(spheres)),
     };
-    advance(bencher, &format!("scale {count}"), 1, bed, (4_000_000 / count as u32).clamp(20, 1000));
+    advance(bencher, &format!("scale_clumps {spheres}"), 1, bed, steps(spheres));
+}
+
+/// Numbers of spheres.
+const SIZES: [usize; 4] = [1_000, 10_000, 90_000, 1_000_000];
+
+/// Beds of 10,000 spheres along each side.
+fn tiles(spheres: usize) -> usize {
+    (spheres as f64 / 1e4).sqrt() as usize
+}
+
+/// Steps per sample.
+fn steps(spheres: usize) -> u32 {
+    (4_000_000 / spheres as u32).clamp(20, 1000)
+}
+
+fn by_size(bencher: Bencher<'_, '_>, name: &str, count: usize, material: Material) {
+    let bed = match count {
+        1_000 => unlike::cut(count, material),
+        _ => Bed::tiled(tiles(count), material),
+    };
+    advance(bencher, &format!("{name} {count}"), 1, bed, steps(count));
 }
 
 #[divan::bench(sample_count = 5, sample_size = 1)]
@@ -79,7 +111,7 @@ fn triangles(bencher: Bencher<'_, '_>, threads: usize) {
 
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
-    advance(bencher, "clumps", threads, Bed::clumps(), 100);
+    advance(bencher, "clumps", threads, Bed::clumps(1), 100);
 }
 
 #[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]

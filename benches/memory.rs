@@ -50,7 +50,7 @@ static ALLOCATOR: Counting = Counting;
 
 fn main() {
     report("spheres", Bed::spheres);
-    report("clumps", Bed::clumps);
+    report("clumps", || Bed::clumps(1));
 }
 
 fn report(name: &str, build: fn() -> Bed) {
