@@ -104,7 +104,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
         parallel,
         planes,
         simd,
-        sharing,
+        beyond,
         buffers,
         keep_forces,
         bonds: bonded,
@@ -209,7 +209,7 @@ fn contacts_and_motion<L: ContactLaw, S: Surface, const RIGID: bool>(
     };
     let threads = if *parallel { rayon::current_num_threads() } else { 1 };
     let lists = Lists { blocks, works, cross, slots };
-    threads::through(threads, lists, sharing, slot_width, between, within);
+    threads::through(threads, lists, beyond, slot_width, between, within);
 }
 
 /// Brings the applied forces into block order.

@@ -6,8 +6,7 @@
 //! has been fetched meanwhile.
 //!
 //! Several threads take runs of neighbouring blocks, each of which is gone through like that. Contacts that reach beyond
-//! their run come first, for all runs: then no thread reads a body that another one moves. Each thread has a share of the runs, the
-//! same in every step, so that its caches hold it still; one that is through with its own helps where most is left.
+//! their run come first, for all runs: then no thread reads a body that another one moves.
 
 use crate::contact::coming::Coming;
 use crate::contact::pass::FAR;
@@ -18,7 +17,7 @@ use crate::work::{BlockWork, CrossWork};
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// A run is this part of what is left of a thread's share: large runs first, so that little reaches beyond them, and small
+/// A run is this share of what is left for each thread: large runs first, so that little reaches beyond them, and small
 /// ones last, so that threads end together. Unit tests have small beds.
 const SHARE: usize = if cfg!(test) { 1 } else { 2 };
 
@@ -82,7 +81,6 @@ impl Slots<'_> {
 }
 
 /// Lists by block: the blocks, their scratch, and their contacts with others.
-#[derive(Default)]
 pub(crate) struct Lists<'a> {
     pub blocks: &'a mut [Block],
     pub works: &'a mut [BlockWork],
@@ -90,20 +88,12 @@ pub(crate) struct Lists<'a> {
     pub slots: &'a mut [CrossWork],
 }
 
-/// Scratch of [`through`].
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Scratch {
-    /// Contacts of blocks that reach beyond their run.
-    beyond: Vec<CrossWork>,
-    runs: Runs,
-}
-
-/// Goes through all blocks on so many threads. `between` reckons a block's contacts with later ones, `within` all else; `width` is
-/// that of a slot.
+/// Goes through all blocks on so many threads. `between` reckons a block's contacts with later ones, `within` all else; `beyond`
+/// is scratch, and `width` that of a slot.
 pub(crate) fn through(
     threads: usize,
     lists: Lists<'_>,
-    scratch: &mut Scratch,
+    beyond: &mut Vec<CrossWork>,
     width: usize,
     between: impl Fn(usize, Part<'_, Block>, Part<'_, BlockWork>, &mut Cross, &mut CrossWork) + Sync,
     within: impl Fn(usize, &mut Block, &mut BlockWork, Slots<'_>, Coming<'_>) + Sync,
@@ -149,139 +139,63 @@ pub(crate) fn through(
         return;
     }
 
-    let Scratch { beyond, runs } = scratch;
-    runs.lay_out(count, threads);
-    let runs = &*runs;
-    let (all, works_of_all) = (Part { first: 0, list: &*blocks }, Part { first: 0, list: &*works });
-    share(runs, Outer { cross: &mut *cross, slots: &mut *slots }, |run, Outer { cross, slots }| {
-        for (b, (pairs, out)) in run.clone().zip(cross.iter_mut().zip(slots)) {
-            if pairs.last_block() >= run.end {
-                passes::fetch(&all[b]);
-                between(b, all, works_of_all, pairs, out);
-            }
-        }
+    let (all, scratch) = (Part { first: 0, list: &*blocks }, Part { first: 0, list: &*works });
+    let lists = ends(count, threads).zip(cross.iter_mut().zip(&mut *slots)).enumerate();
+    let first = lists.filter(|(_, (end, (cross, _)))| cross.last_block() >= *end);
+    share(threads, first, |(b, (_, (pairs, out)))| {
+        passes::fetch(&all[b]);
+        between(b, all, scratch, pairs, out);
     });
+
     beyond.resize_with(count, CrossWork::default);
-    exchange(runs, cross, slots, beyond);
-    let there = &beyond[..];
-    let lists = Lists { blocks, works, cross: &mut *cross, slots: &mut *slots };
-    share(runs, lists, |run, lists| go(run.start, lists, there));
-    exchange(runs, cross, slots, beyond);
+    exchange(threads, cross, slots, beyond);
+    let (mut rest, there) = ((&mut *blocks, works, &mut *cross, &mut *slots), &beyond[..]);
+    let parts = runs(count, threads).map(move |run| {
+        let size = run.len();
+        let lists = Lists {
+            blocks: rest.0.split_off_mut(..size).unwrap_or_default(),
+            works: rest.1.split_off_mut(..size).unwrap_or_default(),
+            cross: rest.2.split_off_mut(..size).unwrap_or_default(),
+            slots: rest.3.split_off_mut(..size).unwrap_or_default(),
+        };
+        (run.start, lists)
+    });
+    share(threads, parts, |(first, lists)| go(first, lists, there));
+    exchange(threads, cross, slots, beyond);
 }
 
-/// Runs of neighbouring blocks, and whose they are.
-#[derive(Clone, Debug, Default)]
-struct Runs {
-    blocks: usize,
-    list: Vec<Range<usize>>,
-    /// Places in the list, by thread.
-    shares: Vec<Range<usize>>,
+/// Runs of so many blocks for so many threads.
+fn runs(count: usize, threads: usize) -> impl Iterator<Item = Range<usize>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let size = ((count - at) / (SHARE * threads)).max(1);
+        at += size;
+        (at <= count).then(|| at - size..at)
+    })
 }
 
-impl Runs {
-    /// So many blocks for so many threads.
-    fn lay_out(&mut self, blocks: usize, threads: usize) {
-        if (self.blocks, self.shares.len()) == (blocks, threads) {
-            return;
-        }
-        self.blocks = blocks;
-        self.list.clear();
-        self.shares.clear();
-        for thread in 0..threads {
-            let first = self.list.len();
-            let (mut at, end) = (blocks * thread / threads, blocks * (thread + 1) / threads);
-            while at < end {
-                let size = ((end - at) / SHARE).max(1);
-                self.list.push(at..at + size);
-                at += size;
-            }
-            self.shares.push(first..self.list.len());
-        }
-    }
+/// Of each block, where its run ends.
+fn ends(count: usize, threads: usize) -> impl Iterator<Item = usize> {
+    runs(count, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()))
 }
 
 /// Exchanges the contacts of blocks that reach beyond their run.
-fn exchange(runs: &Runs, cross: &[Cross], slots: &mut [CrossWork], beyond: &mut [CrossWork]) {
-    for run in &runs.list {
-        for b in run.clone().filter(|&b| cross[b].last_block() >= run.end) {
-            std::mem::swap(&mut slots[b], &mut beyond[b]);
+fn exchange(threads: usize, cross: &[Cross], slots: &mut [CrossWork], beyond: &mut [CrossWork]) {
+    let lists = cross.iter().zip(slots.iter_mut().zip(beyond));
+    for (end, (cross, (own, there))) in ends(cross.len(), threads).zip(lists) {
+        if cross.last_block() >= end {
+            std::mem::swap(own, there);
         }
     }
 }
 
-/// Lists by block that are cut into runs.
-trait Piece: Default + Send {
-    /// The first so many blocks, and the rest.
-    fn split(self, count: usize) -> (Self, Self);
-}
-
-impl Piece for Lists<'_> {
-    fn split(self, count: usize) -> (Self, Self) {
-        let Lists { blocks, works, cross, slots } = self;
-        let (blocks, works) = (blocks.split_at_mut(count), works.split_at_mut(count));
-        let (cross, slots) = (cross.split_at_mut(count), slots.split_at_mut(count));
-        (
-            Lists { blocks: blocks.0, works: works.0, cross: cross.0, slots: slots.0 },
-            Lists { blocks: blocks.1, works: works.1, cross: cross.1, slots: slots.1 },
-        )
-    }
-}
-
-/// Contacts with other blocks, and their slots.
-#[derive(Default)]
-struct Outer<'a> {
-    cross: &'a mut [Cross],
-    slots: &'a mut [CrossWork],
-}
-
-impl Piece for Outer<'_> {
-    fn split(self, count: usize) -> (Self, Self) {
-        let (cross, slots) = (self.cross.split_at_mut(count), self.slots.split_at_mut(count));
-        (Outer { cross: cross.0, slots: slots.0 }, Outer { cross: cross.1, slots: slots.1 })
-    }
-}
-
-/// What is left of a thread's share: places of runs, and their lists.
-struct Left<P> {
-    runs: Range<usize>,
-    lists: P,
-}
-
-/// Takes the next run for thread `own`: the first of its share, or, when it has none, the last of the longest.
-fn next<P: Piece>(left: &mut [Left<P>], own: usize, runs: &Runs) -> Option<(Range<usize>, P)> {
-    let longest = || (0..left.len()).max_by_key(|&k| left[k].runs.len());
-    let of = if left[own].runs.is_empty() { longest()? } else { own };
-    let Left { runs: places, lists } = &mut left[of];
-    let rest = std::mem::take(lists);
-    if of == own {
-        let run = runs.list[places.next()?].clone();
-        let (first, rest) = rest.split(run.len());
-        *lists = rest;
-        Some((run, first))
-    } else {
-        let run = runs.list[places.next_back()?].clone();
-        let before = if places.start < places.end { run.start - runs.list[places.start].start } else { 0 };
-        let (rest, last) = rest.split(before);
-        *lists = rest;
-        Some((run, last))
-    }
-}
-
-/// Shares runs among the threads of the current pool. Threads that do something else are not waited for.
-fn share<P: Piece>(runs: &Runs, whole: P, work: impl Fn(Range<usize>, P) + Sync) {
-    let threads = runs.shares.len();
-    let mut rest = whole;
-    let shares = runs.shares.iter().map(|places| {
-        let (lists, after) =
-            std::mem::take(&mut rest).split(runs.list[places.clone()].iter().map(Range::len).sum());
-        rest = after;
-        Left { runs: places.clone(), lists }
-    });
-    let left = Mutex::new(shares.collect::<Vec<_>>());
+/// Shares items among the threads of the current pool: each takes the next one when it is through with its last, so that
+/// one with dear items gets few of them. Threads that do something else are not waited for.
+fn share<I: Iterator + Send>(threads: usize, items: I, work: impl Fn(I::Item) + Sync) {
+    let queue = Mutex::new(items);
     crew(threads, &|| {
-        let own = rayon::current_thread_index().unwrap_or(0) % threads;
-        while let Some((run, lists)) = left.lock().ok().and_then(|mut left| next(&mut left, own, runs)) {
-            work(run, lists);
+        while let Some(item) = queue.lock().ok().and_then(|mut q| q.next()) {
+            work(item);
         }
     });
 }
@@ -296,7 +210,6 @@ fn crew(count: usize, work: &(impl Fn() + Sync)) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Left, Piece, Runs, next};
     use crate::input::{BodyInput, ModelInput};
     use crate::model::Model;
     use crate::shape::Shape;
@@ -305,48 +218,6 @@ mod tests {
     use crate::testing::{SOFT, push, shaft};
     use crate::work::Work;
     use crate::{Material, Vec3};
-
-    impl Piece for Vec<usize> {
-        fn split(mut self, count: usize) -> (Self, Self) {
-            let rest = self.split_off(count);
-            (self, rest)
-        }
-    }
-
-    /// Whoever asks: each run is given out once, with the blocks that it names; a thread gets its own first, in their order.
-    #[test]
-    fn every_run_is_taken_once() {
-        for (blocks, threads) in [(1, 2), (10, 2), (37, 3), (5, 7), (64, 7)] {
-            let mut runs = Runs::default();
-            runs.lay_out(blocks, threads);
-            for asked in 0..20 {
-                let mut left: Vec<_> = runs
-                    .shares
-                    .iter()
-                    .map(|own| {
-                        let lists: Vec<usize> = runs.list[own.clone()].iter().cloned().flatten().collect();
-                        Left { runs: own.clone(), lists }
-                    })
-                    .collect();
-                let (mut taken, mut of_first, mut turn) = (Vec::new(), Vec::new(), 1_usize);
-                loop {
-                    // Always the first thread, or each in some order.
-                    turn = turn.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(asked);
-                    let own = if asked == 0 { 0 } else { (turn >> 33) % threads };
-                    let Some((run, lists)) = next(&mut left, own, &runs) else { break };
-                    assert_eq!(run.clone().collect::<Vec<_>>(), lists);
-                    if own == 0 {
-                        of_first.push(run.start);
-                    }
-                    taken.extend(run);
-                }
-                let share: Vec<_> = runs.list[runs.shares[0].clone()].iter().map(|run| run.start).collect();
-                assert!(asked > 0 || of_first.starts_with(&share), "{of_first:?} {share:?}");
-                taken.sort_unstable();
-                assert_eq!(taken, (0..blocks).collect::<Vec<_>>(), "{blocks} blocks, {threads} threads");
-            }
-        }
-    }
 
     /// Spinning spheres of unlike sizes: forces and torques across blocks are those within a block, to rounding.
     #[test]

@@ -14,7 +14,6 @@ use crate::search::near::Merging;
 use crate::search::patches::Candidate;
 use crate::state::{ImageName, Lanes, PatchContact, PatchPair, State, xyz};
 use crate::surface::SurfaceContact;
-use crate::threads;
 use crate::wall::advance::WallSum;
 use std::sync::Mutex;
 
@@ -222,7 +221,8 @@ pub(crate) struct Applied {
 pub struct Work {
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossWork>,
-    pub(crate) sharing: threads::Scratch,
+    /// Scratch of [`run::through`](crate::threads::through).
+    pub(crate) beyond: Vec<CrossWork>,
     pub(crate) bonds: BondWork,
     /// Pairs that are not for the ordinary contacts.
     pub(crate) held: Held,
@@ -264,7 +264,7 @@ impl Work {
         let mut work = Work {
             blocks: Vec::new(),
             cross: Vec::new(),
-            sharing: threads::Scratch::default(),
+            beyond: Vec::new(),
             bonds: BondWork::default(),
             held: Held::default(),
             applied: Vec::new(),
