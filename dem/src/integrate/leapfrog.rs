@@ -315,21 +315,21 @@ fn turn_four<R: Four, const DAMPED: bool>(
     speed * speed
 }
 
-/// Puts the spheres of the bodies k to k + 3 where centres and orientations say, as many at a time as there are groups of lanes.
+/// Puts the spheres of four bodies from `body` on where centres and orientations say, as many at a time as there are groups of lanes.
 #[inline(always)]
-fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, k: usize) {
-    let (centre, rotation) = (&block.centre[k..k + 4], &block.rotation[k..k + 4]);
+fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, body: usize) {
+    let (centre, rotation) = (&block.centre[body..body + 4], &block.rotation[body..body + 4]);
     let quaternion = |l: usize| &rotation[l].orientation.coords.data.0[0];
-    let [i, j, n, s] = P::Quad::transpose([
+    let [i, j, k, s] = P::Quad::transpose([
         P::Quad::load(quaternion(0)),
         P::Quad::load(quaternion(1)),
         P::Quad::load(quaternion(2)),
         P::Quad::load(quaternion(3)),
     ]);
     let (two, zero) = (P::Quad::splat(2.0), P::Quad::zero());
-    let (ii, jj, kk, ss) = (i * i, j * j, n * n, s * s);
-    let (ij, ik, jk) = (i * j * two, i * n * two, j * n * two);
-    let (si, sj, sk) = (s * i * two, s * j * two, s * n * two);
+    let (ii, jj, kk, ss) = (i * i, j * j, k * k, s * s);
+    let (ij, ik, jk) = (i * j * two, i * k * two, j * k * two);
+    let (si, sj, sk) = (s * i * two, s * j * two, s * k * two);
     // Columns of the matrix of each body.
     let x = P::Quad::transpose([ss + ii - jj - kk, sk + ij, ik - sj, zero]);
     let y = P::Quad::transpose([ij - sk, ss - ii + jj - kk, si + jk, zero]);
@@ -338,7 +338,7 @@ fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, k: usize) {
     for l in 0..4 {
         let (x, y, z) = (P::twice(x[l]), P::twice(y[l]), P::twice(z[l]));
         let centre = P::record(&centre[l]);
-        let (from, to) = (w.first[k + l] as usize, w.first[k + l + 1] as usize);
+        let (from, to) = (w.first[body + l] as usize, w.first[body + l + 1] as usize);
         let (local, spheres) = (&w.local[from..to], &mut w.spheres[from..to]);
         for at in (0..local.len()).step_by(P::GROUPS) {
             let next = (at + P::GROUPS - 1).min(local.len() - 1);
