@@ -9,7 +9,7 @@
 //! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
 //! * `hertz`: the same spheres after Hertz and Mindlin, E = 5e7 Pa, ν = 0.25; the bed settles anew under this law.
 //! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million; `scale_hertz` the same after
-//!   Hertz and Mindlin, `scale_clumps` with clumps of ten spheres.
+//!   Hertz and Mindlin, under which all of them settle anew.
 //! * `two_sizes`: part of the bed among spheres of a twentieth of the size, settled (a minute or two); the figure to compare is the
 //!   rate per contact.
 //! * `triad`: what passes through memory, a = b + s c over three lists of 64 MB: 24 bytes counted per element.
@@ -69,34 +69,19 @@ fn scale_hertz(bencher: Bencher<'_, '_>, count: usize) {
     by_size(bencher, "scale_hertz", count, elastic::elastic());
 }
 
-#[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
-fn scale_clumps(bencher: Bencher<'_, '_>, spheres: usize) {
-    let bed = match spheres {
-        1_000 => unlike::cut_clumps(spheres / 10),
-        _ => Bed::clumps(tiles(spheres)),
-    };
-    advance(bencher, &format!("scale_clumps {spheres}"), 1, bed, steps(spheres));
-}
-
 /// Numbers of spheres.
 const SIZES: [usize; 4] = [1_000, 10_000, 90_000, 1_000_000];
 
-/// Beds of 10,000 spheres along each side.
-fn tiles(spheres: usize) -> usize {
-    (spheres as f64 / 1e4).sqrt() as usize
-}
-
-/// Steps per sample.
-fn steps(spheres: usize) -> u32 {
-    (4_000_000 / spheres as u32).clamp(20, 1000)
-}
-
+/// The same 60 steps of beds of each size, small ones again and again.
 fn by_size(bencher: Bencher<'_, '_>, name: &str, count: usize, material: Material) {
-    let bed = match count {
+    let mut bed = match count {
         1_000 => unlike::cut(count, material),
-        _ => Bed::tiled(tiles(count), material),
+        _ => Bed::tiled((count as f64 / 1e4).sqrt() as usize, material),
     };
-    advance(bencher, &format!("{name} {count}"), 1, bed, steps(count));
+    let (state, work) = (bed.state.clone(), bed.work.clone());
+    advance_with(bencher, &format!("{name} {count}"), 1, &mut bed, 60, (200_000 / count).max(1), |bed| {
+        (bed.state, bed.work) = (state.clone(), work.clone());
+    });
 }
 
 #[divan::bench(sample_count = 5, sample_size = 1)]
@@ -111,7 +96,7 @@ fn triangles(bencher: Bencher<'_, '_>, threads: usize) {
 
 #[divan::bench(args = [1, 2], sample_count = 25, sample_size = 1)]
 fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
-    advance(bencher, "clumps", threads, Bed::clumps(1), 100);
+    advance(bencher, "clumps", threads, Bed::clumps(), 100);
 }
 
 #[divan::bench(args = [1, 2], sample_count = 10, sample_size = 1)]
@@ -145,15 +130,32 @@ fn triad(bencher: Bencher<'_, '_>, threads: usize) {
 }
 
 fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, steps: u32) {
+    advance_with(bencher, name, threads, &mut bed, steps, 1, |_| {});
+}
+
+/// Advances a bed by so many steps, `rounds` times per sample, each after `start`, which is not in the rates per second below the table.
+fn advance_with(
+    bencher: Bencher<'_, '_>,
+    name: &str,
+    threads: usize,
+    bed: &mut Bed,
+    steps: u32,
+    rounds: usize,
+    start: impl Fn(&mut Bed),
+) {
     let pool = watch::pool(threads);
-    let before = bed.work.rebuilds();
-    let (mut watch, mut done) = (Watch::default(), 0);
+    let (mut watch, mut done, mut rebuilds) = (Watch::default(), 0, [0; 2]);
     let count = bed.model.body_count();
-    bencher.counter(ItemsCount::new(count * steps as usize)).bench_local(|| {
-        watch.time(|| pool.install(|| bed.advance(steps)));
-        done += steps;
+    bencher.counter(ItemsCount::new(count * steps as usize * rounds)).bench_local(|| {
+        for _ in 0..rounds {
+            start(bed);
+            let before = bed.work.rebuilds();
+            watch.time(|| pool.install(|| bed.advance(steps)));
+            let after = bed.work.rebuilds();
+            rebuilds = [rebuilds[0] + after.0 - before.0, rebuilds[1] + after.1 - before.1];
+            done += steps;
+        }
     });
-    let after = bed.work.rebuilds();
     let contacts = measure::contacts(&bed.model, &bed.state).len();
     remarks::add(format!(
         "{name}, {threads} threads: {:.3} M body-steps per processor second, {:.3} per second, {:.2} M contacts per \
@@ -163,7 +165,7 @@ fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, s
         contacts as f64 * f64::from(done) / watch.cpu / 1e6,
         contacts as f64 / count as f64,
         measure::coordination(&bed.model, &bed.state),
-        after.0 - before.0,
-        after.1 - before.1,
+        rebuilds[0],
+        rebuilds[1],
     ));
 }

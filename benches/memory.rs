@@ -50,7 +50,7 @@ static ALLOCATOR: Counting = Counting;
 
 fn main() {
     report("spheres", Bed::spheres);
-    report("clumps", || Bed::clumps(1));
+    report("clumps", Bed::clumps);
 }
 
 fn report(name: &str, build: fn() -> Bed) {

@@ -33,16 +33,11 @@ impl Bed {
         Bed::at_rest(of_spheres(bodies), WIDTH * n as f64, 300, material)
     }
 
-    /// 1,000 clumps of ten spheres, `n` × `n` times side by side.
-    pub fn clumps(n: usize) -> Bed {
-        let rows = grains::table("s2_1k.csv");
-        let moved = |k: usize| {
-            let corner = [k % n, k / n].map(|m| m as f64 * CLUMPS_WIDTH);
-            rows.iter().map(move |row| [&[row[0] + corner[0], row[1] + corner[1]], &row[2..]].concat())
-        };
-        let (shape, bodies) = boxes::clumps(&(0..n * n).flat_map(moved).collect::<Vec<_>>());
+    /// 1,000 clumps of ten spheres.
+    pub fn clumps() -> Bed {
+        let (shape, bodies) = boxes::clumps(&grains::table("s2_1k.csv"));
         let input = ModelInput { shapes: vec![shape], bodies, ..ModelInput::default() };
-        Bed::at_rest(input, CLUMPS_WIDTH * n as f64, 500, grains::stone())
+        Bed::at_rest(input, 0.4, 500, grains::stone())
     }
 
     /// `steps` build the contacts' memory up, which the tables do not hold.
@@ -75,9 +70,6 @@ impl Bed {
 
 /// Width of the bed of 10,000 spheres [m].
 pub const WIDTH: f64 = 0.42;
-
-/// Width of the bed of 1,000 clumps [m].
-pub const CLUMPS_WIDTH: f64 = 0.4;
 
 /// The bed of 10,000 spheres.
 pub fn tile() -> Vec<BodyInput> {

@@ -1,26 +1,19 @@
 //! Beds that are smaller, of two sizes, or on triangles.
 
-use crate::bed::{Bed, CLUMPS_WIDTH, WIDTH, of_spheres, tile};
-use crate::{boxes, grains};
+use crate::bed::{Bed, WIDTH, of_spheres, tile};
+use crate::grains;
 use trackbed_dem::{BodyInput, Material, ModelInput, TimeStep, TriangleSurface, Vec3};
 
-/// A cube of about `count` spheres cut from the bed, settled anew.
+/// A cube of about `count` spheres cut from the bed and settled anew; from then on of `material`, as the table's beds are.
 pub fn cut(count: usize, material: Material) -> Bed {
     let tile = tile();
     let side = WIDTH * (count as f64 / tile.len() as f64).cbrt();
     let inside = |b: &BodyInput| b.position.iter().all(|&x| x + b.scale < side);
-    Bed::at_rest(of_spheres(tile.into_iter().filter(inside).collect()), side, 20_000, material)
-}
-
-/// A cube of about `count` clumps of ten spheres cut from their bed, settled anew.
-pub fn cut_clumps(count: usize) -> Bed {
-    let rows = grains::table("s2_1k.csv");
-    let side = CLUMPS_WIDTH * (count as f64 / rows.len() as f64).cbrt();
-    // No sphere of a clump reaches further than this from its centre.
-    let inside = |row: &&Vec<f64>| row[..3].iter().all(|&x| x + 0.03 < side);
-    let (shape, bodies) = boxes::clumps(&rows.iter().filter(inside).cloned().collect::<Vec<_>>());
-    let input = ModelInput { shapes: vec![shape], bodies, ..ModelInput::default() };
-    Bed::at_rest(input, side, 20_000, grains::stone())
+    let bodies: Vec<_> = tile.into_iter().filter(inside).collect();
+    let settled = Bed::at_rest(of_spheres(bodies.clone()), side, 20_000, grains::stone());
+    let at_rest = bodies.into_iter().enumerate();
+    let at_rest = at_rest.map(|(k, b)| BodyInput { position: settled.state.position(k), ..b });
+    Bed::at_rest(of_spheres(at_rest.collect()), side, 300, material)
 }
 
 /// Spheres 20 times smaller between those of a cube cut from the bed: the same bed on a scale of 1 : 20, again and again,
