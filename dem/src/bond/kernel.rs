@@ -1,4 +1,4 @@
-//! The forces of a bond, one or four at a time.
+//! The forces of a bond, one or several at a time.
 //!
 //! With d from b to a, L = |d|, n = d/L, lₐ + l_b = L the lever arms, and dt since the last step:
 //!
