@@ -21,6 +21,7 @@ mod direct;
 mod fragments;
 pub(crate) mod kernel;
 mod limit;
+mod loops;
 mod measure;
 mod pairs;
 mod parallel;

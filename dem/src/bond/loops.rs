@@ -1,0 +1,191 @@
+//! The loop over the bonds of a list, the bonds of one group or two in lanes.
+
+use super::kernel::{self, COUNT, Memory, Motion, carry, respond};
+use super::pass::BondSlot;
+use super::store::Group;
+use crate::lanes::{Four, Kernel, Pack, Real, V3};
+use crate::state::{Block, Lanes};
+use crate::work::Sums;
+
+/// Forces of the bonds in lanes, and which of them hold.
+pub(super) struct Outcome<P: Pack> {
+    force: V3<P>,
+    torque_a: V3<P>,
+    torque_b: V3<P>,
+    holds: P::Mask,
+}
+
+/// The bonds in lanes: forces, and new memory.
+#[inline(always)]
+fn bonds<P: Pack>(
+    a: &Motion<P>,
+    b: &Motion<P>,
+    constants: (&[Lanes; COUNT], &[Lanes; COUNT]),
+    (g, h): (&mut Group, &mut Group),
+    dt: P,
+    power: &mut P::Quad,
+) -> Outcome<P> {
+    // No closures here: what is not inlined into the kernel's entry becomes a call per operation.
+    let mut k = [P::zero(); COUNT];
+    for (k, (p, q)) in k.iter_mut().zip(constants.0.iter().zip(constants.1)) {
+        *k = P::join(p, q);
+    }
+    let mut memory = Memory { shear: load::<P>(&g.shear, &h.shear), turn: load(&g.turn, &h.turn) };
+    let frame = carry(k[kernel::OFFSET], a, b, &mut memory, dt);
+    store(memory.shear, &mut g.shear, &mut h.shear);
+    store(memory.turn, &mut g.turn, &mut h.turn);
+    let r = respond(&k, a, b, &frame, &memory);
+    // A share that is not a number counts as holding: the bodies then fail the check of their speed.
+    let holds = !P::splat(1.0).le(r.share);
+    *power = r.power.only(holds).add_to(*power);
+    Outcome {
+        force: r.force.only(holds),
+        torque_a: r.torque_a.only(holds),
+        torque_b: r.torque_b.only(holds),
+        holds,
+    }
+}
+
+#[inline(always)]
+fn load<P: Pack>(v: &[Lanes; 3], w: &[Lanes; 3]) -> V3<P> {
+    V3::new(P::join(&v[0], &w[0]), P::join(&v[1], &w[1]), P::join(&v[2], &w[2]))
+}
+
+#[inline(always)]
+fn store<P: Pack>(v: V3<P>, to: &mut [Lanes; 3], and: &mut [Lanes; 3]) {
+    v.x.split(&mut to[0], &mut and[0]);
+    v.y.split(&mut to[1], &mut and[1]);
+    v.z.split(&mut to[2], &mut and[2]);
+}
+
+/// Three numbers of each record.
+#[inline(always)]
+fn vectors<P: Pack>(rows: [P; 4]) -> V3<P> {
+    let [x, y, z, _] = P::columns(rows);
+    V3::new(x, y, z)
+}
+
+/// Bodies of one block, by lane.
+#[inline(always)]
+fn own<P: Pack>(block: &Block, at: [&[u32; 4]; 2]) -> Motion<P> {
+    let (x, v, w) = (&block.centre[..], &block.velocity[..], &block.spin[..]);
+    Motion {
+        x: vectors(P::rows(|l| &x[at[l / 4][l % 4] as usize])),
+        v: vectors(P::rows(|l| &v[at[l / 4][l % 4] as usize])),
+        w: vectors(P::rows(|l| &w[at[l / 4][l % 4] as usize])),
+    }
+}
+
+/// Bodies of several blocks, by lane.
+#[inline(always)]
+fn far<P: Pack>(blocks: &[Block], block: [&[u32; 4]; 2], at: [&[u32; 4]; 2]) -> Motion<P> {
+    Motion {
+        x: vectors(P::rows(|l| &blocks[block[l / 4][l % 4] as usize].centre[at[l / 4][l % 4] as usize])),
+        v: vectors(P::rows(|l| &blocks[block[l / 4][l % 4] as usize].velocity[at[l / 4][l % 4] as usize])),
+        w: vectors(P::rows(|l| &blocks[block[l / 4][l % 4] as usize].spin[at[l / 4][l % 4] as usize])),
+    }
+}
+
+/// The bodies of a list's bonds. (A trait, since closures with operations on lanes are not inlined into the kernel's entry.)
+pub(super) trait Bodies {
+    /// How the bodies of the bonds of two groups move, of which the second counts only where lanes are eight.
+    fn motions<P: Pack>(&self, groups: [&Group; 2]) -> (Motion<P>, Motion<P>);
+    /// Takes the forces of so many bonds, from position `first` of the list on.
+    fn take<P: Pack>(&mut self, groups: [&Group; 2], out: &Outcome<P>, first: usize, count: usize);
+}
+
+/// Bodies of one block.
+pub(super) struct Within<'a> {
+    pub block: &'a Block,
+    pub sums: &'a mut [Sums],
+}
+
+impl Bodies for Within<'_> {
+    #[inline(always)]
+    fn motions<P: Pack>(&self, [g, h]: [&Group; 2]) -> (Motion<P>, Motion<P>) {
+        (own(self.block, [&g.i, &h.i]), own(self.block, [&g.j, &h.j]))
+    }
+
+    #[inline(always)]
+    fn take<P: Pack>(&mut self, [g, h]: [&Group; 2], out: &Outcome<P>, _: usize, count: usize) {
+        let (on_a, on_b) = P::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
+        let (i, j) = ([&g.i, &h.i], [&g.j, &h.j]);
+        for l in 0..count {
+            P::give(on_a[l], &mut self.sums[i[l / 4][l % 4] as usize].0);
+            P::give(on_b[l], &mut self.sums[j[l / 4][l % 4] as usize].0);
+        }
+    }
+}
+
+/// A body of one block and one of any.
+pub(super) struct Across<'a> {
+    pub own: &'a Block,
+    pub blocks: &'a [Block],
+    pub slots: &'a mut [BondSlot],
+}
+
+impl Bodies for Across<'_> {
+    #[inline(always)]
+    fn motions<P: Pack>(&self, [g, h]: [&Group; 2]) -> (Motion<P>, Motion<P>) {
+        (own(self.own, [&g.i, &h.i]), far(self.blocks, [&g.block, &h.block], [&g.j, &h.j]))
+    }
+
+    #[inline(always)]
+    fn take<P: Pack>(&mut self, _: [&Group; 2], out: &Outcome<P>, first: usize, count: usize) {
+        let zero = P::zero();
+        let [f, a, b] = [out.force, out.torque_a, out.torque_b];
+        let on_a = P::records([f.x, f.y, f.z, zero], [a.x, a.y, a.z, zero]);
+        let on_b = P::records([b.x, b.y, b.z, zero], [zero; 4]);
+        for (l, slot) in self.slots[first..][..count].iter_mut().enumerate() {
+            let (mut a, mut b) = ([Lanes::default(); 2], [Lanes::default(); 2]);
+            P::put(on_a[l], &mut a);
+            P::put(on_b[l], &mut b);
+            *slot = BondSlot { force: a[0], torque_a: a[1], torque_b: b[0] };
+        }
+    }
+}
+
+/// The bonds of one list; returns the power of their dashpots.
+pub(super) struct Bonds<'a, B> {
+    pub groups: &'a mut [Group],
+    pub constants: &'a [[Lanes; COUNT]],
+    /// Of bonds.
+    pub count: usize,
+    pub bodies: B,
+    /// Takes the positions of those that break.
+    pub found: &'a mut Vec<u32>,
+    /// Time since the last step [s].
+    pub dt: f64,
+}
+
+impl<B: Bodies> Kernel for Bonds<'_, B> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<P: Pack>(self) -> f64 {
+        let Bonds { groups, constants, count, mut bodies, found, dt } = self;
+        let Some(&spare) = groups.first() else { return 0.0 };
+        // Lanes without a bond: a real pair, so that its arithmetic is harmless, with constants that are zero.
+        let (mut spare, none) = (spare, [Lanes::default(); COUNT]);
+        let constants = &constants[..groups.len()];
+        let dt = P::splat(dt);
+        let mut power = P::Quad::zero();
+        for number in (0..groups.len()).step_by(P::GROUPS) {
+            let k = (&constants[number], constants.get(number + 1).unwrap_or(&none));
+            let (g, h) = match &mut groups[number..] {
+                [g, h, ..] => (g, h),
+                [g] => (g, &mut spare),
+                [] => break,
+            };
+            let (a, b) = bodies.motions([g, h]);
+            let live = (count - 4 * number).min(P::LANES);
+            let out = bonds(&a, &b, k, (g, h), dt, &mut power);
+            bodies.take([g, h], &out, 4 * number, live);
+            if !P::all(out.holds) {
+                let holds = P::mask_bits(out.holds);
+                found.extend((0..live).filter(|l| holds >> l & 1 == 0).map(|l| (4 * number + l) as u32));
+            }
+        }
+        power.sum()
+    }
+}
