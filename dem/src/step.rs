@@ -445,6 +445,23 @@ mod tests {
         }
     }
 
+    /// Four at a time and one by one, which a fixed neighbour calls for.
+    #[test]
+    fn a_speed_that_is_no_number_is_an_error() {
+        for fixed in [false, true] {
+            let mut input = heap_input(false, false);
+            input.bodies[0].fixed = [fixed; 6];
+            let model = Model::new(input).unwrap();
+            let mut state = State::new(&model);
+            let mut work = Work::new(&model, &state);
+            let [block, place] = state.places[1].map(|k| k as usize);
+            assert_eq!((block, place / 4), (state.places[0][0] as usize, state.places[0][1] as usize / 4));
+            state.blocks[block].velocity[place][1] = f64::NAN;
+            let end = step(&model, &mut state, &mut work, &NoSurface, &[]);
+            assert!(matches!(end, Err(StepError::Speed { body: 1, .. })), "fixed {fixed}: {end:?}");
+        }
+    }
+
     /// One, two, three and seven threads: the same bits, with memory of rolling and rebuilt lists, or with a box.
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
