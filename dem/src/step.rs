@@ -450,6 +450,10 @@ mod tests {
     fn a_speed_that_is_no_number_is_an_error() {
         for fixed in [false, true] {
             let mut input = heap_input(false, false);
+            input.bodies.truncate(8);
+            for (k, body) in input.bodies.iter_mut().enumerate() {
+                body.position = Vec3::new(0.1 * k as f64, 0.0, 0.1);
+            }
             input.bodies[0].fixed = [fixed; 6];
             let model = Model::new(input).unwrap();
             let mut state = State::new(&model);
