@@ -221,7 +221,7 @@ pub(crate) struct Applied {
 pub struct Work {
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossWork>,
-    /// Scratch of [`run::through`](crate::threads::through).
+    /// Scratch of [`threads::through`](crate::threads::through).
     pub(crate) beyond: Vec<CrossWork>,
     pub(crate) bonds: BondWork,
     /// Pairs that are not for the ordinary contacts.
