@@ -6,7 +6,7 @@
 //!
 //! Where there is a dashpot, it and the spring lie side by side behind the slider: what slides stretches neither. The rate u of
 //! both follows from −Ks (ξ + u t) − Cs u = the limited force, so that the dashpot takes Cs u² and the spring never holds more than
-//! was put into it. (With the dashpot at the full velocity a
+//! was put into it. (With the dashpot at the full velocity, as in LAMMPS' `gran/hooke/history`, a
 //! fast graze leaves the spring stretched by −Cs v/Ks, far beyond what the contact has done.)
 
 use crate::lanes::{Real, V3};
