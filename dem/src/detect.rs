@@ -1,7 +1,7 @@
 //! Geometry of a touch, per pair of shapes. Nothing here knows stiffness or storage.
 
 use crate::Vec3;
-use crate::contact::ContactGeometry;
+use crate::law::ContactGeometry;
 use crate::shape::cuboid;
 use nalgebra::UnitQuaternion;
 

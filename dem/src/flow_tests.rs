@@ -2,7 +2,7 @@ use super::*;
 use crate::error::Partner;
 use crate::input::{BodyInput, ModelInput};
 use crate::insert::room::{Places, Room};
-use crate::material::Material;
+use crate::law::material::Material;
 use crate::measure::{BoxRegion, contacts};
 use crate::shape::Shape;
 use crate::surface::NoSurface;

@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::bond::{Bond, BondInput};
-use crate::material::{Material, PairOverride};
+use crate::law::material::{Material, PairOverride};
 use crate::shape::Shape;
 use crate::wall::WallInput;
 use nalgebra::UnitQuaternion;

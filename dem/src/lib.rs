@@ -6,7 +6,7 @@
 mod bodies;
 pub mod bond;
 mod check;
-pub mod contact;
+mod contact;
 pub mod detect;
 pub mod error;
 pub mod flow;
@@ -14,8 +14,8 @@ pub mod input;
 pub mod insert;
 pub mod integrate;
 pub mod lanes;
+pub mod law;
 pub mod ledger;
-pub mod material;
 pub mod measure;
 pub mod model;
 mod order;
@@ -34,7 +34,8 @@ pub mod work;
 
 pub use error::{ModelError, Partner, StepError};
 pub use input::{AppliedForce, BodyInput, LocalDamping, ModelInput, Plane, TimeStep, TriangleSurface};
-pub use material::{Material, PairOverride};
+pub use law::material;
+pub use law::material::{Material, PairOverride};
 pub use model::Model;
 pub use shape::Shape;
 pub use state::State;

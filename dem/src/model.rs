@@ -3,9 +3,9 @@
 use crate::Vec3;
 pub(crate) use crate::bodies::{Bodies, Body, Kind};
 use crate::check;
-use crate::contact::Laws;
 use crate::error::ModelError;
 use crate::input::{ModelInput, Plane, TimeStep};
+use crate::law::Laws;
 use crate::shape::Shape;
 use crate::timestep::{self, DtLimit};
 use crate::wall::{WallInput, set::Walls};
@@ -74,7 +74,7 @@ impl Model {
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
         let skin = input.skin.unwrap_or(0.2 * mean);
-        crate::contact::adhesion::check(&input)?;
+        crate::law::adhesion::check(&input)?;
         crate::periodic::check(&input, &bodies, skin)?;
         let periodic = crate::periodic::Periodic::new(&input);
         let bonds = crate::bond::resolve(&input, &bodies)?;

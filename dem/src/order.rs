@@ -8,7 +8,7 @@
 
 use crate::Vec3;
 use crate::bond;
-use crate::contact::History;
+use crate::law::History;
 use crate::model::{Kind, Model};
 use crate::state::{
     Block, Cross, ImageName, ImagePair, Lanes, PatchContact, PatchPair, Rotation, State, xyz,

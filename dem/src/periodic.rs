@@ -11,10 +11,11 @@
 
 use crate::Vec3;
 use crate::bodies::Bodies;
-use crate::contact::{ContactLaw, PairTable, pass::motion};
+use crate::contact::pass::motion;
 use crate::detect;
 use crate::error::{ModelError, Partner};
 use crate::input::ModelInput;
+use crate::law::{ContactLaw, PairTable};
 use crate::model::Model;
 use crate::search::candidates::spheres;
 use crate::search::cells::Cells;
@@ -208,7 +209,7 @@ pub(crate) fn contacts<L: ContactLaw, const RIGID: bool>(
         let (ma, mb) = (motion(mine, a, &g.point), motion(other, c, &(g.point - way)));
         let mass = 1.0 / (ma.velocity[3] + mb.velocity[3]);
         let (velocity, spin) = (ma.at_point() - mb.at_point(), ma.spin() - mb.spin());
-        let f = law.respond(mass, &g, &velocity, &spin, history, dt);
+        let f = law.evaluate_one(mass, &g, &velocity, &spin, history, dt);
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         out.couple += way.cross(&f.force) * dt;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::input::{BodyInput, Plane, TimeStep};
-use crate::material::Material;
+use crate::law::material::Material;
 use crate::measure;
 use crate::shape::clump::Clump;
 use crate::surface::NoSurface;

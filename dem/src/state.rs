@@ -8,8 +8,8 @@
 
 use crate::Vec3;
 use crate::bond::{self, BondList, BondState};
-use crate::contact::History;
 use crate::contact::groups::Groups;
+use crate::law::History;
 use crate::ledger::Ledger;
 use crate::model::Model;
 use crate::order::{self, Turnover};

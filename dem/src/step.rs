@@ -3,9 +3,10 @@
 use crate::Vec3;
 use crate::bond;
 use crate::contact::coming::Coming;
-use crate::contact::{ContactLaw, PairTable, pass, passes, patches, planes, with_law};
+use crate::contact::{pass, passes, patches, planes};
 use crate::error::{Partner, StepError};
 use crate::input::AppliedForce;
+use crate::law::{ContactLaw, PairTable, with_law};
 use crate::ledger::Ledger;
 use crate::model::{Kind, Model};
 use crate::order;
@@ -294,7 +295,7 @@ mod tests {
     use super::*;
     use crate::input::{BodyInput, ModelInput, Plane};
     use crate::lanes::Simd;
-    use crate::material::{Material, PairOverride};
+    use crate::law::material::{Material, PairOverride};
     use crate::shape::Shape;
     use crate::shape::clump::Clump;
     use crate::surface::NoSurface;

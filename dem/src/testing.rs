@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::input::{ModelInput, Plane, TimeStep};
-use crate::material::Material;
+use crate::law::material::Material;
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
 

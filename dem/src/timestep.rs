@@ -37,8 +37,8 @@
 
 use crate::Vec3;
 use crate::bond;
-use crate::contact::Laws;
 use crate::input::ModelInput;
+use crate::law::Laws;
 use crate::model::{Bodies, Body, Kind};
 use crate::shape::Shape;
 use crate::shape::clump::Clump;

@@ -78,7 +78,7 @@ fn growth(scheme: Scheme, w: f64, zeta: f64, mass_ratio: f64) -> f64 {
     let mut c = Coupled::new(
         &solid,
         dem::ModelInput {
-            materials: vec![material(2650.0, STIFFNESS, 0.0, dem::contact::restitution::restitution(own))],
+            materials: vec![material(2650.0, STIFFNESS, 0.0, dem::law::restitution::restitution(own))],
             shapes: vec![dem::Shape::Sphere { radius: RADIUS }],
             bodies: vec![dem::BodyInput {
                 position: Vec3::new(0.5, 0.5, RADIUS - overlap - deflection),

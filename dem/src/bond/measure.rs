@@ -109,7 +109,7 @@ pub fn force_on(model: &Model, state: &State, of: impl Fn(usize) -> bool) -> Vec
 pub(crate) fn each_touch(
     blocks: &[Block],
     state: &State,
-    mut f: impl FnMut(&Block, &Block, &remnant::Remnant, &crate::contact::ContactGeometry),
+    mut f: impl FnMut(&Block, &Block, &remnant::Remnant, &crate::law::ContactGeometry),
 ) {
     state.each_remnant(|b, r| {
         let (p, q) = (&blocks[b as usize], &blocks[r.block as usize]);

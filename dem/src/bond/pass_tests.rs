@@ -1,7 +1,7 @@
 use super::*;
 use crate::bond::{Bond, BondDamping, BondInput, Criterion, DirectBond, elastic, within_gap};
 use crate::input::{BodyInput, ModelInput, TimeStep};
-use crate::material::Material;
+use crate::law::material::Material;
 use crate::shape::Shape;
 use crate::surface::NoSurface;
 

@@ -11,8 +11,8 @@
 
 use super::pass::BondSlot;
 use crate::Vec3;
-use crate::contact::{ContactGeometry, ContactLaw, History, with_law};
 use crate::error::Partner;
+use crate::law::{ContactGeometry, ContactLaw, History, with_law};
 use crate::model::Model;
 use crate::state::{Block, State, xyz};
 use crate::work::Failure;
@@ -92,7 +92,7 @@ pub(crate) fn contact(model: &Model, a: &Block, b: &Block, r: &mut Remnant, dt: 
     let mass = 1.0 / (a.velocity[i][3] + b.velocity[j][3]);
     let spin = xyz(&a.spin[i]) - xyz(&b.spin[j]);
     let f = with_law!(&model.laws, laws => {
-        laws.get(materials[0], materials[1]).respond(mass, &g, &relative, &spin, &mut r.history, dt)
+        laws.get(materials[0], materials[1]).evaluate_one(mass, &g, &relative, &spin, &mut r.history, dt)
     });
     let bound = a.centre[i][3].min(b.centre[j][3]);
     let failure = (overlap > bound).then(|| Failure::Overlap {

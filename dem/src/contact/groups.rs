@@ -3,8 +3,8 @@
 //! Groups come in twos, for loops over eight lanes. The last ones may hold fewer than four; the other lanes bear the
 //! names of the first contact of the two and have none.
 
-use super::{FRESH, History};
 use crate::Vec3;
+use crate::law::{FRESH, History};
 use crate::state::Lanes;
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,9 @@
 //! The law of contacts with patches, in lanes: what detection found of a block, force by force.
 
 use super::pass::{Mix, four};
-use super::{Answer, ContactLaw, History, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::lanes::{Kernel, Pack, V3};
+use crate::law::{ContactLaw, History, LawInput, LawOutput, Memory, PairTable};
 use crate::state::{Block, Lanes, xyz};
 
 /// A contact of a sphere with a patch: what the law asks, and what it answers in the same places.
@@ -122,7 +122,7 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for Ask<'_, L, ROLL> {
             let [ux, uy, uz, other_softness] = R::columns(R::rows(|l| &hit(l).velocity));
             let [ox, oy, oz, other] = R::columns(R::rows(|l| &hit(l).spin));
             let spin = V3::new(wx, wy, wz);
-            let touch = Touch {
+            let touch = LawInput {
                 mass: R::splat(1.0) / (softness + other_softness),
                 radius,
                 overlap,
@@ -136,8 +136,8 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for Ask<'_, L, ROLL> {
                 let [rx, ry, rz, twist] = R::columns(R::rows(|l| &hit(l).turn));
                 (memory.roll, memory.twist) = (V3::new(rx, ry, rz), twist);
             }
-            let Answer { force, moment, dashpot, friction, .. } =
-                L::answer::<R, ROLL>(&mix.of(own, other), &touch, &mut memory, on, dt);
+            let LawOutput { force, moment, dashpot, friction, .. } =
+                L::evaluate::<R, ROLL>(&mix.of(own, other), &touch, &mut memory, on, dt);
             let mut torque = arm.cross(force);
             if ROLL {
                 torque = torque + moment;

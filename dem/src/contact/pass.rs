@@ -4,11 +4,11 @@
 
 use super::coming::{self, Coming};
 use super::groups::{Group, Groups, Springs};
-use super::{Answer, ContactLaw, FRESH, Memory, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
 use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
+use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, Memory, PairTable};
 use crate::state::{Block, Cross, Lanes, xyz};
 use crate::threads::{Part, Slots};
 use crate::work::{BlockWork, CrossWork, Failure, Sums};
@@ -305,7 +305,7 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
     let ended = !on & memory.rate.lt(R::splat(FRESH));
     if R::any(ended) {
         let (ma, mb) = (R::columns(R::rows(|l| a.spin(l)))[3], R::columns(R::rows(|l| b.spin(l)))[3]);
-        let left = L::left::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
+        let left = L::stored_in_springs::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
         taken.friction = left.add_to(taken.friction);
         remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
     }
@@ -343,7 +343,7 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
     } else {
         translation + normal.cross(wa * la + wb * lb)
     };
-    let touch = Touch {
+    let touch = LawInput {
         mass: R::splat(1.0) / softness,
         radius: ra * rb / reach,
         overlap,
@@ -351,8 +351,8 @@ fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
         velocity,
         spin: wa - wb,
     };
-    let Answer { force, moment, dashpot, friction, .. } =
-        L::answer::<R, ROLL>(&law.of(ma, mb), &touch, &mut memory, on, dt);
+    let LawOutput { force, moment, dashpot, friction, .. } =
+        L::evaluate::<R, ROLL>(&law.of(ma, mb), &touch, &mut memory, on, dt);
     remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
     taken.dashpot = dashpot.only(on).add_to(taken.dashpot);
     taken.friction = friction.only(on).add_to(taken.friction);
@@ -613,7 +613,7 @@ pub(crate) fn boxes<L: ContactLaw>(
         let (ma, mb) = (motion(mine, a, &g.point), motion(other, j, &g.point));
         let mass = 1.0 / (ma.velocity[3] + mb.velocity[3]);
         let (velocity, spin) = (ma.at_point() - mb.at_point(), ma.spin() - mb.spin());
-        let f = law.respond(mass, &g, &velocity, &spin, &mut history, dt);
+        let f = law.evaluate_one(mass, &g, &velocity, &spin, &mut history, dt);
         lists.boxes.set_history(k, &history);
         out.dashpot += f.dashpot;
         out.friction += f.friction;

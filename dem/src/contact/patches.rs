@@ -19,10 +19,11 @@
 //! The near list holds numbers only; what a contact remembers is kept for those in touch.
 
 use super::hits::Hit;
-use super::{ContactGeometry, ContactLaw, History, PairTable, passes};
+use super::passes;
 use crate::Vec3;
 use crate::error::Partner;
 use crate::lanes::Simd;
+use crate::law::{ContactGeometry, ContactLaw, History, PairTable};
 use crate::ledger::Impulse;
 use crate::model::Model;
 use crate::state::{Block, Lanes, PatchContact, PatchList, PatchPair, xyz};

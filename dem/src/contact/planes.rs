@@ -2,11 +2,11 @@
 
 use super::groups::{Group, Groups};
 use super::pass::{End, Mix, Own, Taken, motion, recall, records, remember, side_by_side, within};
-use super::{Answer, ContactGeometry, ContactLaw, FRESH, PairTable, Touch};
 use crate::Vec3;
 use crate::detect;
 use crate::error::Partner;
 use crate::lanes::{Four, Kernel, Pack, Real, V3};
+use crate::law::{ContactGeometry, ContactLaw, FRESH, LawInput, LawOutput, PairTable};
 use crate::model::Model;
 use crate::shape::cuboid;
 use crate::state::{Block, Lanes, xyz};
@@ -84,7 +84,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             let [wx, wy, wz, material_a] = R::columns(R::rows(|l| body.spin(l)));
             let law = mix.of(material_a, material);
             if R::any(ended) {
-                let left = L::left::<R, ROLL>(&law, &memory).only(ended);
+                let left = L::stored_in_springs::<R, ROLL>(&law, &memory).only(ended);
                 taken.friction = left.add_to(taken.friction);
                 remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
             }
@@ -103,9 +103,9 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             let wall = V3::new(vx, vy, vz);
             let velocity = V3::new(ux, uy, uz) + spin.cross(arm) - wall;
             let mass = R::splat(1.0) / softness;
-            let touch = Touch { mass, radius: r, overlap: r - height, normal, velocity, spin };
-            let Answer { force, moment, dashpot, friction, .. } =
-                L::answer::<R, ROLL>(&law, &touch, &mut memory, on, dt);
+            let touch = LawInput { mass, radius: r, overlap: r - height, normal, velocity, spin };
+            let LawOutput { force, moment, dashpot, friction, .. } =
+                L::evaluate::<R, ROLL>(&law, &touch, &mut memory, on, dt);
             remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
             taken.dashpot = dashpot.only(on).add_to(taken.dashpot);
             taken.friction = friction.only(on).add_to(taken.friction);
@@ -179,7 +179,7 @@ pub(crate) fn corners<L: ContactLaw>(
         };
         let ma = motion(block, a, &g.point);
         let relative = ma.at_point() - wall.velocity;
-        let f = law.respond(1.0 / ma.velocity[3], &g, &relative, &ma.spin(), &mut history, dt);
+        let f = law.evaluate_one(1.0 / ma.velocity[3], &g, &relative, &ma.spin(), &mut history, dt);
         pairs.set_history(k, &history);
         w.ledger.dissipated_dashpot += f.dashpot;
         w.ledger.dissipated_friction += f.friction;

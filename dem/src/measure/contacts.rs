@@ -1,9 +1,10 @@
 //! Contacts as they are now, for force chains and coordination numbers.
 
 use crate::Vec3;
-use crate::contact::{ContactForce, ContactGeometry, ContactLaw, History, pass, with_law};
+use crate::contact::pass;
 use crate::detect;
 use crate::error::Partner;
+use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, with_law};
 use crate::model::{Kind, Model};
 use crate::shape::cuboid;
 use crate::state::{Block, Cross, ImagePair, Lanes, PatchContact, State, xyz};
@@ -262,7 +263,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
         let mut history = *c.history;
         let [a, b] = c.materials;
         let ContactForce { force, normal, .. } = with_law!(&model.laws, laws => {
-            laws.get(a, b).respond(c.mass, &c.geometry, &c.velocity, &c.spin, &mut history, model.dt())
+            laws.get(a, b).evaluate_one(c.mass, &c.geometry, &c.velocity, &c.spin, &mut history, model.dt())
         });
         out.push(ContactRecord {
             a: c.body as usize,

@@ -1,7 +1,7 @@
 //! What a scene costs: the loops that its contacts run through, and the memory that state and scratch hold.
 
-use crate::contact::Laws;
 use crate::lanes::Simd;
+use crate::law::Laws;
 use crate::model::Model;
 use crate::state::State;
 use crate::work::Work;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::input::{BodyInput, ModelInput};
-use crate::material::Material;
+use crate::law::material::Material;
 use crate::shape::Shape;
 use rand_core::Rng;
 

@@ -5,8 +5,8 @@
 //! reach. Pairs are kept in the order of their spheres, and pairs that do not touch add nothing to any sum, so
 //! neither the skin nor the reach nor the moment of a search changes a bit of the result.
 
-use crate::contact::History;
 use crate::contact::groups::Groups;
+use crate::law::History;
 use crate::model::Model;
 use crate::periodic;
 use crate::search::candidates::{self, spheres};

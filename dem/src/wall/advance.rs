@@ -5,7 +5,7 @@
 
 use super::body;
 use crate::Vec3;
-use crate::contact::with_law;
+use crate::law::with_law;
 use crate::ledger::Ledger;
 use crate::model::Model;
 use crate::state::State;

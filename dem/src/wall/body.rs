@@ -14,9 +14,9 @@ use super::input::{RigidBody, WallShape};
 use super::state::{Foot, WallState};
 use super::triangulated::welded;
 use crate::Vec3;
-use crate::contact::{ContactGeometry, ContactLaw, History, PairTable};
 use crate::detect;
 use crate::error::ModelError;
+use crate::law::{ContactGeometry, ContactLaw, History, PairTable};
 use crate::ledger::{Impulse, Ledger};
 use crate::model::Model;
 use crate::state::Rotation;
@@ -316,7 +316,7 @@ pub(crate) fn stand<L: ContactLaw>(
                 foot.history = std::mem::replace(&mut known.history, History::NONE);
             }
             let relative = state.velocity_at(&body.centre, &g.point) - wall.velocity;
-            let f = law.respond(mass, &g, &relative, &state.spin, &mut foot.history, dt);
+            let f = law.evaluate_one(mass, &g, &relative, &state.spin, &mut foot.history, dt);
             ledger.dissipated_dashpot += f.dashpot;
             ledger.dissipated_friction += f.friction;
             ledger.work_walls += f.force.dot(&wall.velocity) * dt;

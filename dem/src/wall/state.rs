@@ -1,7 +1,7 @@
 //! Where walls are and how they move.
 
 use crate::Vec3;
-use crate::contact::History;
+use crate::law::History;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 

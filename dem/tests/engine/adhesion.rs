@@ -2,7 +2,7 @@
 
 use crate::scene::{Random, Run, plane, sphere, stone, weightless};
 use std::f64::consts::PI;
-use trackbed_dem::contact::restitution::damping_ratio;
+use trackbed_dem::law::restitution::damping_ratio;
 use trackbed_dem::{
     AppliedForce, BodyInput, Material, ModelError, ModelInput, PairOverride, Shape, TimeStep,
     TriangleSurface, Vec3, Work, measure,

@@ -16,7 +16,7 @@ fn swing_error(restitution: f64, steps: usize) -> f64 {
     let rest = 0.01 - mass * 1000.0 / 1e5;
     input.bodies.push(BodyInput { position: Vec3::new(0.0, 0.0, rest), ..BodyInput::default() });
     let mut run = Run::new(input);
-    let zeta = trackbed_dem::contact::restitution::damping_ratio(restitution);
+    let zeta = trackbed_dem::law::restitution::damping_ratio(restitution);
     let damped = omega * (1.0 - zeta * zeta).sqrt();
     let v0 = 5e-5 * omega;
     // At the balance the weight is carried, so the velocity half a step before follows from the dashpot alone.

@@ -28,7 +28,7 @@ const HERTZ: [Row; 3] = [
 fn restitution() -> f64 {
     let log = 0.5_f64.ln();
     let zeta = -log / std::f64::consts::PI.hypot(log);
-    trackbed_dem::contact::restitution::restitution(zeta)
+    trackbed_dem::law::restitution::restitution(zeta)
 }
 
 fn compare(material: Material, lammps: &[Row], rotation_tolerance: f64) {

@@ -17,7 +17,7 @@
 
 use crate::error::ModelError;
 use crate::input::ModelInput;
-use crate::material::PairOverride;
+use crate::law::material::PairOverride;
 use crate::shape::Shape;
 use std::f64::consts::TAU;
 

@@ -28,9 +28,9 @@
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, adhesion, harmonic, law_lanes};
+use super::{ContactLaw, FRESH, History, LawInput, LawOutput, Memory, adhesion, harmonic, law_lanes};
 use crate::lanes::{Real, V3};
-use crate::material::{Material, PairOverride};
+use crate::law::material::{Material, PairOverride};
 
 /// 2 √(5/6): with the tangent stiffness S = 2 E* a the dashpot is 2 √(5/6) ζ √(S m*).
 const DASHPOT: f64 = 1.825_741_858_350_553_8;
@@ -88,13 +88,13 @@ impl ContactLaw for Hertz {
     });
 
     #[inline(always)]
-    fn answer<R: Real, const ROLL: bool>(
+    fn evaluate<R: Real, const ROLL: bool>(
         law: &Hertz<R>,
-        touch: &Touch<R>,
+        touch: &LawInput<R>,
         memory: &mut Memory<R>,
         on: R::Mask,
         dt: f64,
-    ) -> Answer<R> {
+    ) -> LawOutput<R> {
         let (n, d) = (touch.normal, touch.overlap);
         let rate = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * rate;
@@ -161,7 +161,7 @@ impl ContactLaw for Hertz {
             dashpot = dashpot + t.dashpot;
             friction = friction + t.friction;
         }
-        Answer { force: n * net + slid.force, normal: net, moment, dashpot, friction }
+        LawOutput { force: n * net + slid.force, normal: net, moment, dashpot, friction }
     }
 
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
@@ -180,7 +180,7 @@ impl ContactLaw for Hertz {
     /// Nothing: the stiffness, and with it the energy, has gone to zero with the overlap, and was booked on the way
     /// but for the last step's.
     #[inline(always)]
-    fn left<R: Real, const ROLL: bool>(_: &Hertz<R>, _: &Memory<R>) -> R {
+    fn stored_in_springs<R: Real, const ROLL: bool>(_: &Hertz<R>, _: &Memory<R>) -> R {
         R::zero()
     }
 

@@ -1,24 +1,18 @@
-//! Contact: detection yields a [`ContactGeometry`], a law turns it into a force; neither knows the other.
+//! Laws of contact: detection yields a [`ContactGeometry`], a law turns it into a force; neither knows the other.
 //!
 //! A law is written once, over [`Real`]: the loops over many pairs ask it for four contacts at a time
-//! ([`ContactLaw::answer`]), walls, boxes and measures for one ([`ContactLaw::respond`]). Both give the same bits.
+//! ([`ContactLaw::evaluate`]), walls, boxes and measures for one ([`ContactLaw::evaluate_one`]). Both give the same bits.
 
 pub mod adhesion;
-pub(crate) mod coming;
-pub(crate) mod groups;
 pub mod hertz;
-pub(crate) mod hits;
 pub mod linear;
-pub(crate) mod pass;
-pub(crate) mod passes;
-pub(crate) mod patches;
-pub(crate) mod planes;
+pub mod material;
 pub mod restitution;
 pub(crate) mod slide;
 
+use self::material::{Material, PairOverride};
 use crate::Vec3;
 use crate::lanes::{Pack, Real, V3};
-use crate::material::{Material, PairOverride};
 use serde::{Deserialize, Serialize};
 
 /// Where and how two partners touch. "a" is the partner the force is computed for, "b" the other.
@@ -83,7 +77,7 @@ pub struct ContactForce {
 
 /// Contacts as a law sees them, in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Touch<R> {
+pub struct LawInput<R> {
     /// Effective mass m₁m₂/(m₁ + m₂) of the bodies [kg].
     pub mass: R,
     /// Effective radius [m].
@@ -113,7 +107,7 @@ pub struct Memory<R> {
 
 /// [`ContactForce`] in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Answer<R> {
+pub struct LawOutput<R> {
     /// Force on a [N].
     pub force: V3<R>,
     /// Normal force [N].
@@ -159,13 +153,13 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
     /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and
     /// with adhesion.
-    fn answer<R: Real, const ROLL: bool>(
+    fn evaluate<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,
-        touch: &Touch<R>,
+        touch: &LawInput<R>,
         memory: &mut Memory<R>,
         on: R::Mask,
         dt: f64,
-    ) -> Answer<R>;
+    ) -> LawOutput<R>;
 
     /// Energy stored in the normal spring, and in the tangential, rolling and twisting springs together [J].
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
@@ -175,7 +169,7 @@ pub trait ContactLaw: Copy + Send + Sync {
 
     /// Energy that contacts which end leave in their tangential, rolling and twisting springs [J], given the effective
     /// radius [m] and the effective mass [kg].
-    fn left<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;
+    fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;
 
     /// Largest normal stiffness [N/m] at an overlap [m], for the time step.
     fn stiffness(&self, overlap: f64, radius: f64) -> f64;
@@ -193,7 +187,7 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// relative to b at the contact point and the spin of a less that of b, both half a step ago [m/s, rad/s], and
     /// the step [s]. Advances the contact's memory.
     #[inline(always)]
-    fn respond(
+    fn evaluate_one(
         &self,
         mass: f64,
         geometry: &ContactGeometry,
@@ -202,7 +196,7 @@ pub trait ContactLaw: Copy + Send + Sync {
         history: &mut History,
         dt: f64,
     ) -> ContactForce {
-        let touch = Touch {
+        let touch = LawInput {
             mass,
             radius: geometry.radius,
             overlap: geometry.overlap,
@@ -219,9 +213,9 @@ pub trait ContactLaw: Copy + Send + Sync {
         };
         let law = self.splat::<f64>();
         let a = if self.rolls() {
-            Self::answer::<f64, true>(&law, &touch, &mut memory, true, dt)
+            Self::evaluate::<f64, true>(&law, &touch, &mut memory, true, dt)
         } else {
-            Self::answer::<f64, false>(&law, &touch, &mut memory, true, dt)
+            Self::evaluate::<f64, false>(&law, &touch, &mut memory, true, dt)
         };
         let Memory { spring, rate, roll, twist } = memory;
         *history = History { spring: spring.to_vec(), rate, turn: [roll.x, roll.y, roll.z, twist] };
@@ -245,7 +239,7 @@ pub trait ContactLaw: Copy + Send + Sync {
             twist,
         };
         *history = History::NONE;
-        Self::left::<f64, true>(&self.splat(), &memory)
+        Self::stored_in_springs::<f64, true>(&self.splat(), &memory)
     }
 }
 
@@ -318,8 +312,8 @@ pub(crate) enum Laws {
 macro_rules! with_law {
     ($laws:expr, $table:ident => $body:expr) => {
         match $laws {
-            $crate::contact::Laws::Linear($table) => $body,
-            $crate::contact::Laws::Hertz($table) => $body,
+            $crate::law::Laws::Linear($table) => $body,
+            $crate::law::Laws::Hertz($table) => $body,
         }
     };
 }

@@ -24,9 +24,9 @@
 
 use super::restitution::damping_ratio;
 use super::slide::{self, Turning};
-use super::{Answer, ContactLaw, FRESH, History, Memory, Touch, adhesion, harmonic, law_lanes};
+use super::{ContactLaw, FRESH, History, LawInput, LawOutput, Memory, adhesion, harmonic, law_lanes};
 use crate::lanes::{Real, V3};
-use crate::material::{Material, PairOverride};
+use crate::law::material::{Material, PairOverride};
 
 /// Constants of one pair of materials.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,13 +90,13 @@ impl ContactLaw for Linear {
     });
 
     #[inline(always)]
-    fn answer<R: Real, const ROLL: bool>(
+    fn evaluate<R: Real, const ROLL: bool>(
         law: &Linear<R>,
-        touch: &Touch<R>,
+        touch: &LawInput<R>,
         memory: &mut Memory<R>,
         on: R::Mask,
         dt: f64,
-    ) -> Answer<R> {
+    ) -> LawOutput<R> {
         let n = touch.normal;
         let rate = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * rate;
@@ -158,7 +158,7 @@ impl ContactLaw for Linear {
             dashpot = dashpot + t.dashpot;
             friction = friction + t.friction;
         }
-        Answer { force: n * net + slid.force, normal: net, moment, dashpot, friction }
+        LawOutput { force: n * net + slid.force, normal: net, moment, dashpot, friction }
     }
 
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
@@ -173,7 +173,7 @@ impl ContactLaw for Linear {
     }
 
     #[inline(always)]
-    fn left<R: Real, const ROLL: bool>(law: &Linear<R>, memory: &Memory<R>) -> R {
+    fn stored_in_springs<R: Real, const ROLL: bool>(law: &Linear<R>, memory: &Memory<R>) -> R {
         let mut length2 = memory.spring.norm2();
         if ROLL {
             length2 = length2 + memory.roll.norm2() + memory.twist * memory.twist;
@@ -202,7 +202,7 @@ impl ContactLaw for Linear {
 mod tests {
     use super::*;
     use crate::Vec3;
-    use crate::contact::ContactGeometry;
+    use crate::law::ContactGeometry;
     use crate::testing::SOFT;
 
     fn touch(overlap: f64) -> ContactGeometry {
@@ -226,7 +226,7 @@ mod tests {
             let mut h = History { rate: 0.0, ..History::NONE };
             let mut force = Vec3::zeros();
             for _ in 0..100 {
-                force = law.respond(0.1, &touch(1e-4), &velocity, &Vec3::zeros(), &mut h, 1e-4).force;
+                force = law.evaluate_one(0.1, &touch(1e-4), &velocity, &Vec3::zeros(), &mut h, 1e-4).force;
             }
             let friction = Vec3::new(force.x, force.y, 0.0);
             assert!((friction + velocity * 5.0).norm() < 1e-12, "{friction}");
@@ -241,7 +241,7 @@ mod tests {
         for k in 0..=100 {
             let a = f64::from(k) * 0.01;
             let normal = Vec3::new(-a.sin(), 0.0, a.cos());
-            law.respond(
+            law.evaluate_one(
                 0.1,
                 &ContactGeometry { normal, ..touch(1e-4) },
                 &Vec3::zeros(),
