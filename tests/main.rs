@@ -24,6 +24,7 @@ mod suite {
     mod solid_runs;
     mod solid_scenes;
     mod stones;
+    mod structure;
     mod summary;
     pub mod support;
     mod track;

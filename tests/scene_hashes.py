@@ -135,7 +135,7 @@ def report(text):
     text = text.replace(str(ROOT), ".")
     text = re.sub(r"memory( of a packed bed)?: .* MB in all.*", r"memory\1", text)
     text = re.sub(r"time of the grains on one core, .*", "time of the grains", text)
-    return re.sub(r"(at a time) \((AVX2|AVX-512|AVX512|portable)\)", r"\1", text).encode()
+    return re.sub(r"(four|eight) at a time \(.*?\)", "at a time", text).encode()
 
 
 def digest_of(path):

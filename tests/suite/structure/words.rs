@@ -1,0 +1,86 @@
+//! Words that the glossary replaces, in names and in text.
+
+use std::collections::BTreeMap;
+
+/// Where a word may not stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ban {
+    /// As a part of a name in code.
+    Names,
+    /// There, and in comments, messages and pages.
+    Anywhere,
+}
+
+/// Replaced words with their ban, from the table of the page: `| word | standard term | names, or anywhere |`.
+pub fn replaced(page: &str) -> BTreeMap<String, Ban> {
+    let table = page.split("## Replaced words").nth(1).expect("the page has a heading for replaced words");
+    let rows = table.lines().skip_while(|l| !l.starts_with("|--")).skip(1).take_while(|l| l.starts_with('|'));
+    let mut all = BTreeMap::new();
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let ban = match cells[2] {
+            "names" => Ban::Names,
+            "anywhere" => Ban::Anywhere,
+            other => panic!("{other:?}: expected names or anywhere in {row}"),
+        };
+        all.extend(cells[0].split(", ").map(|word| (word.to_string(), ban)));
+    }
+    assert!(!all.is_empty(), "the table of replaced words is empty");
+    all
+}
+
+/// The words of a name: `LoadCycle`, `load_cycle` and `LOAD_CYCLE` have the same two.
+pub fn words_of(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before_lower = false;
+    for c in name.chars() {
+        if !c.is_alphanumeric() || (c.is_uppercase() && before_lower) {
+            words.push(String::new());
+        }
+        if c.is_alphanumeric() {
+            words.last_mut().expect("it has a first").extend(c.to_lowercase());
+        }
+        before_lower = c.is_lowercase();
+    }
+    words.retain(|w| !w.is_empty());
+    words
+}
+
+/// Names in code; those of comments and texts are not among them.
+fn names(stream: proc_macro2::TokenStream, all: &mut Vec<(usize, String)>) {
+    for token in stream {
+        match token {
+            proc_macro2::TokenTree::Ident(name) => all.push((name.span().start().line, name.to_string())),
+            proc_macro2::TokenTree::Group(group) => names(group.stream(), all),
+            _ => {}
+        }
+    }
+}
+
+/// Places of replaced words in a file, by word.
+pub fn uses(file: &str, text: &str, replaced: &BTreeMap<String, Ban>) -> BTreeMap<String, Vec<String>> {
+    let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut add = |line: usize, word: String, from: &str| {
+        if replaced.contains_key(&word) {
+            found.entry(word).or_default().push(format!("{file}:{line} {from}"));
+        }
+    };
+    let mut code = Vec::new();
+    if file.ends_with(".rs") {
+        names(text.parse().unwrap_or_else(|e| panic!("{file}: {e}")), &mut code);
+    }
+    for (line, name) in &code {
+        words_of(name).into_iter().for_each(|w| add(*line, w, name));
+    }
+    for (number, line) in text.lines().enumerate() {
+        for piece in line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|p| !p.is_empty()) {
+            let counted = code.iter().any(|(l, n)| *l == number + 1 && n == piece);
+            for word in
+                words_of(piece).into_iter().filter(|w| !counted && replaced.get(w) == Some(&Ban::Anywhere))
+            {
+                add(number + 1, word, line.trim());
+            }
+        }
+    }
+    found
+}
