@@ -3,7 +3,7 @@
 //! [`face`] finds the closest point on a curved 8-node face, [`surface`] shows the solid's moving faces to the
 //! grains, [`transfer`] turns contact forces into nodal loads, [`spread`] takes them to discs, [`step`] is the coupled
 //! step in the order that [`scheme`] tells, [`stability`] says how long its windows may be, and [`ledger`] keeps
-//! the energy of the whole system. [`inverse_map`] is the three-dimensional map of a point into an element.
+//! the energy of the whole system. [`track`] holds rails, trains and load cycles on sleepers. [`inverse_map`] is the three-dimensional map of a point into an element.
 
 mod accelerate;
 pub mod face;
@@ -17,4 +17,5 @@ mod stiffened;
 pub mod surface;
 #[cfg(test)]
 mod testing;
+pub mod track;
 pub mod transfer;

@@ -59,7 +59,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String
         let sleepers = grains
             .rigid_sleeper()
             .into_iter()
-            .flat_map(|plan| plan.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
+            .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
         let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
         let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
         grains.check_pads(&document, model.dt())?;

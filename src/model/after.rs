@@ -1,14 +1,13 @@
 //! `[track.jump]`, `[track.push]` and `track.bed_stiffness` resolved.
 
 use super::grains::{GrainsPart, check};
-use super::seat_load::CyclicLoad;
 use crate::scene::after::{CycleJump, JumpMethod, Push};
 use crate::scene::track::Track;
 use crate::scene::{Document, SceneError};
+use trackbed_coupling::track::CyclicLoad;
+use trackbed_coupling::track::jump::JumpPlan;
+use trackbed_coupling::track::push::PushPlan;
 use trackbed_dem::Vec3;
-
-/// Share of its time at full speed in which the ram of a push gets going.
-const START: f64 = 0.05;
 
 /// What goes on about the load cycles.
 #[derive(Clone, Debug, Default)]
@@ -19,62 +18,6 @@ pub struct AfterPlan {
     pub push: Option<PushPlan>,
     /// Loads between which the stiffness of the bed is taken [N]; none without a cyclic load.
     pub between: Option<[f64; 2]>,
-}
-
-/// Cycles that are not simulated one by one.
-#[derive(Clone, Copy, Debug)]
-pub struct JumpPlan {
-    /// Whether the grains are moved; otherwise only the account goes on.
-    pub grains: bool,
-    /// Cycles simulated before the first jump.
-    pub first: u32,
-    /// Cycles of a stretch whose rate is measured.
-    pub measure: u32,
-    /// Cycles after a jump whose rate does not count.
-    pub settle: u32,
-    /// Error of a jump over the settlement up to which the next jump is longer.
-    pub tolerance: f64,
-    /// Largest jump over the cycles before it.
-    pub largest: f64,
-    /// Share by which a jump may change the overlaps in the mean.
-    pub overlap: f64,
-}
-
-/// A lateral push.
-#[derive(Clone, Copy, Debug)]
-pub struct PushPlan {
-    /// Unit vector.
-    pub direction: Vec3,
-    /// Speed of the ram [m/s].
-    pub speed: f64,
-    /// How far it goes [m].
-    pub displacement: f64,
-    /// Vertical force on the sleeper meanwhile [N].
-    pub load: f64,
-    /// Time from the last cycle to the push [s].
-    pub rest: f64,
-    /// Height of the ram above the sleeper's centre [m].
-    pub height: f64,
-    /// Stiffness of the ram [N/m].
-    pub stiffness: f64,
-}
-
-impl PushPlan {
-    /// Time that the push takes with the rest before it [s].
-    pub fn duration(&self) -> f64 {
-        self.rest + (1.0 + 0.5 * START) * self.displacement / self.speed
-    }
-
-    /// Way [m] and speed [m/s] of the ram a time after it started [s]: it gets going evenly.
-    pub fn ram(&self, since: f64) -> (f64, f64) {
-        let start = START * self.displacement / self.speed;
-        if since < start {
-            let share = since.max(0.0) / start;
-            (0.5 * self.speed * share * share * start, share * self.speed)
-        } else {
-            (self.speed * (since - 0.5 * start), self.speed)
-        }
-    }
 }
 
 /// Resolves what a scene says.
@@ -159,10 +102,10 @@ fn push(document: &Document, p: &Push, part: &GrainsPart) -> Result<PushPlan, Sc
     if part.rail.is_some() {
         return Err(document.error("track.push", "a push", "no such table beside a rail with mass"));
     }
-    if part.sleeper.as_ref().is_some_and(|s| s.centres.len() > 1) {
+    if part.sleeper.as_ref().is_some_and(|s| s.row.centres.len() > 1) {
         return Err(document.error("track.push", "a push", "no such table beside several sleepers"));
     }
-    let held = part.sleeper.as_ref().map_or([false; 6], |s| s.held());
+    let held = part.sleeper.as_ref().map_or([false; 6], |s| s.row.held);
     if let Some(d) = (0..2).find(|&d| held[d] && direction[d] != 0.0) {
         let expected = format!("a direction that track.sleeper.hold leaves free, not {}", ["x", "y"][d]);
         return Err(document.error(&key("direction"), found, expected));

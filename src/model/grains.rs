@@ -13,14 +13,16 @@ mod track;
 pub mod walls;
 
 use super::after::{self, AfterPlan};
-use super::seat_load::CyclicLoad;
 use super::tables::Grading;
-use super::track::rail::RailInput;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 pub use bonds::{BondPart, check_joined};
 pub use compaction::{CompactionPlan, Measure, Press, Radial};
 pub use flow::{FlowPlan, InletPlan, InletRate, OutletPlan, OutletRegion};
+use trackbed_coupling::track::CyclicLoad;
+use trackbed_coupling::track::push::PushPlan;
+use trackbed_coupling::track::rail::RailInput;
+use trackbed_coupling::track::{SleeperRow, TrackInput};
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::shape::Shape;
@@ -148,35 +150,13 @@ pub struct GrowthPlan {
     pub how: Growth,
 }
 
-/// Sleepers in a row.
+/// Sleepers among the grains.
 #[derive(Clone, Debug)]
 pub struct SleeperPlan {
     shape: usize,
     material: usize,
-    mass: f64,
-    fixed: [bool; 6],
-    /// Whether it consists of elements of the solid, and is no body among the grains.
-    pub meshed: bool,
-    /// Half edge lengths [m].
-    pub half: [f64; 3],
-    /// Direction of the track: 0 or 1.
-    pub axis: usize,
-    /// Places of the centres in x and y [m], along the track.
-    pub centres: Vec<[f64; 2]>,
-    /// Points of the top that share the load, in the sleeper's frame [m].
-    pub seats: Vec<[f64; 3]>,
-}
-
-impl SleeperPlan {
-    /// Motions that are held: along x, y, z, about x, y, z.
-    pub fn held(&self) -> [bool; 6] {
-        self.fixed
-    }
-
-    /// Mass of a sleeper [kg].
-    pub fn mass(&self) -> f64 {
-        self.mass
-    }
+    /// The sleepers.
+    pub row: SleeperRow,
 }
 
 impl GrainsPart {
@@ -324,7 +304,9 @@ impl GrainsPart {
     /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
     /// damping.
     pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
-        let (Some(rail), Some(sleeper)) = (&self.rail, &self.sleeper) else { return Ok(()) };
+        let (Some(rail), Some(sleeper)) = (&self.rail, self.sleeper.as_ref().map(|s| &s.row)) else {
+            return Ok(());
+        };
         let [a, b, c] = sleeper.half;
         // 1/m of a seat, turning about both level axes included: a bound for all modes.
         let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
@@ -345,14 +327,39 @@ impl GrainsPart {
         Ok(())
     }
 
+    /// Refuses a ram that steps of `dt` [s] cannot follow.
+    ///
+    /// # Errors
+    /// Bad input.
+    pub fn check_ram(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
+        let (Some(push), Some(sleeper)) = (&self.after.push, &self.sleeper) else { return Ok(()) };
+        let most = PushPlan::largest_stiffness(sleeper.row.mass, dt);
+        if push.stiffness > most {
+            let expected = format!("at most {most:.3e} N/m, which the step of {dt:.3e} s can follow");
+            let found = format!("{:.3e} N/m", push.stiffness);
+            return Err(document.error("track.push.stiffness", found, expected));
+        }
+        Ok(())
+    }
+
+    /// Sleepers, load, rail and push for the run proper.
+    pub fn track(&self) -> TrackInput<'_> {
+        TrackInput {
+            sleepers: self.sleeper.as_ref().map(|s| &s.row),
+            load: self.load.as_ref(),
+            rail: self.rail,
+            push: self.after.push.as_ref(),
+        }
+    }
+
     /// The sleepers that are bodies among the grains.
     pub fn rigid_sleeper(&self) -> Option<&SleeperPlan> {
-        self.sleeper.as_ref().filter(|s| !s.meshed)
+        self.sleeper.as_ref().filter(|s| !s.row.meshed)
     }
 
     /// Tells from which face of the solid's surface on the faces are those of meshed sleepers.
     pub fn set_sleeper_faces(&mut self, first: u32) {
-        self.other_surface = self.sleeper.as_ref().filter(|s| s.meshed).map(|s| (first, s.material));
+        self.other_surface = self.sleeper.as_ref().filter(|s| s.row.meshed).map(|s| (first, s.material));
     }
 
     /// A sleeper as a body with its centre above `centre` at height `z` [m].
@@ -362,8 +369,8 @@ impl GrainsPart {
             material: plan.material,
             part: self.parts.len() as u32 - 1,
             position: Vec3::new(centre[0], centre[1], z),
-            fixed: plan.fixed,
-            mass: Some(plan.mass),
+            fixed: plan.row.held,
+            mass: Some(plan.row.mass),
             ..BodyInput::default()
         }
     }

@@ -4,7 +4,6 @@
 pub mod after;
 pub mod exchange;
 pub mod grains;
-pub mod seat_load;
 pub mod solid;
 mod tables;
 pub mod track;
@@ -241,7 +240,7 @@ fn end_time(
     scene: &Scene,
     grains: Option<&grains::GrainsPart>,
 ) -> Result<f64, SceneError> {
-    let counted = grains.and_then(|g| g.load.as_ref()).map(seat_load::CyclicLoad::end);
+    let counted = grains.and_then(|g| g.load.as_ref()).map(trackbed_coupling::track::CyclicLoad::end);
     // A push comes after the cycles, or stands for itself.
     let push = grains.and_then(|g| g.after.push).map(|p| p.duration());
     let counted = match (counted, push) {

@@ -3,16 +3,17 @@
 use super::Stage;
 use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
-use super::cycles::Cycle;
 use super::flow::Flow;
 use super::record::Recorder;
 use super::summary::{BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
 use super::system::System;
-use super::track::Track;
+use super::track_output;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
 use crate::progress::Progress;
 use serde::{Deserialize, Serialize};
+use trackbed_coupling::track::cycles::Cycle;
+use trackbed_coupling::track::{Track, TrackInput};
 use trackbed_dem as dem;
 
 /// Stage of a checkpoint from within the run proper.
@@ -96,7 +97,8 @@ impl Stage<'_> {
         let interval = job.output.history_interval;
         let every = ((interval / window).round() as u64).max(1);
 
-        let mut track = Track::new(grains, system.grains());
+        let mut track =
+            Track::new(grains.map_or_else(TrackInput::default, GrainsPart::track), system.grains());
         let mut flow = Flow::new(grains, system.grains(), window, job.end);
         let load = grains.and_then(|g| g.load.as_ref());
         // What follows the cycles, whenever they end.
@@ -104,7 +106,7 @@ impl Stage<'_> {
         let (mut recorder, from) = match resumed {
             Some(mut loaded) => {
                 let from: Place = loaded.take()?;
-                track = track.resume(&mut loaded)?;
+                track = track.resume(loaded.take()?);
                 flow = flow.map(|f| f.resume(&mut loaded)).transpose()?;
                 windows = from.windows;
                 (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
@@ -115,9 +117,6 @@ impl Stage<'_> {
                 recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
             }
-        };
-        let apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            track.apply(t, model, state, out);
         };
         // With jumps neither time nor steps tell how far a run is.
         let jumps = grains.is_some_and(|g| g.after.jump.is_some());
@@ -137,7 +136,7 @@ impl Stage<'_> {
                 let k = done + 1;
                 let time = k as f64 * window;
                 track.begin_window();
-                system.advance(&apply)?;
+                system.advance(&mut |t, model, state, out| track.apply(t, model, state, out))?;
                 track.follow(time, system);
                 if let Some(flow) = &mut flow {
                     flow.follow(k, time, system).map_err(|e| e.at(time))?;
@@ -180,7 +179,7 @@ impl Stage<'_> {
                             body.put(start)?;
                         }
                         body.put(&Place { done, next_frame, seconds: progress.seconds(), windows })?;
-                        track.save(body)?;
+                        body.put(track.state())?;
                         if let Some(flow) = &flow {
                             flow.save(body)?;
                         }
@@ -212,7 +211,7 @@ impl Stage<'_> {
             grain_steps: done * grain_steps,
             solid_steps: done * solid_steps,
         });
-        track.finish(self.dir, summary)?;
+        summary.push = track_output::push(&track, self.dir)?;
         if let (Some(flow), Some(view)) = (&flow, system.grains()) {
             flow.finish(done as f64 * window, view, summary);
         }

@@ -4,31 +4,25 @@ mod bed;
 mod bond_output;
 mod checkpoint;
 mod compact;
-mod cycles;
 mod failure_factor;
-mod fit;
 mod flow;
 mod frames;
 mod initial;
-mod jump;
 mod keeper;
 mod main_stage;
 mod memory;
 mod packed;
 mod packing;
 mod plastic;
-mod push;
-mod rail;
 mod record;
 mod settle;
 mod solid_alone;
 mod statics;
 mod summary;
 mod system;
-mod track;
+mod track_output;
 mod wall_output;
 
-pub use cycles::{Cycle, CycleRecorder};
 pub use keeper::Interrupt;
 pub use memory::{Prediction, parse_size, size};
 pub use summary::{Summary, peak_memory};
@@ -37,7 +31,6 @@ use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::grains::{GrainsPart, check_joined, refused};
-use crate::model::seat_load::CyclicLoad;
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use crate::progress::Progress;
 use crate::scene::{Document, Scene};
@@ -54,6 +47,7 @@ use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::Spent;
 use trackbed_coupling::scheme::{Passes, Scheme};
 use trackbed_coupling::surface::SolidSurface;
+use trackbed_coupling::track::CyclicLoad;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
@@ -403,7 +397,7 @@ impl Stage<'_> {
             summary.sources.extend(BOND_SOURCES);
         }
         let model = dem::Model::new(input).map_err(|e| refused(self.document, &e))?;
-        push::check(self.document, grains, model.dt())?;
+        grains.check_ram(self.document, model.dt())?;
         grains.check_pads(self.document, model.dt())?;
         if grains.rail.is_some() {
             summary.sources.extend(RAIL_SOURCES);

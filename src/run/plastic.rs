@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::model::solid::{QuasiStaticPlan, SolidPart, TimeMethod};
 use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 use trackbed_fem::State;
 use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
@@ -135,11 +136,13 @@ fn quasi_static(part: &SolidPart, plan: &QuasiStaticPlan, step: f64) -> Result<Q
     QuasiStatic::new(&part.model, part.newton, control).map_err(|e| part.failure(&e))
 }
 
-impl System for QuasiStaticSystem<'_> {
+impl TrackSystem for QuasiStaticSystem<'_> {
     fn window(&self) -> f64 {
         self.step
     }
+}
 
+impl System for QuasiStaticSystem<'_> {
     fn steps_per_window(&self) -> (u64, u64) {
         (0, 1)
     }
@@ -269,11 +272,13 @@ fn dynamics_solver(part: &SolidPart, method: TimeMethod, step: f64) -> Result<Dy
     .map_err(|e| part.failure(&e))
 }
 
-impl System for PlasticDynamics<'_> {
+impl TrackSystem for PlasticDynamics<'_> {
     fn window(&self) -> f64 {
         self.step
     }
+}
 
+impl System for PlasticDynamics<'_> {
     fn steps_per_window(&self) -> (u64, u64) {
         (0, 1)
     }

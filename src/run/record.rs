@@ -3,23 +3,22 @@
 
 use super::bond_output;
 use super::checkpoint::{Body, Loaded};
-use super::cycles::{self, Cycle, CycleRecorder};
-use super::fit;
 use super::flow::Flow;
 use super::frames;
-use super::jump::{JumpSummary, Jumper};
 use super::system::System;
-use super::track::Track;
+use super::track_output;
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::seat_load::CyclicLoad;
 use crate::write;
 use crate::write::csv::{Column, History, Mark};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
+use trackbed_coupling::track::jump::{JumpSummary, Jumper};
+use trackbed_coupling::track::{CyclicLoad, Track, settlement};
 
 /// The files of one run.
 pub struct Recorder<'a> {
@@ -199,7 +198,7 @@ impl<'a> Recorder<'a> {
             error,
         ]);
         if track.has_rails() {
-            (0..track.count()).for_each(|k| row.push(track.rail(k)));
+            (0..track.count()).for_each(|k| row.push(track.rail_deflection(k)));
             row.extend([now.rail, spent.wheels, spent.pads + spent.track_beyond]);
         }
         if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
@@ -275,10 +274,10 @@ impl<'a> Recorder<'a> {
     }
 
     /// Settlement laws fitted to the cycles.
-    pub fn fits(&self) -> Vec<fit::Fit> {
+    pub fn fits(&self) -> Vec<settlement::Fit> {
         let load = self.job.grains.as_ref().and_then(|g| g.load.as_ref());
         match (&self.course.cycles, load) {
-            (Some(cycles), Some(load)) => fit::fits(&cycles.measured, load.range()[1]),
+            (Some(cycles), Some(load)) => settlement::fits(&cycles.measured, load.range()[1]),
             _ => Vec::new(),
         }
     }
@@ -315,7 +314,7 @@ impl<'a> Recorder<'a> {
             self.series.push(time, 1, "grains", &name("grains"));
             self.series.push(time, 2, "force chains", &name("chains"));
             let mut walls = frames::walls(view, part);
-            track.draw(&mut walls);
+            track_output::draw(track, &mut walls);
             if !walls.polygons.is_empty() {
                 write::vtp::write_walls(&self.dir.join(name("walls")), &walls)?;
                 self.series.push(time, 3, "walls and sleeper", &name("walls"));
@@ -469,11 +468,11 @@ fn cycle_recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleR
                 .filter(|&b| g.state.present(b))
                 .flat_map(|b| g.state.spheres(g.model, b));
             let bottom = spheres.map(|(x, r)| x.z - r).fold(f64::INFINITY, f64::min);
-            let area = 4.0 * sleeper.half[0] * sleeper.half[1];
-            let below = -sleeper.half[2] - bottom;
-            if bottom.is_finite() { cycles::Column { area, below } } else { cycles::Column::default() }
+            let area = 4.0 * sleeper.row.half[0] * sleeper.row.half[1];
+            let below = -sleeper.row.half[2] - bottom;
+            if bottom.is_finite() { BedColumn { area, below } } else { BedColumn::default() }
         }
-        _ => cycles::Column::default(),
+        _ => BedColumn::default(),
     };
     CycleRecorder::new(load, between, column)
 }

@@ -157,11 +157,11 @@ impl Stage<'_> {
         let Some(plan) = &grains.sleeper else { return Ok((bodies, Vec::new())) };
         let model = dem::Model::new(grains.input(bodies.clone())).map_err(|e| refused(self.document, &e))?;
         let state = dem::State::new(&model);
-        let base = |&centre: &[f64; 2]| bed::top_below(&model, &state, centre, &plan.half, surface);
-        let bases: Vec<f64> = plan.centres.iter().map(base).collect();
-        if !plan.meshed {
-            for (&centre, base) in plan.centres.iter().zip(&bases) {
-                bodies.push(grains.sleeper_body(plan, centre, base + plan.half[2]));
+        let base = |&centre: &[f64; 2]| bed::top_below(&model, &state, centre, &plan.row.half, surface);
+        let bases: Vec<f64> = plan.row.centres.iter().map(base).collect();
+        if !plan.row.meshed {
+            for (&centre, base) in plan.row.centres.iter().zip(&bases) {
+                bodies.push(grains.sleeper_body(plan, centre, base + plan.row.half[2]));
             }
         }
         Ok((bodies, bases))

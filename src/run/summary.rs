@@ -1,10 +1,7 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
-use super::fit::Fit;
 use super::flow::FlowRecord;
-use super::jump::JumpSummary;
 use super::packing::{self, CompactionRecord, GrowthRecord, PackingRecord};
-use super::push::PushSummary;
 use crate::failure::Failure;
 use crate::model::exchange::ContactClass;
 use crate::write::WriteError;
@@ -13,6 +10,10 @@ use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::scheme::{Passes, Scheme};
 use trackbed_coupling::stability::Stability;
+use trackbed_coupling::track::extremes::TrackRecord;
+use trackbed_coupling::track::jump::JumpSummary;
+use trackbed_coupling::track::push::PushSummary;
+use trackbed_coupling::track::settlement::Fit;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
 
@@ -312,68 +313,6 @@ pub struct BedStiffness {
     pub last: f64,
     /// Mean of the last ten cycles [N/m].
     pub mean_of_last_ten: f64,
-}
-
-/// Sleepers while the load cycles last.
-#[derive(Clone, Debug, Serialize)]
-pub struct TrackRecord {
-    /// In their order along the track.
-    pub sleepers: Vec<SleeperRecord>,
-}
-
-/// One sleeper while the load cycles last.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct SleeperRecord {
-    /// Largest downward force on its seats together [N], at the end of any window.
-    pub largest_force: f64,
-    /// Smallest one; negative where it was lifted.
-    pub smallest_force: f64,
-    /// Largest lowering since the cycles began [m].
-    pub lowering: f64,
-    /// That no contact carried it for a while; absent where there always was one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lifted_off: Option<LiftOff>,
-    /// Largest force over the load of one axle, where there are axles.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub load_share: Option<f64>,
-    /// Largest downward deflection of the rail over it since the rail was laid [m].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rail_deflection: Option<f64>,
-    /// Largest force when the wheels stand still, on a bed of the scene's `foundation` under every sleeper [N].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub static_force: Option<f64>,
-    /// Largest force over that.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dynamic_amplification: Option<f64>,
-    /// Least and largest rise of the ends of a meshed sleeper's base over its middle [m].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bend: Option<[f64; 2]>,
-}
-
-/// A sleeper that no contact carried for a while.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct LiftOff {
-    /// When that first began [s].
-    pub first: f64,
-    /// How long that was, all in all [s].
-    pub seconds: f64,
-    /// How far it rose above its place when the cycles began [m].
-    pub rise: f64,
-}
-
-impl TrackRecord {
-    /// What to say about sleepers that were lifted off.
-    pub fn remarks(&self) -> impl Iterator<Item = String> + '_ {
-        self.sleepers.iter().enumerate().filter_map(|(k, s)| {
-            let LiftOff { first, seconds, rise } = s.lifted_off?;
-            Some(format!(
-                "sleeper {} was lifted off: from t = {first:.6} s on no contact carried it for {seconds:.6} s in all, up to {:.3} mm \
-                 above its place when the cycles began",
-                k + 1,
-                1e3 * rise
-            ))
-        })
-    }
 }
 
 impl Summary {

@@ -2,16 +2,17 @@
 
 use super::checkpoint::{Body, Loaded};
 use crate::failure::Failure;
-use crate::model::seat_load::CyclicLoad;
-use crate::model::solid::{Moved, SleeperBodies, SolidPart, TimeMethod};
+use crate::model::solid::{SleeperBodies, SolidPart, TimeMethod};
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
+pub use trackbed_coupling::track::GrainsView;
+use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
 /// Forces on bodies at a time.
-pub type Applied<'a> = &'a dyn Fn(f64, &dem::Model, &dem::State, &mut Vec<dem::AppliedForce>);
+pub type Applied<'a> = &'a mut dyn FnMut(f64, &dem::Model, &dem::State, &mut Vec<dem::AppliedForce>);
 
 /// The solid of a running system.
 #[derive(Clone, Copy)]
@@ -22,27 +23,14 @@ pub struct SolidView<'a> {
     pub state: &'a fem::state::State,
 }
 
-/// The grains of a running system.
-#[derive(Clone, Copy)]
-pub struct GrainsView<'a> {
-    /// Model.
-    pub model: &'a dem::Model,
-    /// Its state.
-    pub state: &'a dem::State,
-}
-
 /// A model that can be advanced window by window.
-pub trait System {
-    /// Length of a window [s].
-    fn window(&self) -> f64;
+pub trait System: TrackSystem {
     /// Steps of grains and solid in a window.
     fn steps_per_window(&self) -> (u64, u64);
     /// Advances by one window.
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
     /// Puts into a checkpoint what `resume` of the system goes on from.
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
-    /// Sets grains elsewhere: body, shift [m], rotation in world axes.
-    fn relocate(&mut self, _moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {}
     /// Takes grains out and puts grains in.
     ///
     /// # Errors
@@ -62,10 +50,6 @@ pub trait System {
     fn solid(&self) -> Option<SolidView<'_>> {
         None
     }
-    /// The grains, if there are any.
-    fn grains(&self) -> Option<GrainsView<'_>> {
-        None
-    }
     /// Whether a window that fails leaves the state of the last good step behind.
     fn keeps_its_state(&self) -> bool {
         false
@@ -81,10 +65,6 @@ pub trait System {
     /// Largest mean pressure on a face of the ground in the last window [Pa].
     fn peak_pressure(&self) -> f64 {
         0.0
-    }
-    /// Meshed sleeper `k`, if there are such.
-    fn meshed_sleeper(&self, _k: usize) -> Option<MeshedView> {
-        None
     }
     /// Work of the loads on the sleepers' seats so far [J].
     fn seat_work(&self) -> f64 {
@@ -140,11 +120,13 @@ impl<'a> SolidSystem<'a> {
     }
 }
 
-impl System for SolidSystem<'_> {
+impl TrackSystem for SolidSystem<'_> {
     fn window(&self) -> f64 {
         self.solver.dt()
     }
+}
 
+impl System for SolidSystem<'_> {
     fn steps_per_window(&self) -> (u64, u64) {
         (0, 1)
     }
@@ -241,11 +223,22 @@ impl GrainsSystem {
     }
 }
 
-impl System for GrainsSystem {
+impl TrackSystem for GrainsSystem {
     fn window(&self) -> f64 {
         self.model.dt()
     }
 
+    fn grains(&self) -> Option<GrainsView<'_>> {
+        Some(GrainsView { model: &self.model, state: &self.state })
+    }
+
+    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
+        moves.iter().for_each(|(body, shift, turn)| self.state.shift(&self.model, *body, shift, turn));
+        self.state.forget_neighbours();
+    }
+}
+
+impl System for GrainsSystem {
     fn steps_per_window(&self) -> (u64, u64) {
         (1, 0)
     }
@@ -259,11 +252,6 @@ impl System for GrainsSystem {
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         body.put(&self.state)
-    }
-
-    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
-        moves.iter().for_each(|(body, shift, turn)| self.state.shift(&self.model, *body, shift, turn));
-        self.state.forget_neighbours();
     }
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
@@ -285,23 +273,6 @@ impl System for GrainsSystem {
     fn spent(&self) -> Spent {
         coupling::step::spent_by_grains(&self.state)
     }
-
-    fn grains(&self) -> Option<GrainsView<'_>> {
-        Some(GrainsView { model: &self.model, state: &self.state })
-    }
-}
-
-/// A meshed sleeper at one moment.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshedView {
-    /// Centre of mass [m].
-    pub place: [f64; 3],
-    /// Height of the centre when it was set down and the rise of the seats since, together [m].
-    pub height: f64,
-    /// How it has moved.
-    pub moved: Moved,
-    /// Force of the grains on it, mean over the last window [N].
-    pub contact: [f64; 3],
 }
 
 /// Meshed sleepers of a running system.
@@ -348,11 +319,36 @@ pub struct CoupledSystem<'a> {
     pub seats: Option<Meshed<'a>>,
 }
 
-impl System for CoupledSystem<'_> {
+impl TrackSystem for CoupledSystem<'_> {
     fn window(&self) -> f64 {
         self.model.window()
     }
 
+    fn grains(&self) -> Option<GrainsView<'_>> {
+        Some(GrainsView { model: &self.model.grains, state: &self.state.grains })
+    }
+
+    fn meshed_sleeper(&self, k: usize) -> Option<MeshedSleeper> {
+        let s = self.seats.as_ref()?;
+        let (moved, [x, y, z]) = (s.bodies.moved(k, &self.state.solid.u), s.bodies.centre(k, s.bases[k]));
+        let faces = s.bodies.face_count();
+        let first = s.first_face + k * faces;
+        Some(MeshedSleeper {
+            place: [x + moved.way[0], y + moved.way[1], z + moved.way[2]],
+            height: z + moved.seats,
+            moved,
+            contact: self.work.contact_force_on(first..first + faces, self.model.window()),
+        })
+    }
+
+    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
+        let grains = &mut self.state.grains;
+        moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
+        grains.forget_neighbours();
+    }
+}
+
+impl System for CoupledSystem<'_> {
     fn steps_per_window(&self) -> (u64, u64) {
         (u64::from(self.model.substeps), 1)
     }
@@ -367,8 +363,9 @@ impl System for CoupledSystem<'_> {
         let middle = self.state.solid.time + 0.5 * self.model.window();
         let before = seats.map_or(0.0, |s| s.work_at(middle, &self.state.solid.u));
         let model = &self.model;
-        let apply =
-            |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| applied(t, &model.grains, s, out);
+        let apply = |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            applied(t, &model.grains, s, out);
+        };
         coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
             .map_err(|e| Failure::Numerical(e.to_string()))?;
         if let Some(seats) = &mut self.seats {
@@ -380,12 +377,6 @@ impl System for CoupledSystem<'_> {
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         let seat_work = self.seats.as_ref().map_or(0.0, |s| s.work);
         body.put(&(&self.model.reference, self.work.memory(), &self.state, seat_work))
-    }
-
-    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
-        let grains = &mut self.state.grains;
-        moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
-        grains.forget_neighbours();
     }
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
@@ -409,29 +400,12 @@ impl System for CoupledSystem<'_> {
         Some(SolidView { model: self.model.solid, state: &self.state.solid })
     }
 
-    fn grains(&self) -> Option<GrainsView<'_>> {
-        Some(GrainsView { model: &self.model.grains, state: &self.state.grains })
-    }
-
     fn contact_force(&self) -> [f64; 3] {
         self.work.contact_force_on(0..self.ground_faces, self.model.window())
     }
 
     fn peak_pressure(&self) -> f64 {
         self.work.peak_pressure_on(0..self.ground_faces, self.model.window())
-    }
-
-    fn meshed_sleeper(&self, k: usize) -> Option<MeshedView> {
-        let s = self.seats.as_ref()?;
-        let (moved, [x, y, z]) = (s.bodies.moved(k, &self.state.solid.u), s.bodies.centre(k, s.bases[k]));
-        let faces = s.bodies.face_count();
-        let first = s.first_face + k * faces;
-        Some(MeshedView {
-            place: [x + moved.way[0], y + moved.way[1], z + moved.way[2]],
-            height: z + moved.seats,
-            moved,
-            contact: self.work.contact_force_on(first..first + faces, self.model.window()),
-        })
     }
 
     fn seat_work(&self) -> f64 {

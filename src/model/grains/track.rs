@@ -3,10 +3,11 @@
 use super::{GrainsPart, SleeperPlan, check};
 use crate::failure::Failure;
 use crate::model::track::plan::{self, RailPlan};
-use crate::model::track::rail::RailInput;
 use crate::model::track::sleeper;
 use crate::scene::Document;
 use crate::scene::track::Track;
+use trackbed_coupling::track::SleeperRow;
+use trackbed_coupling::track::rail::RailInput;
 use trackbed_dem::shape::Shape;
 
 /// Adds the sleepers and their load.
@@ -42,16 +43,8 @@ pub(super) fn add(
     if let Some(RailPlan::Beam(input)) = rail {
         part.rail = Some(RailInput { gravity: -part.gravity.z, ..*input });
     }
-    part.sleeper = Some(SleeperPlan {
-        shape,
-        material,
-        mass,
-        fixed: sleeper::held(s),
-        meshed,
-        half,
-        axis: s.along.axis(),
-        centres,
-        seats,
-    });
+    let (held, axis) = (sleeper::held(s), s.along.axis());
+    let row = SleeperRow { meshed, mass, held, half, axis, centres, seats };
+    part.sleeper = Some(SleeperPlan { shape, material, row });
     Ok(())
 }

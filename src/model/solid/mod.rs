@@ -15,7 +15,7 @@ pub use analysis::{
 pub use geometry::{Geometry, geometry};
 pub use load::NodalLoad;
 pub use selection::find_node;
-pub use sleepers::{Moved, SleeperBodies};
+pub use sleepers::SleeperBodies;
 
 use crate::failure::Failure;
 use crate::mesh_tools;

@@ -7,6 +7,7 @@ use crate::model::track::sleeper::MeshedSleepers;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use trackbed_coupling::surface::SolidSurface;
+use trackbed_coupling::track::SleeperMotion;
 use trackbed_fem as fem;
 use trackbed_fem::ElementKind;
 use trackbed_fem::material::Material;
@@ -38,19 +39,6 @@ pub struct SleeperBodies {
     slopes: [Vec<(u32, f64)>; 2],
     /// Mean of both ends of the base less that of its middle.
     bend: Vec<(u32, f64)>,
-}
-
-/// A moved sleeper.
-#[derive(Clone, Copy, Debug)]
-pub struct Moved {
-    /// Displacement of the centre of mass [m].
-    pub way: [f64; 3],
-    /// Angle between the normal of the base and the vertical [rad].
-    pub tilt: f64,
-    /// Rise of the seats, mean under the load [m].
-    pub seats: f64,
-    /// Rise of the ends of the base over its middle [m].
-    pub bend: f64,
 }
 
 impl SleeperBodies {
@@ -168,13 +156,13 @@ impl SleeperBodies {
     }
 
     /// How sleeper `k` has moved by the displacements `u`, shape `[3·nodes]`.
-    pub fn moved(&self, k: usize, u: &[f64]) -> Moved {
+    pub fn moved(&self, k: usize, u: &[f64]) -> SleeperMotion {
         let first = self.nodes_of(k).start;
         let mean = |d: usize| {
             self.volume.iter().enumerate().map(|(n, share)| share * u[3 * (first + n) + d]).sum::<f64>()
         };
         let [x, y] = [0, 1].map(|d| self.sum_z(k, u, &self.slopes[d]));
-        Moved {
+        SleeperMotion {
             way: [0, 1, 2].map(mean),
             tilt: x.hypot(y).atan(),
             seats: self.rise_of_seats(k, u),

@@ -1,9 +1,5 @@
-//! Rails and what rolls on them.
+//! `[track]` resolved: sleepers, rail, load, trains.
 
-pub mod band;
-pub mod beam;
 pub mod plan;
-pub mod pulse;
-pub mod rail;
 pub mod sleeper;
 pub mod trains;

@@ -1,13 +1,14 @@
 //! `[track.load]` and `[track.rail]` resolved.
 
-use super::pulse::Winkler;
-use super::rail::RailInput;
 use super::trains;
 use crate::failure::Failure;
-use crate::model::seat_load::{Course, CyclicLoad, Pass, Spread};
 use crate::model::tables;
 use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, Track};
 use crate::scene::{Document, SceneError};
+use trackbed_coupling::track::influence::Winkler;
+use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Waveform};
+use trackbed_coupling::track::rail::RailInput;
+use trackbed_coupling::track::train;
 
 /// Spacings at the ends of a rail over which the load of a wheel comes on.
 const TAPER: f64 = 2.0;
@@ -89,14 +90,14 @@ pub fn load(
         };
         return Err(error.into());
     }
-    let course = match l.kind {
-        SeatLoadKind::Sine | SeatLoadKind::Haversine => Course::Wave {
+    let waveform = match l.kind {
+        SeatLoadKind::Sine | SeatLoadKind::Haversine => Waveform::Wave {
             sine: l.kind == SeatLoadKind::Sine,
             minimum,
             maximum,
             frequency: above_zero("frequency", l.frequency.map_or(0.0, |f| f.si))?,
         },
-        SeatLoadKind::Ramp => Course::Ramp {
+        SeatLoadKind::Ramp => Waveform::Ramp {
             minimum,
             maximum,
             rise: above_zero("rise", l.rise.map_or(0.0, |t| t.si))?,
@@ -113,7 +114,7 @@ pub fn load(
                 return Err(document.error(&key("file"), "one row", "two or more").into());
             }
             let points = rows.iter().map(|(t, f)| (t - first, f * factor)).collect();
-            Course::Measured { points, speed }
+            Waveform::Measured { points, speed }
         }
         SeatLoadKind::Gauss => {
             let width = above_zero("width", l.width.map_or(0.0, |w| w.si))?;
@@ -123,16 +124,22 @@ pub fn load(
                 return Err(document.error(&key("axles"), found, "ascending distances, the first 0").into());
             }
             let axles = behind.iter().map(|&b| [b, maximum]).collect();
-            pass(speed, axles, Spread::Gauss(width), &places, Vec::new())
+            Waveform::Pass(Pass::over(
+                &places,
+                speed.unwrap_or(1.0),
+                axles,
+                AxleSpread::Gauss(width),
+                Vec::new(),
+            ))
         }
         SeatLoadKind::Bogie | SeatLoadKind::Train => {
             let axles = axles(document, l)?;
             let waves = waves(document, l, speed.unwrap_or(0.0))?;
             let rail = rail.expect("checked above");
-            pass(speed, axles, rail.spread(&places), &places, waves)
+            Waveform::Pass(Pass::over(&places, speed.unwrap_or(1.0), axles, rail.spread(&places), waves))
         }
     };
-    Ok(CyclicLoad { course, cycles, rest: l.rest.si, ramp: l.ramp.si, places })
+    Ok(CyclicLoad { waveform, cycles, rest: l.rest.si, ramp: l.ramp.si, places })
 }
 
 /// Refuses keys of other kinds and asks for those that are needed.
@@ -194,28 +201,9 @@ fn waves(document: &Document, l: &SeatLoad, speed: f64) -> Result<Vec<[f64; 2]>,
     let mass = check(document, &key("excitation.mass"), e.mass.si, |m| m > 0.0, "above 0")?;
     let wave = |[length, amplitude]: &[crate::scene::units::Quantity<crate::scene::units::Length>; 2]| {
         let length = check(document, &key("excitation.waves"), length.si, |x| x > 0.0, "lengths above 0")?;
-        let turn = std::f64::consts::TAU * speed / length;
-        Ok([mass * amplitude.si * turn * turn, length])
+        Ok(train::excitation(mass, amplitude.si, length, speed))
     };
     e.waves.iter().map(wave).collect()
-}
-
-/// A pass of axles over sleepers, from out of reach to out of reach.
-fn pass(
-    speed: Option<f64>,
-    axles: Vec<[f64; 2]>,
-    spread: Spread,
-    places: &[f64],
-    waves: Vec<[f64; 2]>,
-) -> Course {
-    let last = places.last().copied().unwrap_or(0.0);
-    let [from, to] = match spread {
-        Spread::Beam { ends, .. } => ends,
-        _ => [-spread.reach(), last + spread.reach()],
-    };
-    let behind = axles.last().map_or(0.0, |a| a[0]);
-    let speed = speed.unwrap_or(1.0);
-    Course::Pass(Pass { speed, axles, begin: from, way: to - from + behind, spread, waves })
 }
 
 /// The rail of a scene.
@@ -229,13 +217,13 @@ pub enum RailPlan {
 
 impl RailPlan {
     /// How it spreads the load of an axle.
-    fn spread(&self, places: &[f64]) -> Spread {
+    fn spread(&self, places: &[f64]) -> AxleSpread {
         match self {
-            RailPlan::Winkler(w) => Spread::Winkler(*w),
+            RailPlan::Winkler(w) => AxleSpread::Winkler(*w),
             RailPlan::Beam(input) => {
                 let before = input.beyond as f64 * input.spacing;
                 let ends = [-before, before + places.last().copied().unwrap_or(0.0)];
-                Spread::Beam { ends, taper: TAPER * input.spacing }
+                AxleSpread::Beam { ends, taper: TAPER * input.spacing }
             }
         }
     }

@@ -1,10 +1,11 @@
-//! Trains: axles of cars from a table of axle layouts.
+//! Trains: cars from a table of axle layouts.
 
 use crate::read::ReadError;
 use crate::scene::units::{Force, Length, Quantity};
 use crate::scene::{Document, SceneError};
 use serde::Deserialize;
 use std::path::Path;
+use trackbed_coupling::track::train::CarLayout;
 
 /// Axle layout of a car with two bogies of two axles.
 #[derive(Clone, Debug, Deserialize)]
@@ -67,9 +68,12 @@ pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
 impl Car {
     /// Distances of all axles of `cars` cars behind the first one [m], ascending.
     pub fn axles(&self, cars: u32) -> Vec<f64> {
-        let (base, bogies) = (self.wheelbase.si, self.bogie_spacing.si);
-        let car = [0.0, base, bogies, bogies + base];
-        (0..cars).flat_map(|c| car.map(|a| f64::from(c) * self.car_length.si + a)).collect()
+        let layout = CarLayout {
+            wheelbase: self.wheelbase.si,
+            bogie_spacing: self.bogie_spacing.si,
+            car_length: self.car_length.si,
+        };
+        layout.axles(cars)
     }
 }
 

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// First cycle that fits use.
 pub const FIRST: f64 = 10.0;
-/// Fewest cycles that a fit is made of.
+/// Fewest cycles of a fit.
 pub const FEWEST: usize = 10;
 
 /// A law with its parameters.
@@ -113,7 +113,7 @@ pub fn slope(cycles: &[[f64; 2]], from: f64) -> Option<Slope> {
     (fit.slope.is_finite() && fit.error.is_finite()).then_some(fit)
 }
 
-/// A function of N that a law is made of.
+/// A function of N, one term of a law.
 type Term<'a> = &'a dyn Fn(f64) -> f64;
 
 struct Data<'a> {
@@ -124,7 +124,7 @@ struct Data<'a> {
 
 impl Data<'_> {
     /// Coefficients of the sum of terms that is nearest in the mean square, and the sum of squares left [m²]; none when the
-    /// terms cannot be told apart.
+    /// terms are linearly dependent.
     fn linear(&self, terms: &[Term<'_>]) -> Option<(Vec<f64>, f64)> {
         let rows = self.used.len();
         let mut matrix = nalgebra::DMatrix::from_fn(rows, terms.len(), |i, k| terms[k](self.used[i][0]));
@@ -172,7 +172,7 @@ impl Data<'_> {
 const GRID: usize = 120;
 
 /// The number between two bounds whose linear fit leaves least, with that fit: the best of a grid, narrowed down by golden
-/// sections. None when the best lies at a bound, where the data do not tell it.
+/// sections. None when the best lies at a bound: the data do not determine it.
 fn search(low: f64, high: f64, fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>) -> Option<(f64, Vec<f64>, f64)> {
     let at = |k: usize| low + (high - low) * k as f64 / GRID as f64;
     let rest = |x: f64| fit(x).map_or(f64::INFINITY, |f| f.1);
@@ -191,5 +191,5 @@ fn search(low: f64, high: f64, fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>) -> 
 }
 
 #[cfg(test)]
-#[path = "fit_tests.rs"]
+#[path = "settlement_tests.rs"]
 mod tests;

@@ -9,9 +9,9 @@
 //!
 //! Δ(½ vᵀMv + ½ uᵀKu) = ½ (f₀ + f₁)ᵀ Δu − ½ (C v₀ + C v₁)ᵀ Δu.
 //!
-//! The books split the right side into the work of wheels and weight, the work of the pads on the seats, and what
-//! dashpots take. Grains move by a leapfrog whose work belongs to half steps; [`Books::half_step_back`] gives the
-//! books at the same instant.
+//! [`RailEnergy`] splits the right side into the work of wheels and weight, the work of the pads on the seats, and the
+//! dissipation of the dashpots. Grains move by a leapfrog whose work belongs to half steps;
+//! [`RailState::energy_at_half_step`] gives the account at the same instant.
 //!
 //! Limits: vertical motion only; pads pull as well as they push, as clips do; no shear deformation.
 
@@ -19,7 +19,7 @@ use super::band::{Band, BandFactor};
 use super::beam::Element;
 use serde::{Deserialize, Serialize};
 
-/// What a rail is made of.
+/// Dimensions, stiffness and mass of a rail and its supports.
 #[derive(Clone, Copy, Debug)]
 pub struct RailInput {
     /// Beam elements between two sleepers, 1 or more.
@@ -74,7 +74,7 @@ pub struct Rail {
 
 /// Energy and work since the rail was laid [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Books {
+pub struct RailEnergy {
     /// Kinetic energy of rail and sleepers beyond.
     pub kinetic: f64,
     /// Energy of bending, pads and the springs under the sleepers beyond.
@@ -89,10 +89,10 @@ pub struct Books {
     pub beyond: f64,
 }
 
-impl Books {
-    fn combined(&self, a: f64, other: &Books, b: f64) -> Books {
+impl RailEnergy {
+    fn combined(&self, a: f64, other: &RailEnergy, b: f64) -> RailEnergy {
         let mix = |x: f64, y: f64| a * x + b * y;
-        Books {
+        RailEnergy {
             kinetic: mix(self.kinetic, other.kinetic),
             elastic: mix(self.elastic, other.elastic),
             wheels: mix(self.wheels, other.wheels),
@@ -103,7 +103,7 @@ impl Books {
     }
 
     /// Sum of two.
-    pub fn plus(&self, other: &Books) -> Books {
+    pub fn plus(&self, other: &RailEnergy) -> RailEnergy {
         self.combined(1.0, other, 1.0)
     }
 
@@ -121,19 +121,19 @@ pub struct RailState {
     a: Vec<f64>,
     /// Wheels and weight at the present time [N].
     load: Vec<f64>,
-    /// Heights of the seats now and one and two steps ago, from where they were when the rail was laid [m].
+    /// Rise of the seats since the rail was laid, now and one and two steps ago [m].
     seats: [Vec<f64>; 3],
     /// Spring and dashpot force of each modelled pad, upwards on the seat [N].
     spring: Vec<f64>,
     dashpot: Vec<f64>,
-    books: Books,
-    /// Books one step ago.
-    before: Books,
+    energy: RailEnergy,
+    /// RailEnergy one step ago.
+    before: RailEnergy,
 }
 
-/// Scratch of a step.
+/// Scratch memory of a step.
 #[derive(Clone, Debug, Default)]
-pub struct Scratch {
+pub struct RailScratch {
     right: Vec<f64>,
     load: Vec<f64>,
     moved: Vec<f64>,
@@ -233,8 +233,8 @@ impl Rail {
             seats: [none.clone(), none.clone(), none.clone()],
             spring: none.clone(),
             dashpot: none,
-            books: Books::default(),
-            before: Books::default(),
+            energy: RailEnergy::default(),
+            before: RailEnergy::default(),
         }
     }
 
@@ -249,11 +249,11 @@ impl Rail {
         seats: impl Iterator<Item = f64>,
         wheels: &[Wheel],
         weight: f64,
-        scratch: &mut Scratch,
+        scratch: &mut RailScratch,
     ) {
         let (dt, [stiff, damp]) = (self.dt, self.input.pad);
         let n = self.mass.size();
-        let Scratch { right, load, moved } = scratch;
+        let RailScratch { right, load, moved } = scratch;
         load.clear();
         load.extend(self.weight.iter().map(|w| weight * w));
         self.add_wheels(wheels, load);
@@ -285,27 +285,27 @@ impl Rail {
             moved[i] += more;
         }
 
-        // Books. `moved` is Δu now.
-        state.before = state.books;
-        let mut books = state.books;
-        books.wheels += (0..n).map(|i| 0.5 * (state.load[i] + load[i]) * moved[i]).sum::<f64>();
+        // RailEnergy. `moved` is Δu now.
+        state.before = state.energy;
+        let mut energy = state.energy;
+        energy.wheels += (0..n).map(|i| 0.5 * (state.load[i] + load[i]) * moved[i]).sum::<f64>();
         let (mut springs, mut squares) = (0.0, 0.0);
         for (k, &d) in self.seats.iter().enumerate() {
             let (spring, dashpot) = (stiff * (state.u[d] - now[k]), damp * (state.v[d] - speed(k)));
             let lift = now[k] - last[k];
             let mean = 0.5 * (dashpot + state.dashpot[k]);
-            books.on_seats += (0.5 * (spring + state.spring[k]) + mean) * lift;
-            books.pads += mean * (moved[d] - lift);
+            energy.on_seats += (0.5 * (spring + state.spring[k]) + mean) * lift;
+            energy.pads += mean * (moved[d] - lift);
             // The stiffness matrix holds the pads as if the seats stood still.
             springs += 0.5 * stiff * (state.u[d] - now[k]).powi(2);
             squares += 0.5 * stiff * state.u[d].powi(2);
             (state.spring[k], state.dashpot[k]) = (spring, dashpot);
         }
         // The mean velocity of the step is Δu/Δt.
-        books.beyond += 2.0 / dt * self.beyond.half_square(moved);
-        books.kinetic = self.mass.half_square(&state.v);
-        books.elastic = self.stiffness.half_square(&state.u) - squares + springs;
-        state.books = books;
+        energy.beyond += 2.0 / dt * self.beyond.half_square(moved);
+        energy.kinetic = self.mass.half_square(&state.v);
+        energy.elastic = self.stiffness.half_square(&state.u) - squares + springs;
+        state.energy = energy;
         state.load.copy_from_slice(load);
     }
 
@@ -347,14 +347,14 @@ impl RailState {
         rail.dofs.iter().enumerate().map(move |(i, &d)| [begin + i as f64 * step, self.u[d]])
     }
 
-    /// The books now.
-    pub fn books(&self) -> &Books {
-        &self.books
+    /// Account of energy now.
+    pub fn energy(&self) -> &RailEnergy {
+        &self.energy
     }
 
-    /// The books in the middle of the last step, where the accounts of grains are.
-    pub fn half_step_back(&self) -> Books {
-        self.books.combined(0.5, &self.before, 0.5)
+    /// Account of energy in the middle of the last step, where the account of grains is.
+    pub fn energy_at_half_step(&self) -> RailEnergy {
+        self.energy.combined(0.5, &self.before, 0.5)
     }
 }
 

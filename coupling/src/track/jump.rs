@@ -1,37 +1,55 @@
 //! Cycle jumps: most cycles of a long load are not simulated one by one.
 //!
-//! Settlement grows with the logarithm of the number of cycles, so the rate of N cycles foretells that of the next ΔN:
+//! Settlement grows with the logarithm of the number of cycles, so the rate of N cycles predicts that of the next ΔN:
 //! together they settle b ln(1 + ΔN/N), b the slope ds/d(ln N) of the last simulated cycles. The controller runs in rounds. A
-//! *stretch* of cycles is simulated and its slope compared with the one foretold before the last jump; then comes the next
-//! jump, relative to N twice as long if what the last one went wrong by is within the tolerance, half as long if not.
+//! *stretch* of cycles is simulated and its slope compared with the one predicted before the last jump; then follows the next
+//! jump, relative to N twice as long if the error of the last one is within the tolerance, half as long if not.
 //!
 //! * `account`: the grains stay, and the settlement of the row is the measured one plus b ln(N/n), n the age of the bed. Each
 //!   stretch makes the bed older and b new. Its error is estimated as ln(N/n) times two standard errors of b and that of b by
-//!   the stretches that were foretold.
+//!   the stretches that were predicted.
 //! * `grains`: every body is moved on along its drift through the last stretch, scaled to the settlement b ln(1 + ΔN/N), as
 //!   far as the overlaps change by a given share of their mean; then some cycles run whose rate does not count. The error of
-//!   a jump is what the settlement after the next stretch differs from the logarithm; errors add up. Contact springs stay:
+//!   a jump is the difference of the settlement after the next stretch from the logarithm; errors add up. Contact springs stay:
 //!   the next step turns them into their new planes and cuts them at the friction limit. The energy that a jump brings
 //!   in has a term of its own in the account.
 //!
 //! Limits: a bed that breaks, or whose load changes, has no such logarithm. Driven walls are not moved.
 
 use super::cycles::CycleRecorder;
-use super::fit;
-use super::system::System;
-use crate::model::after::JumpPlan;
+use super::settlement;
+use super::system::TrackSystem;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use trackbed_dem as dem;
 use trackbed_dem::Partner;
 
-/// Part of the largest jump that the first one is.
+/// First jump over the largest one.
 const START: f64 = 0.25;
 /// Share of all simulated cycles that a stretch of `account` has at least.
 const STRETCH: f64 = 0.1;
 /// The slope is that of the cycles from this share of the last one on.
 const WINDOW: f64 = 0.25;
+
+/// Cycles that are not simulated one by one.
+#[derive(Clone, Copy, Debug)]
+pub struct JumpPlan {
+    /// Whether the grains are moved; otherwise only the account goes on.
+    pub grains: bool,
+    /// Cycles simulated before the first jump.
+    pub first: u32,
+    /// Cycles of a stretch whose rate is measured.
+    pub measure: u32,
+    /// Cycles after a jump whose rate does not count.
+    pub settle: u32,
+    /// Error of a jump over the settlement up to which the next jump is longer.
+    pub tolerance: f64,
+    /// Largest jump over the cycles before it.
+    pub largest: f64,
+    /// Share by which a jump may change the overlaps in the mean.
+    pub overlap: f64,
+}
 
 /// One jump, for the summary.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,7 +58,7 @@ pub struct JumpRecord {
     pub from: u32,
     /// Cycles jumped over.
     pub cycles: u32,
-    /// Slope foretold, ds/d(ln N) [m].
+    /// Slope predicted, ds/d(ln N) [m].
     pub predicted_slope: f64,
     /// Slope of the stretch after it [m]; none when the run ended first.
     pub measured_slope: Option<f64>,
@@ -50,7 +68,7 @@ pub struct JumpRecord {
     pub overlap_change: Option<f64>,
 }
 
-/// What a run with jumps says about them.
+/// Results of a run with jumps.
 #[derive(Clone, Debug, Serialize)]
 pub struct JumpSummary {
     /// `"account"` or `"grains"`.
@@ -69,7 +87,7 @@ pub struct JumpSummary {
     pub jumps: Vec<JumpRecord>,
 }
 
-/// What is done in the present cycles.
+/// Purpose of the present cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// Cycles before the first stretch, and those after a jump whose rate does not count.
@@ -92,8 +110,8 @@ pub struct Jumper {
     /// Places of the bodies, age of the bed and settlement when the stretch began.
     places: Places,
     begun: [f64; 2],
-    /// Age and settlement when the last jump was made, and the slope foretold.
-    foretold: Option<[f64; 3]>,
+    /// Age and settlement when the last jump was made, and the slope predicted.
+    predicted: Option<[f64; 3]>,
     /// The jumps so far.
     pub jumps: Vec<JumpRecord>,
 }
@@ -106,13 +124,13 @@ impl Jumper {
             growth: START * plan.largest,
             places: Vec::new(),
             begun: [0.0; 2],
-            foretold: None,
+            predicted: None,
             jumps: Vec::new(),
         }
     }
 
     /// After a simulated cycle: goes on in the round, and jumps when it is time. Returns whether bodies were moved.
-    pub fn after_cycle<S: System>(
+    pub fn after_cycle<S: TrackSystem>(
         &mut self,
         plan: &JumpPlan,
         cycles: &mut CycleRecorder,
@@ -146,7 +164,7 @@ impl Jumper {
     }
 
     /// Begins a stretch.
-    fn begin<S: System>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &S) {
+    fn begin<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &S) {
         if let (true, Some(g)) = (plan.grains, system.grains()) {
             self.places = (0..g.model.body_count())
                 .map(|b| (g.state.position(b), g.state.orientation(g.model, b)))
@@ -161,13 +179,13 @@ impl Jumper {
         self.phase = if room < left { Phase::Over } else { Phase::Stretch(left) };
     }
 
-    /// Compares a stretch with what was foretold.
+    /// Compares a stretch with the prediction.
     fn judge(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder) {
-        let (now, Some([age, settlement, slope])) = (cycles.latest, self.foretold) else { return };
+        let (now, Some([age, settlement, slope])) = (cycles.latest, self.predicted) else { return };
         let measured = (now[1] - self.begun[1]) / (now[0] / self.begun[0]).ln();
         let Some(last) = self.jumps.last_mut() else { return };
         last.measured_slope = Some(measured);
-        // What the jump went wrong by: its place where the grains were moved, its slope where they were not.
+        // Error of the jump: in settlement where the grains were moved, by the slope where they were not.
         let found = if plan.grains {
             last.error = (now[1] - settlement - slope * (now[0] / age).ln()).abs();
             cycles.jump_error += last.error;
@@ -177,14 +195,14 @@ impl Jumper {
         };
         let good = found <= plan.tolerance * cycles.done.last().map_or(0.0, |c| c.settlement.abs());
         self.growth = if good { (2.0 * self.growth).min(plan.largest) } else { 0.5 * self.growth };
-        self.foretold = None;
+        self.predicted = None;
     }
 
-    /// Jumps, if the last cycles tell a slope; whether bodies were moved.
-    fn jump<S: System>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &mut S) -> bool {
+    /// Jumps, if the last cycles determine a slope; whether bodies were moved.
+    fn jump<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &mut S) -> bool {
         let [age, settlement] = cycles.latest;
         let number = f64::from(cycles.number());
-        let Some(fit) = fit::slope(&cycles.measured, WINDOW * age).filter(|f| f.slope > 0.0) else {
+        let Some(fit) = settlement::slope(&cycles.measured, WINDOW * age).filter(|f| f.slope > 0.0) else {
             return false;
         };
         let reserve = plan.settle + plan.measure.max((STRETCH * f64::from(cycles.simulated())) as u32);
@@ -195,7 +213,7 @@ impl Jumper {
         if plan.grains {
             let Some(drift) = Drift::of(&self.places, system) else { return false };
             let own = (settlement - self.begun[1]) / (age / self.begun[0]).ln();
-            // Drift of a stretch that went up, or hardly down, tells no direction.
+            // Drift of a stretch that went up, or hardly down, has no reliable direction.
             if own < 0.25 * fit.slope {
                 return false;
             }
@@ -230,11 +248,11 @@ impl Jumper {
             overlap_change: change,
         });
         // The age goes on from here: with the number where the grains were moved, as before where they were not.
-        self.foretold = Some([age, settlement, fit.slope]);
+        self.predicted = Some([age, settlement, fit.slope]);
         plan.grains
     }
 
-    /// Standard error of the slope by the stretches that were foretold: root of the sum of squared misses over their
+    /// Standard error of the slope by the stretches that were predicted: root of the sum of squared misses over their
     /// number [m].
     fn slope_error(&self) -> f64 {
         let miss = |j: &JumpRecord| j.measured_slope.map(|m| (m - j.predicted_slope).powi(2));
@@ -270,7 +288,7 @@ struct Drift {
 }
 
 impl Drift {
-    fn of<S: System>(places: &Places, system: &S) -> Option<Drift> {
+    fn of<S: TrackSystem>(places: &Places, system: &S) -> Option<Drift> {
         let g = system.grains()?;
         let motion: Vec<(dem::Vec3, dem::Vec3)> = places
             .iter()

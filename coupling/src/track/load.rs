@@ -2,16 +2,21 @@
 //!
 //! Rest without load, a smooth ramp to the load of the first instant, then whole cycles. A cycle is a period of a force
 //! that acts on all sleepers at once, or a pass of wheels or pulses that reach one sleeper after the other.
+//!
+//! Sources: an axle is shared among the sleepers by the laws of [`influence`](super::influence) or by a [rail with
+//! mass](super::rail). A wheel that follows a rail of the shape a sin wt without losing contact needs the inertia force
+//! M a w² of its unsprung mass (Newton's law), so that its force is F = P + Σ M a w² sin wt; the vehicle's own suspension is left
+//! out.
 
-use super::track::pulse::{GAUSS_REACH, Winkler, gauss};
-use super::track::rail::Wheel;
+use super::influence::{GAUSS_REACH, Winkler, gauss};
+use super::rail::Wheel;
 use std::f64::consts::{PI, TAU};
 
 /// Downward forces on the sleepers.
 #[derive(Clone, Debug)]
 pub struct CyclicLoad {
     /// What happens in a cycle.
-    pub course: Course,
+    pub waveform: Waveform,
     /// Number of cycles.
     pub cycles: u32,
     /// Time without load [s].
@@ -24,7 +29,7 @@ pub struct CyclicLoad {
 
 /// What happens in a cycle.
 #[derive(Clone, Debug)]
-pub enum Course {
+pub enum Waveform {
     /// Mean plus amplitude times sin 2πft, or minimum plus range times (1 − cos 2πft)/2.
     Wave {
         /// Whether it starts at the mean.
@@ -69,22 +74,22 @@ pub struct Pass {
     pub axles: Vec<[f64; 2]>,
     /// Place of the first axle when a pass begins [m].
     pub begin: f64,
-    /// Way of the first axle in a pass [m].
-    pub way: f64,
-    /// How the force of an axle comes to the sleepers.
-    pub spread: Spread,
-    /// What an uneven rail adds: force amplitude [N] and wave length [m].
+    /// Distance that the first axle travels in a pass [m].
+    pub distance: f64,
+    /// How the force of an axle is shared among the sleepers.
+    pub spread: AxleSpread,
+    /// Waves of an uneven rail: force amplitude [N] and wave length [m].
     pub waves: Vec<[f64; 2]>,
 }
 
-/// How the force of an axle comes to the sleepers.
+/// How the force of an axle is shared among the sleepers.
 #[derive(Clone, Copy, Debug)]
-pub enum Spread {
+pub enum AxleSpread {
     /// As a Gaussian pulse of this width ℓ [m].
     Gauss(f64),
     /// By the formula of a beam on an elastic foundation.
     Winkler(Winkler),
-    /// Through a rail with mass from `ends[0]` to `ends[1]` [m], onto which wheels come within `taper` [m].
+    /// Through a rail with mass from `ends[0]` to `ends[1]` [m], onto which wheels roll within `taper` [m].
     Beam {
         /// Ends of the rail [m].
         ends: [f64; 2],
@@ -93,18 +98,36 @@ pub enum Spread {
     },
 }
 
-impl Spread {
-    /// Distance from an axle at which nothing is felt any more [m].
+impl AxleSpread {
+    /// Distance from an axle beyond which its force is negligible [m].
     pub fn reach(&self) -> f64 {
         match self {
-            Spread::Gauss(width) => GAUSS_REACH * width,
-            Spread::Winkler(w) => w.reach(),
-            Spread::Beam { .. } => 0.0,
+            AxleSpread::Gauss(width) => GAUSS_REACH * width,
+            AxleSpread::Winkler(w) => w.reach(),
+            AxleSpread::Beam { .. } => 0.0,
         }
     }
 }
 
 impl Pass {
+    /// Axles of these distances behind the first [m] and forces [N] over sleepers at `places` [m], from beyond the reach of
+    /// the first sleeper to beyond that of the last.
+    pub fn over(
+        places: &[f64],
+        speed: f64,
+        axles: Vec<[f64; 2]>,
+        spread: AxleSpread,
+        waves: Vec<[f64; 2]>,
+    ) -> Pass {
+        let last = places.last().copied().unwrap_or(0.0);
+        let [from, to] = match spread {
+            AxleSpread::Beam { ends, .. } => ends,
+            _ => [-spread.reach(), last + spread.reach()],
+        };
+        let behind = axles.last().map_or(0.0, |a| a[0]);
+        Pass { speed, axles, begin: from, distance: to - from + behind, spread, waves }
+    }
+
     /// Place of an axle at time `t` of a pass.
     fn place(&self, behind: f64, t: f64) -> f64 {
         self.begin + self.speed * t - behind
@@ -112,7 +135,7 @@ impl Pass {
 
     /// Whether the pulses are Gaussian, and not those of axles on a rail.
     pub fn gaussian(&self) -> bool {
-        matches!(self.spread, Spread::Gauss(_))
+        matches!(self.spread, AxleSpread::Gauss(_))
     }
 
     /// Force of an axle at a place: F = P + Σ M a w² sin wt, with wt = 2πx/L.
@@ -130,9 +153,9 @@ impl Pass {
         let each = |[behind, force]: &[f64; 2]| {
             let x = self.place(*behind, t);
             let share = match self.spread {
-                Spread::Gauss(width) => gauss(place - x, width),
-                Spread::Winkler(w) => w.share(place - x),
-                Spread::Beam { .. } => return 0.0,
+                AxleSpread::Gauss(width) => gauss(place - x, width),
+                AxleSpread::Winkler(w) => w.share(place - x),
+                AxleSpread::Beam { .. } => return 0.0,
             };
             self.axle(*force, x) * share
         };
@@ -147,14 +170,14 @@ impl CyclicLoad {
         if since <= 0.0 {
             0.0
         } else if since < self.ramp {
-            self.in_cycles(k, 0.0) * self.brought_on(t)
+            self.in_cycles(k, 0.0) * self.applied_share(t)
         } else {
             self.in_cycles(k, since - self.ramp)
         }
     }
 
     /// Share of the load of the first instant, and of the rail's weight, that acts at time `t`.
-    pub fn brought_on(&self, t: f64) -> f64 {
+    pub fn applied_share(&self, t: f64) -> f64 {
         let since = t - self.rest;
         if since <= 0.0 {
             0.0
@@ -170,15 +193,15 @@ impl CyclicLoad {
         self.wheels_with(t, rails, Pass::axle, out);
     }
 
-    /// The same without what an uneven rail adds.
+    /// The same without the waves of an uneven rail.
     pub fn steady_wheels(&self, t: f64, rails: usize, out: &mut Vec<Wheel>) {
         self.wheels_with(t, rails, |_, force, _| force, out);
     }
 
     fn wheels_with(&self, t: f64, rails: usize, axle: impl Fn(&Pass, f64, f64) -> f64, out: &mut Vec<Wheel>) {
         out.clear();
-        let (Course::Pass(pass), since) = (&self.course, t - self.cycles_begin()) else { return };
-        let Spread::Beam { ends, taper } = pass.spread else { return };
+        let (Waveform::Pass(pass), since) = (&self.waveform, t - self.cycles_begin()) else { return };
+        let AxleSpread::Beam { ends, taper } = pass.spread else { return };
         if since < 0.0 || t >= self.end() {
             return;
         }
@@ -196,8 +219,8 @@ impl CyclicLoad {
     /// Force on sleeper `k` at a time after the cycles began.
     fn in_cycles(&self, k: usize, since: f64) -> f64 {
         let place = self.places.get(k).copied().unwrap_or(0.0);
-        match &self.course {
-            &Course::Wave { sine, minimum, maximum, frequency } => {
+        match &self.waveform {
+            &Waveform::Wave { sine, minimum, maximum, frequency } => {
                 let (range, phase) = (maximum - minimum, since * frequency);
                 if sine {
                     minimum + 0.5 * range * (1.0 + (TAU * phase).sin())
@@ -205,7 +228,7 @@ impl CyclicLoad {
                     minimum + 0.5 * range * (1.0 - (TAU * phase).cos())
                 }
             }
-            &Course::Ramp { minimum, maximum, rise, hold, fall } => {
+            &Waveform::Ramp { minimum, maximum, rise, hold, fall } => {
                 let t = self.in_cycle(since);
                 let part = if t < rise {
                     0.5 * (1.0 - (PI * t / rise).cos())
@@ -216,11 +239,11 @@ impl CyclicLoad {
                 };
                 minimum + (maximum - minimum) * part
             }
-            Course::Measured { points, speed } => {
+            Waveform::Measured { points, speed } => {
                 let delay = speed.map_or(0.0, |v| place / v);
                 between(points, self.in_cycle(since) - delay)
             }
-            Course::Pass(pass) => pass.on(place, self.in_cycle(since)),
+            Waveform::Pass(pass) => pass.on(place, self.in_cycle(since)),
         }
     }
 
@@ -242,21 +265,21 @@ impl CyclicLoad {
         self.cycles_begin() + f64::from(self.cycles) * self.period()
     }
 
-    /// Smallest and largest force on the middle sleeper in a cycle [N]. A rail with mass has its own share of an axle, which
-    /// only the run tells: half of the heaviest is taken.
+    /// Smallest and largest force on the middle sleeper in a cycle [N]. The share of an axle that a rail with mass passes on is a
+    /// result of the run: half of the heaviest axle is assumed.
     pub fn range(&self) -> [f64; 2] {
         let ends = |forces: &mut dyn Iterator<Item = f64>| {
             forces.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)])
         };
-        match &self.course {
-            Course::Wave { minimum, maximum, .. } | Course::Ramp { minimum, maximum, .. } => {
+        match &self.waveform {
+            Waveform::Wave { minimum, maximum, .. } | Waveform::Ramp { minimum, maximum, .. } => {
                 [*minimum, *maximum]
             }
-            Course::Measured { points, .. } => ends(&mut points.iter().map(|p| p.1)),
-            Course::Pass(pass) if matches!(pass.spread, Spread::Beam { .. }) => {
+            Waveform::Measured { points, .. } => ends(&mut points.iter().map(|p| p.1)),
+            Waveform::Pass(pass) if matches!(pass.spread, AxleSpread::Beam { .. }) => {
                 [0.0, 0.5 * pass.axles.iter().map(|a| a[1]).fold(0.0, f64::max)]
             }
-            Course::Pass(_) => {
+            Waveform::Pass(_) => {
                 let (middle, step) = (self.places.len() / 2, self.period() / 1000.0);
                 ends(&mut (0..=1000).map(|i| self.in_cycles(middle, f64::from(i) * step)))
             }
@@ -270,14 +293,14 @@ impl CyclicLoad {
 
     /// Length of a cycle [s].
     pub fn period(&self) -> f64 {
-        match &self.course {
-            Course::Wave { frequency, .. } => 1.0 / frequency,
-            Course::Ramp { rise, hold, fall, .. } => rise + hold + fall.unwrap_or(0.0),
-            Course::Measured { points, speed } => {
+        match &self.waveform {
+            Waveform::Wave { frequency, .. } => 1.0 / frequency,
+            Waveform::Ramp { rise, hold, fall, .. } => rise + hold + fall.unwrap_or(0.0),
+            Waveform::Measured { points, speed } => {
                 let last = self.places.last().copied().unwrap_or(0.0);
                 points.last().map_or(0.0, |p| p.0) + speed.map_or(0.0, |v| last / v)
             }
-            Course::Pass(pass) => pass.way / pass.speed,
+            Waveform::Pass(pass) => pass.distance / pass.speed,
         }
     }
 }
@@ -294,5 +317,5 @@ fn between(points: &[(f64, f64)], t: f64) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "seat_load_tests.rs"]
+#[path = "load_tests.rs"]
 mod tests;

@@ -73,7 +73,7 @@ fn the_law_that_a_curve_obeys_leaves_least() {
 }
 
 #[test]
-fn too_little_to_fit_gives_no_fit_instead_of_numbers_that_are_none() {
+fn too_little_to_fit_gives_no_fit_instead_of_invalid_numbers() {
     let curve = |n: u32, s: f64| (1..=n).map(|k| [f64::from(k), s]).collect::<Vec<_>>();
     assert!(fits(&[], 1.0).is_empty());
     assert!(fits(&curve(18, 1.0), 1.0).is_empty(), "nine cycles from the tenth on");

@@ -1,5 +1,5 @@
 use super::*;
-use crate::model::track::pulse::Winkler;
+use crate::track::influence::Winkler;
 use std::f64::consts::PI;
 
 /// A 60 kg rail on pads and a bed, one sleeper modelled amid 40.
@@ -57,24 +57,24 @@ fn sleepers_carry_the_wheel_together() {
     }
 }
 
-/// A wheel that comes on at once on an undamped, free track: the books close at every step.
+/// A wheel that comes on at once on an undamped, free track: the account of energy balances at every step.
 #[test]
-fn books_close_while_a_wheel_rolls_over_moving_seats() {
+fn energy_balances_while_a_wheel_rolls_over_moving_seats() {
     let rail = Rail::new(RailInput { sleepers: 3, beyond: 6, gravity: 9.81, ..input() }, 5e-5).unwrap();
     let mut state = rail.laid();
-    let mut scratch = Scratch::default();
-    let mut turned = 0.0_f64;
+    let mut scratch = RailScratch::default();
+    let mut turnover = 0.0_f64;
     for n in 1..=4000 {
         let t = f64::from(n) * 5e-5;
         let wheels = [Wheel { at: -3.6 + 40.0 * t, force: 70e3 }, Wheel { at: -6.1 + 40.0 * t, force: 70e3 }];
         let seats = (0..3).map(|k| -1e-3 * (30.0 * t + f64::from(k)).sin() * (1.0 - (-t / 0.01).exp()));
         rail.step(&mut state, seats, &wheels, (t / 0.05).min(1.0), &mut scratch);
-        let b = state.books();
-        turned = turned.max(b.wheels.abs()).max(b.elastic);
-        assert!(b.error().abs() < 1e-9 * turned, "step {n}: {} of {turned}", b.error());
-        assert!(b.beyond >= 0.0);
+        let e = state.energy();
+        turnover = turnover.max(e.wheels.abs()).max(e.elastic);
+        assert!(e.error().abs() < 1e-9 * turnover, "step {n}: {} of {turnover}", e.error());
+        assert!(e.beyond >= 0.0);
     }
-    assert!(turned > 10.0 && state.books().pads > 1.0, "{turned} {:?}", state.books());
+    assert!(turnover > 10.0 && state.energy().pads > 1.0, "{turnover} {:?}", state.energy());
 }
 
 /// A sudden force on a still track comes to rest at the static force, and twice that is never passed.
@@ -83,7 +83,7 @@ fn a_sudden_wheel_comes_to_rest_at_the_static_force() {
     let rail = Rail::new(RailInput { beyond: 12, ..input() }, 1e-4).unwrap();
     let wheels = [Wheel { at: 0.0, force: 70e3 }];
     let mut state = rail.laid();
-    let mut scratch = Scratch::default();
+    let mut scratch = RailScratch::default();
     let mut seat = [0.0, 0.0];
     let (mass, bed) = (160.0, [40e6, 60e3]);
     let mut peak = 0.0_f64;
@@ -120,7 +120,7 @@ fn a_rail_on_springs_swings_at_their_frequency() {
     let dt = period / 40.0;
     let rail = Rail::new(stiff, dt).unwrap();
     let mut state = rail.laid();
-    let mut scratch = Scratch::default();
+    let mut scratch = RailScratch::default();
     let weight = mass * 9.81 / k;
     let mut crossings = Vec::new();
     let mut before = 0.0;
@@ -152,7 +152,7 @@ fn sleepers_share_the_weight_of_the_rail() {
 fn dashpots_have_the_speed_of_their_seat_at_the_end_of_a_step() {
     let rail = Rail::new(RailInput { mass: 1e15, pad: [1e6, 40e3], ..input() }, 1e-4).unwrap();
     let mut state = rail.laid();
-    let mut scratch = Scratch::default();
+    let mut scratch = RailScratch::default();
     for n in 1..=50 {
         let t = 1e-4 * f64::from(n);
         rail.step(&mut state, std::iter::once(t * t), &[], 0.0, &mut scratch);
@@ -181,7 +181,7 @@ fn a_sleeper_beyond_swings_at_its_own_frequency() {
     let period = 2.0 * PI * (160.0_f64 / 40e6).sqrt();
     let rail = Rail::new(limp, period / 4000.0).unwrap();
     let mut state = rail.laid();
-    let mut scratch = Scratch::default();
+    let mut scratch = RailScratch::default();
     let still = 1000.0 / 40e6;
     for n in 1..=2000 {
         rail.step(&mut state, std::iter::once(0.0), &[Wheel { at: 1.2, force: 1000.0 }], 0.0, &mut scratch);

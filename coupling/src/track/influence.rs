@@ -1,4 +1,4 @@
-//! Force on a sleeper while an axle passes, in closed form.
+//! Influence lines: the force on a sleeper against its distance from an axle, in closed form.
 //!
 //! Sources: Winkler, Die Lehre von der Elasticität und Festigkeit, 1867; Zimmermann, Die Berechnung des
 //! Eisenbahnoberbaues, 1888 (beam on a continuous elastic foundation); Hetényi, Beams on Elastic Foundation, 1946,

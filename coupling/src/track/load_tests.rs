@@ -1,11 +1,11 @@
 use super::*;
 
-fn load(course: Course) -> CyclicLoad {
-    CyclicLoad { course, cycles: 3, rest: 0.1, ramp: 0.2, places: vec![0.0, 0.6, 1.2] }
+fn load(waveform: Waveform) -> CyclicLoad {
+    CyclicLoad { waveform, cycles: 3, rest: 0.1, ramp: 0.2, places: vec![0.0, 0.6, 1.2] }
 }
 
 fn wave(sine: bool) -> CyclicLoad {
-    load(Course::Wave { sine, minimum: 5.0, maximum: 65.0, frequency: 10.0 })
+    load(Waveform::Wave { sine, minimum: 5.0, maximum: 65.0, frequency: 10.0 })
 }
 
 /// Largest value of f on [from, to], and where.
@@ -42,7 +42,7 @@ fn sine_starts_at_the_mean_and_reaches_both_ends() {
 /// Area of a cycle with half-cosine flanks: minimum · T + range · (rise/2 + hold + fall/2).
 #[test]
 fn ramp_hold_and_unload() {
-    let ramp = |fall| Course::Ramp { minimum: 2.0, maximum: 10.0, rise: 0.2, hold: 0.3, fall };
+    let ramp = |fall| Waveform::Ramp { minimum: 2.0, maximum: 10.0, rise: 0.2, hold: 0.3, fall };
     let f = load(ramp(Some(0.1)));
     assert!((f.period() - 0.6).abs() < 1e-15);
     assert!((f.on(1, 0.4) - 6.0).abs() < 1e-12 && f.on(1, 0.65) == 10.0);
@@ -57,7 +57,7 @@ fn ramp_hold_and_unload() {
 #[test]
 fn measured_forces_run_along() {
     let points = vec![(0.0, 0.0), (0.1, 50.0), (0.2, -10.0), (0.3, 0.0)];
-    let f = load(Course::Measured { points: points.clone(), speed: Some(12.0) });
+    let f = load(Waveform::Measured { points: points.clone(), speed: Some(12.0) });
     assert!((f.period() - 0.4).abs() < 1e-15);
     for cycle in 0..3 {
         let t = 0.3 + 0.4 * f64::from(cycle);
@@ -65,19 +65,19 @@ fn measured_forces_run_along() {
         assert!((f.on(1, t + 0.1) - 25.0).abs() < 1e-9);
         assert!((f.on(2, t + 0.3) + 10.0).abs() < 1e-9, "a force that lifts");
     }
-    let at_once = load(Course::Measured { points, speed: None });
+    let at_once = load(Waveform::Measured { points, speed: None });
     assert_eq!(at_once.on(0, 0.41), at_once.on(2, 0.41));
     assert!((at_once.period() - 0.3).abs() < 1e-15);
 }
 
-fn pass(spread: Spread, axles: Vec<[f64; 2]>, speed: f64) -> CyclicLoad {
+fn pass(spread: AxleSpread, axles: Vec<[f64; 2]>, speed: f64) -> CyclicLoad {
     let reach = spread.reach();
     let last = axles.last().unwrap()[0];
-    load(Course::Pass(Pass {
+    load(Waveform::Pass(Pass {
         speed,
         axles,
         begin: -reach,
-        way: 1.2 + 2.0 * reach + last,
+        distance: 1.2 + 2.0 * reach + last,
         spread,
         waves: Vec::new(),
     }))
@@ -86,7 +86,7 @@ fn pass(spread: Spread, axles: Vec<[f64; 2]>, speed: f64) -> CyclicLoad {
 /// Pulses A exp(−(vt/ℓ)²): peak A, area A √π ℓ/v, and 0.6/v from sleeper to sleeper.
 #[test]
 fn gaussian_pulses() {
-    let f = pass(Spread::Gauss(0.7), vec![[0.0, 40.0], [7.5, 40.0]], 20.0);
+    let f = pass(AxleSpread::Gauss(0.7), vec![[0.0, 40.0], [7.5, 40.0]], 20.0);
     let first = 0.3 + 2.1 / 20.0;
     for k in 0..3 {
         let [force, at] = peak(|t| f.on(k, t), first - 0.05, first + 0.2);
@@ -102,7 +102,7 @@ fn gaussian_pulses() {
 fn a_bogie_is_m_shaped() {
     let w = Winkler::new(6.4e6, 40e6, 0.6);
     let (p, v, base) = (70e3, 50.0, 2.5);
-    let f = pass(Spread::Winkler(w), vec![[0.0, p], [base, p]], v);
+    let f = pass(AxleSpread::Winkler(w), vec![[0.0, p], [base, p]], v);
     let both = area(|t| f.on(1, t), 0.3, 0.3 + f.period());
     assert!((both / (2.0 * p * 0.6 / v) - 1.0).abs() < 1e-3, "{both}");
     let over = 0.3 + (w.reach() + 0.6) / v;
@@ -122,9 +122,9 @@ fn a_bogie_is_m_shaped() {
 #[test]
 fn an_uneven_rail_swings_the_load() {
     let (v, wave) = (200.0 / 3.6, TAU / 10.0 * 200.0 / 3.6);
-    let mut f = pass(Spread::Beam { ends: [-12.0, 13.2], taper: 1.2 }, vec![[0.0, 140e3]], v);
-    let Course::Pass(p) = &mut f.course else { panic!() };
-    (p.begin, p.way) = (-12.0, 25.2);
+    let mut f = pass(AxleSpread::Beam { ends: [-12.0, 13.2], taper: 1.2 }, vec![[0.0, 140e3]], v);
+    let Waveform::Pass(p) = &mut f.waveform else { panic!() };
+    (p.begin, p.distance) = (-12.0, 25.2);
     p.waves = vec![[750.0 * 3.5e-3 * wave * wave, 10.0]];
     assert!((p.waves[0][0] - 3198.5).abs() < 1.0, "{:?}", p.waves);
     let mut wheels = Vec::new();

@@ -3,10 +3,10 @@
 //! A cycle that was simulated has a row. Its number counts the cycles that were jumped over too; where only the account
 //! jumps, the bed is younger than that number, and the settlement of the row is the measured one plus slope × ln(number/age).
 
-use crate::model::seat_load::CyclicLoad;
+use super::load::CyclicLoad;
 use serde::{Deserialize, Serialize};
 
-/// What one cycle did.
+/// Results of one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// Cycle number, from 1, jumped cycles included.
@@ -35,7 +35,7 @@ pub struct Cycle {
 
 /// The bed under the sleeper, as a column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct BedColumn {
     /// Area of the sleeper's base [m²].
     pub area: f64,
     /// Height of the bed when the first cycle begins, less the height of the sleeper's centre [m].
@@ -48,9 +48,9 @@ pub struct CycleRecorder {
     begin: f64,
     period: f64,
     total: u32,
-    /// Loads between which the stiffness of the bed is taken [N].
+    /// Loads between which the stiffness of the bed is evaluated [N].
     between: [f64; 2],
-    column: Column,
+    column: BedColumn,
     /// Height of the sleeper when the first cycle began [m].
     datum: f64,
     lowest: f64,
@@ -80,7 +80,7 @@ pub struct CycleRecorder {
 
 impl CycleRecorder {
     /// A recorder of all cycles of `load`, with the stiffness of the bed between two loads [N].
-    pub fn new(load: &CyclicLoad, between: [f64; 2], column: Column) -> CycleRecorder {
+    pub fn new(load: &CyclicLoad, between: [f64; 2], column: BedColumn) -> CycleRecorder {
         CycleRecorder {
             begin: load.cycles_begin(),
             period: load.period(),
@@ -132,7 +132,7 @@ impl CycleRecorder {
         self.slope = slope;
     }
 
-    /// Takes in the state at time `t` [s] after a step of length `dt` [s]: height of the sleeper's centre [m], load
+    /// Records the state at time `t` [s] after a step of length `dt` [s]: height of the sleeper's centre [m], load
     /// [N], work of the load so far [J], largest formation pressure of the step [Pa]. Returns the cycle that has
     /// just ended, if one has.
     pub fn record(
@@ -222,17 +222,17 @@ impl CycleRecorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::seat_load::Course;
+    use crate::track::load::Waveform;
 
     fn load(sine: bool) -> CyclicLoad {
-        let course = Course::Wave { sine, minimum: 0.0, maximum: 100.0, frequency: 10.0 };
-        CyclicLoad { course, cycles: 3, rest: 0.1, ramp: 0.1, places: vec![0.0] }
+        let waveform = Waveform::Wave { sine, minimum: 0.0, maximum: 100.0, frequency: 10.0 };
+        CyclicLoad { waveform, cycles: 3, rest: 0.1, ramp: 0.1, places: vec![0.0] }
     }
 
     #[test]
     fn a_spring_with_drift_yields_its_own_stiffness_and_settlement() {
         let load = load(false);
-        let column = Column { area: 0.5, below: -0.8 };
+        let column = BedColumn { area: 0.5, below: -0.8 };
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], column);
         // Height 1 − F/k − drift·(t − 0.2): k = 10 kN/m, drift 1 mm per cycle.
         let (dt, k, drift) = (1e-4, 1e4, 0.01);
@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn a_sine_that_starts_at_the_mean_has_a_loading_branch_as_well() {
         let load = load(true);
-        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], Column::default());
+        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], BedColumn::default());
         for step in 1..=5000 {
             let t = f64::from(step) * 1e-4;
             let f = load.on(0, t);
@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn an_account_that_jumps_goes_on_along_the_logarithm() {
         let load = load(false);
-        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], Column::default());
+        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], BedColumn::default());
         recorder.total = 1000;
         let mut jumped = false;
         for step in 1..=6000 {

@@ -1,22 +1,18 @@
-//! Lateral push of a sleeper: a ram with a spring and a dashpot moves sideways at a steady speed; its force against the way
-//! of the sleeper goes to `push.csv`.
+//! Lateral push of a sleeper: a ram with a spring and a dashpot moves sideways at a steady speed; the result is its force against
+//! the way of the sleeper.
 //!
 //! Source: single-tie push test, as in Zakeri, Lateral resistance of railway track, 2012. The resistance is the force of the
 //! ram, mean over one row: less the inertia of the sleeper, which at a steady speed is none.
 //!
 //! Limits: a single sleeper, without a rail.
 
-use super::summary::Summary;
+use super::row::SleeperRow;
 use super::system::GrainsView;
-use crate::failure::Failure;
-use crate::model::after::PushPlan;
-use crate::model::grains::GrainsPart;
-use crate::scene::{Document, SceneError};
-use crate::write::csv::{Column, History};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use trackbed_dem as dem;
 
+/// Share of its time at full speed in which the ram of a push accelerates.
+const START: f64 = 0.05;
 /// Rows of the curve.
 const ROWS: f64 = 200.0;
 /// Share of critical damping of the ram against the sleeper's mass.
@@ -24,7 +20,50 @@ const DAMPING: f64 = 0.7;
 /// Largest step of the grains times the frequency of the sleeper on the ram.
 const LARGEST_STEP: f64 = 0.1;
 
-/// What a push told.
+/// A lateral push.
+#[derive(Clone, Copy, Debug)]
+pub struct PushPlan {
+    /// Unit vector.
+    pub direction: dem::Vec3,
+    /// Speed of the ram [m/s].
+    pub speed: f64,
+    /// How far it goes [m].
+    pub displacement: f64,
+    /// Vertical force on the sleeper meanwhile [N].
+    pub load: f64,
+    /// Time from the last cycle to the push [s].
+    pub rest: f64,
+    /// Height of the ram above the sleeper's centre [m].
+    pub height: f64,
+    /// Stiffness of the ram [N/m].
+    pub stiffness: f64,
+}
+
+impl PushPlan {
+    /// Time that the push takes with the rest before it [s].
+    pub fn duration(&self) -> f64 {
+        self.rest + (1.0 + 0.5 * START) * self.displacement / self.speed
+    }
+
+    /// Way [m] and speed [m/s] of the ram a time after it started [s]: it accelerates evenly to its speed.
+    pub fn ram(&self, since: f64) -> (f64, f64) {
+        let start = START * self.displacement / self.speed;
+        if since < start {
+            let share = since.max(0.0) / start;
+            (0.5 * self.speed * share * share * start, share * self.speed)
+        } else {
+            (self.speed * (since - 0.5 * start), self.speed)
+        }
+    }
+
+    /// Largest stiffness of a ram against a sleeper of `mass` [kg] that steps of `dt` [s] can follow [N/m]:
+    /// dt √(k/m) is a tenth.
+    pub fn largest_stiffness(mass: f64, dt: f64) -> f64 {
+        mass * (LARGEST_STEP / dt).powi(2)
+    }
+}
+
+/// Results of a push.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PushSummary {
     /// Force at a way of 2 mm [N]; none when the sleeper did not get there.
@@ -41,7 +80,7 @@ pub struct PushSummary {
     pub uplift: f64,
 }
 
-/// What changes during a push; goes into checkpoints.
+/// State of a push; goes into checkpoints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PushState {
     /// Time when the rest before the push began, and the vertical load then [s, N].
@@ -64,31 +103,10 @@ pub struct Push<'a> {
     body: usize,
 }
 
-/// Refuses a ram that the step of the grains cannot follow.
-///
-/// # Errors
-/// Bad input.
-pub fn check(document: &Document, grains: &GrainsPart, dt: f64) -> Result<(), SceneError> {
-    let (Some(plan), Some(sleeper)) = (&grains.after.push, &grains.sleeper) else { return Ok(()) };
-    let most = sleeper.mass() * (LARGEST_STEP / dt).powi(2);
-    if plan.stiffness > most {
-        let expected = format!("at most {most:.3e} N/m, which the step of {dt:.3e} s can follow");
-        return Err(document.error("track.push.stiffness", format!("{:.3e} N/m", plan.stiffness), expected));
-    }
-    Ok(())
-}
-
 impl<'a> Push<'a> {
-    /// The push of the sleeper `body`, if the scene has one.
-    pub fn new(grains: &'a GrainsPart, model: &dem::Model, body: usize) -> Option<Push<'a>> {
-        let (plan, sleeper) = (grains.after.push.as_ref()?, grains.sleeper.as_ref()?);
-        Some(Push {
-            plan,
-            mass: sleeper.mass(),
-            weight: -sleeper.mass() * model.gravity().z,
-            seats: &sleeper.seats,
-            body,
-        })
+    /// The push of the sleeper `body`, one of `row`, under gravity along z [m/s²].
+    pub fn new(plan: &'a PushPlan, row: &'a SleeperRow, gravity: f64, body: usize) -> Push<'a> {
+        Push { plan, mass: row.mass, weight: -row.mass * gravity, seats: &row.seats, body }
     }
 
     /// Ends the cycles at time `t` [s], under the load of that moment [N].
@@ -143,7 +161,7 @@ impl<'a> Push<'a> {
         true
     }
 
-    /// After a window that ended at time `t` [s]: takes the force into the curve.
+    /// After a window that ended at time `t` [s]: adds the force to the curve.
     pub fn follow(&self, state: &mut PushState, t: f64, g: GrainsView<'_>) {
         let Some((_, since)) = self.at(state, t) else { return };
         let (x, ram) = (g.state.position(self.body), self.plan.ram(since).0);
@@ -164,22 +182,9 @@ impl<'a> Push<'a> {
         }
     }
 
-    /// Writes the curve and what it tells.
-    ///
-    /// # Errors
-    /// The disk refuses.
-    pub fn finish(&self, state: &PushState, dir: &Path, summary: &mut Summary) -> Result<(), Failure> {
-        if state.rows.is_empty() {
-            return Ok(());
-        }
-        let columns = [("displacement", "m"), ("force", "N"), ("uplift", "m")];
-        let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
-        let mut file = History::create(&dir.join("push.csv"), columns)?;
-        for row in &state.rows {
-            file.row(row)?;
-        }
-        summary.push = Some(self.summary(&state.rows));
-        Ok(())
+    /// The curve, rows of way [m], force [N] and rise [m], and its results; none before the ram has moved.
+    pub fn curve<'b>(&self, state: &'b PushState) -> Option<(&'b [[f64; 3]], PushSummary)> {
+        (!state.rows.is_empty()).then(|| (&state.rows[..], self.summary(&state.rows)))
     }
 
     fn summary(&self, rows: &[[f64; 3]]) -> PushSummary {

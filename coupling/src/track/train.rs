@@ -1,0 +1,50 @@
+//! Trains: axles of cars, bogies, the forces of axles on uneven rails.
+
+use std::f64::consts::TAU;
+
+/// Axle layout of a car with two bogies of two axles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarLayout {
+    /// Distance of the axles of a bogie [m].
+    pub wheelbase: f64,
+    /// Distance of the bogies' centres [m].
+    pub bogie_spacing: f64,
+    /// Length over couplers, which is the distance from car to car [m].
+    pub car_length: f64,
+}
+
+impl CarLayout {
+    /// Distances of all axles of `cars` cars behind the first one [m], ascending where the bogies of a car and its
+    /// neighbours do not overlap.
+    pub fn axles(&self, cars: u32) -> Vec<f64> {
+        let (base, bogies) = (self.wheelbase, self.bogie_spacing);
+        let car = [0.0, base, bogies, bogies + base];
+        (0..cars).flat_map(|c| car.map(|a| f64::from(c) * self.car_length + a)).collect()
+    }
+}
+
+/// Force amplitude [N] and length [m] of a wave of the rail's surface of the given `length` and `amplitude` [m] under an unsprung
+/// mass [kg] at a speed [m/s]: M a w² with w = 2πv/L (see [`load`](super::load)).
+pub fn excitation(mass: f64, amplitude: f64, length: f64, speed: f64) -> [f64; 2] {
+    let turn = TAU * speed / length;
+    [mass * amplitude * turn * turn, length]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// CRH2: 2.5 m wheelbase, bogies 17.5 m and cars 25 m apart.
+    #[test]
+    fn axles_of_two_cars() {
+        let car = CarLayout { wheelbase: 2.5, bogie_spacing: 17.5, car_length: 25.0 };
+        assert_eq!(car.axles(2), [0.0, 2.5, 17.5, 20.0, 25.0, 27.5, 42.5, 45.0]);
+    }
+
+    /// 750 kg on waves of 3.5 mm and 10 m at 200 km/h: 750 × 0.0035 × (2π × 55.56/10)² = 3198.5 N.
+    #[test]
+    fn an_uneven_rail_excites_the_unsprung_mass() {
+        let [force, length] = excitation(750.0, 3.5e-3, 10.0, 200.0 / 3.6);
+        assert!((force - 3198.5).abs() < 1.0 && length == 10.0, "{force}");
+    }
+}

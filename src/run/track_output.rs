@@ -1,0 +1,54 @@
+//! What is written of a track: its rails in the frames, the curve of a push.
+
+use crate::failure::Failure;
+use crate::write::WallFrame;
+use crate::write::csv::{Column, History};
+use std::path::Path;
+use trackbed_coupling::track::Track;
+use trackbed_coupling::track::push::PushSummary;
+
+/// Half the width that a rail is drawn with [m].
+const HALF_WIDTH: f64 = 0.035;
+
+/// Adds a ribbon for each rail, from half a spacing before the first sleeper to half a spacing behind the last.
+pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
+    let Some((rails, laid, row)) = track.laid_rails() else { return };
+    let along = row.axis;
+    let first = row.centres[0];
+    let [from, to] = [-0.5, row.centres.len() as f64 - 0.5].map(|k| k * rails.spacing());
+    for r in 0..laid.count() {
+        let seat = row.seats[r];
+        let id = frame.id.last().map_or(0, |id| id + 1);
+        let height = laid.mean_height(r);
+        let mut last: Option<u32> = None;
+        for [x, w] in laid.line(rails, r).filter(|p| p[0] >= from - 1e-9 && p[0] <= to + 1e-9) {
+            let begin = frame.points.len() as u32;
+            for side in [-HALF_WIDTH, HALF_WIDTH] {
+                let mut point = [first[0] + seat[0], first[1] + seat[1], height + w];
+                point[along] += x;
+                point[1 - along] += side;
+                frame.points.push(point);
+            }
+            if let Some(before) = last {
+                frame.polygons.push(vec![before, before + 1, begin + 1, begin]);
+                frame.id.push(id);
+            }
+            last = Some(begin);
+        }
+    }
+}
+
+/// Writes the curve of a push as `push.csv` in `dir`; returns its results. Nothing without a push.
+///
+/// # Errors
+/// The disk refuses.
+pub fn push(track: &Track<'_>, dir: &Path) -> Result<Option<PushSummary>, Failure> {
+    let Some((rows, summary)) = track.push_curve() else { return Ok(None) };
+    let columns = [("displacement", "m"), ("force", "N"), ("uplift", "m")];
+    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let mut file = History::create(&dir.join("push.csv"), columns)?;
+    for row in rows {
+        file.row(row)?;
+    }
+    Ok(Some(summary))
+}
