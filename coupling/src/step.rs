@@ -200,7 +200,7 @@ impl Work {
             load: vec![0.0; n],
             contact_load: vec![0.0; n],
             other_load: vec![0.0; n],
-            before: fem::state::State { points: Vec::new(), ..state.solid.clone() },
+            before: fem::state::State { points: Default::default(), ..state.solid.clone() },
             rate: vec![0.0; n],
             applied: Vec::new(),
             accelerator: Accelerator::default(),

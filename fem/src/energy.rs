@@ -7,10 +7,9 @@
 
 use crate::element::stiffness_points;
 use crate::kinematics::{jacobian, mean_gradients, spatial_gradients};
-use crate::material::PointState;
+use crate::material::{PointState, Points};
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::nonlinear::motion::elastic_energy_density;
 use crate::state::State;
 
 /// Kinetic energy [J].
@@ -28,16 +27,16 @@ pub fn strain(model: &Model, state: &State) -> f64 {
     }
 }
 
-/// Elastic energy of the stresses at the Gauss points, `∫ s : C^-1 s / 2 dV` [J].
-pub fn of_points(model: &Model, points: &[PointState]) -> f64 {
+/// Elastic energy of the Gauss points, the integral of [`ConstitutiveLaw::stored_energy`](crate::ConstitutiveLaw::stored_energy) [J].
+pub fn of_points(model: &Model, points: &Points) -> f64 {
     let mesh = model.mesh();
     let mut total = 0.0;
     for e in 0..mesh.element_count() {
-        let (x, constants) = (mesh.element_coordinates(e), model.elastic(e));
+        let (x, material) = (mesh.element_coordinates(e), model.material(e));
         let rule = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
-        for (point, state) in rule.iter().zip(&points[model.point_start(e)..]) {
+        for (i, point) in rule.iter().enumerate() {
             let volume = point.weight * jacobian(&x, &point.gradients).1;
-            total += volume * elastic_energy_density(constants.young, constants.poisson, &state.stress);
+            total += volume * material.law.stored_energy(&material.elastic, model.point(points, e, i));
         }
     }
     total

@@ -65,8 +65,8 @@ pub use element::{ElementKind, FaceShape};
 pub use mass::Mass;
 pub use material::elastic::Elastic;
 pub use material::{
-    Cone, DruckerPrager, Hardening, Material, MohrCoulomb, Plasticity, PointState, Region, Response,
-    ReturnError,
+    Cone, ConstitutiveLaw, DruckerPrager, Hardening, Law, LinearElastic, Material, MohrCoulomb, Point,
+    PointState, Points, Region, Response, ReturnError,
 };
 pub use mesh::{Constraint, Face, Mesh};
 pub use model::{Model, ModelError, ModelInput};

@@ -7,7 +7,7 @@ use crate::element::quadrature::Quadrature;
 use crate::element::{mass_points, stiffness_points};
 use crate::kinematics::jacobian;
 use crate::mass::Mass;
-use crate::material::{Elastic, Material};
+use crate::material::{Elastic, Material, Point, PointState, Points};
 use crate::mesh::{Constraint, Mesh};
 use crate::solver::SolveError;
 use crate::solver::cholesky::Analysis;
@@ -107,6 +107,8 @@ pub struct Model {
     analysis: OnceLock<Arc<Analysis>>,
     /// First Gauss point of each element, and the number of all. Shape `[elements + 1]`.
     point_start: Vec<u32>,
+    /// First value of the laws' own in each element, and the number of all. Shape `[elements + 1]`.
+    value_start: Vec<u32>,
 }
 
 impl Model {
@@ -134,6 +136,7 @@ impl Model {
         let material = |e: usize| &materials[&mesh.materials[e]].elastic;
         let matrices = Arc::new(Matrices::assemble_with(&mesh, quadrature, mass, &boundaries, material));
         let point_start = point_start(&mesh, quadrature);
+        let value_start = value_start(&mesh, quadrature, &materials);
         Ok(Model {
             mesh,
             materials,
@@ -147,6 +150,7 @@ impl Model {
             matrices,
             analysis: OnceLock::new(),
             point_start,
+            value_start,
         })
     }
 
@@ -191,7 +195,7 @@ impl Model {
     ///
     /// # Errors
     /// A constant out of range, or a material that is missing.
-    pub(crate) fn with_plasticity(&self, materials: BTreeMap<u32, Material>) -> Result<Model, ModelError> {
+    pub(crate) fn with_laws(&self, materials: BTreeMap<u32, Material>) -> Result<Model, ModelError> {
         check_materials(&self.mesh, &materials)?;
         Ok(Model { materials, ..self.clone() })
     }
@@ -217,6 +221,58 @@ impl Model {
     /// [`stiffness_points`].
     pub fn point_start(&self, element: usize) -> usize {
         self.point_start[element] as usize
+    }
+
+    /// Where the own values of the law of element `element` (index) lie among [`Points::values`] at its point `i`.
+    #[inline]
+    pub fn values(&self, element: usize, i: usize) -> Range<usize> {
+        let (first, end) = (self.value_start[element] as usize, self.value_start[element + 1] as usize);
+        if first == end {
+            return first..end;
+        }
+        let count = (end - first) / (self.point_start(element + 1) - self.point_start(element));
+        first + i * count..first + (i + 1) * count
+    }
+
+    /// Number of the laws' own values of all points together.
+    pub fn value_count(&self) -> usize {
+        self.value_start[self.mesh.element_count()] as usize
+    }
+
+    /// Points without stress, their laws' own values those of a start from it.
+    pub fn new_points(&self) -> Points {
+        let mut points = Points::new(self.point_count(), self.value_count());
+        let (states, values) = points.split_mut();
+        for e in 0..self.mesh.element_count() {
+            for (i, p) in (self.point_start(e)..self.point_start(e + 1)).enumerate() {
+                self.material(e).law.initial_values(&states[p].stress, &mut values[self.values(e, i)]);
+            }
+        }
+        points
+    }
+
+    /// Point `i` of element `element` (index) among `points`.
+    #[inline]
+    pub fn point<'a>(&self, points: &'a Points, element: usize, i: usize) -> Point<'a> {
+        let state: &PointState = &points[self.point_start(element) + i];
+        Point { state, values: &points.values()[self.values(element, i)] }
+    }
+
+    /// Where the equations of the laws in use that are not linear come from, each once.
+    pub fn law_sources(&self) -> Vec<&'static str> {
+        let mut sources = Vec::new();
+        for (number, material) in &self.materials {
+            let source = material.law.source();
+            if !material.is_linear() && self.mesh.materials.contains(number) && !sources.contains(&source) {
+                sources.push(source);
+            }
+        }
+        sources
+    }
+
+    /// Whether elastic steps have the assembled matrix everywhere.
+    pub fn has_constant_elasticity(&self) -> bool {
+        self.materials.values().all(|m| m.law.has_constant_elasticity())
     }
 
     /// Number of Gauss points of all elements.
@@ -397,6 +453,17 @@ fn point_start(mesh: &Mesh, rule: Quadrature) -> Vec<u32> {
     let mut count = 0;
     for &kind in mesh.connectivity.kinds() {
         count += stiffness_points(kind, rule).len() as u32;
+        start.push(count);
+    }
+    start
+}
+
+fn value_start(mesh: &Mesh, rule: Quadrature, materials: &BTreeMap<u32, Material>) -> Vec<u32> {
+    let mut start = vec![0];
+    let mut count = 0;
+    for (kind, number) in mesh.connectivity.kinds().iter().zip(&mesh.materials) {
+        let values = materials[number].law.state_values().len();
+        count += (values * stiffness_points(*kind, rule).len()) as u32;
         start.push(count);
     }
     start

@@ -1,6 +1,6 @@
 //! The state of the solid: what a checkpoint holds. No field may be left out of it, since binary formats go by position.
 
-use crate::material::PointState;
+use crate::material::Points;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub struct State {
     /// [`stiffness_points`](crate::element::stiffness_points), see [`Model::point_start`]. Empty for a linear model
     /// without initial stress. Shape `[points]`.
     #[serde(default)]
-    pub points: Vec<PointState>,
+    pub points: Points,
 }
 
 impl State {
@@ -27,8 +27,7 @@ impl State {
     /// a plastic model.
     pub fn new(model: &Model) -> State {
         let n = model.dof_count();
-        let points = if model.is_linear() { 0 } else { model.point_count() };
-        let points = vec![PointState::default(); points];
+        let points = if model.is_linear() { Points::default() } else { model.new_points() };
         let mut state = State { time: 0.0, u: vec![0.0; n], v: vec![0.0; n], a: vec![0.0; n], points };
         for &(dof, value) in model.supports().fixed() {
             state.u[dof as usize] = value;

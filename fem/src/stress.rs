@@ -10,7 +10,6 @@
 use crate::element::quadrature::{GAUSS2, LINE2, PYRAMID8, Quadrature};
 use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
 use crate::kinematics::{jacobian, mean_gradients, spatial_gradients, strain};
-use crate::material::yield_function;
 use crate::model::Model;
 use crate::state::State;
 use nalgebra::DMatrix;
@@ -107,10 +106,13 @@ pub fn nodal_kappa(model: &Model, state: &State) -> Vec<f64> {
 /// Yield function at every node [Pa], at most 0 at the points and near them; minus infinity at nodes of an element without
 /// plasticity. Shape `[nodes]`.
 pub fn nodal_yield_function(model: &Model, state: &State) -> Vec<f64> {
-    nodal_from_points(model, |e, p| [yield_function(model.material(e), &state.points[p])])
-        .into_iter()
-        .map(|[f]| if f.is_nan() { f64::NEG_INFINITY } else { f })
-        .collect()
+    nodal_from_points(model, |e, p| {
+        let point = model.point(&state.points, e, p - model.point_start(e));
+        [model.material(e).law.yield_function(point)]
+    })
+    .into_iter()
+    .map(|[f]| if f.is_nan() { f64::NEG_INFINITY } else { f })
+    .collect()
 }
 
 /// Where the middle of element `element` (index) is [m], and the mean of the stresses of its points over its volume [Pa].

@@ -563,7 +563,7 @@ fn equilibrium(
     }
     state.points = rest.points;
     if !state.points.is_empty() {
-        state.points.resize(model.point_count(), fem::material::PointState::default());
+        state.points.resize(model.point_count(), model.value_count());
     }
     Ok((state, resting, contacts))
 }
@@ -592,10 +592,7 @@ fn solid_sources(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
         Analysis::Static | Analysis::QuasiStatic(_) => {}
     }
     if !part.model.is_linear() {
-        sources.push(
-            "plasticity: return maps in principal stresses, de Souza Neto, Peric & Owen 2008; Clausen, Damkilde & Andersen \
-             2006",
-        );
+        sources.extend(part.model.law_sources());
     }
     if !part.model.matrices().dashpots().is_empty() {
         sources.push("absorbing boundaries: Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969");

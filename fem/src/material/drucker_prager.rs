@@ -8,12 +8,13 @@
 
 use super::elastic::Elastic;
 use super::hardening::Hardening;
-use super::mohr_coulomb::invariants;
-use super::spectral::Voigt;
-use super::{
-    Fault, PointState, Region, Response, ReturnError, YIELD_TOLERANCE, elastic_response, local,
-    strength_fault,
+use super::law::{
+    ConstitutiveLaw, Fault, Response, ReturnError, YIELD_TOLERANCE, elastic_response, elastic_trial,
 };
+use super::local;
+use super::point::{Point, PointState, Region};
+use super::spectral::{Voigt, invariants};
+use super::strength;
 use serde::{Deserialize, Serialize};
 
 /// Where the cone meets Mohr–Coulomb of the same cohesion and friction angle.
@@ -97,20 +98,6 @@ impl DruckerPrager {
         }
     }
 
-    /// What makes the constants unusable, if anything. Softening of the cohesion must stay above
-    /// [`DruckerPrager::softening_limit`]; softening of the friction angle can only be judged at a stress and fails in
-    /// [`super::update`] with [`ReturnError::Softening`].
-    pub fn fault(&self, elastic: &Elastic) -> Option<Fault> {
-        strength_fault(&self.cohesion, &self.friction, self.dilation, self.tension).or_else(|| {
-            let fall = self.cohesion.steepest_fall();
-            (fall < 0.0 && fall <= self.softening_limit(elastic)).then_some((
-                "cohesion",
-                fall,
-                "softening less steep than the limit at which a point snaps back",
-            ))
-        })
-    }
-
     /// The slope `dc/dkappa` [Pa] (below 0) at or below which the return may have no unique solution. On the cone it is
     /// `-(G + K eta eta_bar) / (xi sqrt(1/3 + 2 eta_bar²/9))`, at the apex `-3 K eta / (sqrt(2) xi)`, at the corner with
     /// the cap `-sqrt(3) G / xi`.
@@ -151,13 +138,16 @@ impl DruckerPrager {
         self.cone.coefficients(self.dilation)[0]
     }
 
-    pub(super) fn yield_function(&self, stress: &Voigt, kappa: f64) -> f64 {
-        let strength = self.strength(kappa, 0.0);
-        let (p, j2) = invariants(stress);
-        strength.cone(&[p, j2.sqrt()]).max(p - strength.tension.unwrap_or(f64::INFINITY))
+    fn shared(&self) -> strength::Strength<'_> {
+        strength::Strength {
+            cohesion: &self.cohesion,
+            friction: &self.friction,
+            dilation: self.dilation,
+            tension: self.tension,
+        }
     }
 
-    pub(super) fn update(
+    fn return_map(
         &self,
         elastic: &Elastic,
         old: &PointState,
@@ -214,6 +204,60 @@ impl DruckerPrager {
             tangent = stiffness(&direction, &a, ratio, &moduli);
         }
         Ok(Response { state, region, tangent })
+    }
+}
+
+impl ConstitutiveLaw for DruckerPrager {
+    fn source(&self) -> &'static str {
+        strength::SOURCE
+    }
+
+    /// Softening of the cohesion must stay above [`DruckerPrager::softening_limit`]; softening of the friction angle can only
+    /// be judged at a stress and fails in [`ConstitutiveLaw::update`] with [`ReturnError::Softening`].
+    fn fault(&self, elastic: &Elastic) -> Option<Fault> {
+        self.shared().fault().or_else(|| {
+            let fall = self.cohesion.steepest_fall();
+            (fall < 0.0 && fall <= self.softening_limit(elastic)).then_some((
+                "cohesion",
+                fall,
+                "softening less steep than the limit at which a point snaps back",
+            ))
+        })
+    }
+
+    fn is_associated(&self) -> bool {
+        self.friction == Hardening::Constant(self.dilation)
+    }
+
+    /// Hardening by the norm of the plastic strain makes the tangent unsymmetric at the apex also where the flow is
+    /// associated; von Mises has no apex.
+    fn has_symmetric_tangent(&self) -> bool {
+        let von_mises = self.friction == Hardening::Constant(0.0) && self.tension.is_none();
+        self.is_associated() && (self.cohesion.is_constant() || von_mises)
+    }
+
+    fn update(
+        &self,
+        elastic: &Elastic,
+        old: Point<'_>,
+        increment: &[f64; 6],
+        want_tangent: bool,
+        _: &mut [f64],
+    ) -> Result<Response, ReturnError> {
+        let trial = elastic_trial(elastic, old.state, increment)?;
+        self.return_map(elastic, old.state, &trial, want_tangent)
+    }
+
+    /// `max(sqrt(J2) + eta p - xi c, p - tension)` with the strength of the point's `kappa`.
+    fn yield_function(&self, point: Point<'_>) -> f64 {
+        let strength = self.strength(point.state.kappa, 0.0);
+        let (p, j2) = invariants(&point.state.stress);
+        strength.cone(&[p, j2.sqrt()]).max(p - strength.tension.unwrap_or(f64::INFINITY))
+    }
+
+    fn reduced(&self, factor: f64) -> DruckerPrager {
+        let strength::Reduced { cohesion, friction, dilation, tension } = self.shared().reduced(factor);
+        DruckerPrager { cohesion, friction, dilation, tension, cone: self.cone }
     }
 }
 

@@ -4,6 +4,8 @@
 //! Source: Timoshenko and Goodier, Theory of Elasticity (1970), section 6. Limits: small strain; nu in (-1, 0.5). Near
 //! 0.5 the displacement element locks under the full rule; the reduced rule is the remedy.
 
+use super::law::{ConstitutiveLaw, Fault, Response, ReturnError, elastic_response, elastic_trial};
+use super::point::Point;
 use serde::{Deserialize, Serialize};
 
 /// An isotropic elastic material.
@@ -52,14 +54,22 @@ impl Elastic {
         matrix
     }
 
+    /// Elastic energy of a stress over a volume, `s : D^-1 s / 2` [J/m³].
+    pub fn stored_energy(&self, s: &[f64; 6]) -> f64 {
+        let trace = s[0] + s[1] + s[2];
+        let square =
+            s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+        0.5 * ((1.0 + self.poisson) * square - self.poisson * trace * trace) / self.young
+    }
+
     /// Speed of the compression wave, `sqrt((lambda + 2 mu) / rho)` [m/s].
     pub fn compression_wave_speed(&self) -> f64 {
         let (lambda, mu) = self.lame();
         ((lambda + 2.0 * mu) / self.density).sqrt()
     }
 
-    /// What makes the constants unusable, if anything: the name of the constant, its value and what is asked of it.
-    pub fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
+    /// What makes the constants unusable, if anything: the name of the constant, its value and what is expected of it.
+    pub fn fault(&self) -> Option<Fault> {
         if !(self.young > 0.0 && self.young.is_finite()) {
             return Some(("Young's modulus", self.young, "a finite number above 0"));
         }
@@ -70,6 +80,52 @@ impl Elastic {
             return Some(("density", self.density, "a finite number, 0 or above"));
         }
         None
+    }
+}
+
+/// Stress proportional to strain, without a yield surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LinearElastic;
+
+impl ConstitutiveLaw for LinearElastic {
+    fn source(&self) -> &'static str {
+        "linear elasticity: Timoshenko & Goodier, Theory of Elasticity 1970"
+    }
+
+    fn fault(&self, _: &Elastic) -> Option<Fault> {
+        None
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn is_associated(&self) -> bool {
+        true
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+
+    fn update(
+        &self,
+        elastic: &Elastic,
+        old: Point<'_>,
+        increment: &[f64; 6],
+        want_tangent: bool,
+        _: &mut [f64],
+    ) -> Result<Response, ReturnError> {
+        let trial = elastic_trial(elastic, old.state, increment)?;
+        Ok(elastic_response(elastic, old.state, &trial, want_tangent))
+    }
+
+    fn yield_function(&self, _: Point<'_>) -> f64 {
+        f64::NEG_INFINITY
+    }
+
+    fn reduced(&self, _: f64) -> LinearElastic {
+        LinearElastic
     }
 }
 

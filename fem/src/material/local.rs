@@ -5,7 +5,7 @@
 //! `g(kappa) = kappa - kappa_n - h(kappa) = 0`. With hardening `h` falls and the root is unique. With softening it is
 //! unique as long as `dh/dkappa < 1`; beyond that the point snaps back and no equilibrium path exists.
 
-use super::ReturnError;
+use super::law::ReturnError;
 
 /// Root of `g`, by Newton steps kept inside a bracket. `plastic(kappa)` returns `h` and `dh/dkappa`. On success the
 /// returned `kappa` is the last one passed to `plastic`.

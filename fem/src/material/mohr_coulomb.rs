@@ -8,12 +8,14 @@
 
 use super::elastic::Elastic;
 use super::hardening::Hardening;
-use super::principal_return::{self, Moduli, Strength};
-use super::spectral::{self, Voigt};
-use super::{
-    Fault, PointState, Region, Response, ReturnError, YIELD_TOLERANCE, elastic_response, local,
-    strength_fault,
+use super::law::{
+    ConstitutiveLaw, Fault, Response, ReturnError, YIELD_TOLERANCE, elastic_response, elastic_trial,
 };
+use super::local;
+use super::point::{Point, PointState, Region};
+use super::principal_return::{self, Moduli, Strength};
+use super::spectral::{self, Voigt, invariants};
+use super::strength;
 use serde::{Deserialize, Serialize};
 
 /// Constants of Mohr–Coulomb.
@@ -40,20 +42,6 @@ impl MohrCoulomb {
             dilation: 0.0,
             tension: None,
         }
-    }
-
-    /// What makes the constants unusable, if anything. Softening of the cohesion must stay above
-    /// [`MohrCoulomb::softening_limit`]; softening of the friction angle can only be judged at a stress and fails in
-    /// [`super::update`] with [`ReturnError::Softening`].
-    pub fn fault(&self, elastic: &Elastic) -> Option<Fault> {
-        strength_fault(&self.cohesion, &self.friction, self.dilation, self.tension).or_else(|| {
-            let fall = self.cohesion.steepest_fall();
-            (fall < 0.0 && fall <= self.softening_limit(elastic)).then_some((
-                "cohesion",
-                fall,
-                "softening less steep than the limit at which a point snaps back",
-            ))
-        })
     }
 
     /// The slope `dc/dkappa` [Pa] (below 0) at or below which the return may have no unique solution: in some region
@@ -95,13 +83,16 @@ impl MohrCoulomb {
         Strength::new(self.cohesion.at(kappa), self.friction.at(kappa), self.dilation.sin(), self.tension)
     }
 
-    pub(super) fn yield_function(&self, stress: &Voigt, kappa: f64) -> f64 {
-        let strength = self.strength(kappa);
-        let s = spectral::principal(stress).values;
-        (0.5 * strength.plane(&s)).max(s[0] - strength.tension.unwrap_or(f64::INFINITY))
+    fn shared(&self) -> strength::Strength<'_> {
+        strength::Strength {
+            cohesion: &self.cohesion,
+            friction: &self.friction,
+            dilation: self.dilation,
+            tension: self.tension,
+        }
     }
 
-    pub(super) fn update(
+    fn return_map(
         &self,
         elastic: &Elastic,
         old: &PointState,
@@ -157,6 +148,59 @@ impl MohrCoulomb {
     }
 }
 
+impl ConstitutiveLaw for MohrCoulomb {
+    fn source(&self) -> &'static str {
+        strength::SOURCE
+    }
+
+    /// Softening of the cohesion must stay above [`MohrCoulomb::softening_limit`]; softening of the friction angle can only
+    /// be judged at a stress and fails in [`ConstitutiveLaw::update`] with [`ReturnError::Softening`].
+    fn fault(&self, elastic: &Elastic) -> Option<Fault> {
+        self.shared().fault().or_else(|| {
+            let fall = self.cohesion.steepest_fall();
+            (fall < 0.0 && fall <= self.softening_limit(elastic)).then_some((
+                "cohesion",
+                fall,
+                "softening less steep than the limit at which a point snaps back",
+            ))
+        })
+    }
+
+    fn is_associated(&self) -> bool {
+        self.friction == Hardening::Constant(self.dilation)
+    }
+
+    /// Hardening by the norm of the plastic strain makes the tangent unsymmetric on edges and at the apex also where the
+    /// flow is associated.
+    fn has_symmetric_tangent(&self) -> bool {
+        self.cohesion.is_constant() && self.is_associated()
+    }
+
+    fn update(
+        &self,
+        elastic: &Elastic,
+        old: Point<'_>,
+        increment: &[f64; 6],
+        want_tangent: bool,
+        _: &mut [f64],
+    ) -> Result<Response, ReturnError> {
+        let trial = elastic_trial(elastic, old.state, increment)?;
+        self.return_map(elastic, old.state, &trial, want_tangent)
+    }
+
+    /// `max((s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi), s1 - tension)` with the strength of the point's `kappa`.
+    fn yield_function(&self, point: Point<'_>) -> f64 {
+        let strength = self.strength(point.state.kappa);
+        let s = spectral::principal(&point.state.stress).values;
+        (0.5 * strength.plane(&s)).max(s[0] - strength.tension.unwrap_or(f64::INFINITY))
+    }
+
+    fn reduced(&self, factor: f64) -> MohrCoulomb {
+        let strength::Reduced { cohesion, friction, dilation, tension } = self.shared().reduced(factor);
+        MohrCoulomb { cohesion, friction, dilation, tension }
+    }
+}
+
 /// A bound without principal values: with `q = sqrt(J2)`, `s1 <= p + 2 q / sqrt(3)`, and over all Lode angles
 /// `f <= q sqrt(1 + sin²(phi)/3) + p sin(phi) - c cos(phi)`.
 fn clearly_inside(t: &Voigt, strength: &Strength) -> bool {
@@ -165,14 +209,6 @@ fn clearly_inside(t: &Voigt, strength: &Strength) -> bool {
     let sin = strength.sin;
     q * (1.0 + sin * sin / 3.0).sqrt() + p * sin <= 0.5 * strength.k
         && strength.tension.is_none_or(|cut| p + 1.1547005383792517 * q <= cut)
-}
-
-/// Mean stress and the second invariant of the deviator.
-pub(super) fn invariants(t: &Voigt) -> (f64, f64) {
-    let p = (t[0] + t[1] + t[2]) / 3.0;
-    let d = [t[0] - p, t[1] - p, t[2] - p];
-    let j2 = 0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + t[3] * t[3] + t[4] * t[4] + t[5] * t[5];
-    (p, j2)
 }
 
 /// Principal plastic strain of the step.

@@ -12,8 +12,8 @@
 //! (2007) 1795–1807 for lines and points; de Souza Neto, Peric and Owen (2008), section 8.2; the regions of the cut-off
 //! follow the same construction.
 
-use super::Region;
 use super::elastic::Elastic;
+use super::point::Region;
 
 /// Elastic constants in the form the return needs.
 #[derive(Clone, Copy)]

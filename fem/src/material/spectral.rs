@@ -7,6 +7,14 @@
 /// Stress or stiffness in Voigt order xx yy zz xy yz zx.
 pub(super) type Voigt = [f64; 6];
 
+/// Mean stress and the second invariant of the deviator.
+pub(super) fn invariants(t: &Voigt) -> (f64, f64) {
+    let p = (t[0] + t[1] + t[2]) / 3.0;
+    let d = [t[0] - p, t[1] - p, t[2] - p];
+    let j2 = 0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + t[3] * t[3] + t[4] * t[4] + t[5] * t[5];
+    (p, j2)
+}
+
 /// Principal values, largest first, and the unit axes that belong to them.
 pub(super) struct Principal {
     pub values: [f64; 3],

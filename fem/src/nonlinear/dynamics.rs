@@ -89,7 +89,7 @@ impl Dynamics {
             hht,
             newton: Newton::new(model, options)?,
             length: StepLength::new(control),
-            next: State { points: vec![Default::default(); model.point_count()], ..State::new(model) },
+            next: State { points: model.new_points(), ..State::new(model) },
             load: [zeros(), zeros()],
             rhs: zeros(),
             fixed: vec![0.0; model.supports().fixed().len()],

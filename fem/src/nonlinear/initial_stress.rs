@@ -11,7 +11,7 @@ use super::newton::{NewtonOptions, Statistics};
 use super::quasi_static::{QuasiStatic, ensure_points};
 use super::step_control::StepControl;
 use crate::element::stiffness_points;
-use crate::material::{self, PointState};
+use crate::material::{Point, PointState, Region};
 use crate::model::Model;
 use crate::solver::SolveError;
 use crate::state::State;
@@ -122,27 +122,33 @@ fn set(
     stress: impl Fn(usize, [f64; 3]) -> [f64; 6],
 ) -> Result<usize, SolveError> {
     let mesh = model.mesh();
-    let mut points = Vec::with_capacity(model.point_count());
+    let mut points = model.new_points();
+    let (states, values) = points.split_mut();
     let mut returned = 0;
     for e in 0..mesh.element_count() {
         let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
         for (i, point) in stiffness_points(kind, model.quadrature()).iter().enumerate() {
             let at = std::array::from_fn(|k| point.shape.iter().zip(&x).map(|(n, x)| n * x[k]).sum());
+            let (material, own) = (model.material(e), model.values(e, i));
             let mut new = PointState { stress: stress(e, at), ..Default::default() };
-            if material::yield_function(model.material(e), &new) > 0.0
-                || new.stress.iter().any(|s| !s.is_finite())
-            {
-                let response = material::update(model.material(e), &new, &[0.0; 6], false).map_err(|_| {
-                    let (element, region) = (mesh.element_ids[e], material::Region::Elastic);
+            let mut start = vec![0.0; own.len()];
+            material.law.initial_values(&new.stress, &mut start);
+            let values = &mut values[own];
+            values.copy_from_slice(&start);
+            let old = Point { state: &new, values: &start };
+            if material.law.yield_function(old) > 0.0 || new.stress.iter().any(|s| !s.is_finite()) {
+                let response = material.law.update(&material.elastic, old, &[0.0; 6], false, values);
+                let response = response.map_err(|_| {
+                    let (element, region) = (mesh.element_ids[e], Region::Elastic);
                     let (time, residual) = (state.time, f64::NAN);
                     let (point, xi) = (i as u32 + 1, point.xi);
                     SolveError::Diverged { time, iterations: 0, residual, element, point, xi, region }
                 })?;
-                returned += usize::from(response.region != material::Region::Elastic);
+                returned += usize::from(response.region != Region::Elastic);
                 // What returned it is no history of the ground.
                 new.stress = response.state.stress;
             }
-            points.push(new);
+            states[model.point_start(e) + i] = new;
         }
     }
     state.points = points;

@@ -6,7 +6,7 @@
 
 use super::points::{Moved, PointTable};
 use crate::element::MAX_NODES;
-use crate::material::{self, PointState, Region};
+use crate::material::{Point, PointState, Points, Region};
 use crate::mesh::Mesh;
 use crate::model::Model;
 
@@ -24,7 +24,7 @@ pub(crate) struct PointFailure {
 pub(crate) struct InternalForce {
     pub table: PointTable,
     /// State of the points at the trial. Shape `[points]`.
-    pub points: Vec<PointState>,
+    pub points: Points,
     /// Where each point ended. Shape `[points]`.
     pub regions: Vec<Region>,
     /// Nodal forces [N]. Shape `[3 * nodes]`.
@@ -39,6 +39,9 @@ struct Slice<'a> {
     first: usize,
     end: usize,
     points: &'a mut [PointState],
+    /// The laws' own values, which begin at `first_value` among those of all points.
+    values: &'a mut [f64],
+    first_value: usize,
     regions: &'a mut [Region],
     forces: &'a mut [[f64; 3]],
 }
@@ -47,7 +50,7 @@ struct Slice<'a> {
 struct Input<'a> {
     model: &'a Model,
     table: &'a PointTable,
-    old: &'a [PointState],
+    old: &'a Points,
     increment: &'a [f64],
 }
 
@@ -56,7 +59,7 @@ impl InternalForce {
         let points = model.point_count();
         InternalForce {
             table: PointTable::new(model),
-            points: vec![PointState::default(); points],
+            points: Points::new(points, model.value_count()),
             regions: vec![Region::Elastic; points],
             force: vec![0.0; model.dof_count()],
             plastic: 0,
@@ -65,17 +68,15 @@ impl InternalForce {
     }
 
     /// Stresses and forces after the displacement increment `increment` [m] (shape `[3 * nodes]`) from the states `old`.
-    pub fn evaluate(
-        &mut self,
-        model: &Model,
-        old: &[PointState],
-        increment: &[f64],
-    ) -> Result<(), PointFailure> {
+    pub fn evaluate(&mut self, model: &Model, old: &Points, increment: &[f64]) -> Result<(), PointFailure> {
         let input = Input { model, table: &self.table, old, increment };
+        let (points, values) = self.points.split_mut();
         let all = Slice {
             first: 0,
             end: model.mesh().element_count(),
-            points: &mut self.points,
+            points,
+            values,
+            first_value: 0,
             regions: &mut self.regions,
             forces: &mut self.element_force,
         };
@@ -107,23 +108,34 @@ impl InternalForce {
         }
     }
 
-    /// Whether any point of element `e` yielded.
-    pub fn yields(&self, e: usize) -> bool {
-        self.plastic > 0 && self.regions[self.table.points(e)].iter().any(|r| *r != Region::Elastic)
+    /// Whether any point of element `e` has another tangent than the assembled elastic matrix.
+    pub fn leaves_elastic_matrix(&self, model: &Model, e: usize) -> bool {
+        let yields = || self.regions[self.table.points(e)].iter().any(|r| *r != Region::Elastic);
+        !model.material(e).law.has_constant_elasticity() || (self.plastic > 0 && yields())
     }
 }
 
 impl Input<'_> {
     fn run(&self, slice: Slice<'_>) -> Result<usize, PointFailure> {
-        let Slice { first, end, points, regions, forces } = slice;
+        let Slice { first, end, points, values, first_value, regions, forces } = slice;
         if end - first > CHUNK {
             let middle = first + (end - first) / 2;
             let (at, node) = (self.table.points(first).start, self.table.nodes(first).start);
             let (p, q) = points.split_at_mut(self.table.points(middle).start - at);
             let (r, s) = regions.split_at_mut(self.table.points(middle).start - at);
             let (f, g) = forces.split_at_mut(self.table.nodes(middle).start - node);
-            let low = Slice { first, end: middle, points: p, regions: r, forces: f };
-            let high = Slice { first: middle, end, points: q, regions: s, forces: g };
+            let middle_value = self.model.values(middle, 0).start;
+            let (v, w) = values.split_at_mut(middle_value - first_value);
+            let low = Slice { first, end: middle, points: p, values: v, first_value, regions: r, forces: f };
+            let high = Slice {
+                first: middle,
+                end,
+                points: q,
+                values: w,
+                first_value: middle_value,
+                regions: s,
+                forces: g,
+            };
             let (low, high) = rayon::join(|| self.run(low), || self.run(high));
             return Ok(low? + high?);
         }
@@ -131,7 +143,8 @@ impl Input<'_> {
         for e in first..end {
             let (p, n) = (self.table.points(e).len(), self.table.nodes(e).len());
             let (points, regions) = (&mut points[at..at + p], &mut regions[at..at + p]);
-            plastic += self.element(e, points, regions, &mut forces[node..node + n])?;
+            let own = self.model.values(e, 0).start - first_value..;
+            plastic += self.element(e, points, &mut values[own], regions, &mut forces[node..node + n])?;
             (at, node) = (at + p, node + n);
         }
         Ok(plastic)
@@ -141,20 +154,27 @@ impl Input<'_> {
         &self,
         e: usize,
         points: &mut [PointState],
+        values: &mut [f64],
         regions: &mut [Region],
         forces: &mut [[f64; 3]],
     ) -> Result<usize, PointFailure> {
         let moved = element_increment(self.model.mesh(), e, self.increment);
         let (material, at) = (self.model.material(e), self.table.points(e).start);
+        let (linear, first_value) = (material.is_linear(), self.model.values(e, 0).start);
         forces.fill([0.0; 3]);
         let mut plastic = 0;
         for i in 0..points.len() {
             let (old, strain) = (&self.old[at + i], self.table.strain(e, i, &moved));
-            if material.is_linear() {
+            if linear {
                 let step = material.elastic.stress(&strain);
                 points[i] = PointState { stress: std::array::from_fn(|k| old.stress[k] + step[k]), ..*old };
             } else {
-                let response = material::update(material, old, &strain, false)
+                let own = self.model.values(e, i);
+                let old = Point { state: old, values: &self.old.values()[own.clone()] };
+                let new = &mut values[own.start - first_value..own.end - first_value];
+                let response = material
+                    .law
+                    .update(&material.elastic, old, &strain, false, new)
                     .map_err(|_| PointFailure { element: e, point: i })?;
                 (points[i], regions[i]) = (response.state, response.region);
                 plastic += usize::from(response.region != Region::Elastic);

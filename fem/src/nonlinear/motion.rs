@@ -6,31 +6,19 @@
 
 use super::internal_force::InternalForce;
 use super::points::PointTable;
-use crate::material::PointState;
+use crate::material::Points;
 use crate::model::Model;
 use crate::state::{State, StepAudit};
 
-/// Elastic energy of a stress over a volume, `s : C^-1 s / 2` [J/m³].
-pub(crate) fn elastic_energy_density(young: f64, poisson: f64, s: &[f64; 6]) -> f64 {
-    let trace = s[0] + s[1] + s[2];
-    let square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
-    0.5 * ((1.0 + poisson) * square - poisson * trace * trace) / young
-}
-
 /// Change of the elastic energy of the points, and their plastic dissipation, in one step [J].
-pub(super) fn point_energies(
-    model: &Model,
-    table: &PointTable,
-    old: &[PointState],
-    new: &[PointState],
-) -> (f64, f64) {
+pub(super) fn point_energies(model: &Model, table: &PointTable, old: &Points, new: &Points) -> (f64, f64) {
     let (mut elastic, mut plastic) = (0.0, 0.0);
     for e in 0..model.mesh().element_count() {
-        let constants = model.elastic(e);
-        let energy = |s| elastic_energy_density(constants.young, constants.poisson, s);
-        for p in table.points(e) {
+        let material = model.material(e);
+        let energy = |points, i| material.law.stored_energy(&material.elastic, model.point(points, e, i));
+        for (i, p) in table.points(e).enumerate() {
             let (a, b, volume) = (&old[p], &new[p], table.volume(p));
-            elastic += volume * (energy(&b.stress) - energy(&a.stress));
+            elastic += volume * (energy(new, i) - energy(old, i));
             for k in 0..6 {
                 let mean = 0.5 * (a.stress[k] + b.stress[k]);
                 plastic += volume * mean * (b.plastic_strain[k] - a.plastic_strain[k]);

@@ -27,7 +27,7 @@ use super::quasi_static::subtract_springs;
 use super::tangent::Tangent;
 use crate::assembly::Combination;
 use crate::element::stiffness_points;
-use crate::material::{PointState, Region};
+use crate::material::{Points, Region};
 use crate::model::Model;
 use crate::solver::SolveError;
 use serde::{Deserialize, Serialize};
@@ -210,7 +210,7 @@ impl Stuck {
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
     /// Committed states of the points. Shape `[points]`.
-    pub old: &'a [PointState],
+    pub old: &'a Points,
     /// Right-hand side [N]. Shape `[3 * nodes]`.
     pub rhs: &'a [f64],
     /// Prescribed increments [m] in the order of the constrained dofs.
@@ -380,7 +380,7 @@ impl Newton {
         if !due {
             return last;
         }
-        if self.force.plastic == 0 {
+        if self.force.plastic == 0 && model.has_constant_elasticity() {
             return Matrix::Elastic;
         }
         let start = Instant::now();

@@ -8,7 +8,6 @@ use super::memory::Memory;
 use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
 use super::step_control::{StepControl, StepLength};
 use crate::assembly::Combination;
-use crate::material::PointState;
 use crate::model::Model;
 use crate::solver::SolveError;
 use crate::state::State;
@@ -244,11 +243,13 @@ pub(super) fn check_state(model: &Model, state: &State) -> Result<(), SolveError
 /// Gives a linear model without point states those of its displacement.
 pub(super) fn ensure_points(model: &Model, state: &mut State) {
     if state.points.is_empty() {
+        let mut points = model.new_points();
         for e in 0..model.mesh().element_count() {
             let stresses = crate::stress::gauss(model, &state.u, e);
-            state
-                .points
-                .extend(stresses.into_iter().map(|stress| PointState { stress, ..Default::default() }));
+            for (point, stress) in points[model.point_start(e)..].iter_mut().zip(stresses) {
+                point.stress = stress;
+            }
         }
+        state.points = points;
     }
 }

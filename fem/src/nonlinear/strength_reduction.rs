@@ -156,7 +156,7 @@ pub fn at_factor(
 
 fn reduced(model: &Model, factor: f64) -> Result<Model, SolveError> {
     let materials = model.materials().iter().map(|(&number, m)| (number, m.reduced(factor))).collect();
-    model.with_plasticity(materials).map_err(|_| SolveError::Option {
+    model.with_laws(materials).map_err(|_| SolveError::Option {
         what: "the factor of reduction",
         value: factor,
         expected: "one that leaves usable constants",

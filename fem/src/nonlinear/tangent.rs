@@ -14,7 +14,7 @@
 use super::internal_force::{InternalForce, element_increment};
 use crate::assembly::Combination;
 use crate::element::MAX_NODES;
-use crate::material::{PointState, REGULARISATION, Region, update};
+use crate::material::{Points, REGULARISATION, Region};
 use crate::model::Model;
 use crate::supports::CONSTRAINED;
 
@@ -99,7 +99,7 @@ impl Tangent {
         &mut self,
         model: &Model,
         force: &InternalForce,
-        old: &[PointState],
+        old: &Points,
         increment: &[f64],
         linear: Combination,
         stalled: bool,
@@ -109,8 +109,11 @@ impl Tangent {
         let mut yielding = std::mem::take(&mut self.yielding);
         yielding.clear();
         let elements = 0..model.mesh().element_count();
-        yielding
-            .extend(elements.filter(|&e| self.slot_start[e] != NONE && force.yields(e)).map(|e| e as u32));
+        yielding.extend(
+            elements
+                .filter(|&e| self.slot_start[e] != NONE && force.leaves_elastic_matrix(model, e))
+                .map(|e| e as u32),
+        );
         let input = Input { model, force, old, increment, symmetric: self.symmetric, share };
         let mut buffer = std::mem::take(&mut self.element);
         for chunk in yielding.chunks(CHUNK) {
@@ -213,7 +216,7 @@ impl Tangent {
 struct Input<'a> {
     model: &'a Model,
     force: &'a InternalForce,
-    old: &'a [PointState],
+    old: &'a Points,
     increment: &'a [f64],
     symmetric: bool,
     /// Share of the elastic matrix at yielding points.
@@ -237,14 +240,16 @@ impl Input<'_> {
     fn element(&self, e: usize, matrix: &mut [f64]) {
         let (table, material) = (&self.force.table, self.model.material(e));
         let moved = element_increment(self.model.mesh(), e, self.increment);
-        let elastic = material.elastic.matrix();
+        let (elastic, constant) = (material.elastic.matrix(), material.law.has_constant_elasticity());
+        let mut values = vec![0.0; self.model.values(e, 0).len()];
         matrix.fill(0.0);
         for (i, p) in table.points(e).enumerate() {
-            if self.force.regions[p] == Region::Elastic {
+            if constant && self.force.regions[p] == Region::Elastic {
                 continue;
             }
             // The same call has succeeded for the force.
-            let Ok(response) = update(material, &self.old[p], &table.strain(e, i, &moved), true) else {
+            let (old, strain) = (self.model.point(self.old, e, i), table.strain(e, i, &moved));
+            let Ok(response) = material.law.update(&material.elastic, old, &strain, true, &mut values) else {
                 continue;
             };
             let factor = (1.0 - self.share) * table.volume(p);

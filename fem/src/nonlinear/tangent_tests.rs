@@ -68,7 +68,7 @@ fn tangent_is_the_derivative_of_the_internal_force() {
             (0..3).for_each(|k| w[3 * node + k] = uniform[k] + 1e-5 * random.next());
         }
         let direction: Vec<f64> = (0..n).map(|_| random.next()).collect();
-        let old = vec![PointState::default(); model.point_count()];
+        let old = model.new_points();
         let mut force = InternalForce::new(&model);
         let at = |force: &mut InternalForce, step: f64| {
             let moved: Vec<f64> = w.iter().zip(&direction).map(|(w, d)| w + step * d).collect();
@@ -125,7 +125,7 @@ fn force_is_the_transposed_of_the_strain() {
         let model = model(kind, SOIL.into());
         let mut random = Random(5);
         let w: Vec<f64> = (0..model.dof_count()).map(|_| 1e-3 * random.next()).collect();
-        let old = vec![PointState::default(); model.point_count()];
+        let old = model.new_points();
         let mut force = InternalForce::new(&model);
         assert!(force.evaluate(&model, &old, &w).is_ok());
         let mut elastic = vec![0.0; w.len()];

@@ -58,7 +58,7 @@ impl PlasticWindowSolver {
             theta,
             dt,
             newton: Newton::new(model, options)?,
-            next: State { points: vec![Default::default(); model.point_count()], ..State::new(model) },
+            next: State { points: model.new_points(), ..State::new(model) },
             rhs: zeros(),
             fixed: vec![0.0; model.supports().fixed().len()],
             inner: [zeros(), zeros()],

@@ -171,7 +171,7 @@ fn unusable_options_and_states_are_refused() {
     assert!(QuasiStatic::new(model, tight(), bad).is_err());
     let mut solver = QuasiStatic::new(model, tight(), control).unwrap();
     let mut state = State::new(model);
-    state.points.pop();
+    state.points.resize(model.point_count() - 1, 0);
     let error = solver.advance(model, &mut state, 1.0, &mut footing.loading(), |_, _| ()).unwrap_err();
     assert!(matches!(error, SolveError::Length { .. }), "{error}");
     let mut state = State::new(model);

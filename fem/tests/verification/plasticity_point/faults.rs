@@ -27,10 +27,7 @@ fn faults_of_strength_constants() {
     assert_eq!(fault(MohrCoulomb { cohesion: falling, ..base() }).0, "cohesion");
     let angle = Hardening::Table(vec![(0.0, rad(30.0)), (0.1, rad(5.0))]);
     assert_eq!(fault(MohrCoulomb { friction: angle, ..base() }).0, "dilation angle");
-    assert_eq!(
-        Material { elastic: Elastic { young: -1.0, ..SOIL }, plasticity: None }.fault().unwrap().0,
-        "Young's modulus"
-    );
+    assert_eq!(Material::from(Elastic { young: -1.0, ..SOIL }).fault().unwrap().0, "Young's modulus");
 }
 
 /// Cohesion that falls less than the stated limit always has a return; the fault names a steeper one. On the plane the

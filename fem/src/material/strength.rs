@@ -1,0 +1,75 @@
+//! Cohesion, friction, dilation and tension cut-off, as the criteria of Coulomb's kind share them.
+
+use super::hardening::Hardening;
+use super::law::Fault;
+
+/// Source of the criteria of Coulomb's kind and their returns, for the list of sources of a run.
+pub(super) const SOURCE: &str = "plasticity: return maps in principal stresses, de Souza Neto, Peric & Owen 2008; Clausen, \
+                                 Damkilde & Andersen 2006";
+
+/// The constants that both criteria share.
+pub(super) struct Strength<'a> {
+    pub cohesion: &'a Hardening,
+    pub friction: &'a Hardening,
+    pub dilation: f64,
+    pub tension: Option<f64>,
+}
+
+/// Cohesion, friction angle, dilation angle and tension cut-off of reduced strength.
+pub(super) struct Reduced {
+    pub cohesion: Hardening,
+    pub friction: Hardening,
+    pub dilation: f64,
+    pub tension: Option<f64>,
+}
+
+impl Strength<'_> {
+    /// The strength divided by `factor`: `c / F`, `tan(phi) / F`, tension cut-off `/ F`. The dilation angle is kept, but
+    /// never above the reduced friction angle. Source: Griffiths and Lane, Géotechnique 49(3), 1999, equations 1 and 2.
+    pub fn reduced(&self, factor: f64) -> Reduced {
+        let friction = self.friction.map(|phi| (phi.tan() / factor).atan());
+        Reduced {
+            cohesion: self.cohesion.map(|c| c / factor),
+            dilation: self.dilation.min(friction.range().0),
+            friction,
+            tension: self.tension.map(|t| t / factor),
+        }
+    }
+
+    /// What makes the constants unusable, if anything.
+    pub fn fault(&self) -> Option<Fault> {
+        let Strength { cohesion, friction, dilation, tension } = *self;
+        if let Some(fault) =
+            friction.fault("friction angle", true).or_else(|| cohesion.fault("cohesion", false))
+        {
+            return Some(fault);
+        }
+        let (phi, phi_high) = friction.range();
+        if phi < 0.0 {
+            return Some(("friction angle", phi, "0 or above"));
+        }
+        if phi_high >= std::f64::consts::FRAC_PI_2 {
+            return Some(("friction angle", phi_high, "an angle below pi/2 (in radians)"));
+        }
+        let c = cohesion.range().0;
+        if c < 0.0 {
+            return Some(("cohesion", c, "0 or above"));
+        }
+        if c == 0.0 && phi == 0.0 {
+            return Some(("cohesion", c, "a value above 0 where the friction angle is 0"));
+        }
+        if !(dilation >= 0.0 && dilation <= phi) {
+            return Some(("dilation angle", dilation, "between 0 and the smallest friction angle"));
+        }
+        if let Some(t) = tension {
+            if !(t >= 0.0 && t.is_finite()) {
+                return Some(("tension cut-off", t, "a finite number, 0 or above"));
+            }
+            let (c, phi) = (cohesion.at(0.0).0, friction.at(0.0).0);
+            if t * phi.sin() > c * phi.cos() {
+                return Some(("tension cut-off", t, "at most c cot(phi), where the apex lies"));
+            }
+        }
+        None
+    }
+}
