@@ -27,6 +27,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use trackbed_fem::assembly::Combination;
+use trackbed_fem::equations::{analyse, values};
 use trackbed_fem::solver::analysis::Analysis;
 use trackbed_fem::solver::multifrontal::DirectSolver;
 use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature};
@@ -99,10 +100,10 @@ impl Case {
         .expect("the mesh is a model");
         let mut watch = Watch::default();
         let analysis = watch.time(|| {
-            Analysis::new(model.mesh(), model.matrices(), model.supports()).expect("there is enough memory")
+            analyse(model.mesh(), model.matrices(), model.supports()).expect("there is enough memory")
         });
         let newmark = Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 };
-        let values = analysis.values(model.matrices(), model.supports(), newmark);
+        let values = values(&analysis, model.matrices(), model.supports(), newmark);
         Case { model, analysis: Arc::new(analysis), values, watch }
     }
 
@@ -124,7 +125,7 @@ impl Case {
         );
         let (model, times) = (&self.model, self.times());
         let (wall, cpu) = median(times, || {
-            Analysis::new(model.mesh(), model.matrices(), model.supports()).expect("there is enough memory");
+            analyse(model.mesh(), model.matrices(), model.supports()).expect("there is enough memory");
         });
         line("ordering and symbolic", (wall, cpu), 0.0);
         let mut peak = 0.0;

@@ -21,8 +21,8 @@ use crate::scheme::Scheme;
 use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_fem as fem;
+use trackbed_fem::SolveError;
 use trackbed_fem::element::quad8;
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::window::WindowSolver;
 
 /// The two numbers that decide whether an exchange is stable, of the class of contacts with the largest W.

@@ -28,9 +28,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
+use trackbed_fem::SolveError;
 use trackbed_fem::nonlinear::{Memory, NewtonOptions, PlasticWindowSolver, Statistics};
 use trackbed_fem::reduction::{Estimate, Reduced, ReducedWindowSolver};
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::StepAudit;
 use trackbed_fem::window::WindowSolver;
 

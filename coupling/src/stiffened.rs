@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_fem as fem;
+use trackbed_fem::SolveError;
 use trackbed_fem::element::quad8;
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::window::WindowSolver;
 
 /// A contact of the last grain step of a window.

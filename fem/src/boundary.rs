@@ -11,9 +11,9 @@
 //! (axisymmetric); Liu, Du, Du, Wang and Wu, Earthq. Eng. Eng. Vib. 5 (2006) 93-102 (three dimensions). Limits:
 //! oblique waves and surface waves are absorbed in part only; the normals are those of the undeformed body.
 
+use crate::error::ModelError;
 use crate::material::elastic::Elastic;
 use crate::mesh::{Face, Mesh};
-use crate::model::ModelError;
 use std::collections::BTreeMap;
 
 /// Springs and dashpots on some faces of the body.

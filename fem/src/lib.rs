@@ -39,6 +39,9 @@ pub mod connectivity;
 pub mod damping;
 pub mod element;
 pub mod energy;
+pub mod equations;
+pub mod error;
+pub mod integrator;
 pub mod kinematics;
 pub mod loads;
 pub mod mass;
@@ -62,6 +65,8 @@ pub use connectivity::Connectivity;
 pub use damping::Rayleigh;
 pub use element::quadrature::Quadrature;
 pub use element::{ElementKind, FaceShape};
+pub use error::{ModelError, SolveError};
+pub use integrator::{Loading, StepReport, TimeIntegrator};
 pub use mass::Mass;
 pub use material::elastic::Elastic;
 pub use material::{
@@ -69,6 +74,5 @@ pub use material::{
     PointState, Points, Region, Response, ReturnError,
 };
 pub use mesh::{Constraint, Face, Mesh};
-pub use model::{Model, ModelError, ModelInput};
-pub use solver::SolveError;
+pub use model::{Model, ModelInput};
 pub use state::{State, StepAudit};

@@ -1,21 +1,22 @@
 //! The model: mesh, materials and supports, checked, with the matrices assembled. It never changes during a run.
 
+mod checks;
+
 use crate::assembly::Matrices;
 use crate::boundary::{self, BoundaryLayer};
 use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
-use crate::element::{mass_points, stiffness_points};
-use crate::kinematics::jacobian;
+use crate::equations;
+pub use crate::error::ModelError;
+use crate::error::SolveError;
 use crate::mass::Mass;
 use crate::material::{Elastic, Material, Point, PointState, Points};
 use crate::mesh::{Constraint, Mesh};
-use crate::solver::SolveError;
-use crate::solver::cholesky::Analysis;
+use crate::solver::analysis::Analysis;
 use crate::supports::Supports;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
-use thiserror::Error;
 
 /// What a model is built from. The default is an empty mesh of no material under the reduced rule, without gravity.
 #[derive(Clone, Debug, Default)]
@@ -38,48 +39,7 @@ pub struct ModelInput {
     pub boundaries: Vec<BoundaryLayer>,
 }
 
-/// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[allow(missing_docs, reason = "the messages are the documentation")]
-pub enum ModelError {
-    #[error("the mesh has no {what}")]
-    EmptyMesh { what: &'static str },
-    #[error("the mesh has {found} {what}, expected {expected}")]
-    Length { what: &'static str, found: usize, expected: usize },
-    #[error("node {node} has a coordinate that is not a finite number")]
-    Coordinate { node: u32 },
-    #[error("element {element} refers to node index {index}, but the mesh has {nodes} nodes")]
-    NodeRange { element: u32, index: u32, nodes: usize },
-    #[error("element {element} uses node {node} more than once; a {kind} needs {nodes} different nodes")]
-    RepeatedNode { element: u32, node: u32, kind: &'static str, nodes: usize },
-    #[error("node {node} belongs to no element")]
-    UnusedNode { node: u32 },
-    #[error("element {element} has material {material}, which is not defined")]
-    MissingMaterial { element: u32, material: u32 },
-    #[error("material {material}: {constant} is {value}, expected {expected}")]
-    MaterialConstant { material: u32, constant: &'static str, value: f64, expected: &'static str },
-    #[error(
-        "element {element} is inverted or degenerate: the Jacobian determinant is {determinant:.6e} m³ at the Gauss \
-         point {point:?}, expected above 0"
-    )]
-    Inverted { element: u32, point: [f64; 3], determinant: f64 },
-    #[error("constraint {index} names node index {node}, direction {direction}; that dof does not exist")]
-    ConstraintRange { index: usize, node: u32, direction: u8 },
-    #[error("the constraint of node {node} in {direction} has the value {value}, expected a finite number")]
-    ConstraintValue { node: u32, direction: &'static str, value: f64 },
-    #[error("node {node} is given two displacements in {direction}: {first} m and {second} m")]
-    Contradiction { node: u32, direction: &'static str, first: f64, second: f64 },
-    #[error("gravity is {gravity:?}, expected finite numbers")]
-    Gravity { gravity: [f64; 3] },
-    #[error("{name} is {value}, expected a finite number, 0 or above")]
-    Damping { name: &'static str, value: f64 },
-    #[error("boundary layer {index}: {name} is {value}, expected a finite number, 0 or above")]
-    BoundaryConstant { index: usize, name: &'static str, value: f64 },
-    #[error("boundary layer {index}: face {side} of element {element} {fault}")]
-    BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
-}
-
-/// What a factorization takes.
+/// Memory and operations of a factorization.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverDemand {
     /// Memory of factor and fronts [bytes].
@@ -120,9 +80,9 @@ impl Model {
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
         let ModelInput { mesh, materials, quadrature, constraints, gravity, rayleigh, mass, boundaries } =
             input;
-        check_mesh(&mesh)?;
-        check_materials(&mesh, &materials)?;
-        check_shape(&mesh, quadrature)?;
+        checks::check_mesh(&mesh)?;
+        checks::check_materials(&mesh, &materials)?;
+        checks::check_shape(&mesh, quadrature)?;
         if gravity.iter().any(|g| !g.is_finite()) {
             return Err(ModelError::Gravity { gravity });
         }
@@ -135,8 +95,8 @@ impl Model {
         boundary::check(&mesh, &boundaries)?;
         let material = |e: usize| &materials[&mesh.materials[e]].elastic;
         let matrices = Arc::new(Matrices::assemble_with(&mesh, quadrature, mass, &boundaries, material));
-        let point_start = point_start(&mesh, quadrature);
-        let value_start = value_start(&mesh, quadrature, &materials);
+        let point_start = checks::point_start(&mesh, quadrature);
+        let value_start = checks::value_start(&mesh, quadrature, &materials);
         Ok(Model {
             mesh,
             materials,
@@ -196,7 +156,7 @@ impl Model {
     /// # Errors
     /// A constant out of range, or a material that is missing.
     pub(crate) fn with_laws(&self, materials: BTreeMap<u32, Material>) -> Result<Model, ModelError> {
-        check_materials(&self.mesh, &materials)?;
+        checks::check_materials(&self.mesh, &materials)?;
         Ok(Model { materials, ..self.clone() })
     }
 
@@ -366,7 +326,7 @@ impl Model {
         (0..self.mesh.element_count()).map(|e| self.elastic(e).density * self.mesh.element_volume(e)).sum()
     }
 
-    /// What a factorization of the model's equations will take, told before it is made.
+    /// Memory and operations of a factorization of the model's equations, known before it is made.
     ///
     /// # Errors
     /// The equations cannot be analysed.
@@ -384,107 +344,9 @@ impl Model {
         if let Some(analysis) = self.analysis.get() {
             return Ok(analysis.clone());
         }
-        let analysis = Arc::new(Analysis::new(&self.mesh, &self.matrices, &self.supports)?);
+        let analysis = Arc::new(equations::analyse(&self.mesh, &self.matrices, &self.supports)?);
         Ok(self.analysis.get_or_init(|| analysis).clone())
     }
-}
-
-fn check_mesh(mesh: &Mesh) -> Result<(), ModelError> {
-    let (nodes, elements) = (mesh.node_count(), mesh.element_count());
-    for (what, count) in [("nodes", nodes), ("elements", elements)] {
-        if count == 0 {
-            return Err(ModelError::EmptyMesh { what });
-        }
-    }
-    for (what, found, expected) in [
-        ("node numbers", mesh.node_ids.len(), nodes),
-        ("element numbers", mesh.element_ids.len(), elements),
-        ("element materials", mesh.materials.len(), elements),
-    ] {
-        if found != expected {
-            return Err(ModelError::Length { what, found, expected });
-        }
-    }
-    if let Some(n) = mesh.coordinates.iter().position(|c| c.iter().any(|x| !x.is_finite())) {
-        return Err(ModelError::Coordinate { node: mesh.node_ids[n] });
-    }
-    let mut used = vec![false; nodes];
-    for (e, connectivity) in mesh.connectivity.iter().enumerate() {
-        let element = mesh.element_ids[e];
-        for (a, &n) in connectivity.iter().enumerate() {
-            let Some(used) = used.get_mut(n as usize) else {
-                return Err(ModelError::NodeRange { element, index: n, nodes });
-            };
-            *used = true;
-            if connectivity[..a].contains(&n) {
-                let kind = mesh.connectivity.kind(e);
-                let node = mesh.node_ids[n as usize];
-                return Err(ModelError::RepeatedNode {
-                    element,
-                    node,
-                    kind: kind.name(),
-                    nodes: kind.node_count(),
-                });
-            }
-        }
-    }
-    match used.iter().position(|used| !used) {
-        Some(n) => Err(ModelError::UnusedNode { node: mesh.node_ids[n] }),
-        None => Ok(()),
-    }
-}
-
-fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Material>) -> Result<(), ModelError> {
-    for (&material, constants) in materials {
-        if let Some((constant, value, expected)) = constants.fault() {
-            return Err(ModelError::MaterialConstant { material, constant, value, expected });
-        }
-    }
-    match mesh.materials.iter().position(|m| !materials.contains_key(m)) {
-        Some(e) => {
-            Err(ModelError::MissingMaterial { element: mesh.element_ids[e], material: mesh.materials[e] })
-        }
-        None => Ok(()),
-    }
-}
-
-fn point_start(mesh: &Mesh, rule: Quadrature) -> Vec<u32> {
-    let mut start = vec![0];
-    let mut count = 0;
-    for &kind in mesh.connectivity.kinds() {
-        count += stiffness_points(kind, rule).len() as u32;
-        start.push(count);
-    }
-    start
-}
-
-fn value_start(mesh: &Mesh, rule: Quadrature, materials: &BTreeMap<u32, Material>) -> Vec<u32> {
-    let mut start = vec![0];
-    let mut count = 0;
-    for (kind, number) in mesh.connectivity.kinds().iter().zip(&mesh.materials) {
-        let values = materials[number].law.state_values().len();
-        count += (values * stiffness_points(*kind, rule).len()) as u32;
-        start.push(count);
-    }
-    start
-}
-
-/// Every Gauss point of the mass and of the stiffness must have a positive volume.
-fn check_shape(mesh: &Mesh, rule: Quadrature) -> Result<(), ModelError> {
-    for e in 0..mesh.element_count() {
-        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
-        for point in mass_points(kind).iter().chain(stiffness_points(kind, rule)) {
-            let determinant = jacobian(&x, &point.gradients).1;
-            if determinant.is_nan() || determinant <= 0.0 {
-                return Err(ModelError::Inverted {
-                    element: mesh.element_ids[e],
-                    point: point.xi,
-                    determinant,
-                });
-            }
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -8,9 +8,10 @@
 
 use crate::assembly::Combination;
 use crate::boundary::spring_points;
+use crate::equations::cholesky::Cholesky;
+use crate::error::SolveError;
 use crate::model::Model;
-use crate::solver::cholesky::Cholesky;
-use crate::solver::{LinearSolver, SolveError};
+use crate::solver::LinearSolver;
 use crate::supports::name;
 
 /// Pivot over diagonal below which a dof counts as having no stiffness.

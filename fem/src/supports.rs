@@ -10,8 +10,8 @@
 //! factorization.
 
 use crate::boundary::SpringPoint;
+use crate::error::ModelError;
 use crate::mesh::{Constraint, Mesh};
-use crate::model::ModelError;
 use nalgebra::{Matrix6, Vector6};
 
 /// Names of the directions, for messages.

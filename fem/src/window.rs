@@ -21,10 +21,12 @@
 
 use crate::assembly::Combination;
 use crate::energy::inner_force;
+use crate::equations::cholesky::Cholesky;
+use crate::error::SolveError;
+use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
 use crate::newmark::{check_dynamics, factor};
-use crate::solver::cholesky::Cholesky;
-use crate::solver::{LinearSolver, SolveError};
+use crate::solver::LinearSolver;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 
@@ -334,5 +336,25 @@ impl WindowSolver {
             audit.numerical_dissipation += excess * matrices.mass_form(&self.work);
         }
         audit
+    }
+}
+
+impl TimeIntegrator for WindowSolver {
+    /// Windows under the mean of the loads at both ends; `to` must lie a whole number of windows ahead.
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut dyn Loading,
+        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+    ) -> Result<(), SolveError> {
+        for step in steps_of(model, state.time, to, self.dt)? {
+            let (load, prescribed) = step.mean(loading);
+            let audit = self.step_prescribed(model, state, &load, Some(&prescribed))?;
+            state.time = step.ends[1];
+            on_step(state, &StepReport::linear(state.time, self.dt), Some(&audit));
+        }
+        Ok(())
     }
 }

@@ -89,7 +89,7 @@ impl<'a> SolidSystem<'a> {
     ///
     /// # Errors
     /// A matrix cannot be factored.
-    pub fn new(part: &'a SolidPart, method: TimeMethod, dt: f64) -> Result<Self, fem::solver::SolveError> {
+    pub fn new(part: &'a SolidPart, method: TimeMethod, dt: f64) -> Result<Self, fem::SolveError> {
         let model = &part.model;
         let solver = match method {
             TimeMethod::Newmark(m) => fem::newmark::NewmarkSolver::conditionally_stable(model, m, dt)?,

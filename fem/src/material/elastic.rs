@@ -4,9 +4,10 @@
 //! Source: Timoshenko and Goodier, Theory of Elasticity (1970), section 6. Limits: small strain; nu in (-1, 0.5). Near
 //! 0.5 the displacement element locks under the full rule; the reduced rule is the remedy.
 
-use super::law::{ConstitutiveLaw, Fault, Response, ReturnError, elastic_response, elastic_trial};
-use super::point::Point;
 use serde::{Deserialize, Serialize};
+
+/// An unusable constant: its name, its value, and what is expected of it.
+pub type Fault = (&'static str, f64, &'static str);
 
 /// An isotropic elastic material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,52 +81,6 @@ impl Elastic {
             return Some(("density", self.density, "a finite number, 0 or above"));
         }
         None
-    }
-}
-
-/// Stress proportional to strain, without a yield surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LinearElastic;
-
-impl ConstitutiveLaw for LinearElastic {
-    fn source(&self) -> &'static str {
-        "linear elasticity: Timoshenko & Goodier, Theory of Elasticity 1970"
-    }
-
-    fn fault(&self, _: &Elastic) -> Option<Fault> {
-        None
-    }
-
-    fn is_linear(&self) -> bool {
-        true
-    }
-
-    fn is_associated(&self) -> bool {
-        true
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        true
-    }
-
-    fn update(
-        &self,
-        elastic: &Elastic,
-        old: Point<'_>,
-        increment: &[f64; 6],
-        want_tangent: bool,
-        _: &mut [f64],
-    ) -> Result<Response, ReturnError> {
-        let trial = elastic_trial(elastic, old.state, increment)?;
-        Ok(elastic_response(elastic, old.state, &trial, want_tangent))
-    }
-
-    fn yield_function(&self, _: Point<'_>) -> f64 {
-        f64::NEG_INFINITY
-    }
-
-    fn reduced(&self, _: f64) -> LinearElastic {
-        LinearElastic
     }
 }
 

@@ -3,7 +3,7 @@
 //! The hardening variable is `kappa`, `d kappa = sqrt(2/3 d eps_p : d eps_p)` (strain hardening; de Souza Neto, Peric
 //! and Owen 2008, section 6.3.4). In uniaxial flow without volume change it is the plastic part of the axial strain.
 
-use super::law::Fault;
+use super::elastic::Fault;
 use serde::{Deserialize, Serialize};
 
 /// A strength parameter (cohesion [Pa] or friction angle [rad]) as a function of `kappa` [-].

@@ -1,11 +1,8 @@
 //! What a constitutive law is: the one interface through which the rest of the crate works with materials.
 
-use super::elastic::Elastic;
+use super::elastic::{Elastic, Fault};
 use super::point::{Point, PointState, Region};
 use thiserror::Error;
-
-/// An unusable constant: its name, its value, and what is expected of it.
-pub type Fault = (&'static str, f64, &'static str);
 
 /// A stress on the yield surface counts as elastic up to this overshoot, relative to the size of the stress.
 pub(super) const YIELD_TOLERANCE: f64 = 1e-12;

@@ -16,6 +16,7 @@ pub mod drucker_prager;
 pub mod elastic;
 pub mod hardening;
 mod law;
+mod linear_elastic;
 mod local;
 pub mod mohr_coulomb;
 mod point;
@@ -24,9 +25,10 @@ mod spectral;
 mod strength;
 
 pub use drucker_prager::{Cone, DruckerPrager};
-pub use elastic::{Elastic, LinearElastic};
+pub use elastic::{Elastic, Fault};
 pub use hardening::Hardening;
-pub use law::{ConstitutiveLaw, Fault, Response, ReturnError, StateValue};
+pub use law::{ConstitutiveLaw, Response, ReturnError, StateValue};
+pub use linear_elastic::LinearElastic;
 pub use mohr_coulomb::MohrCoulomb;
 pub use point::{Point, PointState, Points, Region};
 

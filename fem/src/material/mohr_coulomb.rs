@@ -6,11 +6,9 @@
 //! return at fixed strength. Limits: `0 <= psi <= phi < 90°`. A cut-off that comes to lie beyond the apex as `c cot(phi)`
 //! falls is not active; the apex holds there.
 
-use super::elastic::Elastic;
+use super::elastic::{Elastic, Fault};
 use super::hardening::Hardening;
-use super::law::{
-    ConstitutiveLaw, Fault, Response, ReturnError, YIELD_TOLERANCE, elastic_response, elastic_trial,
-};
+use super::law::{ConstitutiveLaw, Response, ReturnError, YIELD_TOLERANCE, elastic_response, elastic_trial};
 use super::local;
 use super::point::{Point, PointState, Region};
 use super::principal_return::{self, Moduli, Strength};

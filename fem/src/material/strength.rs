@@ -1,7 +1,7 @@
 //! Cohesion, friction, dilation and tension cut-off, as the criteria of Coulomb's kind share them.
 
+use super::elastic::Fault;
 use super::hardening::Hardening;
-use super::law::Fault;
 
 /// Source of the criteria of Coulomb's kind and their returns, for the list of sources of a run.
 pub(super) const SOURCE: &str = "plasticity: return maps in principal stresses, de Souza Neto, Peric & Owen 2008; Clausen, \

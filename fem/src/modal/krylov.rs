@@ -9,9 +9,9 @@
 //! Limits: the basis is full in memory: about `2 modes + 8 blocks` nodal vectors.
 
 use super::ModalError;
+use crate::equations::cholesky::Cholesky;
 use crate::model::Model;
 use crate::solver::LinearSolver;
-use crate::solver::cholesky::Cholesky;
 use nalgebra::{DMatrix, DVector};
 
 /// Residual over the eigenvalue at which a Ritz pair counts as converged. The error of the eigenvalue is its square.

@@ -14,10 +14,10 @@
 mod krylov;
 
 use crate::assembly::Combination;
+use crate::equations::cholesky::Cholesky;
+use crate::error::SolveError;
 use crate::model::Model;
 use crate::newmark::{check_density, factor};
-use crate::solver::SolveError;
-use crate::solver::cholesky::Cholesky;
 use crate::statics::{NO_STIFFNESS, check_held};
 use krylov::{Operator, Ritz};
 use nalgebra::DMatrix;

@@ -1,6 +1,6 @@
 //! The parameters of Newmark's method and of HHT-α, and which of them are stable.
 
-use thiserror::Error;
+use crate::error::NewmarkError;
 
 /// The two parameters of Newmark's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,44 +9,6 @@ pub struct Newmark {
     pub alpha: f64,
     /// Weight of the new acceleration in the velocity (gamma of Hughes) [-].
     pub delta: f64,
-}
-
-/// Parameters that are refused.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum NewmarkError {
-    /// Not unconditionally stable.
-    #[error(
-        "Newmark with alpha = {alpha}, delta = {delta} is not unconditionally stable: it needs delta >= 0.5 and \
-         alpha >= 0.25 (0.5 + delta)^2 = {least_alpha}"
-    )]
-    Unstable {
-        /// The alpha given.
-        alpha: f64,
-        /// The delta given.
-        delta: f64,
-        /// The least alpha for this delta.
-        least_alpha: f64,
-    },
-    /// Negative, or not a finite number.
-    #[error("Newmark's alpha = {alpha} and delta = {delta} must be finite numbers, 0 or above")]
-    Range {
-        /// The alpha given.
-        alpha: f64,
-        /// The delta given.
-        delta: f64,
-    },
-    /// HHT's α out of range.
-    #[error("HHT-alpha with alpha = {alpha} is not unconditionally stable: alpha must be between -1/3 and 0")]
-    Hht {
-        /// The α given.
-        alpha: f64,
-    },
-    /// HHT-α weighs the loads of both ends of a step.
-    #[error("HHT-alpha needs the load at the start of the step, too")]
-    LoadAtStart,
-    /// The displacement at the end does not depend on the acceleration there.
-    #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
-    Prescribed,
 }
 
 impl Newmark {

@@ -26,13 +26,16 @@ mod start;
 
 use crate::assembly::Combination;
 use crate::energy::inner_force;
+use crate::equations::cholesky::Cholesky;
+pub use crate::error::NewmarkError;
+use crate::error::SolveError;
+use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
-use crate::solver::cholesky::Cholesky;
-use crate::solver::{LinearSolver, SolveError};
+use crate::solver::LinearSolver;
 use crate::state::State;
 pub use crate::state::StepAudit;
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
-pub use method::{Newmark, NewmarkError};
+pub use method::Newmark;
 pub use start::{initial_acceleration, initial_acceleration_prescribed};
 
 /// What acts on the body during one step.
@@ -306,6 +309,30 @@ impl NewmarkSolver {
             plastic_dissipation: 0.0,
             numerical_dissipation: external_work + support_work - damping - boundary - kinetic - strain,
         }
+    }
+}
+
+impl TimeIntegrator for NewmarkSolver {
+    /// Steps of the one length that was factored; `to` must lie a whole number of them ahead.
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut dyn Loading,
+        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+    ) -> Result<(), SolveError> {
+        for step in steps_of(model, state.time, to, self.dt)? {
+            let ([start, end], prescribed) = step.loads(loading);
+            let moved = model.supports().fixed().iter().zip(&prescribed);
+            let moved = moved.into_iter().any(|((dof, _), value)| state.u[*dof as usize] != *value);
+            let prescribed = moved.then_some(&prescribed[..]);
+            let audit =
+                self.advance(model, state, Drive { load_start: Some(&start), load_end: &end, prescribed })?;
+            state.time = step.ends[1];
+            on_step(state, &StepReport::linear(state.time, self.dt), Some(&audit));
+        }
+        Ok(())
     }
 }
 

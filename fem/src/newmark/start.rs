@@ -2,9 +2,9 @@
 
 use super::check_density;
 use crate::energy::inner_force;
+use crate::equations::mass::solve_mass;
+use crate::error::SolveError;
 use crate::model::Model;
-use crate::solver::SolveError;
-use crate::solver::conjugate_gradient::solve_mass;
 use crate::state::State;
 use crate::statics::{check_linear, check_load, check_prescribed};
 

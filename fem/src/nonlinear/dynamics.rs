@@ -11,17 +11,19 @@
 //! Simo and Hughes, Computational Inelasticity (1998), section 1.6 for the plastic case. Limits: those of Newmark's
 //! method; a step that is halved takes its loads at the time that it reaches.
 
+use super::conditions::{check_state, ensure_points, prescribe, subtract_springs};
 use super::internal_force::InternalForce;
 use super::memory::Memory;
 use super::motion::{close, inner_force};
-use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
-use super::quasi_static::{Loading, check_state, ensure_points, prescribe, subtract_springs};
+use super::newton::{Failure, Newton, Problem};
+use super::options::{NewtonOptions, Statistics};
 use super::step_control::{StepControl, StepLength};
 use crate::assembly::Combination;
+use crate::equations::mass::solve_mass;
+use crate::error::SolveError;
+use crate::integrator::{Loading, StepReport, TimeIntegrator};
 use crate::model::Model;
 use crate::newmark::{Newmark, NewmarkError, check_dynamics};
-use crate::solver::SolveError;
-use crate::solver::conjugate_gradient::solve_mass;
 use crate::state::{State, StepAudit};
 use crate::statics::check_load;
 
@@ -124,12 +126,12 @@ impl Dynamics {
     /// # Errors
     /// [`SolveError::Diverged`] when a step of the smallest length fails; `state` is then that of the last accepted step, bit for
     /// bit. A load or displacement that is not finite; a state of another model.
-    pub fn advance(
+    pub fn advance<L: Loading + ?Sized>(
         &mut self,
         model: &Model,
         state: &mut State,
         to: f64,
-        loading: &mut impl Loading,
+        loading: &mut L,
         mut on_step: impl FnMut(&State, &StepReport, &StepAudit),
     ) -> Result<(), SolveError> {
         check_state(model, state)?;
@@ -157,13 +159,13 @@ impl Dynamics {
         Ok(())
     }
 
-    fn step(
+    fn step<L: Loading + ?Sized>(
         &mut self,
         model: &Model,
         state: &mut State,
         time: f64,
         dt: f64,
-        loading: &mut impl Loading,
+        loading: &mut L,
     ) -> Result<StepAudit, Failure> {
         for (load, at) in self.load.iter_mut().zip([state.time, time]) {
             load.fill(0.0);
@@ -171,18 +173,55 @@ impl Dynamics {
             check_load(model, load, at).map_err(Failure::Fatal)?;
         }
         prescribe(model, state, time, loading, &mut self.fixed).map_err(Failure::Fatal)?;
-        let (Newmark { alpha, delta }, c, new) = (self.method, model.rayleigh(), 1.0 + self.hht);
-        let (n, old) = (state.u.len(), -self.hht / new);
-        let [start, end] = &mut self.inner;
-        inner_force(model, &mut self.newton.force, state, start, &mut self.scratch);
-        // 1. The part of a1 and v1 that does not depend on the increment.
+        let (Newmark { alpha, delta }, c) = (self.method, model.rayleigh());
         let by_square = 1.0 / (alpha * dt * dt);
-        for d in 0..n {
+        let velocity = delta / (alpha * dt);
+        self.predict(model, state, dt);
+        self.right_hand_side(model, state);
+        let linear = Combination {
+            mass: by_square / (1.0 + self.hht) + c.alpha_m * velocity,
+            stiffness: c.beta_k * velocity,
+            dashpots: velocity,
+        };
+        let product = &mut self.scratch[state.u.len()..];
+        model.mass_times(&state.a, product);
+        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let forces = norm(&self.load[1]).max(norm(product)).max(INERTIA * norm(&self.rhs));
+        let problem =
+            Problem { old: &state.points, rhs: &self.rhs, fixed: &self.fixed, linear, forces: Some(forces) };
+        self.newton.solve(model, &problem)?;
+        let next = &mut self.next;
+        for d in 0..state.u.len() {
+            let w = self.newton.w[d];
+            next.u[d] = state.u[d] + w;
+            next.v[d] += velocity * w;
+            next.a[d] += by_square * w;
+        }
+        std::mem::swap(&mut next.points, &mut self.newton.force.points);
+        next.time = time;
+        let audit = self.audit(model, state);
+        std::mem::swap(state, &mut self.next);
+        self.newton.statistics.steps += 1;
+        (self.newton.report.time, self.newton.report.dt) = (time, dt);
+        Ok(audit)
+    }
+
+    /// The part of a1 and v1 that does not depend on the increment, left in `next`.
+    fn predict(&mut self, model: &Model, state: &State, dt: f64) {
+        let Newmark { alpha, delta } = self.method;
+        inner_force(model, &mut self.newton.force, state, &mut self.inner[0], &mut self.scratch);
+        let by_square = 1.0 / (alpha * dt * dt);
+        for d in 0..state.u.len() {
             let a = -by_square * (dt * state.v[d] + dt * dt * (0.5 - alpha) * state.a[d]);
             self.next.a[d] = a;
             self.next.v[d] = state.v[d] + dt * ((1.0 - delta) * state.a[d] + delta * a);
         }
-        // 2. F1 - S u0 - M a_p/(1 + h) - C v_p, and with HHT what is out of balance at the start but for the inertia.
+    }
+
+    /// `F1 - S u0 - M a_p/(1 + h) - C v_p`, and with HHT what is out of balance at the start but for the inertia.
+    fn right_hand_side(&mut self, model: &Model, state: &State) {
+        let (c, n, new) = (model.rayleigh(), state.u.len(), 1.0 + self.hht);
+        let old = -self.hht / new;
         let [load_start, load_end] = &self.load;
         let (mixed, product) = self.scratch.split_at_mut(n);
         self.rhs.copy_from_slice(load_end);
@@ -206,32 +245,15 @@ impl Dynamics {
         }
         if old != 0.0 {
             for d in 0..n {
-                self.rhs[d] += old * (load_start[d] - start[d]);
+                self.rhs[d] += old * (load_start[d] - self.inner[0][d]);
             }
         }
-        // 3. Iterate.
-        let velocity = delta / (alpha * dt);
-        let linear = Combination {
-            mass: by_square / new + c.alpha_m * velocity,
-            stiffness: c.beta_k * velocity,
-            dashpots: velocity,
-        };
-        model.mass_times(&state.a, product);
-        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let forces = norm(load_end).max(norm(product)).max(INERTIA * norm(&self.rhs));
-        let problem =
-            Problem { old: &state.points, rhs: &self.rhs, fixed: &self.fixed, linear, forces: Some(forces) };
-        self.newton.solve(model, &problem)?;
-        // 4. The motion at the end, and the ledger.
-        let next = &mut self.next;
-        for d in 0..n {
-            let w = self.newton.w[d];
-            next.u[d] = state.u[d] + w;
-            next.v[d] += velocity * w;
-            next.a[d] += by_square * w;
-        }
-        std::mem::swap(&mut next.points, &mut self.newton.force.points);
-        next.time = time;
+    }
+
+    /// The ledger of the step from `state` to `next`, under the mean of the forces at both ends.
+    fn audit(&mut self, model: &Model, state: &State) -> StepAudit {
+        let ([load_start, load_end], [start, end]) = (&self.load, &mut self.inner);
+        let (next, n) = (&self.next, state.u.len());
         let mut audit = StepAudit::default();
         for d in 0..n {
             audit.external_work += 0.5 * (load_start[d] + load_end[d]) * self.newton.w[d];
@@ -246,12 +268,20 @@ impl Dynamics {
         for d in 0..n {
             self.rhs[d] = 0.5 * (state.v[d] + next.v[d]);
         }
-        let table = &self.newton.force.table;
-        let audit = close(model, table, [state, next], audit, &self.rhs, &mut self.scratch);
-        std::mem::swap(state, next);
-        self.newton.statistics.steps += 1;
-        (self.newton.report.time, self.newton.report.dt) = (time, dt);
-        Ok(audit)
+        close(model, &self.newton.force.table, [state, next], audit, &self.rhs, &mut self.scratch)
+    }
+}
+
+impl TimeIntegrator for Dynamics {
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut dyn Loading,
+        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+    ) -> Result<(), SolveError> {
+        self.advance(model, state, to, loading, |state, report, audit| on_step(state, report, Some(audit)))
     }
 }
 

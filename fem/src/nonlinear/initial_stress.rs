@@ -7,13 +7,15 @@
 //! Source: Potts and Zdravković, Finite Element Analysis in Geotechnical Engineering: Theory (1999), section 10.3. Limits: K0 is
 //! exact for level ground alone; under a slope the equilibrium changes it.
 
-use super::newton::{NewtonOptions, Statistics};
-use super::quasi_static::{QuasiStatic, ensure_points};
+use super::conditions::ensure_points;
+use super::options::{NewtonOptions, Statistics};
+use super::quasi_static::QuasiStatic;
 use super::step_control::StepControl;
 use crate::element::stiffness_points;
+use crate::error::SolveError;
+use crate::integrator::Driven;
 use crate::material::{Point, PointState, Region};
 use crate::model::Model;
-use crate::solver::SolveError;
 use crate::state::State;
 use std::collections::BTreeMap;
 
@@ -176,7 +178,7 @@ pub fn equilibrate(
     // What the stresses carry already stays on from the start.
     let carried = solver.carried(model, &next);
     let fixed: Vec<f64> = model.supports().fixed().iter().map(|(dof, _)| next.u[*dof as usize]).collect();
-    let mut loading = super::quasi_static::Driven {
+    let mut loading = Driven {
         load: |time: f64, f: &mut [f64]| {
             for d in 0..f.len() {
                 f[d] = time * load[d] + (1.0 - time) * carried[d];

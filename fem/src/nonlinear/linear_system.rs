@@ -4,14 +4,15 @@
 //! unsymmetric one takes L U, or, for large systems, GMRES with the elastic factor as preconditioner, as far as an inexact
 //! Newton iteration needs (Dembo, Eisenstat and Steihaug, SIAM J. Numer. Anal. 19 (1982) 400-408). Should that fail too, the iteration falls back on the elastic matrix, which is counted as well.
 
-use super::newton::{LinearMethod, Statistics};
+use super::options::{LinearMethod, Statistics};
 use super::tangent::Tangent;
 use crate::assembly::Combination;
+use crate::error::SolveError;
 use crate::model::Model;
+use crate::solver::LinearSolver;
 use crate::solver::analysis::Analysis;
 use crate::solver::gmres::Gmres;
 use crate::solver::multifrontal::DirectSolver;
-use crate::solver::{LinearSolver, SolveError};
 use crate::supports::name;
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,11 +1,12 @@
 //! What a solver remembers from step to step beside the state of the body: with both of them a run goes on as if it had not
 //! been stopped, in its results and in its counts.
 
-use super::newton::{Newton, Statistics};
+use super::newton::Newton;
+use super::options::Statistics;
 use super::step_control::StepLength;
 use crate::assembly::Combination;
+use crate::error::SolveError;
 use crate::model::Model;
-use crate::solver::SolveError;
 use serde::{Deserialize, Serialize};
 
 /// Memory of a solver of an elastoplastic body; part of a checkpoint.

@@ -4,6 +4,7 @@
 //! ones, so that a step given up leaves no trace. Source of the structure: Simo and Hughes, Computational Inelasticity (1998),
 //! chapters 1 and 4; de Souza Neto, Peric and Owen, Computational Methods for Plasticity (2008), chapter 4. Limits: small strain
 //! and rotation.
+mod conditions;
 pub mod dynamics;
 pub mod energy;
 pub mod initial_stress;
@@ -12,6 +13,7 @@ mod linear_system;
 mod memory;
 pub(crate) mod motion;
 mod newton;
+mod options;
 mod points;
 mod quasi_static;
 mod step_control;
@@ -19,9 +21,10 @@ pub mod strength_reduction;
 mod tangent;
 mod window;
 
+pub use crate::integrator::{Driven, Loading, StepReport};
 pub use dynamics::Dynamics;
 pub use memory::Memory;
-pub use newton::{LinearMethod, NewtonOptions, Statistics, StepReport, Variant};
-pub use quasi_static::{Driven, Loading, QuasiStatic};
+pub use options::{LinearMethod, NewtonOptions, Statistics, Variant};
+pub use quasi_static::QuasiStatic;
 pub use step_control::StepControl;
 pub use window::PlasticWindowSolver;

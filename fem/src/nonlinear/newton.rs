@@ -21,155 +21,19 @@
 //! Where an unsymmetric tangent gives a correction along which the residual does no positive work, the size of the
 //! residual decides instead.
 
+use super::conditions::subtract_springs;
 use super::internal_force::{InternalForce, PointFailure};
 use super::linear_system::{LinearSystem, Matrix};
-use super::quasi_static::subtract_springs;
+use super::options::{NewtonOptions, Statistics, Variant};
 use super::tangent::Tangent;
 use crate::assembly::Combination;
 use crate::element::stiffness_points;
+use crate::error::SolveError;
+use crate::integrator::StepReport;
 use crate::material::{Points, Region};
 use crate::model::Model;
-use crate::solver::SolveError;
-use serde::{Deserialize, Serialize};
+use crate::state::State;
 use std::time::Instant;
-
-/// Which matrix the iterations after the first of a step take.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Variant {
-    /// The consistent tangent of every iteration: quadratic convergence.
-    Full,
-    /// The tangent after the first iteration, renewed after every so many further ones (0: kept to the end of the step).
-    Modified(u32),
-    /// The elastic matrix: factored once, linear convergence.
-    InitialStiffness,
-}
-
-/// How systems with an unsymmetric tangent are solved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LinearMethod {
-    /// L U up to 30,000 free dofs, iteration above.
-    #[default]
-    Auto,
-    /// L U.
-    Direct,
-    /// GMRES, preconditioned with the elastic factor.
-    Krylov,
-}
-
-/// Choices of the iteration.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NewtonOptions {
-    /// Matrix of the iterations.
-    pub variant: Variant,
-    /// Whether the length of each correction is searched.
-    pub line_search: bool,
-    /// Residual at convergence, over the forces [-].
-    pub force_tolerance: f64,
-    /// Work of the residual on the last correction at convergence, over the largest work before a correction [-].
-    pub energy_tolerance: f64,
-    /// Iterations after which a step has failed.
-    pub max_iterations: u32,
-    /// Solver of unsymmetric systems.
-    pub linear: LinearMethod,
-}
-
-impl NewtonOptions {
-    /// The usual choices for a variant: tolerances 1e-6 and 1e-8, line search, 50 iterations (full), 60 (modified) or 400
-    /// (elastic matrix).
-    pub fn new(variant: Variant) -> NewtonOptions {
-        let max_iterations = match variant {
-            Variant::Full => 50,
-            Variant::Modified(_) => 60,
-            Variant::InitialStiffness => 400,
-        };
-        NewtonOptions {
-            variant,
-            line_search: true,
-            force_tolerance: 1e-6,
-            energy_tolerance: 1e-8,
-            max_iterations,
-            linear: LinearMethod::Auto,
-        }
-    }
-
-    /// Refuses tolerances that are not above 0 and no iterations.
-    ///
-    /// # Errors
-    /// [`SolveError::Option`].
-    pub fn check(&self) -> Result<(), SolveError> {
-        for (what, value) in
-            [("the force tolerance", self.force_tolerance), ("the energy tolerance", self.energy_tolerance)]
-        {
-            if !(value > 0.0 && value < 1.0) {
-                return Err(SolveError::Option { what, value, expected: "a number between 0 and 1" });
-            }
-        }
-        if self.max_iterations == 0 {
-            return Err(SolveError::Option {
-                what: "the limit of iterations",
-                value: 0.0,
-                expected: "1 or more",
-            });
-        }
-        Ok(())
-    }
-}
-
-impl Default for NewtonOptions {
-    fn default() -> Self {
-        NewtonOptions::new(Variant::Full)
-    }
-}
-
-/// Counts and times of a run. Seconds are those of the clock.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Statistics {
-    /// Steps accepted.
-    pub steps: u64,
-    /// Steps given up and repeated with half the length.
-    pub halvings: u64,
-    /// Iterations, those of steps given up included.
-    pub iterations: u64,
-    /// Evaluations of the stresses.
-    pub evaluations: u64,
-    /// Factorizations L L^T.
-    pub factorizations_symmetric: u64,
-    /// Factorizations L U.
-    pub factorizations_unsymmetric: u64,
-    /// Symmetric tangents that were not positive definite, and taken by L U.
-    pub not_positive: u64,
-    /// Tangents that L U failed on, and the elastic matrix replaced.
-    pub singular: u64,
-    /// Solves with a factor, those within GMRES not counted.
-    pub solves: u64,
-    /// Iterations of GMRES.
-    pub krylov_iterations: u64,
-    /// Systems that GMRES did not solve well enough, and L U took over.
-    pub krylov_failures: u64,
-    /// Seconds of stresses, internal forces and tangents.
-    pub assembly_seconds: f64,
-    /// Seconds of factorizations.
-    pub factor_seconds: f64,
-    /// Seconds of solves.
-    pub solve_seconds: f64,
-}
-
-/// How one step converged.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StepReport {
-    /// Time at the end of the step.
-    pub time: f64,
-    /// Length of the step.
-    pub dt: f64,
-    /// Solves with a matrix in this step.
-    pub iterations: u32,
-    /// Residual on the free dofs over the forces: at the start, then after each iteration.
-    pub residuals: Vec<f64>,
-    /// Gauss points that yielded in the step.
-    pub plastic_points: usize,
-}
 
 /// Where a step got stuck.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -520,5 +384,17 @@ impl Newton {
         let element = if element == usize::MAX { 0 } else { element };
         let region = self.force.regions[self.force.table.points(element).start + point];
         Stuck { residual, iterations: self.report.iterations, element, point, region }
+    }
+}
+
+impl Newton {
+    /// Takes the solved step over into the state.
+    pub(super) fn commit(&mut self, state: &mut State, time: f64, dt: f64) {
+        state.u.iter_mut().zip(&self.w).for_each(|(u, w)| *u += w);
+        std::mem::swap(&mut state.points, &mut self.force.points);
+        state.time = time;
+        self.statistics.steps += 1;
+        self.report.time = time;
+        self.report.dt = dt;
     }
 }

@@ -4,51 +4,17 @@
 //! what one step leaves within the tolerance is taken up by the next and does not add up. Limits: no path following: beyond
 //! a limit load only prescribed displacements go on.
 
+use super::conditions::{check_state, ensure_points, prescribe, subtract_springs};
 use super::memory::Memory;
-use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
+use super::newton::{Failure, Newton, Problem};
+use super::options::{NewtonOptions, Statistics};
 use super::step_control::{StepControl, StepLength};
 use crate::assembly::Combination;
+use crate::error::SolveError;
+use crate::integrator::{Loading, StepReport, TimeIntegrator};
 use crate::model::Model;
-use crate::solver::SolveError;
-use crate::state::State;
-use crate::statics::{check_finite, check_held, check_load};
-use crate::supports::name;
-
-/// Loads and prescribed displacements as functions of time.
-///
-/// A closure `|time, load|` is a loading that leaves the supports at the values of the model.
-pub trait Loading {
-    /// Adds the nodal forces [N] at `time` to `load`, which comes in as zeros. Shape `[3 * nodes]`.
-    fn load(&mut self, time: f64, load: &mut [f64]);
-
-    /// Sets the displacements [m] of the constrained dofs at `time`, in the order of
-    /// [`Supports::fixed`](crate::supports::Supports::fixed); they come in with the values of the model.
-    fn prescribed(&mut self, _time: f64, _values: &mut [f64]) {}
-}
-
-impl<F: FnMut(f64, &mut [f64])> Loading for F {
-    fn load(&mut self, time: f64, load: &mut [f64]) {
-        self(time, load);
-    }
-}
-
-/// A loading of two closures.
-pub struct Driven<L, P> {
-    /// As [`Loading::load`].
-    pub load: L,
-    /// As [`Loading::prescribed`].
-    pub prescribed: P,
-}
-
-impl<L: FnMut(f64, &mut [f64]), P: FnMut(f64, &mut [f64])> Loading for Driven<L, P> {
-    fn load(&mut self, time: f64, load: &mut [f64]) {
-        (self.load)(time, load);
-    }
-
-    fn prescribed(&mut self, time: f64, values: &mut [f64]) {
-        (self.prescribed)(time, values);
-    }
-}
+use crate::state::{State, StepAudit};
+use crate::statics::{check_held, check_load};
 
 /// Steps a model through a loading.
 pub struct QuasiStatic {
@@ -103,12 +69,12 @@ impl QuasiStatic {
     /// # Errors
     /// [`SolveError::Diverged`] when a step of the smallest length fails; `state` is then that of the last accepted step, bit for
     /// bit. A load or displacement that is not finite; a state of another model; an elastic matrix that cannot be factored.
-    pub fn advance(
+    pub fn advance<L: Loading + ?Sized>(
         &mut self,
         model: &Model,
         state: &mut State,
         to: f64,
-        loading: &mut impl Loading,
+        loading: &mut L,
         mut on_step: impl FnMut(&State, &StepReport),
     ) -> Result<(), SolveError> {
         check_state(model, state)?;
@@ -163,12 +129,12 @@ impl QuasiStatic {
     }
 
     /// Loads and prescribed increments of the step from `state` to `time`.
-    fn conditions(
+    fn conditions<L: Loading + ?Sized>(
         &mut self,
         model: &Model,
         state: &State,
         time: f64,
-        loading: &mut impl Loading,
+        loading: &mut L,
     ) -> Result<(), SolveError> {
         self.load.fill(0.0);
         loading.load(time, &mut self.load);
@@ -178,78 +144,15 @@ impl QuasiStatic {
     }
 }
 
-impl Newton {
-    /// Takes the solved step over into the state.
-    pub(super) fn commit(&mut self, state: &mut State, time: f64, dt: f64) {
-        state.u.iter_mut().zip(&self.w).for_each(|(u, w)| *u += w);
-        std::mem::swap(&mut state.points, &mut self.force.points);
-        state.time = time;
-        self.statistics.steps += 1;
-        self.report.time = time;
-        self.report.dt = dt;
-    }
-}
-
-/// Takes the forces of the boundary springs at the displacement `u` from the right-hand side.
-pub(super) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
-    if !model.matrices().springs().is_empty() {
-        rhs.iter_mut().for_each(|r| *r = -*r);
-        model.boundary_spring_times(u, rhs);
-        rhs.iter_mut().for_each(|r| *r = -*r);
-    }
-}
-
-/// Prescribed increments from `state` to `time`, in the order of the constrained dofs.
-pub(super) fn prescribe(
-    model: &Model,
-    state: &State,
-    time: f64,
-    loading: &mut impl Loading,
-    increments: &mut [f64],
-) -> Result<(), SolveError> {
-    let fixed = model.supports().fixed();
-    increments.iter_mut().zip(fixed).for_each(|(i, (_, value))| *i = *value);
-    loading.prescribed(time, increments);
-    for (increment, &(dof, _)) in increments.iter_mut().zip(fixed) {
-        if !increment.is_finite() {
-            let (node, direction) = name(model.mesh(), dof as usize);
-            let what = "the prescribed displacement";
-            return Err(SolveError::NotFinite { what, node, direction, time });
-        }
-        *increment -= state.u[dof as usize];
-    }
-    Ok(())
-}
-
-/// Refuses a state of another model or with numbers that are not finite.
-pub(super) fn check_state(model: &Model, state: &State) -> Result<(), SolveError> {
-    let n = model.dof_count();
-    for (what, found) in [
-        ("displacement of the state", state.u.len()),
-        ("velocity of the state", state.v.len()),
-        ("acceleration of the state", state.a.len()),
-    ] {
-        if found != n {
-            return Err(SolveError::Length { what, found, expected: n });
-        }
-    }
-    let (found, expected) = (state.points.len(), model.point_count());
-    if found != expected && !(found == 0 && model.is_linear()) {
-        return Err(SolveError::Length { what: "list of Gauss points of the state", found, expected });
-    }
-    check_finite(model, "the displacement", &state.u, state.time)
-}
-
-/// Gives a linear model without point states those of its displacement.
-pub(super) fn ensure_points(model: &Model, state: &mut State) {
-    if state.points.is_empty() {
-        let mut points = model.new_points();
-        for e in 0..model.mesh().element_count() {
-            let stresses = crate::stress::gauss(model, &state.u, e);
-            for (point, stress) in points[model.point_start(e)..].iter_mut().zip(stresses) {
-                point.stress = stress;
-            }
-        }
-        state.points = points;
+impl TimeIntegrator for QuasiStatic {
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut dyn Loading,
+        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+    ) -> Result<(), SolveError> {
+        self.advance(model, state, to, loading, |state, report| on_step(state, report, None))
     }
 }

@@ -1,6 +1,6 @@
 //! Length of steps: halved when a step fails, grown again when steps converge with ease.
 
-use crate::solver::SolveError;
+use crate::error::SolveError;
 use serde::{Deserialize, Serialize};
 
 /// Limits of the step length. Times are those of the loading, seconds or pseudo-time.

@@ -6,11 +6,11 @@
 //! Géotechnique 25(4) (1975) 671-689. Limits: failure is judged by the iteration, so the bracket depends on its limits to some
 //! per cent; the displacements of the trials, which rise steeply near failure, are recorded to judge it by.
 
-use super::newton::{NewtonOptions, Statistics};
+use super::options::{NewtonOptions, Statistics};
 use super::quasi_static::QuasiStatic;
 use super::step_control::StepControl;
+use crate::error::SolveError;
 use crate::model::Model;
-use crate::solver::SolveError;
 use crate::state::State;
 use serde::{Deserialize, Serialize};
 

@@ -10,14 +10,16 @@
 //! Source: as the elastic one; the stresses are returned at the end of the step (backward Euler) and weighted as forces, so the
 //! ledger closes without approximation with the mean of the stresses at both ends. Limits: second order for theta = 1/2 only.
 
+use super::conditions::{check_state, ensure_points, subtract_springs};
 use super::memory::Memory;
 use super::motion::{close, inner_force};
-use super::newton::{Failure, Newton, NewtonOptions, Problem, Statistics, StepReport};
-use super::quasi_static::{check_state, ensure_points, subtract_springs};
+use super::newton::{Failure, Newton, Problem};
+use super::options::{NewtonOptions, Statistics};
 use crate::assembly::Combination;
+use crate::error::SolveError;
+use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
 use crate::newmark::check_dynamics;
-use crate::solver::SolveError;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_load, check_prescribed};
 
@@ -272,5 +274,24 @@ impl PlasticWindowSolver {
             reactions[dof as usize] = force[dof as usize] - mean_load[dof as usize];
         }
         reactions
+    }
+}
+
+impl TimeIntegrator for PlasticWindowSolver {
+    /// Windows under the mean of the loads at both ends; `to` must lie a whole number of windows ahead.
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut dyn Loading,
+        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+    ) -> Result<(), SolveError> {
+        for step in steps_of(model, state.time, to, self.dt)? {
+            let (load, prescribed) = step.mean(loading);
+            let audit = self.step_prescribed(model, state, &load, Some(&prescribed))?;
+            on_step(state, &self.newton.report, Some(&audit));
+        }
+        Ok(())
     }
 }

@@ -32,8 +32,8 @@ pub use basis::Reduced;
 pub use estimate::Estimate;
 pub use window::ReducedWindowSolver;
 
+use crate::error::SolveError;
 use crate::modal::ModalError;
-use crate::solver::SolveError;
 use thiserror::Error;
 
 /// Shapes that a reduction may have at most: beyond, the sparse factor is the faster way.

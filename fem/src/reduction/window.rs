@@ -5,9 +5,9 @@
 //! dashpots. What is stored is the state of all nodes: a run that goes on from it has the same bits.
 
 use super::Reduced;
+use crate::error::SolveError;
 use crate::model::Model;
 use crate::newmark::check_dynamics;
-use crate::solver::SolveError;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load};
 use nalgebra::{DMatrix, DVector, Dyn, linalg};

@@ -3,13 +3,9 @@
 //! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, fundamental supernodes with relaxed amalgamation) on
 //! a postordered elimination tree. Limits: fewer than 2^31 entries in the pattern.
 
-use super::SolveError;
-use super::ordering::nested_dissection;
+use super::AnalysisError;
 use super::pattern::{MIRRORED, Upper, postorder};
 use super::structure::Structure;
-use crate::assembly::{Combination, Matrices};
-use crate::mesh::Mesh;
-use crate::supports::{CONSTRAINED, Supports};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SymbolicSupernodalParams;
@@ -35,27 +31,6 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Orders and analyses the free dofs of a model.
-    ///
-    /// # Errors
-    /// Only when memory runs out.
-    pub fn new(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
-        let equations = supports.free().len();
-        let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
-        matrices.visit_free(supports, |c, r, _, _, _| {
-            row.push(r);
-            column_start[c + 1] = row.len();
-        });
-        let index = supports.free_index();
-        let order: Vec<usize> = nested_dissection(mesh)
-            .iter()
-            .flat_map(|&n| (0..3).map(move |k| index[3 * n as usize + k]))
-            .filter(|&e| e != CONSTRAINED)
-            .map(|e| e as usize)
-            .collect();
-        Analysis::from_pattern(column_start, row, order)
-    }
-
     /// Analyses a structurally symmetric matrix.
     ///
     /// * `column_start` `[equations + 1]`, `row` `[entries]`: the lower triangle in compressed columns; the rows of a column
@@ -64,16 +39,16 @@ impl Analysis {
     ///   leaves the factor as it is (postorder of the elimination tree).
     ///
     /// # Errors
-    /// [`SolveError::Pattern`] when the pattern or the order is not as described, [`SolveError::Memory`] when the factor cannot be
+    /// [`AnalysisError::Pattern`] when the pattern or the order is not as described, [`AnalysisError::Memory`] when the factor cannot be
     /// addressed.
     pub fn from_pattern(
         column_start: Vec<usize>,
         row: Vec<usize>,
         mut order: Vec<usize>,
-    ) -> Result<Analysis, SolveError> {
+    ) -> Result<Analysis, AnalysisError> {
         check(&column_start, &row, &order)?;
         let equations = order.len();
-        let memory = || SolveError::Memory { equations };
+        let memory = || AnalysisError::Memory { equations };
         if row.len() >= MIRRORED as usize || equations >= MIRRORED as usize {
             return Err(memory());
         }
@@ -123,17 +98,6 @@ impl Analysis {
         &self.order
     }
 
-    /// The values of a combination of matrices on the free dofs, in the order of [`Analysis::pattern`], for the model
-    /// that was analysed.
-    pub fn values(&self, matrices: &Matrices, supports: &Supports, combination: Combination) -> Vec<f64> {
-        let mut values = Vec::with_capacity(self.entries());
-        let Combination { stiffness, mass, dashpots } = combination;
-        matrices.visit_free(supports, |_, _, k, m, d| {
-            values.push(stiffness * k + mass * m + dashpots * d);
-        });
-        values
-    }
-
     /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and
     /// solved for one right-hand side at a time, with the threads of the present pool (each adds a few per cent). All of
     /// it is taken before the first front, so this is the peak, too.
@@ -154,7 +118,8 @@ impl Analysis {
         &self.structure
     }
 
-    pub(super) fn entries(&self) -> usize {
+    /// Number of entries of the pattern.
+    pub fn entries(&self) -> usize {
         self.row.len()
     }
 
@@ -180,9 +145,9 @@ impl Analysis {
     }
 }
 
-fn check(column_start: &[usize], row: &[usize], order: &[usize]) -> Result<(), SolveError> {
+fn check(column_start: &[usize], row: &[usize], order: &[usize]) -> Result<(), AnalysisError> {
     let n = order.len();
-    let wrong = |what| Err(SolveError::Pattern { what });
+    let wrong = |what| Err(AnalysisError::Pattern { what });
     if column_start.len() != n + 1 || column_start[0] != 0 || column_start[n] != row.len() {
         return wrong("the column starts do not span the rows");
     }

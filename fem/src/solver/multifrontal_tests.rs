@@ -5,7 +5,7 @@ use crate::assembly::{Combination, Matrices};
 use crate::element::quadrature::Quadrature;
 use crate::material::elastic::Elastic;
 use crate::mesh::{Constraint, Mesh};
-use crate::solver::SolveError;
+use crate::solver::AnalysisError;
 use crate::supports::Supports;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{LltRef, SymmetricOrdering, factorize_symbolic_cholesky};
@@ -152,9 +152,13 @@ fn brick(side: usize, skew: f64) -> System {
         .flat_map(|node| (0..3).map(move |direction| Constraint { node, direction, value: 0.0 }))
         .collect();
     let supports = Supports::new(&mesh, &base).unwrap();
-    let analysis = Analysis::new(&mesh, &matrices, &supports).unwrap();
-    let lower =
-        analysis.values(&matrices, &supports, Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 });
+    let analysis = crate::equations::analyse(&mesh, &matrices, &supports).unwrap();
+    let lower = crate::equations::values(
+        &analysis,
+        &matrices,
+        &supports,
+        Combination { stiffness: 2.5e-7, mass: 1.0, dashpots: 0.0 },
+    );
     let mut random = Random(7);
     let upper = lower.iter().map(|a| a * (1.0 + skew * random.next())).collect();
     let (start, row) = analysis.pattern();
@@ -471,7 +475,7 @@ fn a_long_chain_needs_no_deep_stack() {
 fn a_pattern_that_cannot_be_used_is_refused() {
     let refused = |start: &[usize], row: &[usize], order: &[usize]| {
         let result = Analysis::from_pattern(start.to_vec(), row.to_vec(), order.to_vec());
-        assert!(matches!(result, Err(SolveError::Pattern { .. })), "{result:?}");
+        assert!(matches!(result, Err(AnalysisError::Pattern { .. })), "{result:?}");
     };
     refused(&[0, 1], &[0], &[0, 1]);
     refused(&[0, 2, 4], &[0, 1, 1], &[0, 1]);

@@ -1,6 +1,7 @@
 //! Newmark's method: free vibration (V0.9), order in time, energy, and the tabled column (E5).
 
 use crate::common::{fix, model, read_mesh, soils, table};
+use trackbed_fem::SolveError;
 use trackbed_fem::damping::Rayleigh;
 use trackbed_fem::element::quadrature::Quadrature::{Gauss2, Gauss3};
 use trackbed_fem::energy;
@@ -9,7 +10,6 @@ use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::{Constraint, Mesh};
 use trackbed_fem::model::{Model, ModelInput};
 use trackbed_fem::newmark::{Newmark, NewmarkError, NewmarkSolver, initial_acceleration};
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::State;
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };

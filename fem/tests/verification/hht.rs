@@ -2,13 +2,13 @@
 
 use crate::common::{fix, model};
 use nalgebra::Matrix3;
+use trackbed_fem::SolveError;
 use trackbed_fem::element::quadrature::Quadrature::{Gauss2, Gauss3};
 use trackbed_fem::loads;
 use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::Mesh;
 use trackbed_fem::model::Model;
 use trackbed_fem::newmark::{Drive, Newmark, NewmarkError, NewmarkSolver, initial_acceleration};
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::State;
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };

@@ -2,11 +2,11 @@
 
 use crate::common::{fix, model};
 use trackbed_fem::ElementKind;
+use trackbed_fem::SolveError;
 use trackbed_fem::element::quadrature::Quadrature::{Gauss2, Gauss3};
 use trackbed_fem::loads;
 use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::{Constraint, Mesh};
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::statics;
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };

@@ -1,6 +1,7 @@
 //! The window step of the coupling: its twin in Newmark's method, energy, momentum, order.
 
 use crate::common::{Random, difference, fix, model};
+use trackbed_fem::SolveError;
 use trackbed_fem::damping::Rayleigh;
 use trackbed_fem::element::quadrature::Quadrature::{Gauss2, Gauss3};
 use trackbed_fem::energy;
@@ -8,7 +9,6 @@ use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::Mesh;
 use trackbed_fem::model::{Model, ModelInput};
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
-use trackbed_fem::solver::SolveError;
 use trackbed_fem::state::State;
 use trackbed_fem::window::WindowSolver;
 

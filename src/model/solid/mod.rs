@@ -28,7 +28,7 @@ use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trackbed_fem as fem;
-use trackbed_fem::solver::SolveError;
+use trackbed_fem::SolveError;
 
 /// The solid, ready to run.
 pub struct SolidPart {

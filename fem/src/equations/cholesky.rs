@@ -2,17 +2,19 @@
 //!
 //! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Analysis`], made once per model); numbers are
 //! factored when k, m, d change ([`Cholesky::factor`]); solves allocate nothing. The bits are the same on any number of
-//! threads. See [`super::multifrontal`] for the method.
+//! threads. See [`crate::solver::multifrontal`] for the method.
 //!
 //! Limits: A must be positive definite. A pivot of zero or below is reported with its node and direction. A pivot that
 //! is only *tiny* does not stop a factorization; its size against the diagonal is kept in [`Cholesky::weakest_pivot`]
 //! for the caller to judge.
 
+use super::pattern::values;
 use crate::assembly::{Combination, Matrices};
+use crate::error::SolveError;
 use crate::mesh::Mesh;
-pub use crate::solver::analysis::Analysis;
+use crate::solver::LinearSolver;
+use crate::solver::analysis::Analysis;
 use crate::solver::multifrontal::DirectSolver;
-use crate::solver::{LinearSolver, SolveError};
 use crate::supports::{Supports, name};
 use std::sync::Arc;
 
@@ -43,7 +45,7 @@ impl Cholesky {
         supports: &Supports,
         combination: Combination,
     ) -> Result<Cholesky, SolveError> {
-        let a = analysis.values(matrices, supports, combination);
+        let a = values(&analysis, matrices, supports, combination);
         let free = supports.free();
         let mut solver = DirectSolver::new(analysis);
         solver.factor_symmetric(&a).map_err(|pivot| {
@@ -94,7 +96,7 @@ mod tests {
         let (mesh, matrices) = block();
         let constraint = |node| Constraint { node, direction: 1, value: 0.0 };
         let supports = Supports::new(&mesh, &[constraint(7), constraint(50)]).unwrap();
-        let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
+        let analysis = Arc::new(super::super::analyse(&mesh, &matrices, &supports).unwrap());
         let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(1e-4, 1.0)).unwrap();
         let n = 3 * mesh.node_count();
         let exact: Vec<f64> =
@@ -116,8 +118,8 @@ mod tests {
     fn a_pivot_that_is_not_positive_is_named() {
         let (mesh, matrices) = block();
         let supports = Supports::new(&mesh, &[]).unwrap();
-        let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
-        let first = supports.free()[analysis.order[0]] as usize;
+        let analysis = Arc::new(super::super::analyse(&mesh, &matrices, &supports).unwrap());
+        let first = supports.free()[analysis.order()[0]] as usize;
         let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(-1.0, 0.0)).err().unwrap();
         let (node, direction) = name(&mesh, first);
         assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
@@ -131,10 +133,10 @@ mod tests {
         let matrices = Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil);
         let constraint = Constraint { node: 9, direction: 2, value: 0.0 };
         let supports = Supports::new(&mesh, &[constraint]).unwrap();
-        let analysis = Arc::new(Analysis::new(&mesh, &matrices, &supports).unwrap());
+        let analysis = Arc::new(super::super::analyse(&mesh, &matrices, &supports).unwrap());
         let n = analysis.size();
         let mut position = vec![0; n];
-        analysis.order.iter().enumerate().for_each(|(i, &e)| position[e] = i);
+        analysis.order().iter().enumerate().for_each(|(i, &e)| position[e] = i);
         let mut a = vec![vec![0.0; n]; n];
         matrices.visit_free(&supports, |c, r, k, m, _| {
             let (c, r) = (position[c], position[r]);
@@ -157,7 +159,7 @@ mod tests {
         let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, of(1.0, 1e3)).unwrap();
         let found = solver.weakest_pivot();
         assert!((found.ratio / least.0 - 1.0).abs() < 1e-9, "{found:?} {least:?}");
-        assert_eq!(found.dof, supports.free()[analysis.order[least.1]] as usize);
+        assert_eq!(found.dof, supports.free()[analysis.order()[least.1]] as usize);
     }
 
     #[test]

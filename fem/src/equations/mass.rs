@@ -5,7 +5,7 @@
 //! much cheaper than a factor that would be used once. Limits: not for stiffness matrices.
 
 use crate::assembly::Matrices;
-use crate::solver::SolveError;
+use crate::error::SolveError;
 use crate::supports::Supports;
 
 /// Residual [-] at which the solution counts as found.

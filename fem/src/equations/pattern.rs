@@ -1,0 +1,45 @@
+//! Pattern and values of the equations on the free dofs.
+
+use super::ordering::nested_dissection;
+use crate::assembly::{Combination, Matrices};
+use crate::error::SolveError;
+use crate::mesh::Mesh;
+use crate::solver::analysis::Analysis;
+use crate::supports::{CONSTRAINED, Supports};
+
+/// Orders and analyses the free dofs of a model.
+///
+/// # Errors
+/// Only when memory runs out.
+pub fn analyse(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
+    let equations = supports.free().len();
+    let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
+    matrices.visit_free(supports, |c, r, _, _, _| {
+        row.push(r);
+        column_start[c + 1] = row.len();
+    });
+    let index = supports.free_index();
+    let order: Vec<usize> = nested_dissection(mesh)
+        .iter()
+        .flat_map(|&n| (0..3).map(move |k| index[3 * n as usize + k]))
+        .filter(|&e| e != CONSTRAINED)
+        .map(|e| e as usize)
+        .collect();
+    Ok(Analysis::from_pattern(column_start, row, order)?)
+}
+
+/// The values of a combination of matrices on the free dofs, in the order of [`Analysis::pattern`], for the model that was
+/// analysed.
+pub fn values(
+    analysis: &Analysis,
+    matrices: &Matrices,
+    supports: &Supports,
+    combination: Combination,
+) -> Vec<f64> {
+    let mut values = Vec::with_capacity(analysis.entries());
+    let Combination { stiffness, mass, dashpots } = combination;
+    matrices.visit_free(supports, |_, _, k, m, d| {
+        values.push(stiffness * k + mass * m + dashpots * d);
+    });
+    values
+}

@@ -1,0 +1,136 @@
+//! What can go wrong: the checks of a model, the choice of a method, the solution of the equations.
+
+use crate::material::Region;
+use crate::solver::AnalysisError;
+use thiserror::Error;
+
+/// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages are the documentation")]
+pub enum ModelError {
+    #[error("the mesh has no {what}")]
+    EmptyMesh { what: &'static str },
+    #[error("the mesh has {found} {what}, expected {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("node {node} has a coordinate that is not a finite number")]
+    Coordinate { node: u32 },
+    #[error("element {element} refers to node index {index}, but the mesh has {nodes} nodes")]
+    NodeRange { element: u32, index: u32, nodes: usize },
+    #[error("element {element} uses node {node} more than once; a {kind} needs {nodes} different nodes")]
+    RepeatedNode { element: u32, node: u32, kind: &'static str, nodes: usize },
+    #[error("node {node} belongs to no element")]
+    UnusedNode { node: u32 },
+    #[error("element {element} has material {material}, which is not defined")]
+    MissingMaterial { element: u32, material: u32 },
+    #[error("material {material}: {constant} is {value}, expected {expected}")]
+    MaterialConstant { material: u32, constant: &'static str, value: f64, expected: &'static str },
+    #[error(
+        "element {element} is inverted or degenerate: the Jacobian determinant is {determinant:.6e} m³ at the Gauss \
+         point {point:?}, expected above 0"
+    )]
+    Inverted { element: u32, point: [f64; 3], determinant: f64 },
+    #[error("constraint {index} names node index {node}, direction {direction}; that dof does not exist")]
+    ConstraintRange { index: usize, node: u32, direction: u8 },
+    #[error("the constraint of node {node} in {direction} has the value {value}, expected a finite number")]
+    ConstraintValue { node: u32, direction: &'static str, value: f64 },
+    #[error("node {node} is given two displacements in {direction}: {first} m and {second} m")]
+    Contradiction { node: u32, direction: &'static str, first: f64, second: f64 },
+    #[error("gravity is {gravity:?}, expected finite numbers")]
+    Gravity { gravity: [f64; 3] },
+    #[error("{name} is {value}, expected a finite number, 0 or above")]
+    Damping { name: &'static str, value: f64 },
+    #[error("boundary layer {index}: {name} is {value}, expected a finite number, 0 or above")]
+    BoundaryConstant { index: usize, name: &'static str, value: f64 },
+    #[error("boundary layer {index}: face {side} of element {element} {fault}")]
+    BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
+}
+
+/// Parameters that are refused.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum NewmarkError {
+    /// Not unconditionally stable.
+    #[error(
+        "Newmark with alpha = {alpha}, delta = {delta} is not unconditionally stable: it needs delta >= 0.5 and \
+         alpha >= 0.25 (0.5 + delta)^2 = {least_alpha}"
+    )]
+    Unstable {
+        /// The alpha given.
+        alpha: f64,
+        /// The delta given.
+        delta: f64,
+        /// The least alpha for this delta.
+        least_alpha: f64,
+    },
+    /// Negative, or not a finite number.
+    #[error("Newmark's alpha = {alpha} and delta = {delta} must be finite numbers, 0 or above")]
+    Range {
+        /// The alpha given.
+        alpha: f64,
+        /// The delta given.
+        delta: f64,
+    },
+    /// HHT's α out of range.
+    #[error("HHT-alpha with alpha = {alpha} is not unconditionally stable: alpha must be between -1/3 and 0")]
+    Hht {
+        /// The α given.
+        alpha: f64,
+    },
+    /// HHT-α weighs the loads of both ends of a step.
+    #[error("HHT-alpha needs the load at the start of the step, too")]
+    LoadAtStart,
+    /// The displacement at the end does not depend on the acceleration there.
+    #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
+    Prescribed,
+}
+
+/// Why equations could not be solved. Numbers of nodes are those of the user's files.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages are the documentation")]
+pub enum SolveError {
+    #[error("the body is not held: node {node} is free to move in {direction}; add supports")]
+    NotHeld { node: u32, direction: &'static str },
+    #[error(
+        "the body is not held: no stiffness is left at node {node} in {direction} (pivot {pivot:.3e} of the diagonal); add \
+         supports, join elements by whole faces, and use the full rule where a row of elements is one element wide"
+    )]
+    NoStiffness { node: u32, direction: &'static str, pivot: f64 },
+    #[error("the solution misses equilibrium by {residual:.3e} of the load at node {node} in {direction}")]
+    Inaccurate { node: u32, direction: &'static str, residual: f64 },
+    #[error("material {material} has density 0; dynamics needs a mass")]
+    NoMass { material: u32 },
+    #[error("the {what} has {found} values, expected {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what} is not a finite number at node {node} in {direction}, at time {time} s")]
+    NotFinite { what: &'static str, node: u32, direction: &'static str, time: f64 },
+    #[error(
+        "material {material} is plastic: this solver is linear and would treat it as elastic; use the nonlinear one"
+    )]
+    Plastic { material: u32 },
+    #[error(
+        "no equilibrium after time {time}: {iterations} iterations left a residual of {residual:.3e} of the forces; worst at \
+         element {element}, Gauss point {point} (natural coordinates {xi:?}), which returned to: {region:?}"
+    )]
+    Diverged {
+        time: f64,
+        iterations: u32,
+        residual: f64,
+        element: u32,
+        point: u32,
+        xi: [f64; 3],
+        region: Region,
+    },
+    #[error("{what} is {value}, expected {expected}")]
+    Option { what: &'static str, value: f64, expected: &'static str },
+    #[error("the time step is {dt} s, expected a finite number above 0")]
+    TimeStep { dt: f64 },
+    #[error("theta is {theta}, expected 0.5 to 1")]
+    Theta { theta: f64 },
+    #[error(transparent)]
+    Newmark(#[from] NewmarkError),
+    #[error(
+        "the mass matrix could not be solved: {residual:.3e} of the load left after {iterations} iterations"
+    )]
+    MassNotSolved { residual: f64, iterations: usize },
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
+}
