@@ -10,6 +10,7 @@
 //! |---|---|
 //! | `s1` | spheres in a box, linear contacts: K = 1e5 N/m, tangential 2/7 of it, restitution 0.5, friction 0.5, step 2e-5 s |
 //! | `s1hertz` | as `s1`, contacts after Hertz and Mindlin: E = 5e7 Pa, ν = 0.25 |
+//! | `s1sleeper` | as `s1`, with a sleeper that hangs above the bed and touches nothing |
 //! | `s2` | clumps of `benches/data/s2_clump.csv`, same parameters |
 //! | `s3` | a block of 6,331 spheres with 19,480 bonds, pressed at 0.1 m/s between grips, step 2e-6 s |
 //! | `s5` | as `s1`, on a floor of 2 × 71 × 71 triangles in place of the plane |
@@ -115,7 +116,7 @@ fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
     };
     let rows = grains::read(&file);
     match scene {
-        "s1" | "s1hertz" | "s5" => {
+        "s1" | "s1hertz" | "s1sleeper" | "s5" => {
             input.shapes.push(Shape::Sphere { radius: 1.0 });
             input.bodies = grains::spheres(&rows);
         }
@@ -125,6 +126,11 @@ fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
             input.bodies = bodies;
         }
         _ => panic!("{scene}: unknown scene"),
+    }
+    if scene == "s1sleeper" {
+        input.shapes.push(Shape::Box { half: [0.15, 1.3, 0.1] });
+        let position = Vec3::new(0.2, 0.2, 2.0);
+        input.bodies.push(BodyInput { shape: 1, position, fixed: [true; 6], ..BodyInput::default() });
     }
     if scene == "s1hertz" {
         input.materials[0] = elastic::elastic();

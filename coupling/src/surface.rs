@@ -7,7 +7,7 @@
 
 use crate::face::{self, Form, Location};
 use crate::spread::Spread;
-use trackbed_dem::search::bvh::Bvh;
+use trackbed_dem::bvh::Bvh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
 use trackbed_fem::FaceShape;
 use trackbed_fem::mesh::{Face, Mesh};

@@ -1,47 +1,44 @@
 //! Explicit discrete elements for ballasted track: spheres, rigid clumps, blocks, walls.
 //!
-//! A [`model::Model`] is what a run never changes, a [`state::State`] all that it changes, a [`work::Work`] its
-//! scratch; [`step::step`] advances the state. SI units throughout.
+//! A [`Model`] is what a run never changes, a [`State`] all that it changes, a [`Work`] its scratch; [`step()`] advances
+//! the state. SI units throughout.
+//!
+//! Folders are layers; each imports from those above it in this list only: `base` (vectors, errors, the ledger), `lanes`
+//! (several numbers at a time), `shape`, `spatial` (trees, cells, surfaces, how two shapes touch), `law` (laws of
+//! contact), `bodies` (arrays of motion), `pairs` (storage of contacts), `contact` (the loops over contacts),
+//! `integrate`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `insert`.
 
+mod base;
 mod bodies;
 pub mod bond;
-mod check;
 mod contact;
-pub mod detect;
-pub mod error;
-pub mod flow;
-pub mod input;
+mod engine;
 pub mod insert;
 pub mod integrate;
 pub mod lanes;
 pub mod law;
-pub mod ledger;
 pub mod measure;
-pub mod model;
-mod order;
-mod periodic;
-pub mod search;
+mod pairs;
 pub mod shape;
-pub mod state;
-pub mod step;
-pub mod surface;
+mod spatial;
 #[cfg(test)]
 mod testing;
-mod threads;
-pub mod timestep;
 pub mod wall;
-pub mod work;
+
+pub use base::{Vec3, error, ledger};
+pub use bodies::input::BodyInput;
+pub use engine::{input, model, state, step, timestep, work};
+pub use insert::flow;
+pub use law::material;
+pub use shape::plane::{Plane, PlaneMotion};
+pub use spatial::{bvh, detect, surface};
 
 pub use error::{ModelError, Partner, StepError};
-pub use input::{AppliedForce, BodyInput, LocalDamping, ModelInput, Plane, TimeStep, TriangleSurface};
-pub use law::material;
+pub use input::{AppliedForce, LocalDamping, ModelInput, TimeStep};
 pub use law::material::{Material, PairOverride};
 pub use model::Model;
 pub use shape::Shape;
 pub use state::State;
 pub use step::{find_contacts, step};
-pub use wall::{Motion, Oscillation, RigidBody, Servo, WallInput, WallShape};
+pub use wall::{Motion, Oscillation, RigidBody, Servo, TriangleSurface, WallInput, WallShape};
 pub use work::Work;
-
-/// A vector of three components.
-pub type Vec3 = nalgebra::Vector3<f64>;

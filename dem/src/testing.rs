@@ -1,10 +1,11 @@
 //! What several unit tests are made of.
 
-use crate::Vec3;
-use crate::input::{ModelInput, Plane, TimeStep};
+use crate::base::Vec3;
+use crate::engine::input::{ModelInput, TimeStep};
 use crate::law::material::Material;
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
+use crate::shape::plane::Plane;
 
 /// A soft material with friction.
 pub(crate) const SOFT: Material = Material {

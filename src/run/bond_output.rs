@@ -8,7 +8,7 @@ use crate::write::csv::{Column, History};
 use std::path::Path;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
-use trackbed_dem::bond::{self, BreakMode};
+use trackbed_dem::bond::BreakMode;
 
 /// Columns of bonds, then of each recorded group.
 pub fn columns(part: &GrainsPart) -> Vec<Column> {
@@ -42,7 +42,7 @@ pub fn values(part: &GrainsPart, view: GrainsView<'_>, stored: &Stored, spent: &
     let GrainsView { model, state } = view;
     if !part.bonds.is_empty() {
         let (tension, shear) = state.broken_bonds();
-        let fragments = bond::fragments(model, state).sizes.len();
+        let fragments = dem::measure::fragments(model, state).sizes.len();
         row.extend([state.bond_count() as f64, tension as f64, shear as f64, fragments as f64]);
         row.extend([stored.bonds, spent.bonds, spent.breaks]);
     }
@@ -53,7 +53,7 @@ pub fn values(part: &GrainsPart, view: GrainsView<'_>, stored: &Stored, spent: &
             sum += state.position(body);
             count += 1.0;
         }
-        let (mean, force) = (sum / count.max(1.0), bond::force_on(model, state, of));
+        let (mean, force) = (sum / count.max(1.0), dem::measure::force_on(model, state, of));
         row.extend(mean.iter().chain(force.iter()));
     }
 }
@@ -88,7 +88,7 @@ pub fn write_breaks(dir: &Path, state: &dem::State) -> Result<(), Failure> {
 /// What became of the bonds.
 pub fn summary(view: GrainsView<'_>) -> BondSummary {
     let (tension, shear) = view.state.broken_bonds();
-    let fragments = bond::fragments(view.model, view.state);
+    let fragments = dem::measure::fragments(view.model, view.state);
     BondSummary {
         made: view.model.bond_count(),
         broken_by_tension: tension,

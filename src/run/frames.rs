@@ -68,7 +68,7 @@ pub fn grains(view: GrainsView<'_>) -> GrainFrame {
     let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
     let neighbours = dem::measure::neighbours(view.model, &contacts);
     let force = dem::measure::contact_forces(view.model, view.state);
-    let fragments = dem::bond::fragments(view.model, view.state).of;
+    let fragments = dem::measure::fragments(view.model, view.state).of;
     let mut frame = GrainFrame::default();
     for body in (0..view.model.body_count()).filter(|&b| view.state.present(b)) {
         let q = view.state.orientation(view.model, body);
@@ -138,7 +138,7 @@ pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
         });
     }
     if !strong_only {
-        for b in dem::bond::records(view.model, view.state) {
+        for b in dem::measure::bond_records(view.model, view.state) {
             frame.ends.push([view.state.position(b.a).into(), view.state.position(b.b).into()]);
             frame.normal_force.push(-b.tension);
             frame.tangential_force.push(b.shear.norm());

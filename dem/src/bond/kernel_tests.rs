@@ -1,5 +1,5 @@
 use super::*;
-use crate::Vec3;
+use crate::base::Vec3;
 use nalgebra::{Rotation3, Unit, UnitQuaternion};
 
 fn v3(v: Vec3) -> V3<f64> {

@@ -8,9 +8,9 @@
 
 use super::Constants;
 use super::kernel;
-use crate::Vec3;
-use crate::bodies::Bodies;
-use crate::input::BodyInput;
+use crate::base::Vec3;
+use crate::bodies::input::BodyInput;
+use crate::bodies::table::Bodies;
 use nalgebra::{Matrix6, Vector6};
 
 /// Bounds λ [1/s²] and γ [1/s] for each body. Shape `[bodies]`.

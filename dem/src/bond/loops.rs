@@ -1,11 +1,12 @@
 //! The loop over the bonds of a list, the bonds of one group or two in lanes.
 
 use super::kernel::{self, COUNT, Memory, Motion, carry, respond};
-use super::pass::BondSlot;
+use super::slot::BondSlot;
 use super::store::Group;
+use crate::bodies::block::Block;
+use crate::bodies::sums::Sums;
+use crate::lanes::record::Record;
 use crate::lanes::{Four, Kernel, Pack, Real, V3};
-use crate::state::{Block, Lanes};
-use crate::work::Sums;
 
 /// Forces of the bonds in lanes, and which of them hold.
 pub(super) struct Outcome<P: Pack> {
@@ -20,7 +21,7 @@ pub(super) struct Outcome<P: Pack> {
 fn bonds<P: Pack>(
     a: &Motion<P>,
     b: &Motion<P>,
-    constants: (&[Lanes; COUNT], &[Lanes; COUNT]),
+    constants: (&[Record; COUNT], &[Record; COUNT]),
     (g, h): (&mut Group, &mut Group),
     dt: P,
     power: &mut P::Quad,
@@ -47,12 +48,12 @@ fn bonds<P: Pack>(
 }
 
 #[inline(always)]
-fn load<P: Pack>(v: &[Lanes; 3], w: &[Lanes; 3]) -> V3<P> {
+fn load<P: Pack>(v: &[Record; 3], w: &[Record; 3]) -> V3<P> {
     V3::new(P::join(&v[0], &w[0]), P::join(&v[1], &w[1]), P::join(&v[2], &w[2]))
 }
 
 #[inline(always)]
-fn store<P: Pack>(v: V3<P>, to: &mut [Lanes; 3], and: &mut [Lanes; 3]) {
+fn store<P: Pack>(v: V3<P>, to: &mut [Record; 3], and: &mut [Record; 3]) {
     v.x.split(&mut to[0], &mut and[0]);
     v.y.split(&mut to[1], &mut and[1]);
     v.z.split(&mut to[2], &mut and[2]);
@@ -87,7 +88,7 @@ fn far<P: Pack>(blocks: &[Block], block: [&[u32; 4]; 2], at: [&[u32; 4]; 2]) -> 
 }
 
 /// The bodies of a list's bonds. (A trait, since closures with operations on lanes are not inlined into the kernel's entry.)
-pub(super) trait Bodies {
+pub(super) trait Ends {
     /// How the bodies of the bonds of two groups move, of which the second counts only where lanes are eight.
     fn motions<P: Pack>(&self, groups: [&Group; 2]) -> (Motion<P>, Motion<P>);
     /// Takes the forces of so many bonds, from position `first` of the list on.
@@ -100,7 +101,7 @@ pub(super) struct Within<'a> {
     pub sums: &'a mut [Sums],
 }
 
-impl Bodies for Within<'_> {
+impl Ends for Within<'_> {
     #[inline(always)]
     fn motions<P: Pack>(&self, [g, h]: [&Group; 2]) -> (Motion<P>, Motion<P>) {
         (own(self.block, [&g.i, &h.i]), own(self.block, [&g.j, &h.j]))
@@ -124,7 +125,7 @@ pub(super) struct Across<'a> {
     pub slots: &'a mut [BondSlot],
 }
 
-impl Bodies for Across<'_> {
+impl Ends for Across<'_> {
     #[inline(always)]
     fn motions<P: Pack>(&self, [g, h]: [&Group; 2]) -> (Motion<P>, Motion<P>) {
         (own(self.own, [&g.i, &h.i]), far(self.blocks, [&g.block, &h.block], [&g.j, &h.j]))
@@ -137,7 +138,7 @@ impl Bodies for Across<'_> {
         let on_a = P::records([f.x, f.y, f.z, zero], [a.x, a.y, a.z, zero]);
         let on_b = P::records([b.x, b.y, b.z, zero], [zero; 4]);
         for (l, slot) in self.slots[first..][..count].iter_mut().enumerate() {
-            let (mut a, mut b) = ([Lanes::default(); 2], [Lanes::default(); 2]);
+            let (mut a, mut b) = ([Record::default(); 2], [Record::default(); 2]);
             P::put(on_a[l], &mut a);
             P::put(on_b[l], &mut b);
             *slot = BondSlot { force: a[0], torque_a: a[1], torque_b: b[0] };
@@ -148,7 +149,7 @@ impl Bodies for Across<'_> {
 /// The bonds of one list; returns the power of their dashpots.
 pub(super) struct Bonds<'a, B> {
     pub groups: &'a mut [Group],
-    pub constants: &'a [[Lanes; COUNT]],
+    pub constants: &'a [[Record; COUNT]],
     /// Of bonds.
     pub count: usize,
     pub bodies: B,
@@ -158,15 +159,15 @@ pub(super) struct Bonds<'a, B> {
     pub dt: f64,
 }
 
-impl<B: Bodies> Kernel for Bonds<'_, B> {
+impl<B: Ends> Kernel for Bonds<'_, B> {
     type Output = f64;
 
     #[inline(always)]
     fn run<P: Pack>(self) -> f64 {
         let Bonds { groups, constants, count, mut bodies, found, dt } = self;
         let Some(&spare) = groups.first() else { return 0.0 };
-        // Lanes without a bond: a real pair, so that its arithmetic is harmless, with constants that are zero.
-        let (mut spare, none) = (spare, [Lanes::default(); COUNT]);
+        // Record without a bond: a real pair, so that its arithmetic is harmless, with constants that are zero.
+        let (mut spare, none) = (spare, [Record::default(); COUNT]);
         let constants = &constants[..groups.len()];
         let dt = P::splat(dt);
         let mut power = P::Quad::zero();

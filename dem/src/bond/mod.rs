@@ -11,41 +11,37 @@
 //!
 //! A bond breaks in the step in which its criterion reaches 1 (`kernel.rs`); the elastic energy it held goes to the
 //! ledger and, as the energy of an acoustic event, to the list of breaks. The pair then stays with this module as a
-//! `Remnant` (`remnant.rs`) until the two have separated.
+//! `DebondedPair` (`debonded.rs`) until the two have separated.
 //!
 //! Limits: bonds join single spheres only, not clumps or boxes; rotations between bonded spheres are small (linear
 //! springs); the stored vectors turn with an error of the sixth power of the angle per step.
 
 mod contact_point;
+pub(crate) mod debonded;
 mod direct;
-mod fragments;
 pub(crate) mod kernel;
 mod limit;
 mod loops;
-mod measure;
 mod pairs;
 mod parallel;
 pub(crate) mod pass;
-pub(crate) mod remnant;
+pub(crate) mod slot;
 pub(crate) mod store;
 mod strength;
 
 pub use contact_point::ContactPoint;
 pub use direct::DirectBond;
-pub use fragments::{Fragments, fragments};
-pub use measure::{BondRecord, force_on, records};
 pub use pairs::within_gap;
 pub use parallel::{ParallelBond, ParallelStiffness, ShearStrength};
 pub use strength::{Spread, factors};
 
 pub(crate) use limit::stiffest;
-pub(crate) use measure::{each_touch, elastic};
 pub(crate) use store::{BondList, BondState, Held};
 
-use crate::Vec3;
-use crate::bodies::{Bodies, Body, Kind};
-use crate::error::ModelError;
-use crate::input::ModelInput;
+use crate::base::Vec3;
+use crate::base::error::ModelError;
+use crate::bodies::input::BodyInput;
+use crate::bodies::table::{Bodies, Body, Kind};
 use serde::{Deserialize, Serialize};
 
 /// A kind of bond.
@@ -66,7 +62,7 @@ pub struct BondInput {
     pub a: usize,
     /// Second body (index).
     pub b: usize,
-    /// Kind of bond (index into [`ModelInput::bond_kinds`]).
+    /// Kind of bond (index into [`crate::ModelInput::bond_kinds`]).
     pub kind: usize,
     /// Factor on the tensile strength [-].
     pub tension: f64,
@@ -166,8 +162,13 @@ pub(crate) struct Constants {
 }
 
 /// Checks and resolves the bonds of an input.
-pub(crate) fn resolve(input: &ModelInput, bodies: &Bodies) -> Result<Vec<Constants>, ModelError> {
-    for (kind, bond) in input.bond_kinds.iter().enumerate() {
+pub(crate) fn resolve(
+    kinds: &[Bond],
+    bonds: &[BondInput],
+    places: &[BodyInput],
+    bodies: &Bodies,
+) -> Result<Vec<Constants>, ModelError> {
+    for (kind, bond) in kinds.iter().enumerate() {
         let problem = match bond {
             Bond::Parallel(p) => p.problem(),
             Bond::ContactPoint(p) => p.problem(),
@@ -178,8 +179,7 @@ pub(crate) fn resolve(input: &ModelInput, bodies: &Bodies) -> Result<Vec<Constan
         }
     }
     let mut seen = std::collections::HashSet::new();
-    input
-        .bonds
+    bonds
         .iter()
         .enumerate()
         .map(|(index, b)| {
@@ -198,7 +198,7 @@ pub(crate) fn resolve(input: &ModelInput, bodies: &Bodies) -> Result<Vec<Constan
             if !seen.insert((b.a.min(b.b), b.a.max(b.b))) {
                 return Err(error(format!("bodies {} and {} have another bond already", b.a, b.b)));
             }
-            let Some(kind) = input.bond_kinds.get(b.kind) else {
+            let Some(kind) = kinds.get(b.kind) else {
                 return Err(error(format!("there is no kind of bond {}", b.kind)));
             };
             let factors = [b.tension, b.shear, b.stiffness];
@@ -208,7 +208,7 @@ pub(crate) fn resolve(input: &ModelInput, bodies: &Bodies) -> Result<Vec<Constan
                 ));
             }
             let (p, q) = (&bodies.get(b.a), &bodies.get(b.b));
-            let length = (input.bodies[b.a].position - input.bodies[b.b].position).norm();
+            let length = (places[b.a].position - places[b.b].position).norm();
             if length.is_nan() || length <= 0.0 {
                 return Err(error("its spheres have the same centre".into()));
             }

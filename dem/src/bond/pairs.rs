@@ -1,8 +1,8 @@
 //! Which spheres to bond: those whose surfaces are nearer than a gap.
 
-use crate::Vec3;
-use crate::search::cells::Cells;
-use crate::state::Lanes;
+use crate::base::Vec3;
+use crate::lanes::record::Record;
+use crate::spatial::cells::Cells;
 
 /// Pairs (a, b), a < b, of spheres whose surfaces are less than `gap` [m] apart (overlapping ones included) and that
 /// `accept` takes, in ascending order. `spheres` are centres and radii [m].
@@ -11,7 +11,7 @@ pub fn within_gap(
     gap: f64,
     accept: impl Fn(usize, usize) -> bool,
 ) -> Vec<[usize; 2]> {
-    let points: Vec<_> = spheres.iter().map(|(c, r)| Lanes([c.x, c.y, c.z, *r])).collect();
+    let points: Vec<_> = spheres.iter().map(|(c, r)| Record([c.x, c.y, c.z, *r])).collect();
     let radii = points.iter().fold((f64::INFINITY, 0.0_f64), |(lo, hi), p| (lo.min(p[3]), hi.max(p[3])));
     let mut out = Vec::new();
     if points.is_empty() {

@@ -1,9 +1,12 @@
 use super::*;
-use crate::bond::{Bond, BondDamping, BondInput, Criterion, DirectBond, elastic, within_gap};
-use crate::input::{BodyInput, ModelInput, TimeStep};
+use crate::bodies::input::BodyInput;
+use crate::bond::{Bond, BondDamping, BondInput, Criterion, DirectBond, within_gap};
+use crate::engine::input::{ModelInput, TimeStep};
 use crate::law::material::Material;
+use crate::measure::bond_records;
 use crate::shape::Shape;
-use crate::surface::NoSurface;
+use crate::spatial::surface::NoSurface;
+use crate::{Model, State, Work};
 
 /// A shaken cube of 11³ spheres, 0.1 mm apart, in two blocks at least.
 fn cube(strength: f64) -> ModelInput {
@@ -84,23 +87,23 @@ fn bonds_survive_a_new_order() {
     }
     let forces = |state: &State| {
         let mut f = vec![[Vec3::zeros(); 2]; 1331];
-        for r in crate::bond::records(&model, state) {
+        for r in bond_records(&model, state) {
             f[r.a] = [f[r.a][0] + r.force, f[r.a][1] + r.shear * r.bending];
             f[r.b] = [f[r.b][0] - r.force, f[r.b][1] + r.shear * r.twisting];
         }
         f
     };
-    let (before, energy) = (forces(&state), elastic(&model, &state));
+    let (before, energy) = (forces(&state), crate::measure::energies(&model, &state).elastic_bonds);
     let places = state.places.clone();
     // The order of a cube that stands still is that of its start: turn the bodies about for another.
     let positions: Vec<Vec3> = (0..1331).map(|b| state.position(1330 - b).yzx()).collect();
-    let all = crate::order::Turnover::none(&state);
-    crate::order::reorder(&mut state, &model, &positions, &all);
+    let all = crate::engine::order::Turnover::none(&state);
+    crate::engine::order::reorder(&mut state, &model, &positions, &all);
     assert!(places != state.places);
     let moved = places.iter().zip(&state.places).filter(|(a, b)| a[0] != b[0]).count();
     assert!(moved > 100, "{moved}");
     assert_eq!(state.bond_count(), model.bond_count());
-    assert!((elastic(&model, &state) - energy).abs() < 1e-12 * energy);
+    assert!((crate::measure::energies(&model, &state).elastic_bonds - energy).abs() < 1e-12 * energy);
     for (x, y) in before.iter().zip(&forces(&state)) {
         for (x, y) in x.iter().zip(y) {
             assert!((x - y).norm() < 1e-9 * (1.0 + x.norm()), "{x} {y}");

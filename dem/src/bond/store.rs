@@ -1,12 +1,12 @@
 //! Where bonds are kept: in lists of groups of four, one list per block for bonds within it, one for those that lead to
 //! other blocks (with the block of their first body). A list holds unbroken bonds only.
 
-use super::Break;
+use super::debonded::DebondedPair;
 use super::kernel::{COUNT, Memory};
-use super::remnant::Remnant;
+use super::{Break, Constants};
+use crate::base::held::held;
 use crate::lanes::V3;
-use crate::model::Model;
-use crate::state::{Lanes, State};
+use crate::lanes::record::Record;
 use serde::{Deserialize, Serialize};
 
 /// Number of a lane without a bond.
@@ -21,8 +21,8 @@ pub(crate) struct Group {
     pub i: [u32; 4],
     pub block: [u32; 4],
     pub j: [u32; 4],
-    pub shear: [Lanes; 3],
-    pub turn: [Lanes; 3],
+    pub shear: [Record; 3],
+    pub turn: [Record; 3],
 }
 
 /// One bond of a list.
@@ -40,7 +40,7 @@ pub(crate) struct Entry {
 pub(crate) struct BondList {
     pub groups: Vec<Group>,
     pub count: u32,
-    pub remnants: Vec<Remnant>,
+    pub debonded: Vec<DebondedPair>,
 }
 
 /// What else changes with bonds.
@@ -67,7 +67,7 @@ impl BondList {
     /// The bond at a position.
     pub fn get(&self, at: usize) -> Entry {
         let (g, l) = (&self.groups[at / 4], at % 4);
-        let vector = |v: &[Lanes; 3]| V3::new(v[0][l], v[1][l], v[2][l]);
+        let vector = |v: &[Record; 3]| V3::new(v[0][l], v[1][l], v[2][l]);
         let memory = Memory { shear: vector(&g.shear), turn: vector(&g.turn) };
         Entry { number: g.number[l], i: g.i[l], block: g.block[l], j: g.j[l], memory }
     }
@@ -93,7 +93,7 @@ impl BondList {
             let at = self.count as usize;
             if at.is_multiple_of(4) {
                 // A lane without a bond repeats a real pair, so that its arithmetic is harmless; its constants are zero.
-                let zero = [Lanes::default(); 3];
+                let zero = [Record::default(); 3];
                 self.groups.push(Group {
                     number: [NONE; 4],
                     i: [e.i; 4],
@@ -111,7 +111,7 @@ impl BondList {
     /// Takes out the bonds at the given positions, ascending, and their constants; those behind move up.
     pub fn remove(
         &mut self,
-        constants: &mut Vec<[Lanes; COUNT]>,
+        constants: &mut Vec<[Record; COUNT]>,
         positions: impl Iterator<Item = u32> + Clone,
     ) {
         let mut gone = positions.peekable();
@@ -139,12 +139,12 @@ impl BondList {
     }
 
     /// The constants of the bonds, group by group.
-    pub fn constants(&self, model: &Model, out: &mut Vec<[Lanes; COUNT]>) {
+    pub fn constants(&self, bonds: &[Constants], out: &mut Vec<[Record; COUNT]>) {
         out.clear();
         out.extend(self.groups.iter().map(|g| {
-            let mut k = [Lanes::default(); COUNT];
+            let mut k = [Record::default(); COUNT];
             for (l, &number) in g.number.iter().enumerate().filter(|(_, n)| **n != NONE) {
-                for (to, value) in k.iter_mut().zip(&model.bonds[number as usize].values) {
+                for (to, value) in k.iter_mut().zip(&bonds[number as usize].values) {
                     to[l] = *value;
                 }
             }
@@ -154,120 +154,9 @@ impl BondList {
 }
 
 /// Sets the constants at a position.
-fn set_constants(constants: &mut [[Lanes; COUNT]], at: usize, own: [f64; COUNT]) {
+fn set_constants(constants: &mut [[Record; COUNT]], at: usize, own: [f64; COUNT]) {
     for (to, x) in constants[at / 4].iter_mut().zip(own) {
         to[at % 4] = x;
-    }
-}
-
-/// A bond or a remnant on its way to a new order of the bodies.
-enum Filed {
-    Bond(u32, Memory<f64>),
-    Remnant(Remnant),
-}
-
-/// Puts all bonds of a new state into its lists.
-pub(crate) fn start(model: &Model, state: &mut State) {
-    state.bonds.fresh = true;
-    let all = (0..model.bonds.len() as u32).map(|k| Filed::Bond(k, Memory::NONE)).collect();
-    file(model, state, all);
-}
-
-/// Takes bonds and remnants out of the old blocks' lists; `inner` yields those lists.
-pub(crate) fn take(inner: impl Iterator<Item = BondList>, state: &mut State) -> Taken {
-    let mut all = Vec::new();
-    for list in inner.chain(std::mem::take(&mut state.bonds.cross)) {
-        all.extend(list.iter().map(|e| Filed::Bond(e.number, e.memory)));
-        all.extend(list.remnants.iter().map(|r| Filed::Remnant(*r)));
-    }
-    Taken(all)
-}
-
-/// Bonds between [`take`] and [`put`].
-pub(crate) struct Taken(Vec<Filed>);
-
-/// Puts bonds into the lists of the state's present blocks.
-pub(crate) fn put(model: &Model, state: &mut State, taken: Taken) {
-    file(model, state, taken.0);
-}
-
-fn file(model: &Model, state: &mut State, all: Vec<Filed>) {
-    let blocks = state.blocks.len();
-    state.bonds.cross.clear();
-    state.bonds.cross.resize_with(blocks, BondList::default);
-    let mut entries: [Vec<Vec<Entry>>; 2] = [vec![Vec::new(); blocks], vec![Vec::new(); blocks]];
-    for filed in all {
-        let number = match &filed {
-            Filed::Bond(number, _) => *number,
-            Filed::Remnant(r) => r.number,
-        };
-        // The first body of a bond is that of the model, whatever the order of the blocks: no sign ever turns.
-        let [[b, i], [block, j]] = model.bonds[number as usize].ends.map(|body| state.places[body as usize]);
-        let across = usize::from(b != block);
-        match filed {
-            Filed::Bond(number, memory) => {
-                entries[across][b as usize].push(Entry { number, i, block, j, memory });
-            }
-            Filed::Remnant(r) => {
-                let list = if across == 1 {
-                    &mut state.bonds.cross[b as usize]
-                } else {
-                    &mut state.blocks[b as usize].bonds
-                };
-                list.remnants.push(Remnant { i, block, j, ..r });
-            }
-        }
-    }
-    let [inner, cross] = entries;
-    for (b, (mut inner, mut cross)) in inner.into_iter().zip(cross).enumerate() {
-        inner.sort_unstable_by_key(|e| (e.i.min(e.j), e.i.max(e.j)));
-        cross.sort_unstable_by_key(|e| (e.i, e.block, e.j));
-        let lists = [(&mut state.blocks[b].bonds, inner), (&mut state.bonds.cross[b], cross)];
-        for (list, bonds) in lists {
-            list.fill(bonds.into_iter());
-            list.remnants.sort_unstable_by_key(|r| (r.i, r.block, r.j));
-        }
-    }
-}
-
-impl State {
-    /// Calls `f` with the number of every unbroken bond and its entry, block by block.
-    pub(crate) fn each_bond(&self, mut f: impl FnMut(u32, (u32, Entry))) {
-        for (b, block) in self.blocks.iter().enumerate() {
-            let cross = self.bonds.cross.get(b);
-            for e in block.bonds.iter().chain(cross.into_iter().flat_map(BondList::iter)) {
-                f(e.number, (b as u32, e));
-            }
-        }
-    }
-
-    /// Calls `f` with every pair that was bonded and has not separated yet, and the block of its first body.
-    pub(crate) fn each_remnant(&self, mut f: impl FnMut(u32, &Remnant)) {
-        for (b, block) in self.blocks.iter().enumerate() {
-            let cross = self.bonds.cross.get(b).map_or(&[][..], |list| &list.remnants);
-            block.bonds.remnants.iter().chain(cross).for_each(|r| f(b as u32, r));
-        }
-    }
-
-    /// Number of unbroken bonds.
-    pub fn bond_count(&self) -> usize {
-        let lists = self.blocks.iter().map(|b| &b.bonds).chain(&self.bonds.cross);
-        lists.map(|list| list.count as usize).sum()
-    }
-
-    /// Bonds broken so far, by tension and by shear.
-    pub fn broken_bonds(&self) -> (u64, u64) {
-        (self.bonds.broken[0], self.bonds.broken[1])
-    }
-
-    /// All breaks that nobody has taken, in the order of time.
-    pub fn breaks(&self) -> &[Break] {
-        &self.bonds.breaks
-    }
-
-    /// Breaks since the last call, in the order of time.
-    pub fn take_breaks(&mut self) -> Vec<Break> {
-        std::mem::take(&mut self.bonds.breaks)
     }
 }
 
@@ -279,24 +168,16 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// Lists the pairs of a state.
-    pub fn update(&mut self, model: &Model, state: &State) {
+    /// Holds the given pairs of so many bodies.
+    pub fn set(&mut self, bodies: usize, mut pairs: Vec<[u32; 2]>) {
         self.start.clear();
         self.partner.clear();
-        if model.bonds.is_empty() {
+        if pairs.is_empty() {
             return;
         }
-        let mut pairs = Vec::new();
-        state.each_bond(|number, _| {
-            let bond = &model.bonds[number as usize];
-            if !bond.contact {
-                pairs.push(bond.ends);
-            }
-        });
-        state.each_remnant(|_, r| pairs.push(model.bonds[r.number as usize].ends));
         pairs.iter_mut().for_each(|p| p.sort_unstable());
         pairs.sort_unstable();
-        self.start.resize(model.body_count() + 1, 0);
+        self.start.resize(bodies + 1, 0);
         for [a, _] in &pairs {
             self.start[*a as usize + 1] += 1;
         }
@@ -318,6 +199,13 @@ impl Held {
     }
 }
 
+impl BondList {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        held(&self.groups) + held(&self.debonded)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -332,7 +220,7 @@ mod tests {
         {
             let mut list = BondList::default();
             list.fill((0..13).map(entry));
-            let mut constants = vec![[Lanes::default(); COUNT]; list.groups.len()];
+            let mut constants = vec![[Record::default(); COUNT]; list.groups.len()];
             (0..13).for_each(|k| set_constants(&mut constants, k, [k as f64 + 0.5; COUNT]));
             list.remove(&mut constants, gone.iter().copied());
             let left: Vec<u32> = (0..13).filter(|k| !gone.contains(k)).collect();

@@ -1,9 +1,16 @@
-//! The loops over contacts: detection, the law, and the sums of forces on bodies, in lanes.
+//! The loops over contacts: detection, the law, and the sums of forces on bodies.
 
-pub(crate) mod coming;
-pub(crate) mod groups;
-pub(crate) mod hits;
-pub(crate) mod pass;
-pub(crate) mod passes;
+pub(crate) mod between;
+pub(crate) mod boxes;
+pub(crate) mod dispatch;
+pub(crate) mod ends;
+pub(crate) mod gather;
+pub(crate) mod group_memory;
+pub(crate) mod images;
+pub(crate) mod interior;
+pub(crate) mod patch_forces;
 pub(crate) mod patches;
 pub(crate) mod planes;
+pub(crate) mod prefetch;
+pub(crate) mod single;
+pub(crate) mod sphere_pair;

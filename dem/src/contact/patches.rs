@@ -18,18 +18,57 @@
 //!
 //! The near list holds numbers only; what a contact remembers is kept for those in touch.
 
-use super::hits::Hit;
-use super::passes;
-use crate::Vec3;
-use crate::error::Partner;
-use crate::lanes::Simd;
-use crate::law::{ContactGeometry, ContactLaw, History, PairTable};
-use crate::ledger::Impulse;
-use crate::model::Model;
-use crate::state::{Block, Lanes, PatchContact, PatchList, PatchPair, xyz};
-use crate::surface::{Feature, PatchPoint, Surface, SurfaceContact};
-use crate::wall::advance::WallSum;
-use crate::work::{BlockWork, Failure};
+use super::dispatch;
+use super::patch_forces::PatchForce;
+use super::single::{self, Setting};
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::base::failure::Failure;
+use crate::base::ledger::Impulse;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::bodies::sums::Tally;
+use crate::lanes::record::xyz;
+use crate::law::{ContactGeometry, History};
+use crate::pairs::patches::{PatchContact, PatchList, PatchPair};
+use crate::spatial::surface::{Feature, PatchPoint, Surface, SurfaceContact};
+use std::ops::AddAssign;
+
+/// What the grains felt from one wall in one step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WallSum {
+    /// Force on the grains [N] and its moment about the wall's centre [N m].
+    pub force: Vec3,
+    pub moment: Vec3,
+    /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+impl AddAssign<&WallSum> for WallSum {
+    fn add_assign(&mut self, other: &WallSum) {
+        self.force += other.force;
+        self.moment += other.moment;
+        self.stiffness += other.stiffness;
+        self.damping += other.damping;
+    }
+}
+
+/// Scratch of a block for its contacts with patches, and what they leave.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PatchWork {
+    /// Whether any contact may resist rolling or twisting, or adhere.
+    pub turning: bool,
+    found: Vec<PatchTouch>,
+    live: Vec<PatchContact>,
+    forces: Vec<PatchForce>,
+    /// Energy left in the springs of contacts that ended in this step [J].
+    ended: f64,
+    /// Contacts with the external surface in this step.
+    pub contacts: Vec<SurfaceContact>,
+    /// What the block's spheres felt from each wall; empty in blocks near none.
+    pub wall_sums: Vec<WallSum>,
+}
 
 /// Points closer than this fraction of the radius are one.
 const SAME: f64 = 1e-6;
@@ -47,7 +86,7 @@ pub(crate) struct Exchange {
 
 /// One patch against the sphere at hand.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch {
+pub(crate) struct PatchTouch {
     patch: u32,
     closest: PatchPoint,
     geometry: ContactGeometry,
@@ -65,7 +104,7 @@ fn touches<S: Surface>(
     r: f64,
     gone: f64,
     pairs: &mut [PatchPair],
-    out: &mut Vec<Touch>,
+    out: &mut Vec<PatchTouch>,
 ) {
     let sharp = surface.sharp();
     let centre = [x.x, x.y, x.z];
@@ -103,7 +142,7 @@ fn touches<S: Surface>(
             (true, true) => (-offset / distance, r + distance),
         };
         let geometry = ContactGeometry { point, normal, overlap, radius: r };
-        out.push(Touch { patch: pair.patch, closest, geometry, behind, counts: true });
+        out.push(PatchTouch { patch: pair.patch, closest, geometry, behind, counts: true });
     }
     if out.len() < 2 {
         // A single patch: nothing to tell apart but the space beside a one-sided surface.
@@ -112,10 +151,17 @@ fn touches<S: Surface>(
         }
         return;
     }
+    count_once(surface, r, out);
+    keep_deepest(out);
+}
+
+/// Decides which of several touches count: see the head of this file.
+#[inline(always)]
+fn count_once<S: Surface>(surface: &S, r: f64, out: &mut [PatchTouch]) {
     let tolerance = SAME * r;
     for k in 0..out.len() {
         let point = out[k].geometry.point;
-        let rank = |k: usize, t: &Touch| match t.closest.feature {
+        let rank = |k: usize, t: &PatchTouch| match t.closest.feature {
             Feature::Face => (0, k),
             Feature::Edge(_) => (1, k),
             Feature::Vertex(_) => (2, k),
@@ -138,7 +184,6 @@ fn touches<S: Surface>(
         // Behind the outer rim of a one-sided surface is beside it, not below it.
         out[k].counts = counts && !(on_rim && out[k].behind && !shared);
     }
-    keep_deepest(out);
 }
 
 /// The contact of a sphere that stays inside a patch, where all patches near it lie in one plane and the
@@ -169,7 +214,7 @@ fn resting<S: Surface>(
 }
 
 /// Of contacts whose normals differ little keeps the deepest, the first of equals.
-fn keep_deepest(found: &mut [Touch]) {
+fn keep_deepest(found: &mut [PatchTouch]) {
     let mut last = (f64::INFINITY, 0);
     loop {
         let next = (0..found.len())
@@ -188,53 +233,73 @@ fn keep_deepest(found: &mut [Touch]) {
 }
 
 /// Whether a touch comes after `last` in falling order of overlap.
-fn after(last: (f64, usize), k: usize, t: &Touch) -> bool {
+fn after(last: (f64, usize), k: usize, t: &PatchTouch) -> bool {
     t.geometry.overlap < last.0 || (t.geometry.overlap == last.0 && k > last.1)
 }
 
+/// One surface as the contacts of a block see it.
+pub(crate) struct Against<'a, S, M, P> {
+    pub surface: &'a S,
+    /// Material (index) of a patch, and what it is called.
+    pub material: M,
+    pub partner: P,
+    /// Whether it belongs to another program part, which is given the contacts; else forces are summed by wall.
+    pub external: bool,
+    /// Bound on the way that anything has come towards anything since the near list was made [m].
+    pub gone: f64,
+}
+
 /// All contacts of a block with one surface: found sphere by sphere, then the law of all of them, then what they do.
-pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
-    (model, simd): (&Model, Simd),
-    laws: &PairTable<L>,
-    surface: &S,
-    material: impl Fn(u32) -> u32,
-    partner: impl Fn(u32) -> Partner,
+pub(crate) fn contacts<S: Surface>(
+    setting: &Setting<'_>,
+    against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
     list: &mut PatchList,
-    block: &Block,
-    w: &mut BlockWork,
-    sums: &mut [WallSum],
-    external: bool,
-    gone: f64,
+    (block, members): (&Block, &Members),
+    tally: &mut Tally,
+    work: &mut PatchWork,
 ) -> Exchange {
-    let mut touched = std::mem::take(&mut w.touches);
-    let mut live = std::mem::take(&mut w.live);
-    let mut hits = std::mem::take(&mut w.hits);
+    find(setting, against, list, (block, members), tally, work);
+    dispatch::patch_forces(setting, work.turning, block, &mut work.forces);
+    let exchange = apply(setting, against, (block, members), tally, work);
+    std::mem::swap(&mut list.live, &mut work.live);
+    exchange
+}
+
+/// Finds the contacts, with the memory of those that go on; `work` then holds them and what the law needs of each.
+#[inline(always)]
+fn find<S: Surface>(
+    setting: &Setting<'_>,
+    against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
+    list: &mut PatchList,
+    (block, members): (&Block, &Members),
+    tally: &mut Tally,
+    work: &mut PatchWork,
+) {
+    let Against { surface, material, gone, .. } = against;
+    let (surface, gone) = (*surface, *gone);
+    let PatchWork { found, live, forces, .. } = work;
     live.clear();
-    hits.clear();
-    let owner = |i: u32| if RIGID { w.owner[i as usize] as usize } else { i as usize };
+    forces.clear();
+    let owner = |i: u32| members.body(i) as usize;
     let end = |c: &mut PatchContact| {
-        if c.history.is_fresh() {
-            return 0.0;
-        }
-        laws.get(block.spin[owner(c.i)][3] as u32, material(c.patch)).release(&mut c.history)
+        single::end(setting.laws, [block.material(owner(c.i)), material(c.patch)], &mut c.history)
     };
-    let hit = |body: usize, c: &PatchContact, radius: f64, local: [f64; 2]| {
+    let input = |body: usize, c: &PatchContact, radius: f64, local: [f64; 2]| {
         let (mass, material) = (surface.inverse_mass(c.patch), material(c.patch));
         let (point, velocity) = ((&c.point, c.overlap), (&c.velocity, mass));
         let spin = (&surface.spin(c.patch), material);
-        Hit::new(body as u32, point, (&c.normal, radius), velocity, spin, local, &c.history)
+        PatchForce::new(body as u32, point, (&c.normal, radius), velocity, spin, local, &c.history)
     };
-    let (mut dashpot, mut friction) = (0.0, 0.0);
-    let mut failure = w.failure;
+    let mut friction = 0.0;
     let sharp = surface.sharp();
+    let spheres = members.spheres(block);
     // Patches lie in no order of the blocks.
     list.pairs.iter().filter(|p| p.spare <= gone).for_each(|p| surface.fetch(p.patch));
     let old = &mut list.live[..];
     let mut at = 0;
     for pairs in list.pairs.chunk_by_mut(|a, b| a.i == b.i) {
         let sphere = pairs[0].i;
-        let i = sphere as usize;
-        let p: Lanes = if RIGID { w.spheres[i] } else { block.centre[i] };
+        let p = spheres[sphere as usize];
         let (x, r) = (xyz(&p), p[3]);
         while at < old.len() && old[at].i < sphere {
             friction += end(&mut old[at]);
@@ -245,17 +310,17 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
         let before = &mut old[from..at];
         let a = owner(sphere);
         if sharp && let Some(contact) = resting(surface, &x, r, pairs, before) {
-            hits.push(hit(a, &contact, r, [0.0; 2]));
+            forces.push(input(a, &contact, r, [0.0; 2]));
             live.push(contact);
             continue;
         }
-        touched.clear();
-        touches(surface, &x, r, gone, pairs, &mut touched);
-        if touched.is_empty() && before.is_empty() {
+        found.clear();
+        touches(surface, &x, r, gone, pairs, found);
+        if found.is_empty() && before.is_empty() {
             continue;
         }
         let first = live.len();
-        for t in touched.iter().filter(|t| t.counts) {
+        for t in found.iter().filter(|t| t.counts) {
             live.push(begin(t, sphere, before));
         }
         let now = &mut live[first..];
@@ -263,85 +328,101 @@ pub(crate) fn contacts<L: ContactLaw, S: Surface, const RIGID: bool>(
             hand_over(now, before, r);
             before.iter_mut().for_each(|c| friction += end(c));
         }
-
-        for (t, contact) in touched.iter().filter(|t| t.counts).zip(now) {
-            let g = &t.geometry;
-            let side = g.normal.dot(&Vec3::from(t.closest.normal));
-            // A two-sided wall pushes back from whichever side the centre is on: a flipped normal on the other side of
-            // the patch means it passed.
-            let passed = !contact.history.is_fresh()
-                && contact.normal.dot(&g.normal) < -0.5
-                && contact.side * side <= 0.0;
-            let overlap = if passed { 2.0 * r - g.overlap } else { g.overlap };
-            let bound = if surface.one_sided() { 2.0 * r } else { r };
-            if (passed || overlap > bound) && failure.is_none() {
-                let partner = partner(t.patch);
-                failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
+        for (t, contact) in found.iter().filter(|t| t.counts).zip(now) {
+            if let Some((overlap, bound)) = go_on(surface, contact, t, r)
+                && tally.failure.is_none()
+            {
+                let partner = (against.partner)(t.patch);
+                tally.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
             }
-            contact.point = g.point;
-            contact.normal = g.normal;
-            contact.velocity = t.closest.velocity.into();
-            contact.overlap = g.overlap;
-            contact.side = side;
-            hits.push(hit(a, contact, g.radius, t.closest.local));
+            forces.push(input(a, contact, t.geometry.radius, t.closest.local));
         }
     }
     old[at..].iter_mut().for_each(|c| friction += end(c));
-    w.failure = failure;
+    // Summed apart from what sliding takes in this step, as it always was.
+    work.ended = friction;
+}
 
-    let dt = model.dt();
+/// Brings a contact to where it is now; returns its overlap and the bound where it is too deep [m].
+#[inline(always)]
+fn go_on<S: Surface>(surface: &S, contact: &mut PatchContact, t: &PatchTouch, r: f64) -> Option<(f64, f64)> {
+    let g = &t.geometry;
+    let side = g.normal.dot(&Vec3::from(t.closest.normal));
+    // A two-sided wall pushes back from whichever side the centre is on: a flipped normal on the other side of
+    // the patch means it passed.
+    let passed =
+        !contact.history.is_fresh() && contact.normal.dot(&g.normal) < -0.5 && contact.side * side <= 0.0;
+    let overlap = if passed { 2.0 * r - g.overlap } else { g.overlap };
+    let bound = if surface.one_sided() { 2.0 * r } else { r };
+    contact.point = g.point;
+    contact.normal = g.normal;
+    contact.velocity = t.closest.velocity.into();
+    contact.overlap = g.overlap;
+    contact.side = side;
+    (passed || overlap > bound).then_some((overlap, bound))
+}
+
+/// Adds the forces to the bodies, and books them with the surface.
+#[inline(always)]
+fn apply<S: Surface>(
+    setting: &Setting<'_>,
+    against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
+    (block, members): (&Block, &Members),
+    tally: &mut Tally,
+    work: &mut PatchWork,
+) -> Exchange {
+    let (Against { surface, material, external, .. }, dt) = (against, setting.dt);
+    let PatchWork { live, forces, contacts, wall_sums, .. } = work;
+    let (mut dashpot, mut friction) = (0.0, work.ended);
     let mut exchange = Exchange::default();
-    passes::hits(model, simd, block, &mut hits);
-    for (hit, contact) in hits.iter().zip(&mut live) {
-        contact.history = hit.history();
-        let (a, force, moment) = (hit.body as usize, hit.force(), hit.moment());
-        let taken = hit.dissipated();
-        dashpot += taken.0;
-        friction += taken.1;
-        w.push(a, &force, &hit.torque());
-        if external {
+    for (result, contact) in forces.iter().zip(live) {
+        contact.history = result.history();
+        let (a, force, moment) = (result.body as usize, result.force(), result.moment());
+        let spent = result.dissipated();
+        dashpot += spent.0;
+        friction += spent.1;
+        tally.sums[a].push(&force, &result.torque());
+        let materials = [block.material(a), material(contact.patch)];
+        if *external {
             exchange.work += force.dot(&contact.velocity) * dt;
             exchange.impulse.add(&contact.point, &(force * dt));
             exchange.impulse.angular += moment * dt;
-            let member = if RIGID { contact.i - w.first[a] } else { 0 };
             // What springs do not explain; a spring that slides holds what the limit has left to it.
-            let law = laws.get(block.spin[a][3] as u32, material(contact.patch));
-            let (normal, tangential) = law.springs(contact.overlap, hit.radius());
+            let (normal, tangential) =
+                single::springs(setting.laws, materials, contact.overlap, result.radius());
             let sprung = contact.normal * normal - contact.history.spring * tangential;
-            w.contacts.push(SurfaceContact {
+            contacts.push(SurfaceContact {
                 dashpot: (sprung - force).into(),
-                sphere: member,
+                sphere: members.member(contact.i, a),
                 body: block.bodies[a],
                 patch: contact.patch,
-                local: hit.local,
+                local: result.local,
                 point: contact.point.into(),
                 force: (-force).into(),
                 overlap: contact.overlap,
             });
         } else {
             let group = surface.group(contact.patch);
-            let sum = &mut sums[group];
+            let sum = &mut wall_sums[group];
             sum.force += force;
             sum.moment +=
                 (contact.point - Vec3::from(surface.moment_centre(contact.patch))).cross(&force) + moment;
             if surface.driven(group) {
-                let law = laws.get(block.spin[a][3] as u32, material(contact.patch));
-                let stiffness = law.stiffness(contact.overlap, hit.radius());
+                let [own, other] = materials;
+                let stiffness = setting.laws.stiffness(own, other, contact.overlap, result.radius());
                 let mass = 1.0 / (block.velocity[a][3] + surface.inverse_mass(contact.patch));
                 sum.stiffness += stiffness;
                 sum.damping += (stiffness * mass).sqrt();
             }
         }
     }
-    w.ledger.dissipated_dashpot += dashpot;
-    w.ledger.dissipated_friction += friction;
-    std::mem::swap(&mut list.live, &mut live);
-    (w.live, w.touches, w.hits) = (live, touched, hits);
+    tally.ledger.dissipated_dashpot += dashpot;
+    tally.ledger.dissipated_friction += friction;
     exchange
 }
 
 /// A contact for a touch, with the memory that the same sphere has of the same patch.
-fn begin(t: &Touch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
+fn begin(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
     let mut contact = PatchContact {
         i: sphere,
         patch: t.patch,

@@ -10,7 +10,7 @@
 //! Source: crossing number with consistent edges (Haines, Graphics Gems IV, 1994; own form for triangles).
 //! Limits: the surface must not cut itself; points on it count as either side.
 
-use crate::Vec3;
+use crate::base::Vec3;
 use crate::shape::polyhedron::{Nearest, Surface};
 use std::collections::BTreeMap;
 

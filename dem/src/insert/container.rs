@@ -1,7 +1,7 @@
 //! Where grains are filled in: a box, a cylinder or cone, a closed surface.
 
 use super::closed::ClosedSurface;
-use crate::Vec3;
+use crate::base::Vec3;
 use std::f64::consts::PI;
 
 /// A space to fill.

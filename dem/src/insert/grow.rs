@@ -13,9 +13,9 @@
 //! found stays above the one asked for. The sides of cones are 96 flat strips around the circle (volume + 0.04 %).
 
 use super::container::Container;
-use crate::error::{ModelError, StepError};
+use crate::base::error::{ModelError, StepError};
 use crate::measure::{contacts, unbalanced_ratio};
-use crate::surface::NoSurface;
+use crate::spatial::surface::NoSurface;
 use crate::{
     BodyInput, LocalDamping, Material, Model, ModelInput, Plane, Shape, State, TimeStep, TriangleSurface,
     Vec3, Work, step,

@@ -9,7 +9,7 @@
 //! Rows of the close-packed layers run along x, d apart in x and d √3/2 in y. Limits: neighbours touch but for a
 //! share [`GAP`] of the diameter, so that rounding makes no contact; the porosities are those of the bulk.
 
-use crate::Vec3;
+use crate::base::Vec3;
 
 /// Gap between neighbours, as a share of their distance.
 pub const GAP: f64 = 1e-9;
@@ -77,7 +77,8 @@ impl Lattice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::{BodyInput, ModelInput};
+    use crate::bodies::input::BodyInput;
+    use crate::engine::input::ModelInput;
     use crate::measure::{BoxRegion, porosity};
     use crate::shape::Shape;
     use crate::testing::SOFT;

@@ -6,6 +6,7 @@
 
 pub mod closed;
 pub mod container;
+pub mod flow;
 pub mod gradation;
 pub mod grow;
 pub mod lattice;

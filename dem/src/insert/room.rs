@@ -5,12 +5,14 @@
 
 use super::random::Random;
 use super::scatter::Grid;
-use crate::Vec3;
+use crate::base::Vec3;
+use crate::bodies::table::Kind;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::lanes::record::xyz;
 use crate::measure::BoxRegion;
-use crate::model::{Kind, Model};
 use crate::shape::cuboid;
-use crate::state::{State, xyz};
-use crate::surface::Surface;
+use crate::spatial::surface::Surface;
 use nalgebra::UnitQuaternion;
 
 /// Purpose of the stream of places and turns.

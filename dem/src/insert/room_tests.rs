@@ -1,8 +1,11 @@
 use super::*;
-use crate::input::{BodyInput, ModelInput, Plane, TriangleSurface};
+use crate::bodies::input::BodyInput;
+use crate::engine::input::ModelInput;
 use crate::shape::Shape;
-use crate::surface::NoSurface;
+use crate::shape::plane::Plane;
+use crate::spatial::surface::NoSurface;
 use crate::testing::SOFT;
+use crate::wall::TriangleSurface;
 
 const RADIUS: f64 = 0.05;
 

@@ -6,7 +6,7 @@
 
 use super::container::Container;
 use super::random::Random;
-use crate::Vec3;
+use crate::base::Vec3;
 use nalgebra::UnitQuaternion;
 
 const PURPOSE: u64 = 4;

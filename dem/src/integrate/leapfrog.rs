@@ -12,23 +12,68 @@
 //! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
 
 use super::rotation::{self, Turn};
-use crate::Vec3;
-use crate::lanes::{Four, Kernel, Pack, Real, V3};
-use crate::ledger::Ledger;
-use crate::model::{Kind, Model};
-use crate::state::{Block, Rotation, set_xyz, spin_of, xyz};
-use crate::work::{Applied, BlockWork, Failure};
+use crate::base::Vec3;
+use crate::base::failure::Failure;
+use crate::base::ledger::Ledger;
+use crate::bodies::block::{Block, Rotation, spin_of};
+use crate::bodies::members::Members;
+use crate::bodies::sums::{Sums as BodySums, Tally};
+use crate::bodies::table::{Bodies, Kind};
+use crate::lanes::record::{set_xyz, xyz};
+use crate::lanes::{self, Four, Kernel, Pack, Real, Simd, V3};
 use nalgebra::UnitQuaternion;
+
+/// A force applied to a body in this step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Applied {
+    pub block: u32,
+    pub place: u32,
+    pub force: Vec3,
+    pub torque: Vec3,
+}
+
+/// What drives all bodies alike.
+#[derive(Clone, Copy)]
+pub(crate) struct Drive<'a> {
+    /// Acceleration [m/s²].
+    pub gravity: Vec3,
+    /// Share of local damping [-].
+    pub damping: f64,
+    /// Largest speed that a step allows [m/s].
+    pub bound: f64,
+    pub bodies: &'a Bodies,
+    /// Time step [s].
+    pub dt: f64,
+}
+
+/// Moves the bodies of a block under the forces of `tally` and the block's applied forces, which are in order of place.
+pub(crate) fn advance(
+    simd: Simd,
+    drive: &Drive<'_>,
+    block: &mut Block,
+    members: &mut Members,
+    tally: &mut Tally,
+    applied: &[Applied],
+) {
+    match (members.rigid, members.plain() && applied.is_empty()) {
+        (false, false) => {
+            lanes::run(simd, Advance::<false, false> { drive, block, members, tally, applied });
+        }
+        (false, true) => lanes::run(simd, Advance::<false, true> { drive, block, members, tally, applied }),
+        (true, false) => lanes::run(simd, Advance::<true, false> { drive, block, members, tally, applied }),
+        (true, true) => lanes::run(simd, Advance::<true, true> { drive, block, members, tally, applied }),
+    }
+}
 
 /// Moves all bodies of a block by one step: four at a time where all four are free, else one by one. `PLAIN`: all are free, and
 /// nothing is to be asked.
-pub(crate) struct Advance<'a, const RIGID: bool, const PLAIN: bool> {
-    pub model: &'a Model,
-    pub block: &'a mut Block,
-    pub w: &'a mut BlockWork,
+struct Advance<'a, const RIGID: bool, const PLAIN: bool> {
+    drive: &'a Drive<'a>,
+    block: &'a mut Block,
+    members: &'a mut Members,
+    tally: &'a mut Tally,
     /// The block's applied forces, by place.
-    pub applied: &'a [Applied],
-    pub dt: f64,
+    applied: &'a [Applied],
 }
 
 impl<const RIGID: bool, const PLAIN: bool> Kernel for Advance<'_, RIGID, PLAIN> {
@@ -43,8 +88,9 @@ impl<const RIGID: bool, const PLAIN: bool> Kernel for Advance<'_, RIGID, PLAIN> 
 impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
     #[inline(always)]
     fn by_four<P: Pack>(self) {
-        let Advance { model, block, w, mut applied, dt } = self;
-        let bound = 0.5 * model.radii.0 / dt;
+        let Advance { drive, block, members, tally, mut applied } = self;
+        let (dt, bound) = (drive.dt, drive.bound);
+        let forces = std::mem::take(&mut tally.sums);
         let n = block.bodies.len();
         let mut sums = Sums::<P::Quad>::new();
         let (mut moment, mut fastest2) = (Vec3::zeros(), 0.0_f64);
@@ -52,67 +98,68 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
         let wild = |v2: f64| v2.is_nan() || v2 > bound * bound;
         let mut too_fast = false;
         let quick = if PLAIN { n - n % 4 } else { 0 };
-        if model.damping == 0.0 {
+        if drive.damping == 0.0 {
             for k in (0..quick).step_by(4) {
-                four::<P::Quad, RIGID, false>(model, block, w, k, dt, &mut sums);
+                four::<P::Quad, RIGID, false>(drive, block, members, &forces, k, &mut sums);
             }
         } else {
             for k in (0..quick).step_by(4) {
-                four::<P::Quad, RIGID, true>(model, block, w, k, dt, &mut sums);
+                four::<P::Quad, RIGID, true>(drive, block, members, &forces, k, &mut sums);
             }
         }
         if RIGID {
             // A loop of its own, so that the processor works on several turns at once.
             for k in (0..quick).step_by(4) {
-                place_four::<P>(block, w, k);
+                place_four::<P>(block, members, k);
             }
         }
         for k in (quick..n).step_by(4) {
             if !PLAIN
                 && k + 4 <= n
-                && w.all_free(k)
+                && members.all_free(k)
                 && applied.first().is_none_or(|a| a.place as usize >= k + 4)
             {
-                if model.damping == 0.0 {
-                    four::<P::Quad, RIGID, false>(model, block, w, k, dt, &mut sums);
+                if drive.damping == 0.0 {
+                    four::<P::Quad, RIGID, false>(drive, block, members, &forces, k, &mut sums);
                 } else {
-                    four::<P::Quad, RIGID, true>(model, block, w, k, dt, &mut sums);
+                    four::<P::Quad, RIGID, true>(drive, block, members, &forces, k, &mut sums);
                 }
                 if RIGID {
-                    place_four::<P>(block, w, k);
+                    place_four::<P>(block, members, k);
                 }
                 continue;
             }
             for k in k..n.min(k + 4) {
-                moment += xyz(&block.centre[k]) * model.body(block.bodies[k] as usize).mass;
+                moment += xyz(&block.centre[k]) * drive.bodies.get(block.bodies[k] as usize).mass;
                 let own = applied.iter().take_while(|a| a.place as usize == k).count();
                 let (loads, rest) = applied.split_at(own);
                 applied = rest;
-                let v2 = general::<RIGID>(model, block, w, k, loads, dt);
+                let v2 = general::<RIGID>(drive, block, members, &forces[k], tally, k, loads);
                 if RIGID {
                     let q = block.rotation[k].orientation;
                     let centre = block.centre[k];
-                    w.place_spheres(k, &centre, &q);
+                    members.place_spheres(k, &centre, &q);
                 }
                 too_fast |= wild(v2);
                 fastest2 = fastest2.max(v2);
             }
         }
-        if model.damping != 0.0 {
-            sums.book_damping(&mut w.ledger, dt);
+        if drive.damping != 0.0 {
+            sums.book_damping(&mut tally.ledger, dt);
         }
         moment += Vec3::new(sums.moment.x.sum(), sums.moment.y.sum(), sums.moment.z.sum());
         fastest2 = fastest2.max(sums.fastest2.largest());
-        if (too_fast || !sums.sound || wild(fastest2)) && w.failure.is_none() {
-            let mut speeds = (0..n).map(|k| (k, speed2::<RIGID>(block, w, k)));
+        if (too_fast || !sums.sound || wild(fastest2)) && tally.failure.is_none() {
+            let mut speeds = (0..n).map(|k| (k, speed2::<RIGID>(block, members, k)));
             if let Some((k, v2)) = speeds.find(|(_, v2)| wild(*v2)) {
-                w.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
+                tally.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
             }
         }
-        w.fastest = fastest2.sqrt();
-        let impulse = model.gravity * dt;
-        w.ledger.gravity.linear += impulse * w.mass_sum;
-        w.ledger.gravity.angular += moment.cross(&impulse);
+        tally.fastest = fastest2.sqrt();
+        let impulse = drive.gravity * dt;
+        tally.ledger.gravity.linear += impulse * members.mass_sum;
+        tally.ledger.gravity.angular += moment.cross(&impulse);
+        tally.sums = forces;
     }
 }
 
@@ -166,44 +213,45 @@ fn resist<R: Four>(load: R, motion: R, damping: f64) -> R {
 }
 
 /// Square of the largest speed of a body's points.
-fn speed2<const RIGID: bool>(block: &Block, w: &BlockWork, k: usize) -> f64 {
+fn speed2<const RIGID: bool>(block: &Block, members: &Members, k: usize) -> f64 {
     let v = xyz(&block.velocity[k]).norm();
-    let turn = if RIGID { xyz(&block.spin[k]).norm() * w.reach[k] } else { 0.0 };
+    let turn = if RIGID { xyz(&block.spin[k]).norm() * members.reach[k] } else { 0.0 };
     (v + turn) * (v + turn)
 }
 
 /// Moves the free bodies k to k + 3; `DAMPED`: with local damping. Their spheres stay behind.
 #[inline(always)]
 fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
-    model: &Model,
+    drive: &Drive<'_>,
     block: &mut Block,
-    w: &BlockWork,
+    members: &Members,
+    forces: &[BodySums],
     k: usize,
-    dt: f64,
     sums: &mut Sums<R>,
 ) {
+    let dt = drive.dt;
     let step = R::load(&[dt, dt, dt, 0.0]);
-    let gravity = R::load(&[model.gravity.x, model.gravity.y, model.gravity.z, 0.0]);
+    let gravity = R::load(&[drive.gravity.x, drive.gravity.y, drive.gravity.z, 0.0]);
     let (mut before, mut after) = ([R::zero(); 4], [R::zero(); 4]);
     let (mut torque, mut held, mut stop) = ([R::zero(); 4], [R::zero(); 4], [R::zero(); 4]);
     let (centre, velocity) = (&mut block.centre[k..k + 4], &mut block.velocity[k..k + 4]);
-    let (spin, force) = (&mut block.spin[k..k + 4], &w.sums[k..k + 4]);
+    let (spin, force) = (&mut block.spin[k..k + 4], &forces[k..k + 4]);
     for l in 0..4 {
         let (x, v) = (R::load(&centre[l]), R::load(&velocity[l]));
-        let softness = R::splat(velocity[l][3]);
+        let inverse_mass = R::splat(velocity[l][3]);
         let mut push = R::load(force[l].force());
         let kicked = if DAMPED {
-            push = push + gravity * (R::splat(1.0) / softness);
-            held[l] = resist(push, v, model.damping);
+            push = push + gravity * (R::splat(1.0) / inverse_mass);
+            held[l] = resist(push, v, drive.damping);
             sums.force = sums.force + held[l];
-            v + (push + held[l]) * (softness * step)
+            v + (push + held[l]) * (inverse_mass * step)
         } else {
-            v + (push * softness + gravity) * step
+            v + (push * inverse_mass + gravity) * step
         };
         torque[l] = R::load(force[l].torque());
         if DAMPED {
             let mean = (v + kicked) * R::splat(0.5);
-            stop[l] = resist(torque[l], R::load(&spin[l]), model.damping);
+            stop[l] = resist(torque[l], R::load(&spin[l]), drive.damping);
             sums.power = sums.power + held[l] * mean;
             sums.torque = sums.torque + stop[l];
             torque[l] = torque[l] + stop[l];
@@ -213,21 +261,21 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
         (before[l], after[l]) = (x, kicked);
     }
     let [x, y, z, r] = R::transpose(before);
-    let [vx, vy, vz, softness] = R::transpose(after);
+    let [vx, vy, vz, inverse_mass] = R::transpose(after);
     let position = V3::new(x, y, z);
-    sums.moment = sums.moment + position * (R::splat(1.0) / softness);
+    sums.moment = sums.moment + position * (R::splat(1.0) / inverse_mass);
     if DAMPED {
         let [hx, hy, hz, _] = R::transpose(held);
         sums.angular = sums.angular + position.cross(V3::new(hx, hy, hz));
     }
     let mut speed2 = V3::new(vx, vy, vz).norm2();
 
-    let clumps = if RIGID { w.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
+    let clumps = if RIGID { members.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
     if clumps {
-        speed2 = turn_four::<R, DAMPED>(block, w, k, (torque, stop), dt, speed2, sums);
+        speed2 = turn_four::<R, DAMPED>(block, members, k, (torque, stop), dt, speed2, sums);
     } else {
         // A sphere's moment of inertia is 2/5 m r².
-        let kick = (R::splat(2.5 * dt) * softness / (r * r)).array();
+        let kick = (R::splat(2.5 * dt) * inverse_mass / (r * r)).array();
         for l in 0..4 {
             let old = R::load(&spin[l]);
             let new = old + torque[l] * R::splat(kick[l]);
@@ -247,7 +295,7 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
 #[inline(always)]
 fn turn_four<R: Four, const DAMPED: bool>(
     block: &mut Block,
-    w: &BlockWork,
+    members: &Members,
     k: usize,
     (torque, stop): ([R; 4], [R; 4]),
     dt: f64,
@@ -256,7 +304,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
 ) -> R {
     let rotation = &mut block.rotation[k..k + 4];
     let spin = &mut block.spin[k..k + 4];
-    let inertia = &w.inertia[k..k + 4];
+    let inertia = &members.inertia[k..k + 4];
     let lane = |p: &Vec3, q: &Vec3, s: &Vec3, t: &Vec3| {
         ([p.x, q.x, s.x, t.x], [p.y, q.y, s.y, t.y], [p.z, q.z, s.z, t.z])
     };
@@ -264,7 +312,8 @@ fn turn_four<R: Four, const DAMPED: bool>(
     let (mx, my, mz) = lane(a, b, c, d);
     let (ix, iy, iz) = lane(&inertia[0], &inertia[1], &inertia[2], &inertia[3]);
     let inertia = V3::new(R::load(&ix), R::load(&iy), R::load(&iz));
-    let reach = R::load(&[w.reach[k], w.reach[k + 1], w.reach[k + 2], w.reach[k + 3]]);
+    let reach =
+        R::load(&[members.reach[k], members.reach[k + 1], members.reach[k + 2], members.reach[k + 3]]);
     let [tx, ty, tz, _] = R::transpose(torque);
     let [wx, wy, wz, material] =
         R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
@@ -317,7 +366,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
 
 /// Puts the spheres of four bodies from `body` on where centres and orientations say, as many at a time as there are groups of lanes.
 #[inline(always)]
-fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, body: usize) {
+fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
     let (centre, rotation) = (&block.centre[body..body + 4], &block.rotation[body..body + 4]);
     let quaternion = |l: usize| &rotation[l].orientation.coords.data.0[0];
     let [i, j, k, s] = P::Quad::transpose([
@@ -338,8 +387,9 @@ fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, body: usize) {
     for l in 0..4 {
         let (x, y, z) = (P::twice(x[l]), P::twice(y[l]), P::twice(z[l]));
         let centre = P::record(&centre[l]);
-        let (from, to) = (w.first[body + l] as usize, w.first[body + l + 1] as usize);
-        let (local, spheres) = (&w.local[from..to], &mut w.spheres[from..to]);
+        let (from, to) = (members.first[body + l] as usize, members.first[body + l + 1] as usize);
+        let (local, spheres) = members.local_and_world();
+        let (local, spheres) = (&local[from..to], &mut spheres[from..to]);
         for at in (0..local.len()).step_by(P::GROUPS) {
             let next = (at + P::GROUPS - 1).min(local.len() - 1);
             let p = P::join(&local[at], &local[next]);
@@ -354,21 +404,23 @@ fn place_four<P: Pack>(block: &Block, w: &mut BlockWork, body: usize) {
 
 /// Any body, with applied forces, local damping and fixed motions. Returns the square of the largest speed of its points.
 fn general<const RIGID: bool>(
-    model: &Model,
+    drive: &Drive<'_>,
     block: &mut Block,
-    w: &mut BlockWork,
+    members: &Members,
+    sums: &BodySums,
+    tally: &mut Tally,
     k: usize,
     loads: &[Applied],
-    dt: f64,
 ) -> f64 {
+    let dt = drive.dt;
     let (x, v0, w0) = (xyz(&block.centre[k]), xyz(&block.velocity[k]), xyz(&block.spin[k]));
-    let body = model.body(block.bodies[k] as usize);
+    let body = drive.bodies.get(block.bodies[k] as usize);
     let (mass, fixed) = (body.mass, body.fixed);
     let load = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.force);
     let load_torque = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.torque);
-    let mut force = xyz(w.sums[k].force()) + load + model.gravity * mass;
-    let mut torque = xyz(w.sums[k].torque()) + load_torque;
-    let held = |v: &Vec3| Vec3::from_fn(|d, _| -model.damping * v[d].abs());
+    let mut force = xyz(sums.force()) + load + drive.gravity * mass;
+    let mut torque = xyz(sums.torque()) + load_torque;
+    let held = |v: &Vec3| Vec3::from_fn(|d, _| -drive.damping * v[d].abs());
     let damping = held(&force).component_mul(&v0.map(sign));
     let damping_torque = held(&torque).component_mul(&w0.map(sign));
     force += damping;
@@ -382,7 +434,7 @@ fn general<const RIGID: bool>(
         }
     }
     let mean = (v0 + v1) * 0.5;
-    let ledger = &mut w.ledger;
+    let ledger = &mut tally.ledger;
     if fixed & 7 != 0 {
         let hold = (v1 - v0) * mass - force * dt;
         ledger.constraints.add(&x, &hold);
@@ -392,9 +444,9 @@ fn general<const RIGID: bool>(
     set_xyz(&mut block.centre[k], &(x + v1 * dt));
 
     // Rotation.
-    let (mean_spin, reach) = if RIGID && w.kind[k] != Kind::Sphere {
-        let spin = rotate(model, block, k, &w.inertia[k], &torque, fixed >> 3, dt, ledger);
-        (spin, w.reach[k])
+    let (mean_spin, reach) = if RIGID && members.kind[k] != Kind::Sphere {
+        let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, ledger);
+        (spin, members.reach[k])
     } else {
         let mut w1 = w0 + torque * (dt / body.inertia.x);
         for d in 0..3 {
@@ -417,7 +469,7 @@ fn general<const RIGID: bool>(
         ledger.applied.add(&x, &(load * dt));
         ledger.applied.angular += load_torque * dt;
     }
-    if model.damping > 0.0 {
+    if drive.damping > 0.0 {
         ledger.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * dt;
         ledger.local_damping.add(&x, &(damping * dt));
         ledger.local_damping.angular += damping_torque * dt;
@@ -434,15 +486,15 @@ fn sign(x: f64) -> f64 {
 /// Kicks and turns a clump or a box; returns the mean spin of the kick.
 #[inline]
 fn rotate(
-    model: &Model,
+    drive: &Drive<'_>,
     block: &mut Block,
     k: usize,
     inertia: &Vec3,
     torque: &Vec3,
     fixed: u8,
-    dt: f64,
     ledger: &mut Ledger,
 ) -> Vec3 {
+    let dt = drive.dt;
     let w0 = xyz(&block.spin[k]);
     let r = &mut block.rotation[k];
     let before = *r;
@@ -454,7 +506,7 @@ fn rotate(
         set_xyz(&mut block.spin[k], &spin);
         return (w0 + kicked) * 0.5;
     }
-    let kicked = hold(r, inertia, &kicked, &model.bodies.spin(block.bodies[k] as usize), fixed);
+    let kicked = hold(r, inertia, &kicked, &drive.bodies.spin(block.bodies[k] as usize), fixed);
     r.orientation = rotation::steady(&r.orientation, &kicked, dt);
     let local = r.orientation.inverse_transform_vector(&kicked);
     r.momentum = r.orientation * local.component_mul(inertia);

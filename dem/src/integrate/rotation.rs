@@ -11,7 +11,7 @@
 //! J. Comput. Phys. 107, 1993). Second order, no trigonometric function. The implicit equation is solved by fixed
 //! points, each gaining a factor of about ω dt.
 
-use crate::Vec3;
+use crate::base::Vec3;
 use crate::lanes::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
@@ -50,7 +50,7 @@ pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R
     // c = ω dt/2; the mid momentum solves Π + c × Π = Π₀.
     let mut c = V3::new(start.x * half.x, start.y * half.y, start.z * half.z);
     let one = R::splat(1.0);
-    // Lanes that have converged stay as they are, so that none depends on its neighbours.
+    // Record that have converged stay as they are, so that none depends on its neighbours.
     let mut open = one.equals(one);
     for _ in 0..ITERATIONS {
         let c2 = c.norm2();

@@ -4,7 +4,7 @@
 //! the bits are the same.
 
 use super::{Four, Real};
-use crate::state::Lanes;
+use crate::lanes::record::Record;
 
 /// The lanes of one group, or of two.
 pub(crate) trait Pack: Real {
@@ -36,9 +36,9 @@ pub(crate) trait Pack: Real {
     /// Bit l tells lane l of a mask.
     fn mask_bits(mask: Self::Mask) -> u32;
     /// Loads a record for each lane, in the order that [`Pack::columns`] wants.
-    fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [Self; 4];
+    fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; 4];
     /// As [`Pack::rows`], two records for each lane.
-    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([Self; 4], [Self; 4]);
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([Self; 4], [Self; 4]);
     /// The lanes below `count`.
     fn below(count: usize) -> Self::Mask;
     /// Number k of each lane's record from the rows that hold the records.
@@ -57,9 +57,9 @@ pub(crate) trait Pack: Real {
         (Self::records([x, y, z, zero], [a, b, c, zero]), Self::records([-x, -y, -z, zero], [d, e, f, zero]))
     }
     /// Adds a record to eight numbers.
-    fn give(record: Self::Record, to: &mut [Lanes; 2]);
+    fn give(record: Self::Record, to: &mut [Record; 2]);
     /// Stores a record.
-    fn put(record: Self::Record, to: &mut [Lanes; 2]);
+    fn put(record: Self::Record, to: &mut [Record; 2]);
 
     /// `self − o sign` for signs that are 1, 0 or −1, whose product is exact.
     #[inline(always)]
@@ -117,11 +117,11 @@ impl<F: Four> Pack for F {
         F::bits(mask)
     }
     #[inline(always)]
-    fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [F; 4] {
+    fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [F; 4] {
         [F::load(record(0)), F::load(record(1)), F::load(record(2)), F::load(record(3))]
     }
     #[inline(always)]
-    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([F; 4], [F; 4]) {
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([F; 4], [F; 4]) {
         let (p, q, r, s) = (records(0), records(1), records(2), records(3));
         (
             [F::load(p.0), F::load(q.0), F::load(r.0), F::load(s.0)],
@@ -142,12 +142,12 @@ impl<F: Four> Pack for F {
         [(a, p), (b, q), (c, r), (d, s), (a, p), (b, q), (c, r), (d, s)]
     }
     #[inline(always)]
-    fn give(record: (F, F), to: &mut [Lanes; 2]) {
+    fn give(record: (F, F), to: &mut [Record; 2]) {
         (F::load(&to[0]) + record.0).store(&mut to[0]);
         (F::load(&to[1]) + record.1).store(&mut to[1]);
     }
     #[inline(always)]
-    fn put(record: (F, F), to: &mut [Lanes; 2]) {
+    fn put(record: (F, F), to: &mut [Record; 2]) {
         record.0.store(&mut to[0]);
         record.1.store(&mut to[1]);
     }
@@ -162,7 +162,7 @@ mod avx512 {
     use super::super::avx2::Avx2;
     use super::super::{Four, Real};
     use super::Pack;
-    use crate::state::Lanes;
+    use crate::lanes::record::Record;
     use std::arch::x86_64::*;
     use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -374,7 +374,7 @@ mod avx512 {
             u32::from(mask.0)
         }
         #[inline(always)]
-        fn rows<'a>(record: impl Fn(usize) -> &'a Lanes) -> [Avx512; 4] {
+        fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [Avx512; 4] {
             // The pairs that two rounds of shuffles bring into the order of the lanes.
             [
                 both(record(0), record(2)),
@@ -384,7 +384,7 @@ mod avx512 {
             ]
         }
         #[inline(always)]
-        fn two_rows<'a>(records: impl Fn(usize) -> (&'a Lanes, &'a Lanes)) -> ([Avx512; 4], [Avx512; 4]) {
+        fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([Avx512; 4], [Avx512; 4]) {
             let (a, c) = (records(0), records(2));
             let (p, x) = (both(a.0, c.0), both(a.1, c.1));
             let (b, d) = (records(1), records(3));
@@ -431,12 +431,12 @@ mod avx512 {
             (join([p, q, r, s], halves([a, b, c, zero])), join(back, halves([d, e, f, zero])))
         }
         #[inline(always)]
-        fn give(record: Avx512, to: &mut [Lanes; 2]) {
+        fn give(record: Avx512, to: &mut [Record; 2]) {
             let to = to.as_mut_ptr().cast::<f64>();
             unsafe { _mm512_storeu_pd(to, _mm512_add_pd(_mm512_loadu_pd(to), record.0)) }
         }
         #[inline(always)]
-        fn put(record: Avx512, to: &mut [Lanes; 2]) {
+        fn put(record: Avx512, to: &mut [Record; 2]) {
             unsafe { _mm512_storeu_pd(to.as_mut_ptr().cast::<f64>(), record.0) }
         }
     }

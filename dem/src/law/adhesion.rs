@@ -15,31 +15,10 @@
 //! force counts for a whole step, which books up to F v dt/2 too much or too little. No boxes, no bonds, no rigid bodies
 //! of triangles.
 
-use crate::error::ModelError;
-use crate::input::ModelInput;
 use crate::law::material::PairOverride;
-use crate::shape::Shape;
 use std::f64::consts::TAU;
 
 /// Adhesive force over the effective radius, 2π w [N/m].
 pub(crate) fn pull(pair: Option<&PairOverride>) -> f64 {
     pair.and_then(|p| p.adhesion).map_or(0.0, |work| TAU * work)
-}
-
-/// Refuses what adhesion cannot be combined with.
-pub(crate) fn check(input: &ModelInput) -> Result<(), ModelError> {
-    let Some(index) = input.contacts.iter().position(|c| c.adhesion.is_some_and(|w| w > 0.0)) else {
-        return Ok(());
-    };
-    let error = |with| Err(ModelError::Adhesion { index, with });
-    if input.bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Box { .. })) {
-        return error("boxes");
-    }
-    if !input.bonds.is_empty() {
-        return error("bonds");
-    }
-    if input.walls.iter().any(|w| w.body.is_some()) {
-        return error("rigid bodies of triangles");
-    }
-    Ok(())
 }

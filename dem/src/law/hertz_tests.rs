@@ -1,7 +1,7 @@
 //! The law driven by prescribed motion.
 
 use super::*;
-use crate::Vec3;
+use crate::base::Vec3;
 use crate::law::{ContactForce, ContactGeometry};
 
 const GLASS: Material = Material {

@@ -201,7 +201,7 @@ impl ContactLaw for Linear {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
+    use crate::base::Vec3;
     use crate::law::ContactGeometry;
     use crate::testing::SOFT;
 

@@ -11,7 +11,7 @@ pub mod restitution;
 pub(crate) mod slide;
 
 use self::material::{Material, PairOverride};
-use crate::Vec3;
+use crate::base::Vec3;
 use crate::lanes::{Pack, Real, V3};
 use serde::{Deserialize, Serialize};
 
@@ -347,5 +347,24 @@ impl Laws {
 
     pub fn rolls(&self) -> bool {
         with_law!(self, t => t.rolls())
+    }
+
+    /// What the law is called.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Laws::Linear(_) => "linear spring-dashpot",
+            Laws::Hertz(_) => "Hertz-Mindlin",
+        }
+    }
+
+    /// Force of the normal spring over stiffness times overlap, at any overlap [-].
+    pub fn force_share(&self) -> f64 {
+        // Hertz's force grows with the power 3/2.
+        if matches!(self, Laws::Hertz(_)) { 2.0 / 3.0 } else { 1.0 }
+    }
+
+    /// Whether any pair of one material of each list resists rolling or twisting, or adheres.
+    pub fn rolls_among(&self, a: &[u32], b: &[u32]) -> bool {
+        with_law!(self, t => a.iter().any(|&a| b.iter().any(|&b| t.get(a, b).rolls())))
     }
 }

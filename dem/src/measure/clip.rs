@@ -15,7 +15,7 @@
 //! Source: own derivation; checked against octants, caps, wedges and a quadrature. Limits: rounding of about 1e-15 R³.
 
 use super::BoxRegion;
-use crate::Vec3;
+use crate::base::Vec3;
 use std::f64::consts::PI;
 
 /// Volume of the part of a sphere that lies in a box [m³].

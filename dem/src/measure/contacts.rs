@@ -1,13 +1,18 @@
 //! Contacts as they are now, for force chains and coordination numbers.
 
-use crate::Vec3;
-use crate::contact::pass;
-use crate::detect;
-use crate::error::Partner;
-use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, with_law};
-use crate::model::{Kind, Model};
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::bodies::block::Block;
+use crate::bodies::table::Kind;
+use crate::contact::single;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::lanes::record::{Record, xyz};
+use crate::law::{ContactForce, ContactGeometry, History};
+use crate::pairs::cross::{Cross, ImagePair};
+use crate::pairs::patches::PatchContact;
 use crate::shape::cuboid;
-use crate::state::{Block, Cross, ImagePair, Lanes, PatchContact, State, xyz};
+use crate::spatial::detect;
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +59,7 @@ pub(crate) struct Visited<'a> {
 /// Bodies as they are, or moved back in time by `back` seconds.
 struct Snapshot {
     blocks: Vec<Block>,
-    spheres: Vec<Vec<Lanes>>,
+    spheres: Vec<Vec<Record>>,
     owners: Vec<Vec<u32>>,
     back: f64,
 }
@@ -68,7 +73,7 @@ impl Snapshot {
             let (mut own, mut owner) = (Vec::new(), Vec::new());
             for (k, &body) in block.bodies.iter().enumerate() {
                 let x = xyz(&block.centre[k]) - xyz(&block.velocity[k]) * back;
-                block.centre[k] = Lanes([x.x, x.y, x.z, block.centre[k][3]]);
+                block.centre[k] = Record([x.x, x.y, x.z, block.centre[k][3]]);
                 let mut turn = nalgebra::UnitQuaternion::identity();
                 if let Some(r) = block.rotation.get_mut(k) {
                     let spin = xyz(&block.spin[k]);
@@ -77,7 +82,7 @@ impl Snapshot {
                 }
                 for (c, r) in model.members(body as usize) {
                     let p = x + turn * c;
-                    own.push(Lanes([p.x, p.y, p.z, r]));
+                    own.push(Record([p.x, p.y, p.z, r]));
                     owner.push(k as u32);
                 }
             }
@@ -91,9 +96,9 @@ impl Snapshot {
 /// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
 pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&Visited<'_>)) {
     let now = Snapshot::new(model, state, back);
-    remnants(state, &now, &mut f);
+    debonded(state, &now, &mut f);
     for b in 0..now.blocks.len() {
-        let block = &now.blocks[b];
+        let (block, lists) = (&now.blocks[b], &state.lists[b]);
         let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History, shift: Vec3| {
             let second = &now.blocks[other as usize];
             let p = &now.spheres[b][i as usize];
@@ -108,10 +113,8 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 (c, detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + shift), q[3]))
             };
             if let Some(geometry) = touch {
-                let (ma, mb) = (
-                    pass::motion(block, a, &geometry.point),
-                    pass::motion(second, c, &(geometry.point - shift)),
-                );
+                let (ma, mb) =
+                    (block.motion(a, &geometry.point), second.motion(c, &(geometry.point - shift)));
                 f(&Visited {
                     body: block.bodies[a],
                     partner: Partner::Body(second.bodies[c] as usize),
@@ -126,7 +129,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             }
         };
         let here = Vec3::zeros();
-        block.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history, here));
+        lists.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history, here));
         let Cross { spheres, boxes, images } = &state.cross[b];
         spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history, here));
         boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history, here));
@@ -135,7 +138,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             pair(name.i, name.block, name.j, false, history, shift);
         }
         planes(model, state, &now, b, &mut f);
-        for contact in &block.walls.live {
+        for contact in &lists.walls.live {
             let k = model.walls.wall_of(contact.patch);
             let wall = &model.walls.walls[k];
             let partner = Partnership {
@@ -147,7 +150,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             };
             patch(model, &now, b, contact, &partner, &mut f);
         }
-        for contact in &block.surface.live {
+        for contact in &lists.surface.live {
             let partner = Partnership {
                 material: model.patch_material(contact.patch) as u32,
                 partner: Partner::Patch(contact.patch),
@@ -173,10 +176,10 @@ struct Partnership {
 }
 
 /// Contacts of pairs whose bond has broken.
-fn remnants(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
-    crate::bond::each_touch(&now.blocks, state, |p, q, r, geometry| {
+fn debonded(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
+    super::bonds::each_touch(&now.blocks, state, |p, q, r, geometry| {
         let (i, j) = (r.i as usize, r.j as usize);
-        let (ma, mb) = (pass::motion(p, i, &geometry.point), pass::motion(q, j, &geometry.point));
+        let (ma, mb) = (p.motion(i, &geometry.point), q.motion(j, &geometry.point));
         f(&Visited {
             body: p.bodies[i],
             partner: Partner::Body(q.bodies[j] as usize),
@@ -193,7 +196,7 @@ fn remnants(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
 
 fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
     let block = &now.blocks[b];
-    for (name, history) in block.planes.iter() {
+    for (name, history) in state.lists[b].planes.iter() {
         let [i, k] = name.map(|n| n as usize);
         let (plane, wall) = (&model.planes[k], &state.planes[k]);
         let boxes = model.bodies.kind(block.bodies[0] as usize) == Kind::Box;
@@ -213,7 +216,7 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
                 body: block.bodies[a],
                 partner: Partner::Plane(k),
                 geometry,
-                velocity: pass::motion(block, a, &geometry.point).at_point() - wall.velocity,
+                velocity: block.motion(a, &geometry.point).at_point() - wall.velocity,
                 mass: 1.0 / block.velocity[a][3],
                 history: &history,
                 spin: xyz(&block.spin[a]),
@@ -238,7 +241,7 @@ fn patch(
     }
     let block = &now.blocks[b];
     let a = now.owners[b][pair.i as usize] as usize;
-    let velocity = pass::motion(block, a, &pair.point).at_point() - partner.velocity;
+    let velocity = block.motion(a, &pair.point).at_point() - partner.velocity;
     let overlap = pair.overlap - velocity.dot(&pair.normal) * (model.dt() - now.back);
     if overlap > 0.0 {
         let radius = now.spheres[b][pair.i as usize][3];
@@ -261,10 +264,16 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
         let mut history = *c.history;
-        let [a, b] = c.materials;
-        let ContactForce { force, normal, .. } = with_law!(&model.laws, laws => {
-            laws.get(a, b).evaluate_one(c.mass, &c.geometry, &c.velocity, &c.spin, &mut history, model.dt())
-        });
+        let ContactForce { force, normal, .. } = single::evaluate(
+            &model.laws,
+            c.materials,
+            c.mass,
+            &c.geometry,
+            &c.velocity,
+            &c.spin,
+            &mut history,
+            model.dt(),
+        );
         out.push(ContactRecord {
             a: c.body as usize,
             b: c.partner,
@@ -302,7 +311,7 @@ pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
             sum[b] -= c.force;
         }
     }
-    for b in crate::bond::records(model, state) {
+    for b in super::bonds::records(model, state) {
         sum[b.a] += b.force;
         sum[b.b] -= b.force;
     }

@@ -1,9 +1,9 @@
 //! How many partners bodies have, and which way their contacts look.
 
 use super::contacts::ContactRecord;
-use crate::error::Partner;
-use crate::model::Model;
-use crate::state::State;
+use crate::base::error::Partner;
+use crate::engine::model::Model;
+use crate::engine::state::State;
 
 /// Coordination of a packing. A contact counts when it carries a force; several contacts of one pair of clumps are one
 /// neighbour; walls and surfaces are neighbours, those of one wall (or patch) one.

@@ -1,10 +1,12 @@
 //! Energies and momentum at the last half step.
 
 use super::contacts::{Visited, visit};
-use crate::error::Partner;
-use crate::ledger::Impulse;
-use crate::model::Model;
-use crate::state::{State, xyz};
+use crate::base::error::Partner;
+use crate::base::ledger::Impulse;
+use crate::bodies::table::Kind;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::lanes::record::xyz;
 use crate::wall;
 
 /// Energies of all bodies and contacts [J].
@@ -35,8 +37,8 @@ impl Energies {
         self.elastic_normal + self.elastic_tangential + self.elastic_bonds
     }
 
-    /// All of it. This less [`Ledger::work`](crate::ledger::Ledger::work) plus
-    /// [`Ledger::dissipated`](crate::ledger::Ledger::dissipated) is constant to second order in dt.
+    /// All of it. This less [`Ledger::work`](crate::base::ledger::Ledger::work) plus
+    /// [`Ledger::dissipated`](crate::base::ledger::Ledger::dissipated) is constant to second order in dt.
     pub fn total(&self) -> f64 {
         self.kinetic() + self.elastic() + self.gravity
     }
@@ -47,10 +49,11 @@ impl Energies {
 pub fn energies(model: &Model, state: &State) -> Energies {
     let mut e = Energies::default();
     bodies(model, state, |_| true, &mut e);
+    let ground = crate::engine::walls::ground(model, &state.planes);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
         let Some(body) = &wall.body else { continue };
         let [translation, rotation, gravity] = body.energies(own, &model.gravity, model.dt());
-        let [normal, tangential] = wall::body::stored(model, body, wall.material, own, &state.planes);
+        let [normal, tangential] = wall::body::stored(&ground, body, wall.material, own);
         e.kinetic_translation += translation;
         e.kinetic_rotation += rotation;
         e.gravity += gravity;
@@ -58,7 +61,7 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_tangential += tangential;
     }
     contacts(model, state, |_| true, &mut e);
-    e.elastic_bonds = crate::bond::elastic(model, state);
+    e.elastic_bonds = super::bonds::elastic(model, state);
     e
 }
 
@@ -81,7 +84,7 @@ fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut
             let (v, w) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
             e.kinetic_translation += 0.5 * b.mass * v.norm_squared();
             e.kinetic_rotation += match block.rotation.get(k) {
-                Some(r) if b.kind != crate::model::Kind::Sphere => 0.5 * w.dot(&r.momentum),
+                Some(r) if b.kind != Kind::Sphere => 0.5 * w.dot(&r.momentum),
                 _ => 0.5 * b.inertia.x * w.norm_squared(),
             };
             e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
@@ -117,7 +120,7 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
 }
 
 /// Momentum [kg m/s] and angular momentum about the origin [kg m²/s] at the last half step. With
-/// [`Ledger::impulse`](crate::ledger::Ledger::impulse) they balance to rounding.
+/// [`Ledger::impulse`](crate::base::ledger::Ledger::impulse) they balance to rounding.
 pub fn momentum(model: &Model, state: &State) -> Impulse {
     let mut sum = momentum_of(model, state, |_| true);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
@@ -136,7 +139,7 @@ pub(crate) fn momentum_of(model: &Model, state: &State, counted: impl Fn(usize) 
             let b = model.body(body as usize);
             sum.add(&xyz(&block.centre[k]), &(xyz(&block.velocity[k]) * b.mass));
             sum.angular += match block.rotation.get(k) {
-                Some(r) if b.kind != crate::model::Kind::Sphere => r.momentum,
+                Some(r) if b.kind != Kind::Sphere => r.momentum,
                 _ => xyz(&block.spin[k]) * b.inertia.x,
             };
         }

@@ -7,10 +7,10 @@
 //! Limits: overlaps at contacts count for both bodies, as in the usual definition of a packing's porosity.
 
 use super::{BoxRegion, sphere_box_volume};
-use crate::Vec3;
-use crate::model::Model;
+use crate::base::Vec3;
+use crate::engine::model::Model;
+use crate::engine::state::State;
 use crate::shape::Shape;
-use crate::state::State;
 
 /// Columns along one side of a body that the border of a region cuts.
 pub const COLUMNS: usize = 40;

@@ -7,9 +7,9 @@
 //! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 8.2, eq. (8.14); with the exact volume of shells.
 
 use super::region::BoxRegion;
-use crate::Vec3;
-use crate::model::Model;
-use crate::state::State;
+use crate::base::Vec3;
+use crate::engine::model::Model;
+use crate::engine::state::State;
 use std::f64::consts::PI;
 
 /// g at the middle of `bins` shells of equal width up to the distance `reach` [m], of the bodies `counted` that have

@@ -1,5 +1,6 @@
 use super::*;
-use crate::input::{BodyInput, ModelInput};
+use crate::bodies::input::BodyInput;
+use crate::engine::input::ModelInput;
 use crate::law::material::Material;
 use crate::shape::Shape;
 use rand_core::Rng;

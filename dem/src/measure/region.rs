@@ -1,6 +1,6 @@
 //! Boxes in which quantities are measured.
 
-use crate::Vec3;
+use crate::base::Vec3;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Sieve sizes of bodies, by the definition that filling uses: the diameter of a sphere, the intermediate extent of a
 //! clump. The curve follows from [`achieved_passing`](crate::insert::gradation::achieved_passing).
 
-use crate::model::Model;
+use crate::engine::model::Model;
 use crate::shape::Shape;
 
 /// Sieve size [m] and mass [kg] of the bodies that `counted` names by number; boxes are no stones and left out.

@@ -9,10 +9,10 @@
 
 use super::BoxRegion;
 use super::contacts::{ContactRecord, contacts};
-use crate::Vec3;
-use crate::error::Partner;
-use crate::model::Model;
-use crate::state::State;
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::engine::model::Model;
+use crate::engine::state::State;
 
 /// Mean stress of each body [Pa] in the order xx, yy, zz, xy, yz, zx. Shape `[bodies][6]`.
 pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
@@ -22,7 +22,7 @@ pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
 /// As [`mean_stress`], from contacts that are known already.
 pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<[f64; 6]> {
     let mut stress = vec![[0.0; 6]; model.body_count()];
-    let bonds = crate::bond::records(model, state);
+    let bonds = super::bonds::records(model, state);
     let bonds = bonds.iter().map(|b| (b.a, Partner::Body(b.b), b.point, b.force, Vec3::zeros()));
     let touches = contacts.iter().map(|c| (c.a, c.b, c.point, c.force, c.shift));
     for (a, b, point, force, shift) in touches.chain(bonds) {

@@ -1,6 +1,6 @@
 //! A rigid rectangular block, such as a sleeper.
 
-use crate::Vec3;
+use crate::base::Vec3;
 
 /// Closest point of the block's surface to a point, in the block's frame: the point, the outward unit normal,
 /// and the signed distance, negative inside [m]. Inside, the nearest face is taken.

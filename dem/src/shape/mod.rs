@@ -3,9 +3,11 @@
 pub mod clump;
 pub mod cluster;
 pub mod cuboid;
+pub mod plane;
 pub mod polyhedron;
 pub mod triangle;
 
+use crate::base::Vec3;
 use clump::Clump;
 
 /// Shape of a body, in its own frame.
@@ -24,4 +26,14 @@ pub enum Shape {
         /// Half of each side [m].
         half: [f64; 3],
     },
+}
+
+impl Shape {
+    /// Half sides of a box, scaled [m]; zero for others.
+    pub(crate) fn half_sides(&self, scale: f64) -> Vec3 {
+        match self {
+            Shape::Box { half } => Vec3::from(*half) * scale,
+            _ => Vec3::zeros(),
+        }
+    }
 }

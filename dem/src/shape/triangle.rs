@@ -1,7 +1,7 @@
 //! Closest point of a triangle to a point (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5: the regions
 //! of the plane by signed products, so that no root and no tolerance is needed).
 
-use crate::Vec3;
+use crate::base::Vec3;
 
 /// Where on the triangle a point lies. Edge k joins vertices k and k + 1 (mod 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,14 +13,14 @@
 use super::input::{RigidBody, WallShape};
 use super::state::{Foot, WallState};
 use super::triangulated::welded;
-use crate::Vec3;
-use crate::detect;
-use crate::error::ModelError;
-use crate::law::{ContactGeometry, ContactLaw, History, PairTable};
-use crate::ledger::{Impulse, Ledger};
-use crate::model::Model;
-use crate::state::Rotation;
-use crate::wall::state::WallMotion;
+use crate::base::Vec3;
+use crate::base::error::ModelError;
+use crate::base::ledger::{Impulse, Ledger};
+use crate::bodies::block::Rotation;
+use crate::contact::single;
+use crate::law::{ContactGeometry, History, Laws};
+use crate::shape::plane::{Plane, PlaneMotion};
+use crate::spatial::detect;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 /// Constants of a rigid triangle body.
@@ -250,7 +250,7 @@ impl Body {
     }
 
     /// Limit of the time step for a contact of stiffness `k` [N/m] and damping ratio `zeta`: as for a box of the body's
-    /// bounds with grains of radius `r` on its sides (see [`crate::timestep`]).
+    /// bounds with grains of radius `r` on its sides (see [`crate::engine::timestep`]).
     pub fn step_limit(&self, k: f64, tangential: f64, zeta: f64, r: f64) -> f64 {
         let n = self.half.map(|h| h / r + 1.0);
         let sides = 4.0 * (n.x * n.y).max(n.y * n.z).max(n.z * n.x);
@@ -286,37 +286,55 @@ fn principal(tensor: &Matrix3<f64>) -> (Vec3, UnitQuaternion<f64>) {
     (eigen.eigenvalues, UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)))
 }
 
+/// The planes that a body may stand on, and what happens there.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    pub laws: &'a Laws,
+    pub planes: &'a [Plane],
+    pub motions: &'a [PlaneMotion],
+    /// Radius that a vertex counts with for laws with curvature [m].
+    pub tip_radius: f64,
+    pub dt: f64,
+}
+
+impl Ground<'_> {
+    /// A vertex against a plane: a point, for laws with curvature one of the radius of the smallest grain.
+    fn tip(&self, at: &Vec3, origin: &Vec3, normal: &Vec3) -> Option<ContactGeometry> {
+        let g = detect::sphere_plane(at, 0.0, origin, normal)?;
+        Some(ContactGeometry { radius: self.tip_radius, ..g })
+    }
+}
+
 /// Contacts of a body's vertices with the planes: returns force and torque about the centre on the body, and books what
 /// the planes did.
-pub(crate) fn stand<L: ContactLaw>(
-    model: &Model,
-    laws: &PairTable<L>,
-    planes: &[WallMotion],
+pub(crate) fn stand(
+    ground: &Ground<'_>,
     body: &Body,
     material: u32,
     state: &mut WallState,
     ledger: &mut Ledger,
 ) -> (Vec3, Vec3) {
-    let dt = model.dt();
+    let &Ground { laws, planes, motions, dt, .. } = ground;
     let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
     let mut old = std::mem::take(&mut state.feet);
     let x = body.centre + state.offset;
     let mass = if body.inverse_mass > 0.0 { body.mass } else { f64::INFINITY };
-    for (p, (plane, wall)) in model.planes.iter().zip(planes).enumerate() {
+    for (p, (plane, wall)) in planes.iter().zip(motions).enumerate() {
         let origin = plane.point + wall.offset;
         if wall.open || mass.is_infinite() || (x - origin).dot(&plane.normal) > body.reach {
             continue;
         }
-        let law = laws.get(material, plane.material as u32);
+        let materials = [material, plane.material as u32];
         for (v, vertex) in body.vertices.iter().enumerate() {
             let at = state.to_world(&body.centre, vertex);
-            let Some(g) = tip(model, &at, &origin, &plane.normal) else { continue };
+            let Some(g) = ground.tip(&at, &origin, &plane.normal) else { continue };
             let mut foot = Foot { plane: p as u32, vertex: v as u32, history: History::NONE };
             if let Some(known) = old.iter_mut().find(|f| (f.plane, f.vertex) == (foot.plane, foot.vertex)) {
                 foot.history = std::mem::replace(&mut known.history, History::NONE);
             }
             let relative = state.velocity_at(&body.centre, &g.point) - wall.velocity;
-            let f = law.evaluate_one(mass, &g, &relative, &state.spin, &mut foot.history, dt);
+            let f =
+                single::evaluate(laws, materials, mass, &g, &relative, &state.spin, &mut foot.history, dt);
             ledger.dissipated_dashpot += f.dashpot;
             ledger.dissipated_friction += f.friction;
             ledger.work_walls += f.force.dot(&wall.velocity) * dt;
@@ -328,37 +346,26 @@ pub(crate) fn stand<L: ContactLaw>(
         }
     }
     for foot in old.iter_mut().filter(|f| !f.history.is_fresh()) {
-        let law = laws.get(material, model.planes[foot.plane as usize].material as u32);
-        ledger.dissipated_friction += law.release(&mut foot.history);
+        let materials = [material, planes[foot.plane as usize].material as u32];
+        ledger.dissipated_friction += single::end(laws, materials, &mut foot.history);
     }
     (force, torque)
 }
 
-/// A vertex against a plane: a point, for laws with curvature one of the radius of the smallest grain.
-fn tip(model: &Model, at: &Vec3, origin: &Vec3, normal: &Vec3) -> Option<ContactGeometry> {
-    let g = detect::sphere_plane(at, 0.0, origin, normal)?;
-    Some(ContactGeometry { radius: model.radii.0, ..g })
-}
-
 /// Energy in the springs between a body's vertices and the planes at the last half step: normal, tangential [J].
-pub(crate) fn stored(
-    model: &Model,
-    body: &Body,
-    material: u32,
-    state: &WallState,
-    planes: &[WallMotion],
-) -> [f64; 2] {
-    let back = 0.5 * model.dt();
+pub(crate) fn stored(ground: &Ground<'_>, body: &Body, material: u32, state: &WallState) -> [f64; 2] {
+    let &Ground { laws, planes, motions, dt, .. } = ground;
+    let back = 0.5 * dt;
     let mut then = state.clone();
     then.offset -= state.velocity * back;
     then.orientation = crate::integrate::rotation::steady(&state.orientation, &state.spin, -back);
     let mut sum = [0.0; 2];
     for foot in &state.feet {
-        let (plane, wall) = (&model.planes[foot.plane as usize], &planes[foot.plane as usize]);
+        let (plane, wall) = (&planes[foot.plane as usize], &motions[foot.plane as usize]);
         let at = then.to_world(&body.centre, &body.vertices[foot.vertex as usize]);
         let origin = plane.point + wall.offset - wall.velocity * back;
         let Some(ContactGeometry { point, normal, overlap, radius }) =
-            tip(model, &at, &origin, &plane.normal)
+            ground.tip(&at, &origin, &plane.normal)
         else {
             continue;
         };
@@ -366,7 +373,7 @@ pub(crate) fn stored(
         let slip = velocity - normal * velocity.dot(&normal);
         let mut history = foot.history;
         history.spring += slip * back;
-        let (n, t) = model.laws.stored(material, plane.material as u32, overlap, radius, &history);
+        let (n, t) = laws.stored(material, plane.material as u32, overlap, radius, &history);
         sum[0] += n;
         sum[1] += t;
     }

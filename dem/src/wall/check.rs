@@ -1,9 +1,8 @@
 //! Checks of walls.
 
 use super::input::{WallInput, WallShape};
-use crate::Vec3;
-use crate::check::in_range;
-use crate::error::ModelError;
+use crate::base::Vec3;
+use crate::base::error::ModelError;
 
 fn finite(v: &Vec3) -> bool {
     v.iter().all(|x| x.is_finite())
@@ -94,4 +93,15 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
         }
     }
     None
+}
+
+/// Refuses an index that points nowhere.
+pub(crate) fn in_range(
+    owner: &'static str,
+    index: usize,
+    kind: &'static str,
+    found: usize,
+    count: usize,
+) -> Result<(), ModelError> {
+    if found < count { Ok(()) } else { Err(ModelError::Index { owner, index, kind, found, count }) }
 }

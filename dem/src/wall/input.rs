@@ -1,8 +1,7 @@
 //! Walls as given by the user.
 
 use super::Servo;
-use crate::Vec3;
-use crate::input::TriangleSurface;
+use crate::base::Vec3;
 
 /// A wall made of patches.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,4 +144,17 @@ impl WallShape {
             WallShape::Sphere { centre, .. } => *centre,
         }
     }
+}
+
+/// A surface of triangles, touched from both sides.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleSurface {
+    /// Vertices at the start [m]. Triangles that share an edge must share its vertices' indices.
+    pub vertices: Vec<Vec3>,
+    /// Vertex indices of each triangle; their order carries no meaning.
+    pub triangles: Vec<[u32; 3]>,
+    /// Material (index).
+    pub material: usize,
+    /// Velocity at the start [m/s]. [`crate::engine::state::State::set_wall_velocity`] changes it.
+    pub velocity: Vec3,
 }

@@ -10,7 +10,7 @@
 //! Source: the idea of a gain from the sum of contact stiffnesses is that of the servo walls of Cundall's programs
 //! (P. A. Cundall and O. D. L. Strack, Géotechnique 29, 1979, and later manuals); the dashpot's share is added here.
 
-use crate::Vec3;
+use crate::base::Vec3;
 
 /// Drive of a wall by a force.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,23 +8,17 @@ use super::input::{Motion, WallInput, WallShape};
 use super::round::{Part, Round};
 use super::servo::Servo;
 use super::state::WallState;
-use super::triangulated::{self, Triangle};
-use crate::Vec3;
-use crate::bodies::Bodies;
-use crate::error::{ModelError, Partner};
-use crate::input::Plane;
-use crate::law::Laws;
-use crate::search::bvh::Bvh;
+use super::triangulated::{self, SLACK, Triangle};
+use crate::base::Vec3;
+use crate::base::error::{ModelError, Partner};
 use crate::shape::triangle::Region;
-use crate::surface::{Feature, PatchPoint, Surface};
-use crate::timestep::DtLimit;
+use crate::spatial::bvh::Bvh;
+use crate::spatial::surface::{Feature, PatchPoint, Surface};
 use nalgebra::UnitQuaternion;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 
 /// Where a patch that cannot be touched is said to be [m]: out of reach of everything.
 const FAR: f64 = 1e30;
-/// Relative slack of lower bounds.
-pub(super) const SLACK: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
@@ -146,44 +140,6 @@ impl Walls {
             reach,
         });
         Ok(())
-    }
-
-    /// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
-    /// where a rigid body of triangles needs it. `radii` are those of the smallest and the largest sphere [m], `expected`
-    /// the overlap expected over the radius.
-    pub(crate) fn join(
-        &mut self,
-        limit: &mut DtLimit,
-        bodies: &Bodies,
-        planes: &[Plane],
-        laws: &Laws,
-        expected: f64,
-        radii: (f64, f64),
-    ) {
-        if self.walls.is_empty() {
-            return;
-        }
-        let grains: BTreeSet<u32> = (0..bodies.len()).map(|b| bodies.get(b).material).collect();
-        let planes = planes.iter().map(|p| p.material as u32);
-        let all: BTreeSet<u32> = grains.iter().copied().chain(planes).collect();
-        for (k, wall) in self.walls.iter_mut().enumerate() {
-            wall.damping = grains.iter().map(|&m| laws.damping_ratio(wall.material, m)).fold(0.0, f64::max);
-            let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
-            for &partner in &all {
-                let stiffness = laws.stiffness(wall.material, partner, expected * radii.1, radii.1);
-                if !stiffness.is_finite() {
-                    continue;
-                }
-                let ratio =
-                    laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
-                let zeta = laws.damping_ratio(wall.material, partner);
-                let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
-                if dt < limit.dt {
-                    let (partner, mass) = (partner as usize, body.mass);
-                    *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds: 0.0, wall: Some(k) };
-                }
-            }
-        }
     }
 
     /// Name of a wall in messages.

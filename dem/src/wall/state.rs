@@ -1,20 +1,9 @@
 //! Where walls are and how they move.
 
-use crate::Vec3;
+use crate::base::Vec3;
 use crate::law::History;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
-
-/// How far a plane has come, and where it goes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WallMotion {
-    /// Displacement since the start [m].
-    pub offset: Vec3,
-    /// Velocity [m/s].
-    pub velocity: Vec3,
-    /// Whether grains pass through.
-    pub open: bool,
-}
 
 /// A vertex of a rigid triangle body that touches a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

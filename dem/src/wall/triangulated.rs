@@ -7,13 +7,14 @@
 //! Each triangle keeps its plane and its three edges as half planes, from which a lower bound of the distance costs a
 //! few products: most patches of a near list are told apart from those in touch by it.
 
-use crate::Vec3;
-use crate::error::ModelError;
+use crate::base::Vec3;
+use crate::base::error::ModelError;
 use crate::lanes;
-use crate::search::bvh::Aabb;
 use crate::shape::triangle::{self, Region};
-use crate::wall::set::SLACK;
+use crate::spatial::bvh::Aabb;
 
+/// Relative slack of lower bounds.
+pub(super) const SLACK: f64 = 1e-9;
 /// Smallest height over longest side that a triangle may have: below it its normal has no meaning.
 const FLATTEST: f64 = 1e-9;
 /// Distance from a plane, over the largest coordinate of the surface, that counts as rounding.

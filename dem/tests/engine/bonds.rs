@@ -4,8 +4,9 @@ use crate::scene::{Run, plane, rigid, sphere, stone, weightless};
 use std::f64::consts::PI;
 use trackbed_dem::bond::{
     Bond, BondDamping, BondInput, BreakMode, ContactPoint, Criterion, ParallelBond, ParallelStiffness,
-    ShearStrength, records,
+    ShearStrength,
 };
+use trackbed_dem::measure::bond_records as records;
 use trackbed_dem::{AppliedForce, BodyInput, LocalDamping, ModelInput, TimeStep, Vec3, measure};
 
 /// Radius of the spheres [m].
@@ -35,7 +36,7 @@ fn section(r: f64) -> (f64, f64, f64) {
 fn drive(
     kind: Bond,
     motion: impl Fn(Vec3, Vec3) -> (Vec3, Vec3, Vec3),
-) -> (trackbed_dem::bond::BondRecord, BreakMode) {
+) -> (trackbed_dem::measure::BondRecord, BreakMode) {
     let n = Vec3::new(0.48, -0.6, 0.64);
     let t = n.cross(&Vec3::x()).normalize();
     let (velocity, spin, counter) = motion(n, t);

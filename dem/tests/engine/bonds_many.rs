@@ -3,9 +3,9 @@
 use crate::bonds::cement;
 use crate::scene::{Random, Run, plane, rigid, sphere, stone, weightless};
 use trackbed_dem::bond::{
-    Bond, BondDamping, BondInput, BreakMode, Criterion, DirectBond, ParallelBond, ShearStrength, force_on,
-    fragments, records, within_gap,
+    Bond, BondDamping, BondInput, BreakMode, Criterion, DirectBond, ParallelBond, ShearStrength, within_gap,
 };
+use trackbed_dem::measure::{bond_records as records, force_on, fragments};
 use trackbed_dem::{BodyInput, ModelInput, TimeStep, Vec3, Work, measure};
 
 /// Adds a cube of n³ spheres of radius 1 cm at a pitch, with bonds of kind 0 between neighbours along the axes.

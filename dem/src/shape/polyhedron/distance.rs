@@ -6,8 +6,8 @@
 //! as on a very flat triangle, the winding number decides.
 
 use super::{Polyhedron, Surface};
-use crate::search::bvh::{Aabb, Bvh};
 use crate::shape::triangle::{Region, closest_point};
+use crate::spatial::bvh::{Aabb, Bvh};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 

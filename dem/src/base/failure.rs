@@ -1,0 +1,12 @@
+//! What a block of bodies may meet that ends a run.
+
+use super::error::Partner;
+
+/// A failure that a block met.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Failure {
+    Overlap { body: u32, partner: Partner, overlap: f64, bound: f64 },
+    Speed { body: u32, speed: f64, bound: f64 },
+    Wall { wall: u32, speed: f64, bound: f64 },
+    Meeting { walls: [u32; 2] },
+}

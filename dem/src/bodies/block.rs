@@ -1,0 +1,96 @@
+//! Motion of the bodies of a block.
+
+use crate::base::Vec3;
+use crate::base::held::held;
+use crate::lanes::record::{Record, xyz};
+use nalgebra::UnitQuaternion;
+use serde::{Deserialize, Serialize};
+
+/// Orientation and angular momentum of a body that is not a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Rotation {
+    /// Body frame to world.
+    pub orientation: UnitQuaternion<f64>,
+    /// Angular momentum about the centre, world axes, half a step ago [kg m²/s].
+    pub momentum: Vec3,
+}
+
+/// World angular velocity from the angular momentum.
+#[inline(always)]
+pub(crate) fn spin_of(rotation: &Rotation, inertia: &Vec3) -> Vec3 {
+    rotation.orientation
+        * rotation.orientation.inverse_transform_vector(&rotation.momentum).component_div(inertia)
+}
+
+/// Neighbouring bodies: arrays of equal length, in block order.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Block {
+    /// Number of each body in the input.
+    pub bodies: Vec<u32>,
+    /// Position and radius (of a sphere; bounding otherwise).
+    pub centre: Vec<Record>,
+    /// Velocity and inverse mass.
+    pub velocity: Vec<Record>,
+    /// Spin and material index.
+    pub spin: Vec<Record>,
+    /// Empty in blocks of single spheres only.
+    pub rotation: Vec<Rotation>,
+}
+
+impl Block {
+    /// Gives up memory that the bodies do not need.
+    pub fn fit(&mut self) {
+        self.bodies.shrink_to_fit();
+        self.centre.shrink_to_fit();
+        self.velocity.shrink_to_fit();
+        self.spin.shrink_to_fit();
+        self.rotation.shrink_to_fit();
+    }
+
+    /// Material (index) of a body.
+    #[inline(always)]
+    pub fn material(&self, k: usize) -> u32 {
+        self.spin[k][3] as u32
+    }
+
+    /// Motion of a body as a contact at `point` needs it.
+    #[inline(always)]
+    pub fn motion(&self, body: usize, point: &Vec3) -> PointMotion<'_> {
+        let arm = point - xyz(&self.centre[body]);
+        PointMotion { velocity: &self.velocity[body], spin: &self.spin[body], arm }
+    }
+}
+
+/// Motion of one body as a contact needs it.
+pub(crate) struct PointMotion<'a> {
+    pub velocity: &'a Record,
+    spin: &'a Record,
+    /// From the body's centre to the contact point.
+    pub arm: Vec3,
+}
+
+impl PointMotion<'_> {
+    #[inline(always)]
+    pub fn spin(&self) -> Vec3 {
+        xyz(self.spin)
+    }
+
+    #[inline(always)]
+    pub fn at_point(&self) -> Vec3 {
+        xyz(self.velocity) + xyz(self.spin).cross(&self.arm)
+    }
+
+    /// One over the body's mass [1/kg].
+    #[inline(always)]
+    pub fn inverse_mass(&self) -> f64 {
+        self.velocity[3]
+    }
+}
+
+impl Block {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let arrays = held(&self.centre) + held(&self.velocity) + held(&self.spin);
+        held(&self.bodies) + arrays + held(&self.rotation)
+    }
+}

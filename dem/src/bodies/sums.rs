@@ -1,0 +1,50 @@
+//! What acts on the bodies of a block in a step, and what it books.
+
+use crate::base::Vec3;
+use crate::base::failure::Failure;
+use crate::base::ledger::Ledger;
+use crate::lanes::record::Record;
+
+/// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub(crate) struct Sums(pub [Record; 2]);
+
+impl Sums {
+    #[inline(always)]
+    pub fn force(&self) -> &Record {
+        &self.0[0]
+    }
+
+    #[inline(always)]
+    pub fn torque(&self) -> &Record {
+        &self.0[1]
+    }
+
+    #[inline(always)]
+    pub fn both(&mut self) -> (&mut Record, &mut Record) {
+        let [force, torque] = &mut self.0;
+        (force, torque)
+    }
+
+    /// Adds a force and a torque about the centre.
+    #[inline(always)]
+    pub fn push(&mut self, force: &Vec3, torque: &Vec3) {
+        let (f, t) = self.both();
+        for d in 0..3 {
+            f[d] += force[d];
+            t[d] += torque[d];
+        }
+    }
+}
+
+/// Forces on the bodies of a block in the step at hand, and what the block books.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tally {
+    /// In block order; empty between steps, unless they are to be kept.
+    pub sums: Vec<Sums>,
+    pub ledger: Ledger,
+    /// Largest speed of a point of a body [m/s].
+    pub fastest: f64,
+    pub failure: Option<Failure>,
+}

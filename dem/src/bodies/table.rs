@@ -1,0 +1,221 @@
+//! Constants of the bodies, packed: what bodies share is kept once per class, and a body holds a class and a scale.
+
+use super::input::BodyInput;
+use crate::base::Vec3;
+use crate::base::error::ModelError;
+use crate::law::material::Material;
+use crate::shape::{Shape, cuboid};
+use nalgebra::UnitQuaternion;
+use std::collections::HashMap;
+
+/// What kind of shape a body has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Sphere,
+    Clump,
+    Box,
+}
+
+/// Constants of one body, worked out from its class and scale.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    pub kind: Kind,
+    pub shape: usize,
+    pub scale: f64,
+    pub material: u32,
+    pub part: u32,
+    pub mass: f64,
+    /// Zero when no translation is free: the partner then has the effective mass alone.
+    pub inverse_mass: f64,
+    /// Principal moments [kg m²].
+    pub inertia: Vec3,
+    /// Radius of a sphere about the centre that holds the body [m].
+    pub radius: f64,
+    /// Bits 0–2 translation, 3–5 rotation.
+    pub fixed: u8,
+}
+
+/// What many bodies have in common.
+#[derive(Clone, Copy, Debug)]
+struct Class {
+    kind: Kind,
+    shape: u32,
+    material: u32,
+    part: u32,
+    fixed: u8,
+    /// A mass given instead of density × volume.
+    mass: Option<f64>,
+    density: f64,
+    /// Of the unscaled shape: volume, bounding radius, moments over mass.
+    volume: f64,
+    radius: f64,
+    gyration2: Vec3,
+}
+
+/// All bodies of a model, and how they start.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bodies {
+    classes: Vec<Class>,
+    /// Empty where there is one class only.
+    class: Vec<u32>,
+    scale: Vec<f64>,
+    /// `None` once given up.
+    positions: Option<Vec<Vec3>>,
+    /// The rest is empty where all are unturned or at rest.
+    orientations: Vec<UnitQuaternion<f64>>,
+    velocities: Vec<Vec3>,
+    spins: Vec<Vec3>,
+    /// Bodies that are not there at the start; empty where all are.
+    absent: Vec<bool>,
+}
+
+impl Bodies {
+    /// Resolves bodies of given shapes and materials.
+    pub fn new(input: &[BodyInput], shapes: &[Shape], materials: &[Material]) -> Result<Bodies, ModelError> {
+        let n = input.len();
+        let mut bodies = Bodies {
+            class: Vec::with_capacity(n),
+            scale: input.iter().map(|b| b.scale).collect(),
+            positions: Some(input.iter().map(|b| b.position).collect()),
+            ..Bodies::default()
+        };
+        let mut known = HashMap::new();
+        for (index, b) in input.iter().enumerate() {
+            let fixed = b.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
+            let key = (b.shape, b.material, b.part, fixed, b.mass.map(f64::to_bits));
+            let class = *known.entry(key).or_insert_with(|| {
+                bodies.classes.push(class(b, &shapes[b.shape], materials[b.material].density, fixed));
+                bodies.classes.len() as u32 - 1
+            });
+            bodies.class.push(class);
+            let body = bodies.get(index);
+            for (quantity, value) in [("mass", body.mass), ("moment of inertia", body.inertia.min())] {
+                if !(value > 0.0 && value.is_finite()) {
+                    let requirement = "be positive and finite";
+                    return Err(ModelError::Body { body: index, quantity, value, requirement });
+                }
+            }
+        }
+        if bodies.classes.len() == 1 {
+            bodies.class = Vec::new();
+        }
+        if input.iter().any(|b| b.orientation != UnitQuaternion::identity()) {
+            bodies.orientations = input.iter().map(|b| b.orientation).collect();
+        }
+        if input.iter().any(|b| b.velocity != Vec3::zeros()) {
+            bodies.velocities = input.iter().map(|b| b.velocity).collect();
+        }
+        if input.iter().any(|b| b.spin != Vec3::zeros()) {
+            bodies.spins = input.iter().map(|b| b.spin).collect();
+        }
+        if input.iter().any(|b| b.absent) {
+            bodies.absent = input.iter().map(|b| b.absent).collect();
+        }
+        Ok(bodies)
+    }
+
+    pub fn len(&self) -> usize {
+        self.scale.len()
+    }
+
+    fn class(&self, k: usize) -> &Class {
+        &self.classes[self.class.get(k).map_or(0, |&c| c as usize)]
+    }
+
+    pub fn kind(&self, k: usize) -> Kind {
+        self.class(k).kind
+    }
+
+    pub fn get(&self, k: usize) -> Body {
+        let c = self.class(k);
+        let scale = self.scale[k];
+        let mass = c.mass.unwrap_or(c.density * (c.volume * scale.powi(3)));
+        Body {
+            kind: c.kind,
+            shape: c.shape as usize,
+            scale,
+            material: c.material,
+            part: c.part,
+            mass,
+            inverse_mass: if c.fixed & 7 == 7 { 0.0 } else { 1.0 / mass },
+            inertia: c.gyration2 * (mass * scale * scale),
+            radius: c.radius * scale,
+            fixed: c.fixed,
+        }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = Body> + '_ {
+        (0..self.len()).map(|k| self.get(k))
+    }
+
+    /// Positions at the start, unless given up.
+    pub fn positions(&self) -> Option<&[Vec3]> {
+        self.positions.as_deref()
+    }
+
+    pub fn forget_positions(&mut self) {
+        self.positions = None;
+    }
+
+    pub fn orientation(&self, k: usize) -> UnitQuaternion<f64> {
+        self.orientations.get(k).copied().unwrap_or_default()
+    }
+
+    pub fn velocity(&self, k: usize) -> Vec3 {
+        self.velocities.get(k).copied().unwrap_or_default()
+    }
+
+    pub fn spin(&self, k: usize) -> Vec3 {
+        self.spins.get(k).copied().unwrap_or_default()
+    }
+
+    /// Whether a body is not there at the start.
+    pub fn absent(&self, k: usize) -> bool {
+        self.absent.get(k).is_some_and(|a| *a)
+    }
+}
+
+fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
+    let volume = volume(shape, 1.0);
+    let mut radius = 0.0_f64;
+    for_members(shape, 1.0, |c, r| radius = radius.max(c.norm() + r));
+    let (kind, gyration2) = match shape {
+        Shape::Sphere { .. } => (Kind::Sphere, Vec3::repeat(0.4 * radius * radius)),
+        Shape::Clump(clump) => (Kind::Clump, Vec3::from(clump.inertia) / clump.volume),
+        Shape::Box { half } => {
+            let half = Vec3::from(*half);
+            radius = half.norm();
+            (Kind::Box, cuboid::inertia(&half))
+        }
+    };
+    Class {
+        kind,
+        shape: b.shape as u32,
+        material: b.material as u32,
+        part: b.part,
+        fixed,
+        mass: b.mass,
+        density,
+        volume,
+        radius,
+        gyration2,
+    }
+}
+
+/// Calls `f` with centre and radius of each sphere of a shape.
+pub(crate) fn for_members(shape: &Shape, scale: f64, mut f: impl FnMut(Vec3, f64)) {
+    match shape {
+        Shape::Sphere { radius } => f(Vec3::zeros(), radius * scale),
+        Shape::Clump(clump) => clump.spheres.iter().for_each(|(c, r)| f(Vec3::from(*c) * scale, r * scale)),
+        Shape::Box { .. } => {}
+    }
+}
+
+pub(crate) fn volume(shape: &Shape, scale: f64) -> f64 {
+    let unit = match shape {
+        Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+        Shape::Clump(clump) => clump.volume,
+        Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
+    };
+    unit * scale.powi(3)
+}

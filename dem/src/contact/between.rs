@@ -1,0 +1,116 @@
+//! Contacts of a block's spheres with spheres of other blocks.
+
+use super::ends::{Far, Own};
+use super::group_memory::{FAR, Mix, Spent, four, records, side_by_side};
+use super::prefetch;
+use super::sphere_pair::contacts;
+use crate::base::error::Partner;
+use crate::base::failure::Failure;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::bodies::part::Part;
+use crate::lanes::record::Record;
+use crate::lanes::{self, Four, Kernel, Pack, V3};
+use crate::law::{ContactLaw, PairTable};
+use crate::pairs::cross::{Cross, CrossForces};
+use crate::pairs::groups::Group;
+
+/// Groups between the fetching of records and their use: those of other blocks lie far away in large beds.
+const AHEAD: usize = 4;
+
+/// Contacts of block `b`'s spheres with spheres of other blocks: forces go to slots.
+pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
+    pub laws: &'a PairTable<L>,
+    pub blocks: Part<'a, Block>,
+    pub members: Part<'a, Members>,
+    /// The material of all bodies, where there is only one.
+    pub material: Option<u32>,
+    pub b: usize,
+    pub lists: &'a mut Cross,
+    pub out: &'a mut CrossForces,
+    pub dt: f64,
+}
+
+impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, L, RIGID, ROLL> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Pack>(self) {
+        let Between { laws, blocks, members, material, b: own, lists, out, dt } = self;
+        let (mine, own) = (&blocks[own], &members[own]);
+        let pairs = &mut lists.spheres;
+        let len = pairs.len();
+        let law = Mix::<L, R>::new(laws, material, material);
+        let mut spent = Spent::new();
+        let (mut spare, mut spare_turn, mut no_turn) =
+            (Group::EMPTY, [Record::default(); 4], [Record::default(); 4]);
+        let n = mine.centre.len();
+        let even = mine.velocity.len() == n && mine.spin.len() == n;
+        assert!(RIGID || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
+        let mut deepest = None;
+        for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
+            lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
+            if !RIGID {
+                for ahead in pairs.groups.iter().skip(g + AHEAD).take(R::GROUPS) {
+                    prefetch::partners(blocks, ahead);
+                }
+            }
+            let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+            let turns = if ROLL {
+                side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
+            } else {
+                (&mut no_turn, &mut spare_turn)
+            };
+            let count = (len - 4 * g).min(R::LANES);
+            let ((p, first), (q, second)) = (p.parts(), q.parts());
+            // SAFETY: compared above.
+            let a = unsafe { Own::<RIGID>::new::<R>(mine, own, [&p[0], &q[0]]) };
+            let (block, sphere) = ([&p[1], &q[1]], [&p[2], &q[2]]);
+            let mut b = Far { blocks, members, rigid: RIGID, block, sphere, body: [0; 8] };
+            if RIGID {
+                for l in 0..count {
+                    b.body[l] = members[b.block(l)].body(sphere[l / 4][l % 4]) as usize;
+                }
+            }
+            let (there, springs) = (R::below(count), (first, second));
+            let width = if RIGID || ROLL { 3 } else { 2 };
+            lanes::ahead(&out.slots, (4 * g + 2 * FAR) * width, R::LANES * width);
+            let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
+            match contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut spent, dt) {
+                None => slots.fill(Record::default()),
+                Some(o) => {
+                    if RIGID || ROLL {
+                        let on_a = records::<R>(o.force, o.torque_a);
+                        let on_b = records::<R>(o.torque_b, V3::zero());
+                        let mut last = [Record::default(); 2];
+                        for (l, slot) in slots.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+                            let [force, torque_a, torque_b] = slot;
+                            R::put(on_a[l], &mut last);
+                            [*force, *torque_a] = last;
+                            R::put(on_b[l], &mut last);
+                            *torque_b = last[0];
+                        }
+                    } else {
+                        let (la, lb) = (o.levers.0.only(o.on), o.levers.1.only(o.on));
+                        let rows = R::records(four(o.force, la), four(o.moment, lb));
+                        for (l, slot) in slots.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+                            R::put(rows[l], slot);
+                        }
+                    }
+                    if o.deep != 0 && deepest.is_none() {
+                        deepest = Some(o.too_deep(g));
+                    }
+                }
+            }
+        }
+        if let (Some((k, overlap, bound)), None) = (deepest, out.failure) {
+            let [i, block, j] = pairs.name(k);
+            let (other, there) = (&blocks[block as usize], members[block as usize].body(j));
+            let (body, partner) = (mine.bodies[own.body(i) as usize], other.bodies[there as usize]);
+            let partner = Partner::Body(partner as usize);
+            out.failure = Some(Failure::Overlap { body, partner, overlap, bound });
+        }
+        out.dashpot += spent.dashpot.sum();
+        out.friction += spent.friction.sum();
+    }
+}

@@ -1,0 +1,108 @@
+//! Memory of contacts in groups as lanes see it, and what they share: the law's constants, sums of dissipated energy.
+
+use crate::lanes::record::Record;
+use crate::lanes::{Four, Pack, Real, V3};
+use crate::law::{ContactLaw, FRESH, Memory, PairTable};
+use crate::pairs::groups::Springs;
+
+/// Groups between the fetching of groups and their use: more than a page.
+pub(crate) const FAR: usize = 32;
+
+/// The groups for the lanes, from the first of `list`; where there is one only, the spare one as the second.
+#[inline(always)]
+pub(crate) fn side_by_side<'a, R: Pack, T>(list: &'a mut [T], spare: &'a mut T) -> (&'a mut T, &'a mut T) {
+    let (first, rest) = list.split_at_mut(1);
+    (&mut first[0], if R::GROUPS > 1 { &mut rest[0] } else { spare })
+}
+
+/// The law of the contacts in lanes: one for all, or mixed lane by lane.
+pub(crate) struct Mix<'a, L: ContactLaw, R: Real> {
+    laws: &'a PairTable<L>,
+    /// Set where either side is of one material.
+    one: Option<L::Lanes<R>>,
+}
+
+impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
+    /// `a`, `b`: the material of each side, where it has only one.
+    #[inline(always)]
+    pub fn new(laws: &'a PairTable<L>, a: Option<u32>, b: Option<u32>) -> Mix<'a, L, R> {
+        Mix { laws, one: a.zip(b).map(|(a, b)| laws.get(a, b).splat()) }
+    }
+
+    /// For materials in lanes.
+    #[inline(always)]
+    pub fn of(&self, a: R, b: R) -> L::Lanes<R> {
+        match self.one {
+            Some(law) => law,
+            None => self.laws.lanes(a, b),
+        }
+    }
+}
+
+/// Energy that contacts took, by lane of a group.
+pub(crate) struct Spent<Q> {
+    pub dashpot: Q,
+    pub friction: Q,
+}
+
+impl<Q: Four> Spent<Q> {
+    #[inline(always)]
+    pub fn new() -> Spent<Q> {
+        Spent { dashpot: Q::zero(), friction: Q::zero() }
+    }
+}
+
+/// Reads the memory of groups.
+#[inline(always)]
+pub(crate) fn recall<R: Pack, const ROLL: bool>(
+    springs: &(&mut Springs, &mut Springs),
+    turns: &(&mut [Record; 4], &mut [Record; 4]),
+) -> Memory<R> {
+    let (p, q) = springs;
+    let [x, y, z] = [0, 1, 2].map(|d| (&p.spring[d], &q.spring[d]));
+    let spring = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
+    let rate = R::join(&p.rate, &q.rate);
+    if ROLL {
+        let [x, y, z, t] = [0, 1, 2, 3].map(|d| (&turns.0[d], &turns.1[d]));
+        let roll = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
+        Memory { spring, rate, roll, twist: R::join(t.0, t.1) }
+    } else {
+        Memory { spring, rate, roll: V3::zero(), twist: R::zero() }
+    }
+}
+
+/// Writes the memory of groups: that of the lanes `on`, nothing for the others.
+#[inline(always)]
+pub(crate) fn remember<R: Pack, const ROLL: bool>(
+    springs: &mut (&mut Springs, &mut Springs),
+    turns: &mut (&mut [Record; 4], &mut [Record; 4]),
+    memory: &Memory<R>,
+    on: R::Mask,
+) {
+    let (p, q) = springs;
+    let spring = memory.spring.only(on);
+    spring.x.split(&mut p.spring[0], &mut q.spring[0]);
+    spring.y.split(&mut p.spring[1], &mut q.spring[1]);
+    spring.z.split(&mut p.spring[2], &mut q.spring[2]);
+    R::select(on, memory.rate, R::splat(FRESH)).split(&mut p.rate, &mut q.rate);
+    if ROLL {
+        let (p, q) = turns;
+        let roll = memory.roll.only(on);
+        roll.x.split(&mut p[0], &mut q[0]);
+        roll.y.split(&mut p[1], &mut q[1]);
+        roll.z.split(&mut p[2], &mut q[2]);
+        memory.twist.only(on).split(&mut p[3], &mut q[3]);
+    }
+}
+
+/// A vector per lane as a record with a fourth number.
+#[inline(always)]
+pub(crate) fn four<R: Real>(v: V3<R>, last: R) -> [R; 4] {
+    [v.x, v.y, v.z, last]
+}
+
+/// Force and torque of each lane, for the sums of bodies.
+#[inline(always)]
+pub(crate) fn records<R: Pack>(force: V3<R>, torque: V3<R>) -> [R::Record; 8] {
+    R::records(four(force, R::zero()), four(torque, R::zero()))
+}

@@ -1,0 +1,60 @@
+//! Contacts across periodic borders, one by one.
+
+use super::single;
+use crate::base::error::Partner;
+use crate::base::failure::Failure;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::bodies::part::Part;
+use crate::lanes::record::{Record, xyz};
+use crate::law::Laws;
+use crate::pairs::cross::{Cross, CrossForces, ImagePair};
+use crate::spatial::detect;
+use crate::spatial::periodic::Periodic;
+
+/// Contacts of block `b`'s image pairs; their slots follow those of the spheres and boxes.
+pub(crate) fn images(
+    periodic: &Periodic,
+    laws: &Laws,
+    blocks: Part<'_, Block>,
+    members: Part<'_, Members>,
+    b: usize,
+    lists: &mut Cross,
+    out: &mut CrossForces,
+    dt: f64,
+) {
+    let (mine, own) = (&blocks[b], &members[b]);
+    let (first, width) = (out.images_at, out.width);
+    for (k, ImagePair { name, history }) in lists.images.iter_mut().enumerate() {
+        let block = name.block as usize;
+        let (other, theirs) = (&blocks[block], &members[block]);
+        let (a, c) = (own.body(name.i) as usize, theirs.body(name.j) as usize);
+        let (p, q) = (&own.spheres(mine)[name.i as usize], &theirs.spheres(other)[name.j as usize]);
+        let way = periodic.way(&name.shift);
+        let materials = [mine.material(a), other.material(c)];
+        let slot = &mut out.slots[first + k * width..][..width];
+        let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + way), q[3]) else {
+            out.friction += single::end(laws, materials, history);
+            slot.fill(Record::default());
+            continue;
+        };
+        let (ma, mb) = (mine.motion(a, &g.point), other.motion(c, &(g.point - way)));
+        let f = single::between(laws, materials, &g, (&ma, &mb), history, dt);
+        out.dashpot += f.dashpot;
+        out.friction += f.friction;
+        out.couple += way.cross(&f.force) * dt;
+        if width == 3 {
+            slot[0] = Record::of(&f.force, 0.0);
+            slot[1] = Record::of(&f.torque_a, 0.0);
+            slot[2] = Record::of(&f.torque_b, 0.0);
+        } else {
+            slot[0] = Record::of(&f.force, -ma.arm.dot(&g.normal));
+            slot[1] = Record::of(&f.force.cross(&g.normal), mb.arm.dot(&g.normal));
+        }
+        let bound = p[3].min(q[3]);
+        if g.overlap > bound && out.failure.is_none() {
+            let partner = Partner::Body(other.bodies[c] as usize);
+            out.failure = Some(Failure::Overlap { body: mine.bodies[a], partner, overlap: g.overlap, bound });
+        }
+    }
+}

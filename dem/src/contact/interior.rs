@@ -1,0 +1,103 @@
+//! Contacts between spheres of one block.
+
+use super::ends::{Own, within};
+use super::group_memory::{FAR, Mix, Spent, side_by_side};
+use super::prefetch::Prefetch;
+use super::sphere_pair::contacts;
+use crate::base::error::Partner;
+use crate::base::failure::Failure;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::bodies::sums::{Sums, Tally};
+use crate::lanes::record::Record;
+use crate::lanes::{self, Four, Kernel, Pack};
+use crate::law::{ContactLaw, PairTable};
+use crate::pairs::groups::{Group, Groups};
+
+/// Passes of the loop between two portions of what the next block needs.
+const PORTION: usize = 4;
+
+/// Adds force and torque to the sums of a body.
+///
+/// # Safety
+/// Single spheres (`RIGID = false`): `body` is below the number of sums.
+#[inline(always)]
+unsafe fn give<R: Pack, const RIGID: bool>(record: R::Record, sums: &mut [Sums], body: usize) {
+    // SAFETY: as the caller has promised.
+    let sum = if RIGID { &mut sums[body] } else { unsafe { sums.get_unchecked_mut(body) } };
+    R::give(record, &mut sum.0);
+}
+
+/// Contacts between spheres of one block.
+pub(crate) struct Interior<'a, L, const RIGID: bool, const ROLL: bool> {
+    pub laws: &'a PairTable<L>,
+    pub block: &'a Block,
+    pub pairs: &'a mut Groups<2>,
+    pub members: &'a Members,
+    pub tally: &'a mut Tally,
+    pub next: Prefetch<'a>,
+    pub dt: f64,
+}
+
+impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_, L, RIGID, ROLL> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Pack>(self) {
+        let Interior { laws, block, pairs, members, tally, next, dt } = self;
+        let [i, j] = pairs.most();
+        assert!(RIGID || within(block, tally, i.max(j)), "names of contacts are places of bodies");
+        let mut sums = std::mem::take(&mut tally.sums);
+        let law = Mix::<L, R>::new(laws, members.material, members.material);
+        let mut spent = Spent::new();
+        let mut deepest = None;
+        let len = pairs.len();
+        let (mut spare, mut spare_turn, mut no_turn) =
+            (Group::EMPTY, [Record::default(); 4], [Record::default(); 4]);
+        let count = len.div_ceil(4);
+        // Groups per portion of what the next block needs; with nothing to fetch, one loop over all.
+        let some = if next.is_empty() { count.max(1) } else { PORTION * R::GROUPS };
+        let mut next = next.portions(count.div_ceil(some));
+        for from in (0..count).step_by(some) {
+            next.fetch::<RIGID>();
+            for g in (from..count.min(from + some)).step_by(R::GROUPS) {
+                lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
+                let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
+                let turns = if ROLL {
+                    side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
+                } else {
+                    (&mut no_turn, &mut spare_turn)
+                };
+                let ((p, first), (q, second)) = (p.parts(), q.parts());
+                // SAFETY: compared above.
+                let a = unsafe { Own::<RIGID>::new::<R>(block, members, [&p[0], &q[0]]) };
+                let b = unsafe { Own::<RIGID>::new::<R>(block, members, [&p[1], &q[1]]) };
+                let (there, springs) = (R::below(len - 4 * g), (first, second));
+                let Some(out) =
+                    contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut spent, dt)
+                else {
+                    continue;
+                };
+                let (on_a, on_b) = R::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
+                for l in 0..R::LANES {
+                    // SAFETY: compared above.
+                    unsafe {
+                        give::<R, RIGID>(on_a[l], &mut sums, a.body(l));
+                        give::<R, RIGID>(on_b[l], &mut sums, b.body(l));
+                    }
+                }
+                if out.deep != 0 && deepest.is_none() {
+                    deepest = Some(out.too_deep(g));
+                }
+            }
+        }
+        tally.sums = sums;
+        tally.ledger.dissipated_dashpot += spent.dashpot.sum();
+        tally.ledger.dissipated_friction += spent.friction.sum();
+        if let (Some((k, overlap, bound)), None) = (deepest, tally.failure) {
+            let [i, j] = pairs.name(k).map(|sphere| block.bodies[members.body(sphere) as usize]);
+            tally.failure =
+                Some(Failure::Overlap { body: i, partner: Partner::Body(j as usize), overlap, bound });
+        }
+    }
+}

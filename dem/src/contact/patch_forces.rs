@@ -1,0 +1,158 @@
+//! The law of contacts with patches, in lanes: what detection found of a block, force by force.
+
+use super::group_memory::{Mix, four};
+use crate::base::Vec3;
+use crate::bodies::block::Block;
+use crate::lanes::record::{Record, xyz};
+use crate::lanes::{Kernel, Pack, V3};
+use crate::law::{ContactLaw, History, LawInput, LawOutput, Memory, PairTable};
+
+/// A contact of a sphere with a patch: what the law needs, and in the same places what it gives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchForce {
+    /// Body within the block.
+    pub body: u32,
+    /// The patch's own coordinates of the place.
+    pub local: [f64; 2],
+    /// Where they touch, and the overlap.
+    point: Record,
+    /// The normal, and the sphere's radius. Then the part of the torque that is a moment of its own.
+    normal: Record,
+    /// Velocity of the patch there, and one over the mass of its wall. Then the force on the body, and what dashpots took.
+    velocity: Record,
+    /// Angular velocity of its wall, and its material. Then the torque about the body's centre, and what sliding took.
+    spin: Record,
+    /// Tangential spring, and approach speed before.
+    memory: Record,
+    /// Rolling and twisting springs.
+    turn: Record,
+}
+
+impl PatchForce {
+    #[inline(always)]
+    pub fn new(
+        body: u32,
+        (point, overlap): (&Vec3, f64),
+        (normal, radius): (&Vec3, f64),
+        (velocity, inverse_mass): (&Vec3, f64),
+        (spin, material): (&Vec3, u32),
+        local: [f64; 2],
+        history: &History,
+    ) -> PatchForce {
+        PatchForce {
+            body,
+            local,
+            point: Record::of(point, overlap),
+            normal: Record::of(normal, radius),
+            velocity: Record::of(velocity, inverse_mass),
+            spin: Record::of(spin, f64::from(material)),
+            memory: Record::of(&history.spring, history.rate),
+            turn: Record(history.turn),
+        }
+    }
+
+    /// Radius of the sphere [m].
+    #[inline(always)]
+    pub fn radius(&self) -> f64 {
+        self.normal[3]
+    }
+
+    /// What the contact remembers.
+    #[inline(always)]
+    pub fn history(&self) -> History {
+        History { spring: xyz(&self.memory), rate: self.memory[3], turn: *self.turn }
+    }
+
+    /// Force on the body [N].
+    #[inline(always)]
+    pub fn force(&self) -> Vec3 {
+        xyz(&self.velocity)
+    }
+
+    /// Torque on the body about its centre [N m].
+    #[inline(always)]
+    pub fn torque(&self) -> Vec3 {
+        xyz(&self.spin)
+    }
+
+    /// Moment of rolling and twisting resistance on the body [N m].
+    #[inline(always)]
+    pub fn moment(&self) -> Vec3 {
+        xyz(&self.normal)
+    }
+
+    /// Energy that dashpots and that sliding took [J].
+    #[inline(always)]
+    pub fn dissipated(&self) -> (f64, f64) {
+        (self.velocity[3], self.spin[3])
+    }
+}
+
+/// Evaluates the law for all contacts of a block with patches.
+pub(crate) struct PatchLaw<'a, L, const ROLL: bool> {
+    pub laws: &'a PairTable<L>,
+    pub block: &'a Block,
+    pub forces: &'a mut [PatchForce],
+    pub dt: f64,
+}
+
+impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Pack>(self) {
+        let PatchLaw { laws, block, forces, dt } = self;
+        let mix = Mix::<L, R>::new(laws, None, None);
+        let mut at = 0;
+        while at < forces.len() {
+            let count = (forces.len() - at).min(R::LANES);
+            // Record to spare repeat the last of.
+            let of = |l: usize| &forces[at + if l < count { l } else { count - 1 }];
+            let body = |l: usize| of(l).body as usize;
+            let on = R::below(count);
+            let [px, py, pz, overlap] = R::columns(R::rows(|l| &of(l).point));
+            let [nx, ny, nz, radius] = R::columns(R::rows(|l| &of(l).normal));
+            let [cx, cy, cz, _] = R::columns(R::rows(|l| &block.centre[body(l)]));
+            let arm = V3::new(px - cx, py - cy, pz - cz);
+            let [vx, vy, vz, inverse_mass] = R::columns(R::rows(|l| &block.velocity[body(l)]));
+            let [wx, wy, wz, own] = R::columns(R::rows(|l| &block.spin[body(l)]));
+            let [ux, uy, uz, wall_inverse_mass] = R::columns(R::rows(|l| &of(l).velocity));
+            let [ox, oy, oz, other] = R::columns(R::rows(|l| &of(l).spin));
+            let spin = V3::new(wx, wy, wz);
+            let touch = LawInput {
+                mass: R::splat(1.0) / (inverse_mass + wall_inverse_mass),
+                radius,
+                overlap,
+                normal: V3::new(nx, ny, nz),
+                velocity: V3::new(vx, vy, vz) + spin.cross(arm) - V3::new(ux, uy, uz),
+                spin: spin - V3::new(ox, oy, oz),
+            };
+            let [sx, sy, sz, rate] = R::columns(R::rows(|l| &of(l).memory));
+            let mut memory = Memory { spring: V3::new(sx, sy, sz), rate, roll: V3::zero(), twist: R::zero() };
+            if ROLL {
+                let [rx, ry, rz, twist] = R::columns(R::rows(|l| &of(l).turn));
+                (memory.roll, memory.twist) = (V3::new(rx, ry, rz), twist);
+            }
+            let LawOutput { force, moment, dashpot, friction, .. } =
+                L::evaluate::<R, ROLL>(&mix.of(own, other), &touch, &mut memory, on, dt);
+            let mut torque = arm.cross(force);
+            if ROLL {
+                torque = torque + moment;
+            }
+            let results = R::records(four(force, dashpot), four(torque, friction));
+            let springs = R::records(four(memory.spring, memory.rate), four(memory.roll, memory.twist));
+            let moments = R::records(four(moment, radius), four(V3::zero(), R::zero()));
+            for l in 0..count {
+                let of = &mut forces[at + l];
+                let mut two = [Record::default(); 2];
+                R::put(results[l], &mut two);
+                [of.velocity, of.spin] = two;
+                R::put(springs[l], &mut two);
+                [of.memory, of.turn] = two;
+                R::put(moments[l], &mut two);
+                of.normal = two[0];
+            }
+            at += count;
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! One contact at a time: what boxes, corners, images, debonded pairs, vertices and measures share. The loops over lanes
+//! (`sphere_pair.rs`, `planes.rs`, `patch_forces.rs`) do the same for many.
+
+use crate::base::Vec3;
+use crate::bodies::block::PointMotion;
+use crate::lanes::Simd;
+use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, Laws, with_law};
+
+/// What all blocks share.
+#[derive(Clone, Copy)]
+pub(crate) struct Setting<'a> {
+    pub laws: &'a Laws,
+    pub simd: Simd,
+    /// Time step [s].
+    pub dt: f64,
+}
+
+/// What one contact does to both partners.
+pub(crate) struct PairForce {
+    /// Force on a [N]; b takes the opposite.
+    pub force: Vec3,
+    /// Torques about the centres [N m].
+    pub torque_a: Vec3,
+    pub torque_b: Vec3,
+    /// Energy that dashpots, and that sliding, rolling and twisting took [J].
+    pub dashpot: f64,
+    pub friction: f64,
+}
+
+/// The force between bodies that move as `a` and `b` at the contact point, of the given materials, over a step `dt` [s].
+pub(crate) fn between(
+    laws: &Laws,
+    materials: [u32; 2],
+    geometry: &ContactGeometry,
+    (a, b): (&PointMotion<'_>, &PointMotion<'_>),
+    history: &mut History,
+    dt: f64,
+) -> PairForce {
+    let mass = 1.0 / (a.inverse_mass() + b.inverse_mass());
+    let (velocity, spin) = (a.at_point() - b.at_point(), a.spin() - b.spin());
+    let f = evaluate(laws, materials, mass, geometry, &velocity, &spin, history, dt);
+    PairForce {
+        force: f.force,
+        torque_a: a.arm.cross(&f.force) + f.moment,
+        torque_b: -(b.arm.cross(&f.force) + f.moment),
+        dashpot: f.dashpot,
+        friction: f.friction,
+    }
+}
+
+/// The law of a pair of materials for one contact: see [`ContactLaw::evaluate_one`].
+pub(crate) fn evaluate(
+    laws: &Laws,
+    [a, b]: [u32; 2],
+    mass: f64,
+    geometry: &ContactGeometry,
+    velocity: &Vec3,
+    spin: &Vec3,
+    history: &mut History,
+    dt: f64,
+) -> ContactForce {
+    with_law!(laws, laws => laws.get(a, b).evaluate_one(mass, geometry, velocity, spin, history, dt))
+}
+
+/// Ends a contact, if it had begun: returns the energy left in its springs [J].
+pub(crate) fn end(laws: &Laws, [a, b]: [u32; 2], history: &mut History) -> f64 {
+    if history.is_fresh() {
+        return 0.0;
+    }
+    with_law!(laws, laws => laws.get(a, b).release(history))
+}
+
+/// Force of the normal spring [N] and stiffness of the tangential spring [N/m] at an overlap and an effective radius [m].
+pub(crate) fn springs(laws: &Laws, [a, b]: [u32; 2], overlap: f64, radius: f64) -> (f64, f64) {
+    with_law!(laws, laws => laws.get(a, b).springs(overlap, radius))
+}

@@ -1,0 +1,159 @@
+//! Contacts between spheres over the lanes of one group or two: detection, the law, forces and torques. Generic in the
+//! law, in whether bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps, and in whether
+//! rolling is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
+
+use super::ends::End;
+use super::group_memory::{Mix, Spent, recall, remember};
+use crate::lanes::record::Record;
+use crate::lanes::{Pack, Real, V3};
+use crate::law::{ContactLaw, FRESH, LawInput, LawOutput};
+use crate::pairs::groups::Springs;
+
+/// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` (1, 0 or −1) before.
+#[inline(always)]
+fn difference<R: Pack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
+    let sign = R::record(&[1.0, 1.0, 1.0, last]);
+    R::columns([p[0].less(q[0], sign), p[1].less(q[1], sign), p[2].less(q[2], sign), p[3].less(q[3], sign)])
+}
+
+/// Forces of contacts in lanes: on a, and the torques on a and b; and what to complain of.
+pub(crate) struct Outcome<R: Real> {
+    pub force: V3<R>,
+    pub torque_a: V3<R>,
+    pub torque_b: V3<R>,
+    /// Of single spheres: force times normal, and the levers of both.
+    pub moment: V3<R>,
+    pub levers: (R, R),
+    pub on: R::Mask,
+    /// Record that overlap by more than the smaller radius.
+    pub deep: u32,
+    overlap: R,
+    bound: R,
+}
+
+impl<R: Pack> Outcome<R> {
+    /// The first contact that is too deep: its number in a list where the lanes begin with group `g`, the overlap and
+    /// its bound.
+    #[cold]
+    pub fn too_deep(&self, g: usize) -> (usize, f64, f64) {
+        let l = self.deep.trailing_zeros() as usize;
+        (4 * g + l, self.overlap.numbers()[l], self.bound.numbers()[l])
+    }
+}
+
+/// How two spheres that touch move against each other.
+struct Approach<R: Real> {
+    input: LawInput<R>,
+    materials: (R, R),
+    radii: (R, R),
+    /// From the centres of the spheres to the contact point, along the normal.
+    levers: (R, R),
+    /// From the centres of the bodies; zero for single spheres.
+    arms: (V3<R>, V3<R>),
+}
+
+impl<R: Pack> Approach<R> {
+    /// `xa`, `xb`: the records of the spheres; `between` from b to a, `distance2` its square, `reach` the radii's sum.
+    #[inline(always)]
+    fn new<const RIGID: bool>(
+        a: &impl End,
+        b: &impl End,
+        (xa, xb): ([R; 4], [R; 4]),
+        (between, distance2, reach): (V3<R>, R, R),
+    ) -> Approach<R> {
+        let (va, wa) = R::two_rows(|l| (a.velocity(l), a.spin(l)));
+        let (vb, wb) = R::two_rows(|l| (b.velocity(l), b.spin(l)));
+        let distance = distance2.sqrt();
+        // distance/distance² rather than 1/distance: the division need not wait for the root.
+        let mut normal = between * (distance * (R::splat(1.0) / distance2));
+        let apart = R::zero().lt(distance);
+        if !R::all(apart) {
+            normal = V3::select(apart, normal, V3::new(R::zero(), R::zero(), R::splat(1.0)));
+        }
+        let overlap = reach - distance;
+        let ra = R::columns(xa)[3];
+        let rb = reach - ra;
+        // From the centres to the contact point, which halves the overlap.
+        let la = ra - R::splat(0.5) * overlap;
+        let lb = distance - la;
+
+        let [ux, uy, uz, inverse_mass] = difference(va, vb, -1.0);
+        let [wax, way, waz, ma] = R::columns(wa);
+        let [wbx, wby, wbz, mb] = R::columns(wb);
+        let (wa, wb) = (V3::new(wax, way, waz), V3::new(wbx, wby, wbz));
+        let translation = V3::new(ux, uy, uz);
+        let (mut arm_a, mut arm_b) = (V3::zero(), V3::zero());
+        let velocity = if RIGID {
+            let [ax, ay, az, _] = difference(xa, R::rows(|l| a.centre(l)), 0.0);
+            let [bx, by, bz, _] = difference(xb, R::rows(|l| b.centre(l)), 0.0);
+            arm_a = V3::new(ax, ay, az) - normal * la;
+            arm_b = V3::new(bx, by, bz) + normal * lb;
+            translation + wa.cross(arm_a) - wb.cross(arm_b)
+        } else {
+            translation + normal.cross(wa * la + wb * lb)
+        };
+        let mass = R::splat(1.0) / inverse_mass;
+        let input = LawInput { mass, radius: ra * rb / reach, overlap, normal, velocity, spin: wa - wb };
+        Approach { input, materials: (ma, mb), radii: (ra, rb), levers: (la, lb), arms: (arm_a, arm_b) }
+    }
+}
+
+/// Contacts between spheres. `None` when none of them touches. `law` mixes constants for materials in lanes.
+#[inline(always)]
+pub(crate) fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
+    law: &Mix<'_, L, R>,
+    a: &impl End,
+    b: &impl End,
+    mut springs: (&mut Springs, &mut Springs),
+    mut turns: (&mut [Record; 4], &mut [Record; 4]),
+    present: R::Mask,
+    spent: &mut Spent<R::Quad>,
+    dt: f64,
+) -> Option<Outcome<R>> {
+    // Differences of whole records, so that one transposition serves both partners; radii are added by the same token.
+    let (xa, xb) = (R::rows(|l| a.sphere(l)), R::rows(|l| b.sphere(l)));
+    let [dx, dy, dz, reach] = difference(xa, xb, -1.0);
+    let between = V3::new(dx, dy, dz);
+    let distance2 = between.norm2();
+    let on = distance2.lt(reach * reach) & present;
+    let mut memory = recall::<R, ROLL>(&springs, &turns);
+    let ended = !on & memory.rate.lt(R::splat(FRESH));
+    if R::any(ended) {
+        let (ma, mb) = (R::columns(R::rows(|l| a.spin(l)))[3], R::columns(R::rows(|l| b.spin(l)))[3]);
+        let left = L::stored_in_springs::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
+        spent.friction = left.add_to(spent.friction);
+        remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
+    }
+    if !R::any(on) {
+        return None;
+    }
+    let m = Approach::<R>::new::<RIGID>(a, b, (xa, xb), (between, distance2, reach));
+    let overlap = m.input.overlap;
+    let LawOutput { force, moment, dashpot, friction, .. } =
+        L::evaluate::<R, ROLL>(&law.of(m.materials.0, m.materials.1), &m.input, &mut memory, on, dt);
+    remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
+    spent.dashpot = dashpot.only(on).add_to(spent.dashpot);
+    spent.friction = friction.only(on).add_to(spent.friction);
+    let force = force.only(on);
+    let lever = force.cross(m.input.normal).only(on);
+    let (la, lb) = m.levers;
+    let (mut torque_a, mut torque_b) =
+        if RIGID { (m.arms.0.cross(force), -m.arms.1.cross(force)) } else { (lever * la, lever * lb) };
+    if RIGID || ROLL {
+        let moment = moment.only(on);
+        torque_a = (torque_a + moment).only(on);
+        torque_b = (torque_b - moment).only(on);
+    }
+    let bound = m.radii.0.min(m.radii.1);
+    Some(Outcome {
+        force,
+        torque_a,
+        torque_b,
+        moment: lever,
+        levers: (la, lb),
+        on,
+        deep: R::mask_bits(overlap.gt(bound) & on),
+        overlap,
+        bound,
+    })
+}

@@ -1,0 +1,38 @@
+//! Forces that the caller applies to bodies in a step.
+
+use super::input::AppliedForce;
+use super::model::Model;
+use super::state::State;
+use crate::base::error::StepError;
+use crate::integrate::leapfrog::Applied;
+use crate::lanes::record::xyz;
+
+/// Brings applied forces into block order.
+pub(crate) fn place(
+    model: &Model,
+    state: &State,
+    applied: &[AppliedForce],
+    out: &mut Vec<Applied>,
+) -> Result<(), StepError> {
+    out.clear();
+    for (index, a) in applied.iter().enumerate() {
+        let there = a.body < model.bodies.len() && state.present(a.body);
+        if !there || !a.force.iter().chain(a.point.iter()).all(|x| x.is_finite()) {
+            return Err(StepError::Applied { time: state.time, index, body: a.body });
+        }
+        let [block, place] = state.places[a.body];
+        let centre = xyz(&state.blocks[block as usize].centre[place as usize]);
+        let torque = (a.point - centre).cross(&a.force);
+        out.push(Applied { block, place, force: a.force, torque });
+    }
+    // Stable: forces on one body add up in the order given.
+    out.sort_by_key(|a| (a.block, a.place));
+    Ok(())
+}
+
+/// Those of a block, of forces in block order.
+pub(crate) fn of_block(applied: &[Applied], b: usize) -> &[Applied] {
+    let from = applied.partition_point(|a| (a.block as usize) < b);
+    let to = applied.partition_point(|a| a.block as usize <= b);
+    &applied[from..to]
+}

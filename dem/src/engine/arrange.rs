@@ -1,0 +1,110 @@
+//! Scratch laid out for a state: constants of the bodies in their present order, slots and shares.
+
+use super::bonds;
+use super::model::Model;
+use super::place;
+use super::state::State;
+use super::work::{Searched, Work};
+use crate::bodies::members::{Members, common};
+use crate::bond::Held;
+use crate::bond::pass::BondWork;
+use crate::lanes::Simd;
+use crate::pairs::buffers::Buffers;
+use crate::pairs::cross::{CrossForces, Gather, ImagePair};
+
+/// Spheres below which sharing the work costs more than it saves. Both ways give the same bits.
+const PARALLEL: usize = 2500;
+
+impl Work {
+    /// Scratch for a state.
+    pub fn new(model: &Model, state: &State) -> Work {
+        let mut work = Work {
+            members: Vec::new(),
+            blocks: Vec::new(),
+            cross: Vec::new(),
+            beyond: Vec::new(),
+            bonds: BondWork::default(),
+            held: Held::default(),
+            applied: Vec::new(),
+            surface_contacts: Vec::new(),
+            buffers: Buffers::default(),
+            merging: Buffers::default(),
+            keep_forces: false,
+            searched: Searched::default(),
+            simd: Simd::best(),
+            planes: Vec::new(),
+            material: None,
+            plane_material: common(model.planes.iter().map(|p| p.material as u32)),
+            parallel: model.sphere_count() >= PARALLEL,
+        };
+        work.arrange(model, state);
+        work
+    }
+
+    /// Follows another state of the same model from now on, such as an earlier one that is taken up again. What comes
+    /// then has the bits that new scratch gives.
+    pub fn follow(&mut self, model: &Model, state: &State) {
+        self.arrange(model, state);
+    }
+
+    /// Lays the constants out in the state's present order.
+    pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
+        self.searched.listed = false;
+        self.members.resize_with(state.blocks.len(), Members::default);
+        self.blocks.resize_with(state.blocks.len(), Default::default);
+        self.cross.resize_with(state.blocks.len(), CrossForces::default);
+        for ((members, w), block) in self.members.iter_mut().zip(&mut self.blocks).zip(&state.blocks) {
+            members.arrange(&model.bodies, &model.shapes, block);
+            w.tally.sums = Vec::new();
+            w.patches.turning = model.laws.rolls_among(&place::materials(block), &model.patch_materials);
+        }
+        // A block without a body or with several materials has none of its own.
+        self.material = common(self.members.iter().map(|m| m.material)).flatten();
+        link(model, state, self);
+        bonds::arrange(model, state, self);
+    }
+}
+
+/// Gives each contact between blocks its slot and each body the list of slots it gathers, in one fixed order.
+pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
+    let mut counts = vec![0; state.blocks.len()];
+    for (b, cross) in state.cross.iter().enumerate() {
+        for list in [&cross.spheres, &cross.boxes] {
+            counts[b] += list.len();
+            (0..list.len()).for_each(|k| counts[list.name(k)[1] as usize] += 1);
+        }
+        counts[b] += cross.images.len();
+        cross.images.iter().for_each(|p| counts[p.name.block as usize] += 1);
+    }
+    for (w, &count) in work.blocks.iter_mut().zip(&counts) {
+        w.shares.list.clear();
+        w.shares.wide = false;
+        if w.shares.list.capacity() < count {
+            w.shares.list = Vec::with_capacity(count);
+        }
+    }
+    for b in 0..state.blocks.len() {
+        let cross = &state.cross[b];
+        let Work { members, blocks, cross: forces, .. } = &mut *work;
+        forces[b].lay_out(cross, model.clumps);
+        let (width, boxes_at, images_at) = (forces[b].width, forces[b].boxes_at, forces[b].images_at);
+        let mut share = |place: u32, of: usize, slot: (usize, usize), first: bool| {
+            blocks[of].shares.push(Gather::new(place, b as u32, slot, first));
+        };
+        for k in 0..cross.spheres.len() {
+            let ([i, to, j], slot) = (cross.spheres.name(k), (k * width, width));
+            share(members[b].body(i), b, slot, true);
+            share(members[to as usize].body(j), to as usize, slot, false);
+        }
+        for k in 0..cross.boxes.len() {
+            let ([i, to, j], slot) = (cross.boxes.name(k), (boxes_at + 3 * k, 3));
+            share(members[b].body(i), b, slot, true);
+            share(j, to as usize, slot, false);
+        }
+        for (k, ImagePair { name, .. }) in cross.images.iter().enumerate() {
+            let (to, slot) = (name.block as usize, (images_at + k * width, width));
+            share(members[b].body(name.i), b, slot, true);
+            share(members[to].body(name.j), to, slot, false);
+        }
+    }
+}

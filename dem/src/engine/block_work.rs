@@ -1,0 +1,49 @@
+//! Scratch of one block.
+
+use crate::base::held::held;
+use crate::bodies::sums::Tally;
+use crate::bond::pass::ListWork;
+use crate::contact::patches::PatchWork;
+use crate::pairs::cross::{ImageName, Shares};
+use crate::pairs::patch_search::Candidate;
+use crate::pairs::patches::PatchPair;
+use crate::pairs::reference::Reference;
+
+/// Pairs within the skin of touching, valid while no sphere has moved further than the skin allows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Candidates {
+    pub reference: Reference,
+    pub pairs: Vec<[u16; 2]>,
+    pub cross: Vec<[u32; 3]>,
+    pub boxed: Vec<[u32; 3]>,
+    pub images: Vec<ImageName>,
+    pub planes: Vec<[u32; 2]>,
+    pub walls: Vec<Candidate>,
+    pub surface: Vec<Candidate>,
+    /// Scratch of the search and of the near list.
+    pub row: Vec<u32>,
+    pub patches: Vec<PatchPair>,
+}
+
+/// Scratch of one block.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BlockWork {
+    pub candidates: Candidates,
+    /// What its bodies gather from slots.
+    pub shares: Shares,
+    pub tally: Tally,
+    pub patches: PatchWork,
+    pub bonds: ListWork,
+}
+
+impl BlockWork {
+    /// Bytes held between steps.
+    pub fn bytes(&self) -> usize {
+        let c = &self.candidates;
+        let spheres = held(&c.pairs) + held(&c.cross) + held(&c.boxed) + held(&c.images) + held(&c.planes);
+        // Where the spheres were at the last search.
+        let reference = c.reference.len() * size_of::<[f32; 3]>();
+        let patches = held(&c.walls) + held(&c.surface);
+        spheres + patches + reference + held(&self.shares.list) + held(&self.tally.sums) + self.bonds.bytes()
+    }
+}

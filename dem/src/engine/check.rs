@@ -1,0 +1,282 @@
+//! Checks of a model's input: every refusal names what it found.
+
+use super::input::{ModelInput, TimeStep};
+use crate::base::error::ModelError;
+use crate::bodies::table::{Bodies, Kind};
+use crate::shape::Shape;
+use crate::wall::check::in_range;
+
+const POSITIVE: &str = "be positive and finite";
+const NOT_NEGATIVE: &str = "be zero or positive, and finite";
+const RESTITUTION: &str = "lie above 0 and not above 1";
+
+fn positive(x: f64) -> bool {
+    x > 0.0 && x.is_finite()
+}
+
+fn not_negative(x: f64) -> bool {
+    x >= 0.0 && x.is_finite()
+}
+
+fn restitution(x: f64) -> bool {
+    x > 0.0 && x <= 1.0
+}
+
+/// Ranges and indices.
+pub(crate) fn input(input: &ModelInput) -> Result<(), ModelError> {
+    materials(input)?;
+    shapes(input)?;
+    bodies(input)?;
+    walls(input)?;
+    settings(input)
+}
+
+fn materials(input: &ModelInput) -> Result<(), ModelError> {
+    let hertz = input.materials.iter().any(|m| m.young.is_some());
+    for (material, m) in input.materials.iter().enumerate() {
+        for (quantity, value, good, requirement) in [
+            ("density", m.density, positive(m.density), POSITIVE),
+            ("stiffness", m.stiffness, m.stiffness > 0.0, "be positive (infinite for a rigid wall)"),
+            ("tangential ratio", m.tangential_ratio, not_negative(m.tangential_ratio), NOT_NEGATIVE),
+            (
+                "tangential damping ratio",
+                m.tangential_damping_ratio,
+                not_negative(m.tangential_damping_ratio),
+                NOT_NEGATIVE,
+            ),
+            ("friction", m.friction, not_negative(m.friction), NOT_NEGATIVE),
+            ("restitution", m.restitution, restitution(m.restitution), RESTITUTION),
+            ("Young's modulus", m.young.unwrap_or(1.0), m.young.is_none_or(positive), POSITIVE),
+            (
+                "Poisson's ratio",
+                m.poisson,
+                m.poisson > -1.0 && m.poisson <= 0.5,
+                "lie above -1 and not above 0.5",
+            ),
+            ("rolling friction", m.rolling_friction, not_negative(m.rolling_friction), NOT_NEGATIVE),
+            ("twisting friction", m.twisting_friction, not_negative(m.twisting_friction), NOT_NEGATIVE),
+            (
+                "stiffness",
+                m.stiffness,
+                !hertz || m.stiffness.is_infinite(),
+                "be absent (infinite) where a material has a Young's modulus",
+            ),
+        ] {
+            if !good {
+                return Err(ModelError::Material { material, quantity, value, requirement });
+            }
+        }
+    }
+    for (index, e) in input.contacts.iter().enumerate() {
+        for found in [e.a, e.b] {
+            in_range("contact override", index, "material", found, input.materials.len())?;
+        }
+        for (quantity, value, good, requirement) in [
+            ("friction", e.friction, e.friction.is_none_or(not_negative), NOT_NEGATIVE),
+            ("restitution", e.restitution, e.restitution.is_none_or(restitution), RESTITUTION),
+            ("stiffness", e.stiffness, e.stiffness.is_none_or(positive), POSITIVE),
+            ("adhesion", e.adhesion, e.adhesion.is_none_or(not_negative), NOT_NEGATIVE),
+            (
+                "stiffness",
+                e.stiffness,
+                !hertz || e.stiffness.is_none(),
+                "be absent where materials have a Young's modulus",
+            ),
+        ] {
+            if !good {
+                let value = value.unwrap_or(f64::NAN);
+                return Err(ModelError::Override { index, quantity, value, requirement });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn shapes(input: &ModelInput) -> Result<(), ModelError> {
+    for (shape, s) in input.shapes.iter().enumerate() {
+        let problem = match s {
+            Shape::Sphere { radius } if !positive(*radius) => {
+                format!("radius is {radius}; it must {POSITIVE}")
+            }
+            Shape::Box { half } if !half.iter().all(|&h| positive(h)) => {
+                format!("half sides are {half:?}; each must {POSITIVE}")
+            }
+            Shape::Clump(c) if c.spheres.is_empty() => "a clump without spheres".to_string(),
+            Shape::Clump(c) if c.spheres.len() > 65_535 => {
+                format!("a clump of {} spheres; at most 65535", c.spheres.len())
+            }
+            Shape::Clump(c) if !positive(c.volume) || !c.inertia.iter().all(|&i| positive(i)) => {
+                "volume and inertia of a clump must be positive".to_string()
+            }
+            Shape::Clump(c)
+                if !c.spheres.iter().all(|(x, r)| positive(*r) && x.iter().all(|x| x.is_finite())) =>
+            {
+                "a sphere of the clump has no positive radius or no finite centre".to_string()
+            }
+            _ => continue,
+        };
+        return Err(ModelError::Shape { shape, problem });
+    }
+    Ok(())
+}
+
+fn bodies(input: &ModelInput) -> Result<(), ModelError> {
+    for (index, b) in input.bodies.iter().enumerate() {
+        in_range("body", index, "shape", b.shape, input.shapes.len())?;
+        in_range("body", index, "material", b.material, input.materials.len())?;
+        let error =
+            |quantity, value, requirement| ModelError::Body { body: index, quantity, value, requirement };
+        if !positive(b.scale) {
+            return Err(error("scale", b.scale, POSITIVE));
+        }
+        if let Some(mass) = b.mass.filter(|&m| !positive(m)) {
+            return Err(error("mass", mass, POSITIVE));
+        }
+        for (quantity, v) in [("position", b.position), ("velocity", b.velocity), ("spin", b.spin)] {
+            if let Some(&value) = v.iter().find(|x| !x.is_finite()) {
+                return Err(error(quantity, value, "be finite"));
+            }
+        }
+        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. }) {
+            return Err(ModelError::Absent { body: index, problem: "it is a box" });
+        }
+        if (b.orientation.norm() - 1.0).abs() > 1e-6 || b.orientation.norm().is_nan() {
+            return Err(error("norm of the orientation", b.orientation.norm(), "be 1"));
+        }
+    }
+    Ok(())
+}
+
+/// Bodies that are absent at the start have no bonds.
+pub(crate) fn absent_bonds(input: &ModelInput) -> Result<(), ModelError> {
+    match input.bonds.iter().flat_map(|b| [b.a, b.b]).find(|&b| input.bodies[b].absent) {
+        Some(body) => Err(ModelError::Absent { body, problem: "a bond holds it" }),
+        None => Ok(()),
+    }
+}
+
+fn walls(input: &ModelInput) -> Result<(), ModelError> {
+    let count = input.materials.len();
+    for (index, p) in input.planes.iter().enumerate() {
+        in_range("plane", index, "material", p.material, count)?;
+        let problem = if !positive(p.normal.norm()) {
+            "its normal must have a finite length above zero"
+        } else if !p.point.iter().chain(p.velocity.iter()).all(|x| x.is_finite()) {
+            "its point and velocity must be finite"
+        } else {
+            continue;
+        };
+        return Err(ModelError::Wall { wall: format!("plane {index}"), problem });
+    }
+    for (index, t) in input.triangles.iter().enumerate() {
+        in_range("triangle surface", index, "material", t.material, count)?;
+        if !t.velocity.iter().all(|x| x.is_finite()) {
+            let problem = "its velocity must be finite";
+            return Err(ModelError::Wall { wall: format!("triangle surface {index}"), problem });
+        }
+    }
+    crate::wall::check::walls(&input.walls, count)?;
+    for m in surfaces(input) {
+        in_range("surface", 0, "material", m, count)?;
+    }
+    Ok(())
+}
+
+/// Materials of the external surface.
+pub(crate) fn surfaces(input: &ModelInput) -> impl Iterator<Item = usize> {
+    input.surface_material.into_iter().chain(input.other_surface.map(|(_, m)| m))
+}
+
+fn settings(input: &ModelInput) -> Result<(), ModelError> {
+    let error = |quantity, value, requirement| Err(ModelError::Setting { quantity, value, requirement });
+    if let Some(&g) = input.gravity.iter().find(|x| !x.is_finite()) {
+        return error("gravity", g, "be finite");
+    }
+    if let Some(speed) = input.impact_speed.filter(|&v| !not_negative(v)) {
+        return error("impact speed", speed, NOT_NEGATIVE);
+    }
+    match input.time_step {
+        TimeStep::Auto { fraction } if !(fraction > 0.0 && fraction <= 1.0) => {
+            return error("time step fraction", fraction, "lie above 0 and not above 1");
+        }
+        TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) if !positive(dt) => {
+            return error("time step", dt, POSITIVE);
+        }
+        _ => {}
+    }
+    if let Some(skin) = input.skin.filter(|&s| !positive(s)) {
+        return error("skin", skin, POSITIVE);
+    }
+    if let Some(d) = input.damping.filter(|d| !(d.factor >= 0.0 && d.factor < 1.0)) {
+        return error("local damping factor", d.factor, "lie in [0, 1)");
+    }
+    Ok(())
+}
+
+/// Refuses contacts between two rigid partners that may come about.
+pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelError> {
+    let hard = |m: usize| input.materials[m].stiffness.is_infinite() && input.materials[m].young.is_none();
+    let endless = |a: u32, b: usize| {
+        let a = a as usize;
+        let exception = input.contacts.iter().rfind(|e| (e.a, e.b) == (a, b) || (e.a, e.b) == (b, a));
+        hard(a) && hard(b) && exception.is_none_or(|e| e.stiffness.is_none())
+    };
+    let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies.get(k).material as usize)).collect();
+    for (n, &i) in rigid.iter().enumerate() {
+        let a = &bodies.get(i);
+        let error = |b: String| Err(ModelError::RigidPair { a: format!("body {i}"), b });
+        for &j in &rigid[n + 1..] {
+            let b = &bodies.get(j);
+            let still = a.inverse_mass == 0.0 && b.inverse_mass == 0.0;
+            let boxes = a.kind == Kind::Box && b.kind == Kind::Box;
+            if !still && !boxes && endless(a.material, b.material as usize) {
+                return error(format!("body {j}"));
+            }
+        }
+        if a.inverse_mass == 0.0 {
+            continue;
+        }
+        if let Some(p) = input.planes.iter().position(|p| endless(a.material, p.material)) {
+            return error(format!("plane {p}"));
+        }
+        if a.kind != Kind::Box {
+            if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
+                return error(format!("triangle surface {t}"));
+            }
+            if let Some(t) = input.walls.iter().position(|w| endless(a.material, w.material)) {
+                return error(format!("wall {t}"));
+            }
+            if surfaces(input).any(|m| endless(a.material, m)) {
+                return error("the surface".to_string());
+            }
+        }
+    }
+    for (w, wall) in input.walls.iter().enumerate().filter(|(_, w)| w.body.is_some()) {
+        let error = |b: String| Err(ModelError::RigidPair { a: format!("the rigid body of wall {w}"), b });
+        if let Some(b) = rigid.iter().find(|&&b| endless(bodies.get(b).material, wall.material)) {
+            return error(format!("body {b}"));
+        }
+        if let Some(p) = input.planes.iter().position(|p| endless(wall.material as u32, p.material)) {
+            return error(format!("plane {p}"));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what adhesion cannot be combined with.
+pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
+    let Some(index) = input.contacts.iter().position(|c| c.adhesion.is_some_and(|w| w > 0.0)) else {
+        return Ok(());
+    };
+    let error = |with| Err(ModelError::Adhesion { index, with });
+    if input.bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Box { .. })) {
+        return error("boxes");
+    }
+    if !input.bonds.is_empty() {
+        return error("bonds");
+    }
+    if input.walls.iter().any(|w| w.body.is_some()) {
+        return error("rigid bodies of triangles");
+    }
+    Ok(())
+}

@@ -1,0 +1,117 @@
+//! What a model is made of, as given by its user. [`crate::engine::model::Model`] is the checked and resolved form.
+
+use crate::base::Vec3;
+use crate::bodies::input::BodyInput;
+use crate::bond::{Bond, BondInput};
+use crate::law::material::{Material, PairOverride};
+use crate::shape::Shape;
+use crate::shape::plane::Plane;
+use crate::wall::{TriangleSurface, WallInput};
+use serde::{Deserialize, Serialize};
+
+/// How the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum TimeStep {
+    /// This fraction, in (0, 1], of the stability limit (see [`crate::engine::timestep`]); 0.1 to 0.2 suits most scenes.
+    Auto {
+        /// Fraction of the limit [-].
+        fraction: f64,
+    },
+    /// This many seconds, refused when above the limit.
+    Fixed(f64),
+    /// This many seconds, whatever the limit.
+    FixedAboveLimit(f64),
+}
+
+/// Damping proportional to the unbalanced force (Cundall & Strack 1979, sec. 2.4, as used in later codes):
+/// each component of the total force, gravity included, is reduced by this fraction when it accelerates the
+/// body and increased when it slows it; torques alike. Not physical: for deposition only.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocalDamping {
+    /// Fraction in [0, 1).
+    pub factor: f64,
+}
+
+/// A force on a body for one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AppliedForce {
+    /// Body (index).
+    pub body: usize,
+    /// Force [N].
+    pub force: Vec3,
+    /// Point of the world where it acts [m].
+    pub point: Vec3,
+}
+
+/// Everything a model is made of.
+#[derive(Clone, Debug)]
+pub struct ModelInput {
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Pairs of materials with values of their own.
+    pub contacts: Vec<PairOverride>,
+    /// Shapes.
+    pub shapes: Vec<Shape>,
+    /// Bodies.
+    pub bodies: Vec<BodyInput>,
+    /// Planes.
+    pub planes: Vec<Plane>,
+    /// Triangle surfaces.
+    pub triangles: Vec<TriangleSurface>,
+    /// Walls of other shapes, and triangle surfaces that turn, swing, are driven by a force or are bodies.
+    pub walls: Vec<WallInput>,
+    /// Material (index) of the external surface, when the scene has one.
+    pub surface_material: Option<usize>,
+    /// Part of the external surface that is of another material: its first patch, from which on all others follow, and
+    /// the material (index).
+    pub other_surface: Option<(u32, usize)>,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: Vec3,
+    /// Time step.
+    pub time_step: TimeStep,
+    /// Largest speed at which two bodies are expected to meet [m/s]: sets the overlap at which contacts after Hertz are
+    /// taken for the limit of the time step; the estimate of [`crate::engine::timestep`] when `None`.
+    pub impact_speed: Option<f64>,
+    /// Distance beyond touch up to which neighbours are listed [m]; 0.2 of the mean sphere radius when `None`.
+    pub skin: Option<f64>,
+    /// Local damping, for deposition only.
+    pub damping: Option<LocalDamping>,
+    /// Kinds of bonds.
+    pub bond_kinds: Vec<Bond>,
+    /// Bonds between spheres, unstrained at the start.
+    pub bonds: Vec<BondInput>,
+    /// Lower and upper border [m] along x, y and z where the scene repeats itself; `None` along axes where it does not.
+    pub periodic: [Option<[f64; 2]>; 3],
+}
+
+impl Default for ModelInput {
+    /// Nothing at all, gravity 9.81 m/s² downward (−z), time step 0.1 of the limit.
+    fn default() -> ModelInput {
+        ModelInput {
+            materials: Vec::new(),
+            contacts: Vec::new(),
+            shapes: Vec::new(),
+            bodies: Vec::new(),
+            planes: Vec::new(),
+            triangles: Vec::new(),
+            walls: Vec::new(),
+            surface_material: None,
+            other_surface: None,
+            gravity: Vec3::new(0.0, 0.0, -9.81),
+            time_step: TimeStep::Auto { fraction: 0.1 },
+            impact_speed: None,
+            skin: None,
+            damping: None,
+            bond_kinds: Vec::new(),
+            bonds: Vec::new(),
+            periodic: [None; 3],
+        }
+    }
+}
+
+impl ModelInput {
+    /// All walls of patches: triangle surfaces, then walls.
+    pub(crate) fn all_walls(&self) -> impl Iterator<Item = WallInput> {
+        self.triangles.iter().map(WallInput::of_triangles).chain(self.walls.iter().cloned())
+    }
+}

@@ -1,0 +1,23 @@
+//! Model, state, scratch, search and the step: the layer that composes the parts of all features.
+
+mod applied;
+mod arrange;
+mod block_work;
+pub(crate) mod bonds;
+pub(crate) mod candidates;
+mod check;
+mod check_periodic;
+pub mod input;
+pub mod model;
+pub(crate) mod neighbours;
+pub(crate) mod order;
+pub(crate) mod periodic;
+pub(crate) mod place;
+mod probe;
+pub(crate) mod start;
+pub mod state;
+pub mod step;
+pub(crate) mod threads;
+pub mod timestep;
+pub(crate) mod walls;
+pub mod work;

@@ -1,0 +1,300 @@
+//! The checked, resolved and immutable model: what a run needs and never changes.
+
+use super::check;
+use super::input::{ModelInput, TimeStep};
+use super::timestep::{self, DtLimit};
+use crate::base::Vec3;
+use crate::base::error::ModelError;
+use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
+use crate::law::Laws;
+use crate::shape::Shape;
+use crate::shape::plane::Plane;
+use crate::spatial::periodic::Periodic;
+use crate::wall::{WallInput, set::Walls};
+
+/// Spheres that a block of bodies holds, about. Part of a scene's numbers (it orders sums), so a constant.
+const BLOCK_SPHERES: usize = 1024;
+
+/// The model. Build it with [`Model::new`].
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) bodies: Bodies,
+    pub(crate) shapes: Vec<Shape>,
+    /// Planes with unit normals.
+    pub(crate) planes: Vec<Plane>,
+    pub(crate) walls: Walls,
+    pub(crate) surface_material: Option<u32>,
+    pub(crate) other_surface: Option<(u32, u32)>,
+    pub(crate) laws: Laws,
+    /// Largest overlap expected, over the effective radius: what stiffnesses that grow with the overlap are taken at.
+    pub(crate) expected: f64,
+    pub(crate) gravity: Vec3,
+    pub(crate) damping: f64,
+    pub(crate) skin: f64,
+    /// Smallest and largest sphere radius [m].
+    pub(crate) radii: (f64, f64),
+    /// Whether any body is a clump.
+    pub(crate) clumps: bool,
+    /// Materials of bodies, of planes excepted, and of walls and the external surface (indices, ascending).
+    pub(crate) body_materials: Vec<u32>,
+    pub(crate) patch_materials: Vec<u32>,
+    /// Bodies per block.
+    pub(crate) block: usize,
+    /// Bonds, resolved.
+    pub(crate) bonds: Vec<crate::bond::Constants>,
+    pub(crate) periodic: Option<Periodic>,
+    dt: f64,
+    limit: DtLimit,
+}
+
+impl Model {
+    /// Checks and resolves an input.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the first thing that is out of range, points nowhere, or cannot work.
+    pub fn new(input: ModelInput) -> Result<Model, ModelError> {
+        check::input(&input)?;
+        let bodies = Bodies::new(&input.bodies, &input.shapes, &input.materials)?;
+        let laws = Laws::new(&input.materials, &input.contacts);
+        let walls: Vec<WallInput> = input.all_walls().collect();
+        let mut walls = Walls::new(&walls, input.triangles.len())?;
+        check::rigid_pairs(&bodies, &input)?;
+
+        let mut radii = (f64::INFINITY, 0.0_f64);
+        let (mut spheres, mut sum) = (0_usize, 0.0);
+        for body in bodies.iter() {
+            for_members(&input.shapes[body.shape], body.scale, |_, r| {
+                radii = (radii.0.min(r), radii.1.max(r));
+                spheres += 1;
+                sum += r;
+            });
+        }
+        if spheres == 0 {
+            // Boxes alone: a length scale for the search and for the speed bound.
+            let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
+            radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
+        }
+        let largest = input.shapes.iter().map(|s| if let Shape::Clump(c) = s { c.spheres.len() } else { 1 });
+        let largest = largest.max().unwrap_or(1).max(1);
+        let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
+        let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
+        let skin = input.skin.unwrap_or(0.2 * mean);
+        check::adhesion(&input)?;
+        super::check_periodic::check(&input, &bodies, skin)?;
+        let periodic = Periodic::new(&input.periodic);
+        let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
+        check::absent_bonds(&input)?;
+        let expected = timestep::expected_overlap(&bodies, &input, &laws);
+        let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
+        timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let dt = match input.time_step {
+            TimeStep::Auto { fraction } => fraction * limit.dt,
+            TimeStep::Fixed(dt) if dt > limit.dt => {
+                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
+            }
+            TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => dt,
+        };
+        let walls_and_surface = walls.walls.iter().map(|w| w.material);
+        let surface = check::surfaces(&input).map(|m| m as u32);
+        let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
+        let body_materials = sorted(bodies.iter().map(|b| b.material));
+        let patch_materials = sorted(walls_and_surface.chain(surface));
+        let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
+        Ok(Model {
+            // Spheres of a block are numbered with 16 bits.
+            block: (BLOCK_SPHERES * round / spheres.max(1))
+                .clamp(16, BLOCK_SPHERES)
+                .min(65_535 / largest)
+                .max(1),
+            clumps,
+            body_materials,
+            patch_materials,
+            bodies,
+            shapes: input.shapes,
+            planes,
+            walls,
+            surface_material: input.surface_material.map(|m| m as u32),
+            other_surface: input.other_surface.map(|(first, m)| (first, m as u32)),
+            laws,
+            expected,
+            gravity: input.gravity,
+            damping: input.damping.map_or(0.0, |d| d.factor),
+            skin,
+            periodic,
+            bonds,
+            radii,
+            dt,
+            limit,
+        })
+    }
+
+    /// The time step [s].
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// The stability limit of the time step and what sets it.
+    pub fn dt_limit(&self) -> &DtLimit {
+        &self.limit
+    }
+
+    /// Gives up the positions that the bodies start from, for a run that has its state: 24 bytes per body.
+    /// [`State::new`](crate::engine::state::State::new) needs them and cannot be called afterwards.
+    pub fn forget_start(&mut self) {
+        self.bodies.forget_positions();
+    }
+
+    /// Constants of a body.
+    #[inline]
+    pub(crate) fn body(&self, body: usize) -> Body {
+        self.bodies.get(body)
+    }
+
+    /// Number of bodies.
+    pub fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Number of bonds at the start.
+    pub fn bond_count(&self) -> usize {
+        self.bonds.len()
+    }
+
+    /// The two bodies of a bond.
+    pub fn bond_ends(&self, bond: usize) -> [usize; 2] {
+        self.bonds[bond].ends.map(|b| b as usize)
+    }
+
+    /// Number of spheres: single ones and members of clumps.
+    pub fn sphere_count(&self) -> usize {
+        (0..self.bodies.len()).map(|b| self.member_count(b) as usize).sum()
+    }
+
+    /// Mass of a body [kg].
+    pub fn mass(&self, body: usize) -> f64 {
+        self.body(body).mass
+    }
+
+    /// Principal moments of inertia of a body [kg m²].
+    pub fn inertia(&self, body: usize) -> Vec3 {
+        self.body(body).inertia
+    }
+
+    /// Radius of the smallest sphere about its centre of mass that is known to hold the body [m].
+    pub fn radius(&self, body: usize) -> f64 {
+        self.body(body).radius
+    }
+
+    /// Group number of a body.
+    pub fn part(&self, body: usize) -> u32 {
+        self.body(body).part
+    }
+
+    /// Shape of a body (unscaled).
+    pub fn shape(&self, body: usize) -> &Shape {
+        &self.shapes[self.body(body).shape]
+    }
+
+    /// Number of a body's shape in the input.
+    pub fn shape_number(&self, body: usize) -> usize {
+        self.body(body).shape
+    }
+
+    /// Factor on the lengths of the body's shape.
+    pub fn scale(&self, body: usize) -> f64 {
+        self.body(body).scale
+    }
+
+    /// Volume of a body's shape [m³].
+    pub fn volume(&self, body: usize) -> f64 {
+        volume(self.shape(body), self.body(body).scale)
+    }
+
+    /// Spheres of a body in its own frame: centre [m] and radius [m]. One for a sphere, none for a box.
+    pub fn members(&self, body: usize) -> Vec<(Vec3, f64)> {
+        let mut members = Vec::new();
+        for_members(self.shape(body), self.body(body).scale, |c, r| members.push((c, r)));
+        members
+    }
+
+    /// Number of a body's spheres.
+    pub(crate) fn member_count(&self, body: usize) -> u32 {
+        match self.shape(body) {
+            Shape::Sphere { .. } => 1,
+            Shape::Clump(clump) => clump.spheres.len() as u32,
+            Shape::Box { .. } => 0,
+        }
+    }
+
+    /// Planes, with unit normals.
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// Acceleration of gravity [m/s²].
+    pub fn gravity(&self) -> Vec3 {
+        self.gravity
+    }
+
+    /// Distance beyond touch up to which neighbours are listed [m].
+    pub fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Half sides of a box body, scaled [m].
+    pub(crate) fn half(&self, body: usize) -> Vec3 {
+        self.shape(body).half_sides(self.body(body).scale)
+    }
+
+    /// Number of walls: triangle surfaces, then walls.
+    pub fn wall_count(&self) -> usize {
+        self.walls.walls.len()
+    }
+
+    /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that
+    /// grows with the overlap is taken at the largest overlap expected (see [`crate::engine::timestep`]) of the largest sphere.
+    pub fn contact_stiffness(&self, a: usize, b: usize) -> (f64, f64) {
+        let (a, b) = (a as u32, b as u32);
+        let radius = self.radii.1;
+        (self.laws.stiffness(a, b, self.expected * radius, radius), self.laws.damping_ratio(a, b))
+    }
+
+    /// Force of the normal spring [N] and its stiffness [N/m] between two materials at an overlap and an effective radius
+    /// [m].
+    pub fn contact_spring(&self, a: usize, b: usize, overlap: f64, radius: f64) -> (f64, f64) {
+        let stiffness = self.laws.stiffness(a as u32, b as u32, overlap, radius);
+        (self.laws.force_share() * stiffness * overlap, stiffness)
+    }
+
+    /// Tangential over normal stiffness of a contact between two materials.
+    pub fn tangential_ratio(&self, a: usize, b: usize) -> f64 {
+        self.laws.tangential_ratio(a as u32, b as u32)
+    }
+
+    /// Material that an external surface counts as.
+    pub fn surface_material(&self) -> Option<usize> {
+        self.surface_material.map(|m| m as usize)
+    }
+
+    /// Material of a patch of an external surface.
+    #[inline]
+    pub fn patch_material(&self, patch: u32) -> usize {
+        match self.other_surface {
+            Some((first, material)) if patch >= first => material as usize,
+            _ => self.surface_material.unwrap_or(0) as usize,
+        }
+    }
+
+    /// Material of a body.
+    pub fn material(&self, body: usize) -> usize {
+        self.body(body).material as usize
+    }
+}
+
+/// Each number once, ascending.
+fn sorted(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut all: Vec<u32> = numbers.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}

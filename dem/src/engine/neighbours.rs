@@ -1,0 +1,147 @@
+//! The near list: candidates that touch or are within a small reach of it, with the memory of their contacts.
+//!
+//! It is made from the candidates whenever motion may have used its reach up, by a bound on the speeds; the
+//! candidates themselves are searched anew when true displacements no longer leave room for the near list's
+//! reach. Pairs are kept in the order of their spheres, and pairs that do not touch add nothing to any sum, so
+//! neither the skin nor the reach nor the moment of a search changes a bit of the result.
+
+use super::arrange::link;
+use super::block_work::Candidates;
+use super::candidates;
+use super::model::Model;
+use super::state::{BlockLists, State};
+use super::walls;
+use super::work::Work;
+use crate::lanes::record::xyz;
+use crate::pairs::cross::{self, Cross, ImageName};
+use crate::pairs::patch_search as patches;
+use crate::shape::cuboid;
+use crate::spatial::surface::Surface;
+use rayon::prelude::*;
+
+/// Makes the near list anew when it is due. `surface_speed` is the bound of the external surface [m/s].
+pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+    let due = (2.0 * state.drift).max(state.drift + state.wall_drift) > state.near;
+    if !due && !state.stale {
+        return;
+    }
+    if due {
+        // A reach that lasts for some ten steps costs least.
+        if state.lasted < 6 {
+            state.near = (1.5 * state.near).min(0.5 * model.skin);
+        } else if state.lasted > 40 {
+            state.near = (state.near / 1.2).max(0.02 * model.skin);
+        }
+    }
+    work.searched.surface_drift += state.wall_drift;
+    let mut approach =
+        if state.stale || !work.searched.listed { f64::INFINITY } else { approach(model, state, work) };
+    if approach + state.near > model.skin {
+        candidates::search(model, state, work, surface);
+        approach = 0.0;
+    }
+    make(model, state, work, surface, approach);
+    state.drift = 0.0;
+    state.wall_drift = 0.0;
+    state.lasted = 0;
+    state.stale = false;
+    work.searched.refreshes += 1;
+}
+
+/// A bound on the way that any two partners have come together since the candidates were found [m].
+fn approach(model: &Model, state: &State, work: &Work) -> f64 {
+    let blocks = state.blocks.iter().zip(&work.members).zip(&work.blocks);
+    let moved2 = blocks.map(|((block, members), w)| {
+        let reference = &w.candidates.reference;
+        let own = members.spheres(block);
+        let moved = own[..members.count].iter().enumerate().map(|(k, p)| reference.moved2(k, &xyz(p)));
+        let mut most = moved.fold(0.0, f64::max);
+        let boxes = (reference.len() - members.count) / 8;
+        for k in 0..boxes {
+            let (x, q) = (xyz(&block.centre[k]), &block.rotation[k].orientation);
+            for c in 0..8 {
+                let now = x + q * cuboid::corner(&members.half[k], c);
+                most = most.max(reference.moved2(members.count + 8 * k + c, &now));
+            }
+        }
+        most
+    });
+    let moved = moved2.fold(0.0, f64::max).sqrt();
+    let planes = state.planes.iter().zip(&work.searched.planes);
+    let wall = planes.map(|(m, x)| (m.offset - x).norm()).fold(work.searched.surface_drift, f64::max);
+    let wall = wall.max(walls::way(model, state, &work.searched.walls));
+    (2.0 * moved).max(moved + wall)
+}
+
+fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S, approach: f64) {
+    let State { blocks, lists, cross, planes, walls, near, .. } = &mut *state;
+    let (blocks, near, planes) = (&*blocks, *near, &*planes);
+    let walls = model.walls.placed(walls);
+    let Work { members, blocks: works, merging: pool, parallel, .. } = &mut *work;
+    let (members, pool) = (&*members, &*pool);
+    let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
+
+    let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {
+        let mut merging = pool.take();
+        let own = spheres(b as u32);
+        let close = |c: &[u32; 3]| {
+            let (p, q) = (&own[c[0] as usize], &spheres(c[1])[c[2] as usize]);
+            let reach = p[3] + q[3] + near;
+            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+        };
+        merging.three.merge(&mut cross.spheres, c.cross.iter().copied(), close);
+        let close = |c: &[u32; 3]| {
+            let p = &own[c[0] as usize];
+            let (block, k) = (&blocks[c[1] as usize], c[2] as usize);
+            let local =
+                block.rotation[k].orientation.inverse_transform_vector(&(xyz(p) - xyz(&block.centre[k])));
+            cuboid::closest_point(&members[c[1] as usize].half[k], &local).2 < p[3] + near
+        };
+        merging.three.merge(&mut cross.boxes, c.boxed.iter().copied(), close);
+        pool.give_back(merging);
+        if let Some(periodic) = &model.periodic {
+            let close = |c: &&ImageName| {
+                let (p, q) = (&own[c.i as usize], &spheres(c.block)[c.j as usize]);
+                let reach = p[3] + q[3] + near;
+                (xyz(p) - xyz(q) - periodic.way(&c.shift)).norm_squared() < reach * reach
+            };
+            cross::merge(&mut cross.images, c.images.iter().filter(close).copied());
+        }
+    };
+    let within = |(b, (lists, c)): (usize, (&mut BlockLists, &mut Candidates))| {
+        let BlockLists { pairs, planes: plane_pairs, walls: wall_pairs, surface: surface_pairs, .. } = lists;
+        let own = spheres(b as u32);
+        let mut merging = pool.take();
+        let close = |c: &[u32; 2]| {
+            let (p, q) = (&own[c[0] as usize], &own[c[1] as usize]);
+            let reach = p[3] + q[3] + near;
+            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+        };
+        merging.two.merge(pairs, c.pairs.iter().map(|c| c.map(u32::from)), close);
+        let close = |c: &[u32; 2]| {
+            let plane = &model.planes[c[1] as usize];
+            // Corners of boxes have no sphere here and are kept always.
+            !planes[c[1] as usize].open
+                && own.get(c[0] as usize).is_none_or(|p| {
+                    (xyz(p) - plane.point - planes[c[1] as usize].offset).dot(&plane.normal) < p[3] + near
+                })
+        };
+        merging.two.merge(plane_pairs, c.planes.iter().copied(), close);
+        pool.give_back(merging);
+        let reach = (near, approach);
+        patches::refresh(&walls, own, reach, &c.walls, &mut c.patches, &mut wall_pairs.pairs);
+        patches::refresh(surface, own, reach, &c.surface, &mut c.patches, &mut surface_pairs.pairs);
+    };
+    if *parallel {
+        let candidates = works.par_iter().map(|w| &w.candidates);
+        cross.par_iter_mut().zip(candidates).enumerate().with_max_len(1).for_each(between);
+        let candidates = works.par_iter_mut().map(|w| &mut w.candidates);
+        lists.par_iter_mut().zip(candidates).enumerate().with_max_len(1).for_each(within);
+    } else {
+        cross.iter_mut().zip(works.iter().map(|w| &w.candidates)).enumerate().for_each(between);
+        lists.iter_mut().zip(works.iter_mut().map(|w| &mut w.candidates)).enumerate().for_each(within);
+    }
+    // Lists are made once in some ten steps: not kept.
+    work.merging.clear();
+    link(model, state, work);
+}

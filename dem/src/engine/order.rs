@@ -1,0 +1,293 @@
+//! Bodies sorted anew (`place.rs`), at fixed numbers of steps: contacts and bonds go along with them.
+
+use super::bonds;
+use super::model::Model;
+use super::place::{self, Row};
+use super::state::{BlockLists, State};
+use crate::base::Vec3;
+use crate::bodies::block::{Block, Rotation};
+use crate::lanes::record::xyz;
+use crate::law::History;
+use crate::pairs::cross::{Cross, ImageName, ImagePair};
+use crate::pairs::patches::{PatchContact, PatchList, PatchPair};
+use std::collections::BTreeMap;
+
+/// Steps between two sortings.
+pub(crate) const EVERY: u64 = 5000;
+
+/// Who is there after a new order.
+pub(crate) struct Turnover {
+    /// Whether a body was there and stays. Shape `[bodies]`.
+    pub stays: Vec<bool>,
+    /// Bodies that come in; those that were there and do not stay may come in anew.
+    pub come: BTreeMap<u32, Row>,
+}
+
+impl Turnover {
+    /// All stay, none comes.
+    pub fn none(state: &State) -> Turnover {
+        Turnover { stays: (0..state.places.len()).map(|b| state.present(b)).collect(), come: BTreeMap::new() }
+    }
+
+    /// Where all those are that will be there [m]; zero for others. Shape `[bodies]`.
+    pub fn positions(&self, state: &State) -> Vec<Vec3> {
+        let of = |b: usize| match self.come.get(&(b as u32)) {
+            Some(row) => xyz(&row.centre),
+            None if self.stays[b] => state.position(b),
+            None => Vec3::zeros(),
+        };
+        (0..self.stays.len()).map(of).collect()
+    }
+}
+
+/// Sorts a state anew by the given positions; contacts go along with their bodies. Those of bodies that do not stay are
+/// forgotten.
+pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turnover: &Turnover) {
+    let Turnover { stays, come } = turnover;
+    let present = |b: usize| stays[b] || come.contains_key(&(b as u32));
+    let bonds = bonds::take(state);
+    let old_places = state.places.clone();
+    let old = Old {
+        blocks: std::mem::take(&mut state.blocks),
+        lists: std::mem::take(&mut state.lists),
+        cross: std::mem::take(&mut state.cross),
+    };
+    for bodies in place::blocks(model, positions, present) {
+        let block = place::block(model, bodies, |body| match come.get(&body) {
+            Some(row) => *row,
+            None => {
+                let [b, k] = old_places[body as usize];
+                old.row(model, body as usize, b as usize, k as usize)
+            }
+        });
+        let (lists, cross) = place::lists(model, &block);
+        state.blocks.push(block);
+        state.lists.push(lists);
+        state.cross.push(cross);
+    }
+    state.number(model);
+    bonds::put(model, state, bonds);
+
+    let names = Names::new(state, model, &old, stays);
+    old.pairs(&names, state);
+    old.images(&names, state);
+    old.boxes(&names, state);
+    old.walls(&names, state);
+    for lists in &mut state.lists {
+        lists.pairs.sort();
+        lists.planes.sort();
+        for list in [&mut lists.walls, &mut lists.surface] {
+            list.pairs.sort_unstable_by_key(|p| (p.i, p.patch));
+            list.live.sort_unstable_by_key(|p| (p.i, p.patch));
+        }
+    }
+    for cross in &mut state.cross {
+        cross.spheres.sort();
+        cross.boxes.sort();
+        cross.images.sort_unstable_by_key(|p| p.name);
+    }
+    state.stale = true;
+}
+
+/// What the state was before.
+struct Old {
+    blocks: Vec<Block>,
+    lists: Vec<BlockLists>,
+    cross: Vec<Cross>,
+}
+
+/// Where spheres were and are.
+struct Names<'a> {
+    /// Of each old block: body and member of each sphere.
+    old: Vec<Vec<[u32; 2]>>,
+    stays: &'a [bool],
+    /// Block and place of each body now, and its first sphere there.
+    places: Vec<[u32; 2]>,
+    first: Vec<u32>,
+}
+
+impl<'a> Names<'a> {
+    fn new(state: &State, model: &Model, old: &Old, stays: &'a [bool]) -> Names<'a> {
+        let members = |b: u32| model.member_count(b as usize);
+        let spheres = |block: &Block| -> Vec<[u32; 2]> {
+            block.bodies.iter().flat_map(|&b| (0..members(b)).map(move |m| [b, m])).collect()
+        };
+        let mut first = vec![0_u32; stays.len()];
+        for block in &state.blocks {
+            let mut next = 0;
+            for &b in &block.bodies {
+                first[b as usize] = next;
+                next += members(b);
+            }
+        }
+        let old = old.blocks.iter().map(spheres).collect();
+        Names { old, stays, places: state.places.clone(), first }
+    }
+
+    /// Block and number of an old block's sphere now; `None` where its body does not stay.
+    fn sphere(&self, block: usize, sphere: u32) -> Option<(u32, u32)> {
+        let [body, member] = self.old[block][sphere as usize].map(|n| n as usize);
+        self.stays[body].then(|| (self.places[body][0], self.first[body] + member as u32))
+    }
+}
+
+impl Old {
+    /// A body as it was, from its old block.
+    fn row(&self, model: &Model, body: usize, b: usize, k: usize) -> Row {
+        let from = &self.blocks[b];
+        // A single sphere among its like has no orientation of its own.
+        let unturned = || Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
+        Row {
+            centre: from.centre[k],
+            velocity: from.velocity[k],
+            spin: from.spin[k],
+            rotation: from.rotation.get(k).copied().unwrap_or_else(unturned),
+        }
+    }
+
+    fn pairs(&self, names: &Names<'_>, state: &mut State) {
+        let mut file = |a: Option<(u32, u32)>, b: Option<(u32, u32)>, history: History| {
+            let (Some(a), Some(b)) = (a, b) else { return };
+            // The spring is that of the first against the second.
+            let turned = history.turned();
+            let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
+            if a.0 == b.0 {
+                state.lists[a.0 as usize].pairs.push([a.1, b.1], &history);
+            } else {
+                state.cross[a.0 as usize].spheres.push([a.1, b.0, b.1], &history);
+            }
+        };
+        for (b, lists) in self.lists.iter().enumerate() {
+            for ([i, j], history) in lists.pairs.iter() {
+                file(names.sphere(b, i), names.sphere(b, j), history);
+            }
+        }
+        for (b, cross) in self.cross.iter().enumerate() {
+            for ([i, block, j], history) in cross.spheres.iter() {
+                file(names.sphere(b, i), names.sphere(block as usize, j), history);
+            }
+        }
+    }
+
+    fn images(&self, names: &Names<'_>, state: &mut State) {
+        for (b, cross) in self.cross.iter().enumerate() {
+            for &ImagePair { name, history } in &cross.images {
+                let (x, y) = (names.sphere(b, name.i), names.sphere(name.block as usize, name.j));
+                let (Some(x), Some(y)) = (x, y) else { continue };
+                let turned = (name.shift.map(|s| -s), history.turned());
+                let (x, y, (shift, history)) =
+                    if x <= y { (x, y, (name.shift, history)) } else { (y, x, turned) };
+                let name = ImageName { i: x.1, block: y.0, j: y.1, shift };
+                state.cross[x.0 as usize].images.push(ImagePair { name, history });
+            }
+        }
+    }
+
+    fn boxes(&self, names: &Names<'_>, state: &mut State) {
+        for (b, cross) in self.cross.iter().enumerate() {
+            for ([i, from, j], history) in cross.boxes.iter() {
+                let Some((block, i)) = names.sphere(b, i) else { continue };
+                let body = self.blocks[from as usize].bodies[j as usize];
+                let [box_block, j] = names.places[body as usize];
+                state.cross[block as usize].boxes.push([i, box_block, j], &history);
+            }
+        }
+    }
+
+    fn walls(&self, names: &Names<'_>, state: &mut State) {
+        let last = state.blocks.len() as u32 - 1;
+        for (b, lists) in self.lists.iter().enumerate() {
+            for ([i, plane], history) in lists.planes.iter() {
+                // A block of boxes keeps its corners: boxes never change places among themselves.
+                let corner = names.old[b].len() <= i as usize;
+                let place = if corner { Some((last, i)) } else { names.sphere(b, i) };
+                let Some((block, i)) = place else { continue };
+                state.lists[block as usize].planes.push([i, plane], &history);
+            }
+            let mut carry = |from: &PatchList, pick: fn(&mut BlockLists) -> &mut PatchList| {
+                for p in &from.live {
+                    let Some((block, i)) = names.sphere(b, p.i) else { continue };
+                    pick(&mut state.lists[block as usize]).live.push(PatchContact { i, ..*p });
+                }
+                for p in &from.pairs {
+                    let Some((block, i)) = names.sphere(b, p.i) else { continue };
+                    pick(&mut state.lists[block as usize]).pairs.push(PatchPair { i, ..*p });
+                }
+            };
+            carry(&lists.walls, |l| &mut l.walls);
+            carry(&lists.surface, |l| &mut l.surface);
+        }
+    }
+}
+
+impl State {
+    /// Puts the bodies into blocks of present neighbours and carries the contacts along. Done every [`EVERY`] steps: by
+    /// count, so that a restart does not change when.
+    pub(crate) fn reorder(&mut self, model: &Model) {
+        if let Some(periodic) = &model.periodic {
+            super::periodic::wrap(periodic, model, self);
+        }
+        let all = Turnover::none(self);
+        let positions = all.positions(self);
+        reorder(self, model, &positions, &all);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::error::Partner;
+    use crate::bodies::input::BodyInput;
+    use crate::engine::work::Work;
+    use crate::measure;
+    use crate::spatial::surface::NoSurface;
+    use crate::testing::{SOFT, dumbbells, push, shaft};
+
+    /// Every contact keeps its force when the bodies are sorted anew, whichever of its two bodies comes first.
+    #[test]
+    fn contacts_survive_a_new_order() {
+        let mut input = dumbbells(SOFT, [0.09, 0.09, 0.01]);
+        input.planes = shaft(0.2, &[Vec3::x(), Vec3::y()]);
+        for k in 0..1500_usize {
+            let cell = Vec3::new((k % 7) as f64 + 0.5, (k / 7 % 7) as f64 + 0.5, (k / 49) as f64 + 0.6);
+            let (position, velocity) = (cell * 0.028, push(k) * 0.5);
+            input.bodies.push(BodyInput { shape: k % 2, position, velocity, ..BodyInput::default() });
+        }
+        let position = Vec3::new(0.1, 0.1, 0.9);
+        input.bodies.push(BodyInput { shape: 2, position, ..BodyInput::default() });
+        let model = Model::new(input).unwrap();
+        let mut state = State::new(&model);
+        let mut work = Work::new(&model, &state);
+        assert!(state.blocks.len() > 2);
+        while state.steps < 3 * EVERY {
+            crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
+        }
+        // A contact between two bodies as seen by the one with the lower number.
+        let forces = |state: &State| {
+            let mut swapped = 0;
+            let mut list: Vec<_> = measure::contacts(&model, state)
+                .iter()
+                .map(|c| match c.b {
+                    Partner::Body(b) if b < c.a => {
+                        swapped += 1;
+                        ((b, c.a, 0), -c.force)
+                    }
+                    Partner::Body(b) => ((c.a, b, 0), c.force),
+                    Partner::Plane(p) => ((c.a, 0, p + 1), c.force),
+                    _ => ((c.a, 0, 0), c.force),
+                })
+                .collect();
+            list.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.norm().total_cmp(&y.1.norm())));
+            (list, swapped)
+        };
+        let (before, first) = forces(&state);
+        state.reorder(&model);
+        let (after, second) = forces(&state);
+        assert!(before.len() > 200 && first != second, "{} {first} {second}", before.len());
+        assert_eq!(before.len(), after.len());
+        for (x, y) in before.iter().zip(&after) {
+            assert_eq!(x.0, y.0);
+            assert!((x.1 - y.1).norm() < 1e-9 * (1.0 + x.1.norm()), "{x:?} {y:?}");
+        }
+    }
+}

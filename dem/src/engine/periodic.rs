@@ -1,0 +1,86 @@
+//! Periodic axes (`spatial/periodic.rs`): bodies put back into the box.
+
+use super::model::Model;
+use super::state::State;
+use crate::base::Vec3;
+use crate::lanes::record::{set_xyz, xyz};
+use crate::pairs::cross::{ImageName, ImagePair};
+use crate::spatial::periodic::{NONE, Periodic, Turns};
+
+/// Puts all bodies back into the box. Pairs whose partners go different ways become image pairs, or cease to be.
+pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
+    let mut moved = false;
+    let mut turns: Vec<Vec<Turns>> = Vec::with_capacity(state.blocks.len());
+    for block in &mut state.blocks {
+        let mut own = Vec::new();
+        for (k, &body) in block.bodies.iter().enumerate() {
+            let t = periodic.turns(&xyz(&block.centre[k]));
+            own.extend((0..model.member_count(body as usize)).map(|_| t));
+            if t == NONE {
+                continue;
+            }
+            moved = true;
+            let (way, mass) = (periodic.way(&t), model.mass(body as usize));
+            let back = xyz(&block.centre[k]) - way;
+            set_xyz(&mut block.centre[k], &back);
+            state.ledger.periodic.angular -= way.cross(&(xyz(&block.velocity[k]) * mass));
+            state.ledger.work_periodic += mass * model.gravity.dot(&way);
+        }
+        turns.push(own);
+    }
+    if !moved {
+        return;
+    }
+    for b in 0..state.blocks.len() {
+        let shift = |i: u32, block: u32, j: u32, before: &Turns| -> Turns {
+            let (ti, tj) = (&turns[b][i as usize], &turns[block as usize][j as usize]);
+            std::array::from_fn(|d| before[d] + tj[d] - ti[d])
+        };
+        let own = b as u32;
+        let (pairs, cross) = (&mut state.lists[b].pairs, &mut state.cross[b]);
+        let mut all: Vec<ImagePair> = Vec::new();
+        let mut add = |i, block, j, before: &Turns, history| {
+            all.push(ImagePair {
+                name: ImageName { i, block, j, shift: shift(i, block, j, before) },
+                history,
+            });
+        };
+        pairs.iter().for_each(|([i, j], history)| add(i, own, j, &NONE, history));
+        cross.spheres.iter().for_each(|([i, block, j], history)| add(i, block, j, &NONE, history));
+        cross.images.iter().for_each(|p| add(p.name.i, p.name.block, p.name.j, &p.name.shift, p.history));
+        pairs.clear();
+        cross.spheres.clear();
+        cross.images.clear();
+        all.sort_unstable_by_key(|p| p.name);
+        for pair in all {
+            let ImageName { i, block, j, shift } = pair.name;
+            if shift != NONE {
+                cross.images.push(pair);
+            } else if block == own {
+                pairs.push([i, j], &pair.history);
+            } else {
+                cross.spheres.push([i, block, j], &pair.history);
+            }
+        }
+    }
+}
+
+impl Model {
+    /// A point put back into the box along the periodic axes, lower borders included, upper ones not [m]; the point
+    /// itself without. Positions of a [`State`] may have run on beyond the borders.
+    pub fn wrap(&self, x: &Vec3) -> Vec3 {
+        self.periodic.map_or(*x, |p| p.wrap(x))
+    }
+
+    /// Lower and upper border [m] of each axis that is periodic.
+    pub fn periodic(&self) -> [Option<[f64; 2]>; 3] {
+        std::array::from_fn(|d| {
+            let p = self.periodic.filter(|p| p.length[d] > 0.0)?;
+            Some([p.low[d], p.low[d] + p.length[d]])
+        })
+    }
+}
+
+#[cfg(test)]
+#[path = "periodic_tests.rs"]
+mod tests;

@@ -1,0 +1,36 @@
+//! Contacts of a state that has made no step.
+
+use super::bonds;
+use super::model::Model;
+use super::state::{BlockLists, State};
+use super::step::step;
+use super::work::Work;
+use crate::base::error::StepError;
+use crate::spatial::surface::Surface;
+
+/// Finds the contacts of a state that has made no step yet, so that measures see them from the start. Nothing moves,
+/// and the ledger stays as it is.
+///
+/// # Errors
+/// As [`step`].
+pub fn find_contacts<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+) -> Result<(), StepError> {
+    let mut probe = state.clone();
+    step(model, &mut probe, work, surface, &[])?;
+    for (lists, seen) in state.lists.iter_mut().zip(probe.lists) {
+        *lists = BlockLists { bonds: std::mem::take(&mut lists.bonds), ..seen };
+    }
+    state.cross = probe.cross;
+    for (wall, seen) in state.walls.iter_mut().zip(probe.walls) {
+        (wall.force, wall.moment, wall.feet) = (seen.force, seen.moment, seen.feet);
+    }
+    (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
+    (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    // The probe may have broken bonds.
+    bonds::arrange(model, state, work);
+    Ok(())
+}

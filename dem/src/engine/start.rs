@@ -1,0 +1,66 @@
+//! The state that a run starts from.
+
+use super::bonds;
+use super::model::Model;
+use super::place::{self, Row};
+use super::state::State;
+use crate::base::Vec3;
+use crate::base::ledger::Ledger;
+use crate::bodies::block::Rotation;
+use crate::bond::BondState;
+use crate::shape::plane::PlaneMotion;
+
+/// The leapfrog's velocity half a step before a moment at which the body moves at `velocity` [m/s], free to fall.
+pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3) -> Vec3 {
+    let fixed = model.body(body).fixed;
+    let kick = Vec3::from_fn(|d, _| if fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
+    velocity - kick * (0.5 * model.dt())
+}
+
+impl State {
+    /// The start: positions and velocities as given, at time 0.
+    ///
+    /// The leapfrog's velocities at −dt/2 are the given ones less half a step of gravity. A contact or applied
+    /// force already there at time 0 acts with its first full kick, a shift of half a step in time.
+    pub fn new(model: &Model) -> State {
+        let plane =
+            |p: &crate::Plane| PlaneMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false };
+        let mut state = State {
+            time: 0.0,
+            steps: 0,
+            ledger: Ledger::default(),
+            places: Vec::new(),
+            blocks: Vec::new(),
+            lists: Vec::new(),
+            cross: Vec::new(),
+            bonds: BondState::default(),
+            planes: model.planes.iter().map(plane).collect(),
+            walls: model.walls.start(&model.gravity, model.dt()),
+            near: 0.1 * model.skin,
+            drift: 0.0,
+            wall_drift: 0.0,
+            lasted: 0,
+            stale: true,
+        };
+        let positions = model.bodies.positions().expect("a model that has not given its start up");
+        for bodies in place::blocks(model, positions, |b| !model.bodies.absent(b)) {
+            let block = place::block(model, bodies, |body| {
+                let body = body as usize;
+                let rotation =
+                    Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
+                Row::at_rest(model, body, &positions[body], rotation)
+            });
+            let (lists, cross) = place::lists(model, &block);
+            state.blocks.push(block);
+            state.lists.push(lists);
+            state.cross.push(cross);
+        }
+        state.number(model);
+        bonds::start(model, &mut state);
+        for k in (0..model.bodies.len()).filter(|&k| !model.bodies.absent(k)) {
+            let velocity = half_a_step_ago(model, k, &model.bodies.velocity(k));
+            state.set_velocity(model, k, velocity, model.bodies.spin(k));
+        }
+        state
+    }
+}

@@ -1,0 +1,246 @@
+//! One step of the grains: search when due, contacts, integration.
+
+use super::bonds;
+use super::input::AppliedForce;
+use super::model::Model;
+use super::state::State;
+use super::threads::{self, Bodies, Lists, One};
+use super::work::Work;
+use super::{applied, neighbours, order, walls};
+use crate::base::Vec3;
+use crate::base::error::{Partner, StepError};
+use crate::base::failure::Failure;
+use crate::base::ledger::Ledger;
+use crate::bodies::sums::Sums;
+use crate::bond;
+use crate::bond::pass::{BondWork, Parts};
+use crate::contact::patches::{self, Against, WallSum};
+use crate::contact::planes::PlaneNow;
+use crate::contact::prefetch::Prefetch;
+use crate::contact::single::Setting;
+use crate::contact::{boxes, dispatch, images, planes};
+use crate::integrate::leapfrog::{self, Drive};
+use crate::pairs::cross::{Cross, CrossForces, Slots};
+use crate::shape::plane::PlaneMotion;
+use crate::spatial::surface::Surface;
+use crate::wall::set::PlacedWalls;
+
+pub use super::probe::find_contacts;
+
+/// Advances `state` by one step of [`Model::dt`].
+///
+/// `surface` is a surface that another crate owns ([`NoSurface`](crate::spatial::surface::NoSurface) for none), as it is at
+/// the state's time; its contacts are then in [`Work::surface_contacts`]. `applied` forces act during this step.
+///
+/// The result has the same bits whatever the number of threads, and whether or not `work` is new. Large scenes share
+/// their blocks among the threads of rayon's current pool; calling from inside a pool (`ThreadPool::install`) spares
+/// two hand-overs per step.
+///
+/// # Errors
+/// [`StepError`] names the body, its partner and the time when an overlap or a speed leaves the range in which the
+/// method has a meaning. The state is then not fit to go on from.
+pub fn step<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+    applied: &[AppliedForce],
+) -> Result<(), StepError> {
+    if state.places.len() != model.bodies.len() || work.blocks.len() != state.blocks.len() {
+        return Err(StepError::Mismatch { expected: model.bodies.len(), found: state.places.len() });
+    }
+    if !surface.is_empty() && model.surface_material.is_none() {
+        return Err(StepError::SurfaceMaterial);
+    }
+    if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
+        state.reorder(model);
+        work.arrange(model, state);
+    }
+    applied::place(model, state, applied, &mut work.applied)?;
+    neighbours::update(model, state, work, surface);
+    if !model.bonds.is_empty() {
+        let parts = bonds::parts(model, state.bonds.fresh);
+        let State { blocks, bonds, .. } = &mut *state;
+        bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
+    }
+    planes::now(&model.planes, &state.planes, &mut work.planes);
+    contacts_and_motion(model, state, work, surface);
+    collect(model, state, work, surface.max_speed())
+}
+
+/// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
+fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+    let (dt, parallel) = (model.dt(), work.parallel);
+    let setting = Setting { laws: &model.laws, simd: work.simd, dt };
+    let material = work.material;
+    // Contacts between blocks: they read their own block and later ones, and write slots.
+    let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
+        (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
+        dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
+        if !pairs.boxes.is_empty() {
+            boxes::boxes(setting.laws, blocks, members, b, pairs, out, dt);
+        }
+        if let Some(periodic) = &model.periodic {
+            out.couple = Vec3::zeros();
+            images::images(periodic, setting.laws, blocks, members, b, pairs, out, dt);
+        }
+    };
+    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, .. } = state;
+    let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
+    let shared = Shared {
+        model,
+        setting,
+        surface,
+        planes: (&work.planes, work.plane_material, planes),
+        walls: model.walls.placed(walls),
+        bonds: (bonded, bonds::parts(model, bonds.fresh)),
+        drive: Drive {
+            gravity: model.gravity,
+            damping: model.damping,
+            bound: 0.5 * model.radii.0 / dt,
+            bodies: &model.bodies,
+            dt,
+        },
+        gone: *drift + *wall_drift,
+    };
+    let (applied, keep) = (&**applied, work.keep_forces);
+    let within = |b: usize, mut one: One<'_>, slots: Slots<'_>, next: Prefetch<'_>| {
+        one.work.tally.sums = buffers.take();
+        shared.forces(b, &mut one, slots, next);
+        let One { block, members, work, .. } = one;
+        let applied = applied::of_block(applied, b);
+        leapfrog::advance(setting.simd, &shared.drive, block, members, &mut work.tally, applied);
+        if !keep {
+            buffers.give_back(std::mem::take(&mut work.tally.sums));
+        }
+    };
+    let threads = if parallel { rayon::current_num_threads() } else { 1 };
+    let lists = Lists { blocks, members, lists, works, cross, slots };
+    threads::through(threads, lists, beyond, between, within);
+}
+
+/// What all blocks share in a step.
+struct Shared<'a, S> {
+    model: &'a Model,
+    setting: Setting<'a>,
+    surface: &'a S,
+    /// The planes where they are, their material where they have only one, and their motion.
+    planes: (&'a [PlaneNow], Option<u32>, &'a [PlaneMotion]),
+    walls: PlacedWalls<'a>,
+    bonds: (&'a BondWork, Parts<'a>),
+    drive: Drive<'a>,
+    /// Bound on the way that anything has come towards anything since the near list was made [m].
+    gone: f64,
+}
+
+impl<S: Surface> Shared<'_, S> {
+    /// All forces on the bodies of a block; what other blocks left for it is in `slots`.
+    fn forces(&self, b: usize, one: &mut One<'_>, slots: Slots<'_>, next: Prefetch<'_>) {
+        let (model, setting) = (self.model, self.setting);
+        let One { block, members, lists, work } = one;
+        let (block, members) = (&**block, &**members);
+        let tally = &mut work.tally;
+        tally.ledger = Ledger::default();
+        tally.failure = None;
+        work.patches.contacts.clear();
+        work.patches.wall_sums.clear();
+        tally.sums.clear();
+        tally.sums.resize(block.bodies.len(), Sums::default());
+        dispatch::gather(setting.simd, &work.shares, &mut tally.sums, slots);
+        if !model.bonds.is_empty() {
+            let (shared, parts) = &self.bonds;
+            bond::pass::within(parts, b, block, &mut lists.bonds, &mut tally.sums, &mut work.bonds, shared);
+        }
+        if !lists.pairs.is_empty() {
+            dispatch::interior(setting, (block, members), &mut lists.pairs, tally, next);
+        }
+        let (planes, material, motions) = self.planes;
+        if members.boxes() {
+            let planes = (&model.planes[..], motions);
+            boxes::corners(setting.laws, planes, block, members, &mut lists.planes, tally, setting.dt);
+        } else if !lists.planes.is_empty() {
+            dispatch::planes(setting, planes, material, (block, members), &mut lists.planes, tally);
+        }
+        if !lists.walls.is_empty() {
+            work.patches.wall_sums.resize(self.walls.groups(), WallSum::default());
+            let against = Against {
+                surface: &self.walls,
+                material: |patch| model.walls.material(patch),
+                partner: |patch| model.walls.partner(patch),
+                external: false,
+                gone: self.gone,
+            };
+            let own = (block, members);
+            patches::contacts(&setting, &against, &mut lists.walls, own, tally, &mut work.patches);
+        }
+        if !lists.surface.is_empty() {
+            let against = Against {
+                surface: self.surface,
+                material: |patch| model.patch_material(patch) as u32,
+                partner: Partner::Patch,
+                external: true,
+                gone: self.gone,
+            };
+            let own = (block, members);
+            let done =
+                patches::contacts(&setting, &against, &mut lists.surface, own, tally, &mut work.patches);
+            tally.ledger.work_surface += done.work;
+            tally.ledger.surface += &done.impulse;
+        }
+    }
+}
+
+/// Adds up what the blocks report, in block order, and moves on in time.
+fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64) -> Result<(), StepError> {
+    let dt = model.dt();
+    let mut fastest = 0.0_f64;
+    let mut failure = None;
+    work.surface_contacts.clear();
+    let mut sum = Ledger::default();
+    for (w, cross) in work.blocks.iter().zip(&work.cross) {
+        let tally = &w.tally;
+        sum += &tally.ledger;
+        sum.dissipated_dashpot += cross.dashpot;
+        sum.dissipated_friction += cross.friction;
+        sum.periodic.angular += cross.couple;
+        fastest = fastest.max(tally.fastest);
+        failure = failure.or(cross.failure).or(tally.failure);
+        work.surface_contacts.extend_from_slice(&w.patches.contacts);
+    }
+    let (wall_speed, wall_failure) = walls::advance(model, state, work, &mut sum);
+    failure = failure.or(wall_failure);
+    state.ledger += &sum;
+    if !model.bonds.is_empty() {
+        failure = failure.or(bonds::settle(model, state, work));
+    }
+    let time = state.time;
+    let mut wall_speed = wall_speed.max(surface_speed);
+    for wall in &mut state.planes {
+        wall.offset += wall.velocity * dt;
+        wall_speed = wall_speed.max(wall.velocity.norm());
+    }
+    state.drift += fastest * dt;
+    state.wall_drift += wall_speed * dt;
+    state.lasted = state.lasted.saturating_add(1);
+    state.steps += 1;
+    state.time = time + dt;
+    match failure {
+        None => Ok(()),
+        Some(Failure::Overlap { body, partner, overlap, bound }) => {
+            Err(StepError::Overlap { time, body: body as usize, partner, overlap, bound })
+        }
+        Some(Failure::Speed { body, speed, bound }) => {
+            Err(StepError::Speed { time, body: body as usize, speed, bound })
+        }
+        Some(Failure::Wall { wall, speed, bound }) => {
+            Err(StepError::WallSpeed { time, wall: wall as usize, speed, bound })
+        }
+        Some(Failure::Meeting { walls }) => {
+            Err(StepError::WallsMeet { time, walls: walls.map(|w| w as usize) })
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "step_tests.rs"]
+mod tests;

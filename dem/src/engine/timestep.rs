@@ -1,0 +1,280 @@
+//! Stability limit of the time step.
+//!
+//! A body of mass m held by contacts of stiffness K on all sides, its neighbours moving against it, swings at most
+//! at ω² = s K (1/m + r²/I), where s counts the contacts that act in one direction (twice, for the neighbours'
+//! motion: Gershgorin's bound) and r²/I is for a contact off the centre. With the dashpot's velocity extrapolated
+//! to the full step (see `contact/linear.rs`) the leapfrog is stable for
+//!
+//! (ω dt)² + 8 ζ' ω dt < 4,  so  ω dt < √(4 + 16 ζ'²) − 4 ζ',
+//!
+//! ζ' = ζ √(s/2) the damping ratio of the body in all its contacts. (At the limit the fastest root of
+//! z³ + (Ω² + 3b/2 − 2) z² + (1 − 2b) z + b/2, b = 2ζ'Ω, is −1.)
+//!
+//! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
+//! it with more than one member) or twice as many as touch a plane at once where that is more (needles and plates
+//! made of many), and for a box twice as many as neighbours of the smallest bounding radius find
+//! room on its largest side, two contacts each. Contacts on a clump may all lie far out, so its r² is the largest;
+//! those on the side of a box are spread over it, so its r² is the mean over the side.
+//! A rolling or twisting spring turns the body as the tangential spring does, with a lever no longer than the sphere's
+//! radius: it counts as a second tangential spring.
+//!
+//! Contacts after Hertz stiffen with the overlap, S = 2 E* √(R d), so the limit holds up to an overlap that must be
+//! estimated. Taken is the larger of two, as a fraction of the radius, for the softest contact and the densest body:
+//!
+//! * impact at speed v: d/R = (5π/4 · ρ v²/E*)^(2/5), the overlap of a sphere that meets a plane
+//!   (Johnson, Contact Mechanics, 1985, eq. 11.24, with m = 4/3 π ρ R³). v is [`ModelInput::impact_speed`], or else
+//!   the largest of the starting speeds of bodies, planes and triangle surfaces, added to that of a fall through the
+//!   height of all bodies, √(2 g H);
+//! * rest below all others: a column of height H presses with F = 4 R² ρ g H on a sphere,
+//!   d/R = (3 ρ g H/E*)^(2/3).
+//!
+//! The limit falls only with d^(-1/4): a load that presses 16 times as deep halves it, and the fraction of the limit
+//! that is taken (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
+//! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
+//!
+//! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
+//! grows faster than their number. Sides of a clump that are flat, yet not across a principal axis, are not looked for.
+
+use super::input::ModelInput;
+use crate::base::Vec3;
+use crate::bodies::table::{Bodies, Body, Kind};
+use crate::bond;
+use crate::law::Laws;
+use crate::shape::Shape;
+use crate::shape::clump::Clump;
+use crate::shape::plane::Plane;
+use crate::wall::set::Walls;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// The limit and its cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DtLimit {
+    /// Largest stable step [s]; 1e-4 s when no body can move.
+    pub dt: f64,
+    /// The body that sets it.
+    pub body: usize,
+    /// The material index of the partner that is stiffest for it.
+    pub partner: usize,
+    /// Stiffness of that contact [N/m].
+    pub stiffness: f64,
+    /// Effective mass of the body at its outermost contact [kg].
+    pub mass: f64,
+    /// The rigid body of this wall sets it, in place of `body`.
+    pub wall: Option<usize>,
+    /// Square of the highest frequency that the body's bonds alone could give it [1/s²].
+    pub bonds: f64,
+}
+
+impl fmt::Display for DtLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(wall) = self.wall {
+            return write!(
+                f,
+                "the rigid body of wall {wall} in contact with material {} (stiffness {:.3e} N/m)",
+                self.partner, self.stiffness
+            );
+        }
+        write!(
+            f,
+            "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
+            self.body, self.mass, self.partner, self.stiffness
+        )?;
+        if self.bonds > 0.0 {
+            write!(f, " and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt())?;
+        }
+        Ok(())
+    }
+}
+
+/// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
+pub(crate) fn limit(
+    bodies: &Bodies,
+    input: &ModelInput,
+    laws: &Laws,
+    expected: f64,
+    bonds: &[bond::Constants],
+    r_min: f64,
+) -> DtLimit {
+    let bonded = bond::stiffest(bonds, bodies, &input.bodies);
+    // A rolling spring counts as one more tangential spring on a lever.
+    let levers = if laws.rolls() { 2.0 } else { 1.0 };
+    let partners = partners(bodies, input);
+    let r_min = bodies
+        .iter()
+        .filter(|b| b.kind != Kind::Box)
+        .map(|b| b.radius)
+        .fold(f64::INFINITY, f64::min)
+        .clamp(r_min, f64::MAX);
+    let mut least =
+        DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, bonds: 0.0, wall: None };
+    let mut found = false;
+    for (k, body) in bodies.iter().enumerate() {
+        if body.fixed == 0b11_1111 {
+            continue;
+        }
+        let shape = &input.shapes[body.shape];
+        let softness = compliance(&body, shape);
+        let sides = match shape {
+            Shape::Sphere { .. } => 12.0,
+            Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
+            Shape::Box { half } => {
+                let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
+                4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
+            }
+        };
+        for &partner in &partners {
+            let (a, b) = (body.material, partner as u32);
+            // The stiffest contact has the largest circle: that of the body's own radius on a plane.
+            let stiffness = laws.stiffness(a, b, expected * body.radius, body.radius);
+            let tangential = stiffness * laws.tangential_ratio(a, b);
+            if !stiffness.is_finite() {
+                continue;
+            }
+            // A sphere's tangential spring turns it as well: 1/m + r²/I = 3.5/m.
+            let own = if body.kind == Kind::Sphere {
+                stiffness.max((1.0 + 2.5 * levers) * tangential) / body.mass
+            } else {
+                stiffness.max(tangential) * softness
+                    + (levers - 1.0) * tangential * (softness - 1.0 / body.mass)
+            };
+            let zeta = laws.damping_ratio(a, b) * f64::sqrt(0.5 * sides);
+            let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
+            let alone = bound / (sides * own).sqrt();
+            let [bond_stiffness, bond_damping] = bonded.get(k).copied().unwrap_or_default();
+            let dt = if bond_stiffness > 0.0 {
+                // Contacts and bonds together: (λ₁ + λ₂) dt² + (8 ζ' √λ₁ + 2 γ) dt = 4.
+                let all = sides * own + bond_stiffness;
+                let damping = 4.0 * zeta * (sides * own).sqrt() + bond_damping;
+                ((damping * damping + 4.0 * all).sqrt() - damping) / all
+            } else {
+                alone
+            };
+            if !found || dt < least.dt {
+                found = true;
+                least = DtLimit {
+                    dt,
+                    body: k,
+                    partner,
+                    stiffness,
+                    mass: stiffness / own,
+                    bonds: bond_stiffness,
+                    wall: None,
+                };
+            }
+        }
+    }
+    least
+}
+
+/// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.
+pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
+    let Laws::Hertz(table) = laws else { return 0.0 };
+    let gravity = input.gravity.norm();
+    let down = if gravity > 0.0 { input.gravity / gravity } else { Vec3::z() };
+    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut speed, mut density) = (0.0_f64, 0.0_f64);
+    for (b, start) in bodies.iter().zip(&input.bodies) {
+        let depth = start.position.dot(&down);
+        range = (range.0.min(depth - b.radius), range.1.max(depth + b.radius));
+        speed = speed.max(start.velocity.norm() + start.spin.norm() * b.radius);
+        density = density.max(input.materials[b.material as usize].density);
+    }
+    let height = (range.1 - range.0).max(0.0);
+    let walls = input.planes.iter().map(|p| p.velocity.norm());
+    let walls = walls.chain(input.triangles.iter().map(|t| t.velocity.norm())).fold(0.0, f64::max);
+    let speed = input.impact_speed.unwrap_or(speed.max(walls) + (2.0 * gravity * height).sqrt());
+    let count = input.materials.len() as u32;
+    let moduli =
+        (0..count).flat_map(|a| (a..count).map(move |b| (a, b))).map(|(a, b)| table.get(a, b).modulus);
+    let modulus = moduli.filter(|e| e.is_finite()).fold(f64::INFINITY, f64::min);
+    let impact = (1.25 * std::f64::consts::PI * density * speed * speed / modulus).powf(0.4);
+    let rest = (3.0 * density * gravity * height / modulus).powf(2.0 / 3.0);
+    // A floor for bodies at rest without weight: no spring may be without stiffness.
+    impact.max(rest).clamp(1e-9, 1.0)
+}
+
+/// Materials that something to touch is made of, ascending.
+fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
+    let mut used = vec![false; input.materials.len()];
+    bodies.iter().for_each(|b| used[b.material as usize] = true);
+    input.planes.iter().for_each(|p| used[p.material] = true);
+    input.triangles.iter().for_each(|t| used[t.material] = true);
+    input.walls.iter().for_each(|w| used[w.material] = true);
+    let surfaces = input.surface_material.into_iter().chain(input.other_surface.map(|(_, m)| m));
+    surfaces.for_each(|m| used[m] = true);
+    (0..used.len()).filter(|&m| used[m]).collect()
+}
+
+/// Number of members that a plane across a principal axis touches at once (to a tenth of the largest radius).
+fn flat(clump: &Clump) -> usize {
+    let slack = 0.1 * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max);
+    let touching = |axis: usize, sign: f64| {
+        let reach = |s: &([f64; 3], f64)| sign * s.0[axis] + s.1;
+        let furthest = clump.spheres.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+        clump.spheres.iter().filter(|s| reach(s) >= furthest - slack).count()
+    };
+    (0..3).map(|axis| touching(axis, 1.0).max(touching(axis, -1.0))).max().unwrap_or(0)
+}
+
+/// 1/m + max over the principal axes of (distance of contacts from the axis)²/I [1/kg].
+fn compliance(body: &Body, shape: &Shape) -> f64 {
+    let mut reach2 = [0.0_f64; 3];
+    match shape {
+        Shape::Sphere { .. } => {}
+        Shape::Clump(clump) => {
+            for (c, r) in &clump.spheres {
+                for k in 0..3 {
+                    let (p, q) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+                    reach2[k] = reach2[k].max((p.hypot(q) + r).powi(2));
+                }
+            }
+        }
+        Shape::Box { half } => {
+            for k in 0..3 {
+                let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
+                // Contacts spread over a side have a third of the squared half length along it, all of it across.
+                reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
+            }
+        }
+    }
+    let turn = (0..3).map(|k| reach2[k] * body.scale * body.scale / body.inertia[k]).fold(0.0, f64::max);
+    1.0 / body.mass + turn
+}
+
+/// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
+/// where a rigid body of triangles needs it. `radii` are those of the smallest and the largest sphere [m], `expected`
+/// the overlap expected over the radius.
+pub(crate) fn walls(
+    walls: &mut Walls,
+    limit: &mut DtLimit,
+    bodies: &Bodies,
+    planes: &[Plane],
+    laws: &Laws,
+    expected: f64,
+    radii: (f64, f64),
+) {
+    if walls.walls.is_empty() {
+        return;
+    }
+    let grains: BTreeSet<u32> = (0..bodies.len()).map(|b| bodies.get(b).material).collect();
+    let planes = planes.iter().map(|p| p.material as u32);
+    let all: BTreeSet<u32> = grains.iter().copied().chain(planes).collect();
+    for (k, wall) in walls.walls.iter_mut().enumerate() {
+        wall.damping = grains.iter().map(|&m| laws.damping_ratio(wall.material, m)).fold(0.0, f64::max);
+        let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
+        for &partner in &all {
+            let stiffness = laws.stiffness(wall.material, partner, expected * radii.1, radii.1);
+            if !stiffness.is_finite() {
+                continue;
+            }
+            let ratio = laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
+            let zeta = laws.damping_ratio(wall.material, partner);
+            let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
+            if dt < limit.dt {
+                let (partner, mass) = (partner as usize, body.mass);
+                *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds: 0.0, wall: Some(k) };
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! What walls do at the end of a step: they take the forces of the grains, book what they did, and move on.
+//!
+//! A wall with prescribed motion does work F·v̄ + M·ω̄ with the means of its velocities before and after the step: those
+//! of the bodies' half steps. The prescribed oscillation enters by the displacement, so that it does not drift.
+
+use super::model::Model;
+use super::state::State;
+use super::work::Work;
+use crate::base::Vec3;
+use crate::base::failure::Failure;
+use crate::base::ledger::Ledger;
+use crate::contact::patches::WallSum;
+use crate::shape::plane::PlaneMotion;
+use crate::wall::body::{self, Ground};
+use crate::wall::state::WallState;
+use nalgebra::UnitQuaternion;
+
+/// Moves all walls of patches by one step; returns the largest speed of any point of them, and the first failure.
+pub(crate) fn advance(
+    model: &Model,
+    state: &mut State,
+    work: &Work,
+    ledger: &mut Ledger,
+) -> (f64, Option<Failure>) {
+    let dt = model.dt();
+    let bound = 0.5 * model.radii.0 / dt;
+    let mut fastest = 0.0_f64;
+    let mut failure = None;
+    for (k, wall) in model.walls.walls.iter().enumerate() {
+        let mut sum = WallSum::default();
+        for w in &work.blocks {
+            if let Some(part) = w.patches.wall_sums.get(k) {
+                sum += part;
+            }
+        }
+        let own = &mut state.walls[k];
+        own.force = -sum.force;
+        own.moment = -sum.moment;
+        let speed = match &wall.body {
+            Some(b) => {
+                let ground = ground(model, &state.planes);
+                let (force, torque) = body::stand(&ground, b, wall.material, own, ledger);
+                let (force, torque) = (force + own.force, torque + own.moment);
+                b.advance(own, &force, &torque, &model.gravity, dt, ledger);
+                let speed = b.speed(own);
+                if (speed.is_nan() || speed > bound) && failure.is_none() {
+                    failure = Some(Failure::Wall { wall: k as u32, speed, bound });
+                }
+                speed
+            }
+            None => {
+                let centre = wall.centre + own.offset;
+                let mut speed = own.drive;
+                if let Some(servo) = wall.servo.as_ref().filter(|_| !own.open) {
+                    let impedance = sum.stiffness * dt + 2.0 * wall.damping * 2.0 * sum.damping;
+                    speed =
+                        servo.direction * servo.speed(state.time, sum.force.dot(&servo.direction), impedance);
+                }
+                let before = own.velocity;
+                own.steady += speed * dt;
+                let next = match &wall.motion.oscillation {
+                    Some(o) => {
+                        let next = own.steady + o.at(state.time + dt);
+                        own.velocity = (next - own.offset) / dt;
+                        next
+                    }
+                    None => {
+                        own.velocity = speed;
+                        own.steady
+                    }
+                };
+                own.offset = next;
+                let spin = wall.motion.angular_velocity;
+                if spin != Vec3::zeros() {
+                    own.orientation = UnitQuaternion::from_scaled_axis(spin * (state.time + dt));
+                    own.turned = true;
+                }
+                let mean = (before + own.velocity) * 0.5;
+                let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * dt;
+                if wall.servo.is_some() {
+                    ledger.work_servo += done;
+                } else {
+                    ledger.work_walls += done;
+                }
+                ledger.walls.add(&centre, &(sum.force * dt));
+                ledger.walls.angular += sum.moment * dt;
+                own.velocity.norm() + spin.norm() * wall.reach
+            }
+        };
+        fastest = fastest.max(speed);
+    }
+    (fastest, failure.or_else(|| meeting(model, state)))
+}
+
+/// Two triangle bodies whose bounds meet.
+fn meeting(model: &Model, state: &State) -> Option<Failure> {
+    let bodies =
+        || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(_, (w, _))| w.body.is_some());
+    for (i, (a, sa)) in bodies() {
+        for (j, (b, sb)) in bodies().skip_while(|(j, _)| *j <= i) {
+            let (Some(p), Some(q)) = (&a.body, &b.body) else { continue };
+            let between = p.centre + sa.offset - q.centre - sb.offset;
+            if between.norm() > p.reach + q.reach {
+                continue;
+            }
+            let bounds =
+                |vertices: &[Vec3], f: &dyn Fn(&Vec3) -> Vec3| {
+                    vertices.iter().map(f).fold(
+                        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+                        |(lo, hi), v| (lo.inf(&v), hi.sup(&v)),
+                    )
+                };
+            let apart = |first: &body::Body, sf: &WallState, second: &body::Body, ss: &WallState| {
+                let own = bounds(&first.vertices, &|v| *v);
+                let other = bounds(&second.vertices, &|v| {
+                    sf.to_local(&first.centre, &ss.to_world(&second.centre, v))
+                });
+                (0..3).any(|d| own.0[d] > other.1[d] || own.1[d] < other.0[d])
+            };
+            if !apart(p, sa, q, sb) && !apart(q, sb, p, sa) {
+                return Some(Failure::Meeting { walls: [i as u32, j as u32] });
+            }
+        }
+    }
+    None
+}
+
+/// Bound on the way that any point of a wall has come since it was as in `before` [m].
+pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<f64>)]) -> f64 {
+    model
+        .walls
+        .walls
+        .iter()
+        .zip(&state.walls)
+        .zip(before)
+        .map(|((wall, now), (offset, orientation))| {
+            let angle =
+                if wall.reach > 0.0 && now.turned { now.orientation.angle_to(orientation) } else { 0.0 };
+            (now.offset - offset).norm() + angle * wall.reach
+        })
+        .fold(0.0, f64::max)
+}
+
+/// The planes that bodies of triangles stand on.
+pub(crate) fn ground<'a>(model: &'a Model, motions: &'a [PlaneMotion]) -> Ground<'a> {
+    Ground { laws: &model.laws, planes: &model.planes, motions, tip_radius: model.radii.0, dt: model.dt() }
+}

@@ -1,0 +1,47 @@
+//! Four numbers that are loaded as one.
+
+use crate::base::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Four numbers loaded as one; aligned, so that none lies across two lines of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+#[repr(C, align(32))]
+pub(crate) struct Record(pub [f64; 4]);
+
+impl Record {
+    /// A vector and a fourth number.
+    #[inline(always)]
+    pub fn of(v: &Vec3, last: f64) -> Record {
+        Record([v.x, v.y, v.z, last])
+    }
+}
+
+impl std::ops::Deref for Record {
+    type Target = [f64; 4];
+    #[inline(always)]
+    fn deref(&self) -> &[f64; 4] {
+        &self.0
+    }
+}
+
+impl std::ops::DerefMut for Record {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64; 4] {
+        &mut self.0
+    }
+}
+
+/// The first three numbers.
+#[inline(always)]
+pub(crate) fn xyz(record: &Record) -> Vec3 {
+    Vec3::new(record[0], record[1], record[2])
+}
+
+/// Sets the first three numbers.
+#[inline(always)]
+pub(crate) fn set_xyz(record: &mut Record, v: &Vec3) {
+    record[0] = v.x;
+    record[1] = v.y;
+    record[2] = v.z;
+}

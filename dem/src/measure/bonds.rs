@@ -1,0 +1,105 @@
+//! What can be read off bonds.
+
+use crate::base::Vec3;
+use crate::bodies::block::Block;
+use crate::bond::debonded;
+use crate::bond::kernel::{self, Motion, carry, half_step_energy, respond};
+use crate::bond::store::Entry;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::lanes::V3;
+use crate::lanes::record::Record;
+
+/// A bond as it is now, with the forces that the next step will find.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BondRecord {
+    /// Number of the bond in the model.
+    pub bond: usize,
+    /// First body.
+    pub a: usize,
+    /// Second body.
+    pub b: usize,
+    /// Point where the force acts [m].
+    pub point: Vec3,
+    /// Unit vector from b to a.
+    pub normal: Vec3,
+    /// Tension, positive when it pulls the bodies together [N], without the dashpot.
+    pub tension: f64,
+    /// Elastic shear force on a [N].
+    pub shear: Vec3,
+    /// Bending moment [N m].
+    pub bending: f64,
+    /// Twisting moment about the normal [N m].
+    pub twisting: f64,
+    /// Whole force on a, dashpots included [N].
+    pub force: Vec3,
+    /// Share of the strength used up [-].
+    pub share: f64,
+}
+
+fn motion(block: &Block, k: usize) -> Motion<f64> {
+    let vector = |v: &Record| V3::new(v[0], v[1], v[2]);
+    Motion { x: vector(&block.centre[k]), v: vector(&block.velocity[k]), w: vector(&block.spin[k]) }
+}
+
+fn ends(state: &State, b: u32, e: &Entry) -> (Motion<f64>, Motion<f64>) {
+    (motion(&state.blocks[b as usize], e.i as usize), motion(&state.blocks[e.block as usize], e.j as usize))
+}
+
+/// Elastic energy of all bonds at the last half step [J].
+pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
+    let dt = model.dt();
+    // Before the first step the memory is that of the start itself.
+    let since = if state.bonds.fresh { -0.5 * dt } else { 0.5 * dt };
+    let mut sum = 0.0;
+    state.each_bond(|number, (b, e)| {
+        let (p, q) = ends(state, b, &e);
+        sum += half_step_energy(&model.bonds[number as usize].values, &p, &q, &e.memory, dt, since);
+    });
+    sum
+}
+
+/// All unbroken bonds, block by block.
+pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
+    let dt = if state.bonds.fresh { 0.0 } else { model.dt() };
+    let mut out = Vec::with_capacity(state.bond_count());
+    state.each_bond(|number, (b, mut e)| {
+        let bond = &model.bonds[number as usize];
+        let k = &bond.values;
+        let (p, q) = ends(state, b, &e);
+        let frame = carry(k[kernel::OFFSET], &p, &q, &mut e.memory, dt);
+        let r = respond(k, &p, &q, &frame, &e.memory);
+        let n = frame.normal;
+        let twist = e.memory.turn.dot(n);
+        let bend = (e.memory.turn - n * twist).norm2().sqrt();
+        out.push(BondRecord {
+            bond: number as usize,
+            a: bond.ends[0] as usize,
+            b: bond.ends[1] as usize,
+            point: (p.x - n * (0.5 * (frame.length + k[kernel::OFFSET]))).to_vec(),
+            normal: n.to_vec(),
+            tension: k[kernel::STIFFNESS] * (frame.length - k[kernel::LENGTH]),
+            shear: (-(e.memory.shear * k[kernel::STIFFNESS + 1])).to_vec(),
+            bending: k[kernel::STIFFNESS + 2] * bend,
+            twisting: k[kernel::STIFFNESS + 3] * twist.abs(),
+            force: r.force.to_vec(),
+            share: r.share.max(0.0),
+        });
+    });
+    out
+}
+
+/// Calls `f` with each debonded pair, its blocks, and the geometry of its contact beyond the reference.
+pub(crate) fn each_touch(
+    blocks: &[Block],
+    state: &State,
+    mut f: impl FnMut(&Block, &Block, &debonded::DebondedPair, &crate::law::ContactGeometry),
+) {
+    state.each_debonded(|b, r| {
+        let (p, q) = (&blocks[b as usize], &blocks[r.block as usize]);
+        let (g, _) = debonded::geometry(p, r.i as usize, q, r.j as usize, r.reference);
+        if g.overlap > 0.0 {
+            f(p, q, r, &g);
+        }
+    });
+}

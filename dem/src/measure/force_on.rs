@@ -1,0 +1,26 @@
+//! The force on a group of bodies.
+
+use super::bonds::records;
+use super::contacts::contacts;
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+
+/// Sum of the forces of bonds and contacts on the bodies that `of` picks, from bodies, walls and surfaces that are not
+/// among them [N]: on bodies of prescribed motion, what holds them is its opposite (gravity apart).
+pub fn force_on(model: &Model, state: &State, of: impl Fn(usize) -> bool) -> Vec3 {
+    let mut sum = Vec3::zeros();
+    let mut add = |a: usize, b: Option<usize>, force: Vec3| {
+        sum += force * (f64::from(of(a)) - f64::from(b.is_some_and(&of)));
+    };
+    records(model, state).iter().for_each(|r| add(r.a, Some(r.b), r.force));
+    for c in contacts(model, state) {
+        let b = match c.b {
+            Partner::Body(b) => Some(b),
+            _ => None,
+        };
+        add(c.a, b, c.force);
+    }
+    sum
+}

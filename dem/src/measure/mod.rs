@@ -1,0 +1,37 @@
+//! What can be read off a state: energies, momentum, contacts, stress, porosity, fabric, radial distribution. None of it changes the state.
+//!
+//! Energies and momentum are those of the last half step, t − dt/2, where the velocities of the leapfrog live:
+//! bodies are moved back by half a step for it, springs likewise. So energy plus ledger closes to second order in
+//! dt at every step, and momentum plus ledger to rounding. Contacts are those of the present positions, with the
+//! forces that the next step will find.
+
+mod bonds;
+mod clip;
+mod contacts;
+mod coordination;
+mod energy;
+mod footprint;
+mod force_on;
+mod fragments;
+mod porosity;
+mod radial;
+mod region;
+mod sieve;
+mod stress;
+
+pub use bonds::{BondRecord, records as bond_records};
+pub use clip::sphere_box_volume;
+pub use contacts::{ContactRecord, contact_forces, contacts, coordination};
+pub use coordination::{
+    Coordination, StrongNetwork, coordination_of, fabric, neighbours, strong_network, unbalanced_ratio,
+};
+pub use energy::{Energies, energies, momentum};
+pub(crate) use energy::{energies_of, momentum_of};
+pub use footprint::{bytes, kernels};
+pub use force_on::force_on;
+pub use fragments::{Fragments, fragments};
+pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
+pub use radial::radial_distribution;
+pub use region::BoxRegion;
+pub use sieve::{size_of, stones};
+pub use stress::{mean_stress, mean_stress_of, region_stress};

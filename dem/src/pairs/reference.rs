@@ -1,0 +1,38 @@
+//! Where spheres were when candidates were searched.
+
+use crate::base::Vec3;
+use crate::lanes::record::{Record, xyz};
+
+/// Where spheres were, to single precision from one of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reference {
+    origin: Vec3,
+    offsets: Vec<[f32; 3]>,
+    /// Bound on the error of an offset [m].
+    error: f64,
+}
+
+impl Reference {
+    pub fn start(&mut self, origin: Option<&Record>) {
+        *self = Reference { origin: origin.map(xyz).unwrap_or_default(), ..Reference::default() };
+    }
+
+    pub fn push(&mut self, x: &Vec3) {
+        let offset = x - self.origin;
+        // Half a unit in the last place of each component, and room for the three together.
+        self.error = self.error.max(1.1e-7 * offset.amax());
+        self.offsets.push([offset.x as f32, offset.y as f32, offset.z as f32]);
+    }
+
+    pub fn len(&self) -> usize {
+        self.offsets.len()
+    }
+
+    /// A bound from above on the square of the way from the k-th place.
+    #[inline(always)]
+    pub fn moved2(&self, k: usize, x: &Vec3) -> f64 {
+        let [a, b, c] = self.offsets[k].map(f64::from);
+        let way = (x - self.origin - Vec3::new(a, b, c)).norm() + self.error;
+        way * way
+    }
+}

@@ -1,0 +1,7 @@
+//! Geometry of search and detection: trees, cells, periodic borders, surfaces of patches, and how two shapes touch.
+
+pub mod bvh;
+pub(crate) mod cells;
+pub mod detect;
+pub(crate) mod periodic;
+pub mod surface;

@@ -1,0 +1,110 @@
+//! Periodic axes: what leaves a box on one side is back on the other.
+//!
+//! Positions run on unbounded between two sortings (`order.rs`), which put every centre back into the box. A pair that
+//! meets across a border is an image pair: sphere i touches sphere j where j stands moved by whole box lengths. Image
+//! pairs have a list of their own; all others, far more, are those of a scene without borders. Which image j shows is
+//! found from positions put back into the box, so it does not matter how far bodies have run on.
+//!
+//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2: periodic boundary conditions and the
+//! nearest image.
+//! Limits: spheres and clumps, between planes along the periodic axes; no bonds, no other walls.
+
+use super::cells::Cells;
+use crate::base::Vec3;
+use crate::lanes::record::{Record, xyz};
+
+/// Whole box lengths along x, y and z.
+pub(crate) type Turns = [i32; 3];
+
+pub(crate) const NONE: Turns = [0; 3];
+
+/// The box.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Periodic {
+    pub low: Vec3,
+    /// Zero along axes without borders.
+    pub length: Vec3,
+}
+
+impl Periodic {
+    /// `None` without periodic axes.
+    pub fn new(borders: &[Option<[f64; 2]>; 3]) -> Option<Periodic> {
+        if borders.iter().all(Option::is_none) {
+            return None;
+        }
+        let side = |d: usize| borders[d].unwrap_or_default();
+        let low = Vec3::from_fn(|d, _| side(d)[0]);
+        Some(Periodic { low, length: Vec3::from_fn(|d, _| side(d)[1] - side(d)[0]) })
+    }
+
+    /// How many box lengths a point lies from the box.
+    pub fn turns(&self, x: &Vec3) -> Turns {
+        std::array::from_fn(|d| {
+            if self.length[d] > 0.0 { ((x[d] - self.low[d]) / self.length[d]).floor() as i32 } else { 0 }
+        })
+    }
+
+    /// The way of so many box lengths [m].
+    #[inline(always)]
+    pub fn way(&self, turns: &Turns) -> Vec3 {
+        Vec3::from_fn(|d, _| f64::from(turns[d]) * self.length[d])
+    }
+
+    /// A point put back into the box.
+    pub fn wrap(&self, x: &Vec3) -> Vec3 {
+        let x = x - self.way(&self.turns(x));
+        // Just below the lower border, the rounded sum is the upper one.
+        Vec3::from_fn(|d, _| {
+            let past = self.length[d] > 0.0 && x[d] >= self.low[d] + self.length[d];
+            if past { self.low[d] } else { x[d] }
+        })
+    }
+}
+
+/// Spheres put back into the box, for the search.
+pub(crate) struct Space {
+    periodic: Periodic,
+    pub points: Vec<Record>,
+    turns: Vec<Turns>,
+    largest: f64,
+}
+
+impl Space {
+    pub fn new(periodic: Periodic, spheres: &[Record], largest: f64) -> Space {
+        let turns: Vec<Turns> = spheres.iter().map(|p| periodic.turns(&xyz(p))).collect();
+        let back = |(p, t): (&Record, &Turns)| {
+            let x = xyz(p) - periodic.way(t);
+            Record([x.x, x.y, x.z, p[3]])
+        };
+        let points = spheres.iter().zip(&turns).map(back).collect();
+        Space { periodic, points, turns, largest }
+    }
+
+    /// Calls `f` with every later sphere of which an image lies within `skin` of touching sphere `i`, and with the
+    /// box lengths that the image is away from the sphere itself.
+    pub fn near(&self, cells: &Cells, i: u32, skin: f64, mut f: impl FnMut(u32, Turns)) {
+        let (p, own) = (&self.points[i as usize], &self.turns[i as usize]);
+        let reach = p[3] + self.largest + skin;
+        // Images that may be within reach along each axis.
+        let [x, y, z] = std::array::from_fn(|d| {
+            let (from, length) = (p[d] - self.periodic.low[d], self.periodic.length[d]);
+            let borders = length > 0.0;
+            (-i32::from(borders && from < reach))..=i32::from(borders && from + reach > length)
+        });
+        for a in x {
+            for b in y.clone() {
+                for c in z.clone() {
+                    let at = xyz(p) - self.periodic.way(&[a, b, c]);
+                    cells.near(&Record([at.x, at.y, at.z, p[3]]), skin, |j| {
+                        let q = &self.points[j as usize];
+                        let reach = p[3] + q[3] + skin;
+                        if j > i && (at - xyz(q)).norm_squared() < reach * reach {
+                            let other = &self.turns[j as usize];
+                            f(j, std::array::from_fn(|d| [a, b, c][d] + own[d] - other[d]));
+                        }
+                    });
+                }
+            }
+        }
+    }
+}
