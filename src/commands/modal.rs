@@ -7,7 +7,7 @@ use crate::run;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene};
 use crate::write;
-use crate::write::csv::{Column, History};
+use crate::write::csv::{Field, write_table};
 use crate::write::pvd;
 use std::fmt::Write;
 use std::path::Path;
@@ -61,23 +61,26 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
     })
 }
 
+/// Columns of `modes.csv`.
+const MODES: [Field<[f64; 6]>; 6] = [
+    ("mode", "", |r| r[0]),
+    ("frequency", "Hz", |r| r[1]),
+    ("residual", "", |r| r[2]),
+    ("effective_mass_x", "kg", |r| r[3]),
+    ("effective_mass_y", "kg", |r| r[4]),
+    ("effective_mass_z", "kg", |r| r[5]),
+];
+
 fn write_modes(model: &fem::Model, modes: &Modes, dir: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(dir.join("frames"))
         .map_err(|e| Failure::Other(format!("{}: {e}", dir.display())))?;
-    let columns = [
-        ("mode", ""),
-        ("frequency", "Hz"),
-        ("residual", ""),
-        ("effective_mass_x", "kg"),
-        ("effective_mass_y", "kg"),
-        ("effective_mass_z", "kg"),
-    ];
-    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
-    let mut table = History::create(&dir.join("modes.csv"), columns)?;
+    let row = |i: usize| {
+        let [x, y, z] = modes.effective_mass[i];
+        [(i + 1) as f64, modes.frequencies[i], modes.residuals[i], x, y, z]
+    };
+    write_table(&dir.join("modes.csv"), &MODES, (0..modes.shapes.len()).map(row))?;
     let mut series = pvd::Series::new(&dir.join("results.pvd"));
     for (i, shape) in modes.shapes.iter().enumerate() {
-        let [x, y, z] = modes.effective_mass[i];
-        table.row(&[(i + 1) as f64, modes.frequencies[i], modes.residuals[i], x, y, z])?;
         let largest = shape.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let unit: Vec<f64> = shape.iter().map(|u| u / largest).collect();
         let name = format!("frames/mode_{:03}.vtu", i + 1);

@@ -4,18 +4,18 @@
 pub mod after;
 pub mod exchange;
 pub mod grains;
+mod output;
 pub mod solid;
 mod tables;
 pub mod track;
 
+pub use output::OutputPlan;
+
 use crate::failure::Failure;
 use crate::scene::units::vector;
-use crate::scene::{Chains, Document, Scene, SceneError};
-use std::time::Duration;
+use crate::scene::{Document, Scene, SceneError};
+use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
-
-/// Time by the clock between two checkpoints, unless the scene says otherwise [s].
-const CHECKPOINT: f64 = 600.0;
 
 /// A resolved scene.
 pub struct Job {
@@ -35,27 +35,6 @@ pub struct Job {
     pub output: OutputPlan,
     /// Observed nodes: (name, node index).
     pub probes: Vec<(String, usize)>,
-}
-
-/// What is written, resolved.
-#[derive(Clone, Copy, Debug)]
-pub struct OutputPlan {
-    /// Frames over the run proper; the start is one more.
-    pub frames: u32,
-    /// Time between rows of the history [s].
-    pub history_interval: f64,
-    /// Time by the clock between two checkpoints.
-    pub checkpoint: Duration,
-    /// VTK files.
-    pub vtk: bool,
-    /// Tecplot files of the solid.
-    pub tecplot: bool,
-    /// Nodes and Gauss points of the last state as CSV.
-    pub tables: bool,
-    /// Grains of the last state as CSV.
-    pub packing: bool,
-    /// Frames show the contacts above the mean force only.
-    pub strong_chains: bool,
 }
 
 impl Job {
@@ -133,7 +112,7 @@ impl Job {
             .enumerate()
             .map(|(i, p)| probe(document, i, p, solid.as_ref()))
             .collect::<Result<Vec<_>, _>>()?;
-        let output = output(document, scene, end)?;
+        let output = OutputPlan::new(document, scene, end)?;
         let title =
             if scene.title.is_empty() { document.file().display().to_string() } else { scene.title.clone() };
         Ok(Job { title, solid, grains, coupling, end, solid_step, output, probes })
@@ -175,72 +154,12 @@ fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError
     Ok(())
 }
 
-fn output(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, SceneError> {
-    let o = &scene.output;
-    let without = |key: &str, needs: &str| {
-        document.error(&format!("output.{key}"), "a value", format!("no such key without {needs}"))
-    };
-    if scene.solid.is_none() {
-        if o.tecplot.is_some() {
-            return Err(without("tecplot", "[solid]"));
-        }
-        if o.tables.is_some() {
-            return Err(without("tables", "[solid]"));
-        }
-    }
-    if scene.grains.is_empty() {
-        if o.packing.is_some() {
-            return Err(without("packing", "[[grains]]"));
-        }
-        if o.chains.is_some() {
-            return Err(without("chains", "[[grains]]"));
-        }
-    }
-    if end == 0.0 {
-        if o.frames.is_some() {
-            return Err(without("frames", "time: a static solid has one frame"));
-        }
-        if o.history_interval.is_some() {
-            return Err(without("history_interval", "time: a static solid has no history"));
-        }
-        if o.checkpoint.is_some() {
-            return Err(without("checkpoint", "time: a static solid is solved in one go"));
-        }
-    }
-    let frames = o.frames.unwrap_or(20);
-    if frames > 100_000 {
-        return Err(document.error("output.frames", frames.to_string(), "at most 100000"));
-    }
-    let history_interval = o.history_interval.map_or(end / 1000.0, |i| i.si);
-    if o.history_interval.is_some() && (history_interval <= 0.0 || !history_interval.is_finite()) {
-        return Err(document.error(
-            "output.history_interval",
-            history_interval.to_string(),
-            "a time above 0",
-        ));
-    }
-    let checkpoint = o.checkpoint.map_or(CHECKPOINT, |c| c.si);
-    let Some(checkpoint) = Duration::try_from_secs_f64(checkpoint).ok().filter(|c| !c.is_zero()) else {
-        return Err(document.error("output.checkpoint", format!("{checkpoint} s"), "a time above 0"));
-    };
-    Ok(OutputPlan {
-        frames,
-        checkpoint,
-        history_interval,
-        vtk: o.vtk.unwrap_or(true),
-        tecplot: scene.solid.is_some() && o.tecplot.unwrap_or(true),
-        tables: o.tables.unwrap_or(false),
-        packing: o.packing.unwrap_or(false),
-        strong_chains: o.chains == Some(Chains::Strong),
-    })
-}
-
 fn end_time(
     document: &Document,
     scene: &Scene,
     grains: Option<&grains::GrainsPart>,
 ) -> Result<f64, SceneError> {
-    let counted = grains.and_then(|g| g.load.as_ref()).map(trackbed_coupling::track::CyclicLoad::end);
+    let counted = grains.and_then(|g| g.load.as_ref()).map(CyclicLoad::end);
     // A push comes after the cycles, or stands for itself.
     let push = grains.and_then(|g| g.after.push).map(|p| p.duration());
     let counted = match (counted, push) {

@@ -5,10 +5,18 @@ use super::{Stage, frames, initial, system::SolidView};
 use crate::failure::Failure;
 use crate::model::solid::{SolidPart, StrengthReductionPlan};
 use crate::progress::Progress;
-use crate::write::csv::{Column, History};
-use crate::write::pvd;
+use crate::write::csv::{Field, write_table};
 use std::time::Instant;
-use trackbed_fem::nonlinear::strength_reduction;
+use trackbed_fem::nonlinear::strength_reduction::{self, Trial};
+
+/// Columns of `safety.csv`.
+const TRIALS: [Field<Trial>; 5] = [
+    ("factor", "", |t| t.factor),
+    ("stands", "", |t| f64::from(u8::from(t.converged))),
+    ("share_of_load", "", |t| t.share),
+    ("iterations", "", |t| t.iterations as f64),
+    ("largest_displacement", "m", |t| t.largest_displacement),
+];
 
 /// Brackets the factor of safety and writes `safety.csv` and the state at the largest factor that stands.
 ///
@@ -35,38 +43,9 @@ pub fn run(
     let (weaker, standing) = strength_reduction::at_factor(model, &state, &load, plan, found.converged)
         .map_err(|e| part.failure(&e))?;
     stage.prepare()?;
-    let columns = [
-        ("factor", ""),
-        ("stands", ""),
-        ("share_of_load", ""),
-        ("iterations", ""),
-        ("largest_displacement", "m"),
-    ];
-    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
-    let mut table = History::create(&stage.dir.join("safety.csv"), columns)?;
-    for t in &found.trials {
-        table.row(&[
-            t.factor,
-            f64::from(u8::from(t.converged)),
-            t.share,
-            t.iterations as f64,
-            t.largest_displacement,
-        ])?;
-    }
+    write_table(&stage.dir.join("safety.csv"), &TRIALS, &found.trials)?;
     let view = SolidView { model: &weaker, state: &standing };
-    let vtu = stage.dir.join("frames/solid_00000.vtu");
-    let dat = stage.dir.join("tecplot/solid_00000.dat");
-    let output = &stage.job.output;
-    frames::write_solid(
-        view,
-        output.vtk.then_some(vtu.as_path()),
-        output.tecplot.then_some((dat.as_path(), 0.0)),
-    )?;
-    if output.vtk {
-        let mut series = pvd::Series::new(&stage.dir.join("results.pvd"));
-        series.push(0.0, 0, "solid", "frames/solid_00000.vtu");
-        series.write()?;
-    }
+    frames::write_state(stage.dir, &stage.job.output.formats, view)?;
     summary.safety = Some(SafetyRecord {
         stands_at: found.converged,
         fails_at: found.failed,

@@ -5,11 +5,12 @@
 //! as it can be.
 
 use super::checkpoint::{Body, Loaded};
+use super::record::{Now, Recorder};
 use super::summary::Summary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::model::grains::{FlowPlan, GrainsPart, InletPlan, OutletPlan, OutletRegion};
-use crate::write::csv::Column;
+use crate::write::csv::Row;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::io;
@@ -70,6 +71,20 @@ struct Course {
     outlets: Vec<Outlet>,
     /// Time, mass in and mass out at the first look in the second half of the run.
     half: Option<[f64; 3]>,
+}
+
+/// Grains that are there, that came in and that went out.
+pub struct Inventory;
+
+impl<S: System> Recorder<S> for Inventory {
+    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
+        let (Some(flow), Some(view)) = (now.flow, now.system.grains()) else { return };
+        let [come, gone] = flow.sums();
+        for (name, amount) in [("present", flow.present(view)), ("in", come), ("out", gone)] {
+            row.put(format_args!("grains_{name}"), "", amount.grains as f64);
+            row.put(format_args!("mass_{name}"), "kg", amount.mass);
+        }
+    }
 }
 
 /// Inlets and outlets of a run in progress.
@@ -268,28 +283,6 @@ impl<'a> Flow<'a> {
         };
         let course = &self.course;
         [sum(&mut course.inlets.iter().map(|i| i.amount)), sum(&mut course.outlets.iter().map(|o| o.amount))]
-    }
-
-    /// Columns of the history.
-    pub fn columns() -> Vec<Column> {
-        [
-            ("grains_present", ""),
-            ("mass_present", "kg"),
-            ("grains_in", ""),
-            ("mass_in", "kg"),
-            ("grains_out", ""),
-            ("mass_out", "kg"),
-        ]
-        .map(|(name, unit)| Column::new(name, unit))
-        .to_vec()
-    }
-
-    /// Their values.
-    pub fn values(&self, view: GrainsView<'_>, row: &mut Vec<f64>) {
-        let [come, gone] = self.sums();
-        for amount in [self.present(view), come, gone] {
-            row.extend([amount.grains as f64, amount.mass]);
-        }
     }
 
     /// Tells the summary, at `time` [s].

@@ -4,7 +4,7 @@ use super::system::{GrainsView, SolidView};
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
-use crate::write::{self, ChainFrame, GrainFrame, SolidFrame, WallFrame};
+use crate::write::{ChainFrame, Format, Frame, GrainFrame, Part, SolidFrame, WallFrame, Writers};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::shape::Shape;
@@ -13,45 +13,93 @@ use trackbed_fem::stress;
 /// Yield function of a material without a yield surface: inside by definition.
 const NO_YIELD_SURFACE: f64 = -1.0;
 
-/// Writes the solid as VTK and, if asked, as Tecplot.
+/// The fields of a solid that a frame shows.
+struct SolidFields {
+    stress: Vec<[f64; 6]>,
+    von_mises: Vec<f64>,
+    equivalent_plastic_strain: Vec<f64>,
+    yield_function: Vec<f64>,
+}
+
+impl SolidFields {
+    fn of(view: SolidView<'_>) -> SolidFields {
+        let SolidView { model, state } = view;
+        let (stress, equivalent_plastic_strain, yield_function) = if state.points.is_empty() {
+            let nodes = model.mesh().node_count();
+            (stress::nodal(model, &state.u), vec![0.0; nodes], vec![NO_YIELD_SURFACE; nodes])
+        } else {
+            (
+                stress::nodal_of_points(model, state),
+                stress::nodal_kappa(model, state),
+                finite_yield_function(stress::nodal_yield_function(model, state)),
+            )
+        };
+        let von_mises = stress.iter().map(stress::von_mises).collect();
+        SolidFields { stress, von_mises, equivalent_plastic_strain, yield_function }
+    }
+
+    fn frame<'a>(&'a self, view: SolidView<'a>) -> SolidFrame<'a> {
+        SolidFrame {
+            mesh: view.model.mesh(),
+            displacement: &view.state.u,
+            velocity: &view.state.v,
+            stress: &self.stress,
+            von_mises: &self.von_mises,
+            equivalent_plastic_strain: &self.equivalent_plastic_strain,
+            yield_function: &self.yield_function,
+        }
+    }
+}
+
+/// The grains of a frame, and how they are shown.
+pub struct Shown<'a> {
+    /// The grains.
+    pub view: GrainsView<'a>,
+    /// What the scene says of them.
+    pub part: &'a GrainsPart,
+    /// Whether contacts above the mean normal force are shown alone.
+    pub strong_only: bool,
+    /// Adds what else is drawn with the walls.
+    pub draw: &'a dyn Fn(&mut WallFrame),
+}
+
+/// Writes frame `number` at `time` [s] in every format of a run. What no format shows is not computed.
 ///
 /// # Errors
 /// A file cannot be written, or a field is not finite.
-pub fn write_solid(
-    view: SolidView<'_>,
-    vtu: Option<&Path>,
-    tecplot: Option<(&Path, f64)>,
+pub fn write(
+    writers: &mut Writers,
+    (number, time): (usize, f64),
+    solid: Option<SolidView<'_>>,
+    grains: Option<Shown<'_>>,
 ) -> Result<(), Failure> {
-    let mesh = view.model.mesh();
-    let plastic = !view.state.points.is_empty();
-    let (stress, kappa, yield_function) = if plastic {
-        (
-            stress::nodal_of_points(view.model, view.state),
-            stress::nodal_kappa(view.model, view.state),
-            finite_yield_function(stress::nodal_yield_function(view.model, view.state)),
-        )
-    } else {
-        let nodes = mesh.node_count();
-        let stress = stress::nodal(view.model, &view.state.u);
-        (stress, vec![0.0; nodes], vec![NO_YIELD_SURFACE; nodes])
-    };
-    let von_mises: Vec<f64> = stress.iter().map(stress::von_mises).collect();
-    let frame = SolidFrame {
-        mesh,
-        displacement: &view.state.u,
-        velocity: &view.state.v,
-        stress: &stress,
-        von_mises: &von_mises,
-        equivalent_plastic_strain: &kappa,
-        yield_function: &yield_function,
-    };
-    if let Some(file) = vtu {
-        write::vtu::write_solid(file, &frame)?;
-    }
-    if let Some((file, time)) = tecplot {
-        write::tecplot::write_solid(file, &frame, "solid", time, 1)?;
-    }
-    Ok(())
+    let solid = solid.filter(|_| writers.show(Part::Solid)).map(|view| (SolidFields::of(view), view));
+    let mut frame = Frame { number, time, ..Frame::default() };
+    frame.solid = solid.as_ref().map(|(fields, view)| fields.frame(*view));
+    let Some(Shown { view, part, strong_only, draw }) = grains else { return Ok(writers.frame(&frame)?) };
+    let spheres = writers.show(Part::Grains).then(|| spheres(view));
+    let chains = writers.show(Part::Chains).then(|| chains(view, strong_only));
+    let walls = writers.show(Part::Walls).then(|| {
+        let mut walls = walls(view, part);
+        draw(&mut walls);
+        walls
+    });
+    Ok(writers.frame(&Frame {
+        grains: spheres.as_ref(),
+        chains: chains.as_ref(),
+        walls: walls.as_ref(),
+        ..frame
+    })?)
+}
+
+/// Writes a solid that has one state as the only frame of a run.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_state(dir: &Path, formats: &[&'static Format], view: SolidView<'_>) -> Result<(), Failure> {
+    let mut writers = Writers::begin(dir, formats)?;
+    write(&mut writers, (0, 0.0), Some(view), None)?;
+    Ok(writers.end()?)
 }
 
 /// A node of an elastic element has no yield function: it counts as inside.
@@ -63,7 +111,7 @@ fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
 const BOND: u32 = 4;
 
 /// The grains: one point per sphere.
-pub fn grains(view: GrainsView<'_>) -> GrainFrame {
+fn spheres(view: GrainsView<'_>) -> GrainFrame {
     let contacts = dem::measure::contacts(view.model, view.state);
     let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
     let neighbours = dem::measure::neighbours(view.model, &contacts);
@@ -108,7 +156,7 @@ fn moved(x: dem::Vec3, way: Option<dem::Vec3>) -> dem::Vec3 {
 
 /// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
 /// than the mean normal force.
-pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
+fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
     let contacts = dem::measure::contacts(view.model, view.state);
     let mean = dem::measure::strong_network(&contacts).mean_force;
@@ -150,7 +198,7 @@ pub fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
 }
 
 /// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
-pub fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
+fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
     let mut frame = WallFrame::default();
     let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
     let extent = extent(view);

@@ -4,7 +4,7 @@ use super::Stage;
 use super::bond_output;
 use super::checkpoint::{Loaded, Moment};
 use super::flow::Flow;
-use super::record::Recorder;
+use super::record::Results;
 use super::summary::{BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary};
 use super::system::System;
 use super::track_output;
@@ -109,10 +109,10 @@ impl Stage<'_> {
                 track = track.resume(loaded.take()?);
                 flow = flow.map(|f| f.resume(&mut loaded)).transpose()?;
                 windows = from.windows;
-                (Recorder::resume(job, self.dir, system, &track, &mut loaded)?, from)
+                (Results::resume(job, self.dir, system, &track, flow.as_ref(), &mut loaded)?, from)
             }
             None => {
-                let mut recorder = Recorder::start(job, self.dir, system, &track)?;
+                let mut recorder = Results::start(job, self.dir, system, &track, flow.as_ref())?;
                 recorder.row(0.0, system, &track, flow.as_ref())?;
                 recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
@@ -120,7 +120,7 @@ impl Stage<'_> {
         };
         // With jumps neither time nor steps tell how far a run is.
         let jumps = grains.is_some_and(|g| g.after.jump.is_some());
-        let share = |k: u64, windows: u64, recorder: &Recorder<'_>| match recorder.progress() {
+        let share = |k: u64, windows: u64, recorder: &Results<'_>| match recorder.progress() {
             Some((number, total)) if jumps => (u64::from(number), u64::from(total)),
             _ => (k, windows),
         };
@@ -230,6 +230,7 @@ impl Stage<'_> {
             relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
             largest_error: recorder.largest_error(),
         });
+        recorder.end()?;
         recorder.plot_settlement()?;
         outcome
     }
@@ -238,7 +239,7 @@ impl Stage<'_> {
 fn settlement(
     cycles: &[Cycle],
     grains: Option<&GrainsPart>,
-    recorder: &Recorder<'_>,
+    recorder: &Results<'_>,
 ) -> Option<SettlementRecord> {
     if cycles.is_empty() {
         return None;

@@ -6,6 +6,7 @@ mod checkpoint;
 mod compact;
 mod failure_factor;
 mod flow;
+mod folder;
 mod frames;
 mod initial;
 mod keeper;
@@ -371,10 +372,10 @@ impl Stage<'_> {
 
     fn prepare(&self) -> Result<(), Failure> {
         if self.goes_on {
-            record::take_up(self.dir, &self.job.output)?;
+            folder::take_up(self.dir, &self.job.output)?;
         } else {
             self.keeper.clear_others()?;
-            record::prepare(self.dir, &self.job.output)?;
+            folder::prepare(self.dir, &self.job.output)?;
         }
         self.prepared.set(true);
         Ok(())

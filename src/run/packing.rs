@@ -6,7 +6,7 @@ use super::summary::Summary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::model::grains::{GradedGroup, GrainsPart, Measure, Radial};
-use crate::write::csv::{Column, History};
+use crate::write::csv::{Field, write_table};
 use crate::write::svg::{LinePlot, Series};
 use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
@@ -252,8 +252,6 @@ fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
     (0..=CURVE_POINTS).map(|k| low * (high / low).powf(k as f64 / CURVE_POINTS as f64)).collect()
 }
 
-/// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
-/// same drawn.
 /// Radial distribution functions of the boxes that ask for one: distance at the middle of each shell, and g.
 fn write_radial(
     dir: &Path,
@@ -261,35 +259,41 @@ fn write_radial(
     measures: &[Measure],
     is_grain: impl Fn(usize) -> bool,
 ) -> Result<(), Failure> {
-    let columns = [("measure", ""), ("distance", "m"), ("g", "")];
-    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
-    let mut file = History::create(&dir.join("radial.csv"), columns)?;
-    for (i, m) in measures.iter().enumerate() {
-        let Some(Radial { reach, bins }) = m.radial else { continue };
-        let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins);
-        for (k, g) in g.iter().flatten().enumerate() {
-            file.row(&[i as f64, (k as f64 + 0.5) * reach / bins as f64, *g])?;
-        }
-    }
-    Ok(())
+    let columns: [Field<[f64; 3]>; 3] =
+        [("measure", "", |r| r[0]), ("distance", "m", |r| r[1]), ("g", "", |r| r[2])];
+    let rows = measures.iter().enumerate().flat_map(|(i, m)| {
+        let g = m.radial.and_then(|Radial { reach, bins }| {
+            let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins)?;
+            let row = |(k, g): (usize, f64)| [i as f64, (k as f64 + 0.5) * reach / bins as f64, g];
+            Some(g.into_iter().enumerate().map(row).collect::<Vec<_>>())
+        });
+        g.unwrap_or_default()
+    });
+    Ok(write_table(&dir.join("radial.csv"), &columns, rows)?)
 }
 
+/// A row of `gradation.csv`.
+type Sieve = [f64; 6];
+
+/// Its columns.
+const SIEVES: [Field<Sieve>; 6] = [
+    ("group", "", |r| r[0]),
+    ("sieve", "m", |r| r[1]),
+    ("lower_limit", "", |r| r[2]),
+    ("upper_limit", "", |r| r[3]),
+    ("target", "", |r| r[4]),
+    ("achieved", "", |r| r[5]),
+];
+
+/// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
+/// same drawn.
 fn write_gradations(
     dir: &Path,
     title: &str,
     view: GrainsView<'_>,
     groups: &[GradedGroup],
 ) -> Result<(), Failure> {
-    let columns = [
-        ("group", ""),
-        ("sieve", "m"),
-        ("lower_limit", ""),
-        ("upper_limit", ""),
-        ("target", ""),
-        ("achieved", ""),
-    ];
-    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
-    let mut file = History::create(&dir.join("gradation.csv"), columns)?;
+    let mut rows: Vec<Sieve> = Vec::new();
     let mut series = Vec::new();
     for group in groups {
         let stones = stones(view, group);
@@ -297,7 +301,7 @@ fn write_gradations(
         let sieves: Vec<f64> = limits.iter().map(|l| l[0]).collect();
         for (&[size, low, high], achieved) in limits.iter().zip(achieved_passing(&sieves, &stones)) {
             let target = group.grading.curve.passing_at(size);
-            file.row(&[f64::from(group.part), size, low, high, target, achieved])?;
+            rows.push([f64::from(group.part), size, low, high, target, achieved]);
         }
         let mut add = |name: &str, points: Vec<[f64; 2]>| {
             let name = if groups.len() > 1 { format!("{}: {name}", group.name) } else { name.to_string() };
@@ -312,6 +316,7 @@ fn write_gradations(
         add("upper limit", limits.iter().map(|l| [l[0], l[2]]).collect());
         add("lower limit", limits.iter().map(|l| [l[0], l[1]]).collect());
     }
+    write_table(&dir.join("gradation.csv"), &SIEVES, rows)?;
     let plot = LinePlot {
         title: format!("{title}: sieve curve"),
         x_label: "sieve [mm]".into(),

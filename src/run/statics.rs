@@ -5,8 +5,7 @@ use super::summary::{StageRecord, StaticsRecord, Summary};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::SolidPart;
-use crate::write::csv::{Column, History};
-use crate::write::pvd;
+use crate::write::csv::{Field, write_table};
 use std::path::Path;
 use std::time::Instant;
 use trackbed_fem as fem;
@@ -35,19 +34,8 @@ pub fn run(
     state.u.copy_from_slice(&result.u);
 
     prepare()?;
-    let vtu = dir.join("frames/solid_00000.vtu");
-    let dat = dir.join("tecplot/solid_00000.dat");
     let view = super::system::SolidView { model, state: &state };
-    frames::write_solid(
-        view,
-        job.output.vtk.then_some(vtu.as_path()),
-        job.output.tecplot.then_some((dat.as_path(), 0.0)),
-    )?;
-    if job.output.vtk {
-        let mut series = pvd::Series::new(&dir.join("results.pvd"));
-        series.push(0.0, 0, "solid", "frames/solid_00000.vtu");
-        series.write()?;
-    }
+    frames::write_state(dir, &job.output.formats, view)?;
     if job.output.tables {
         write_tables(model, &state, &result.reactions, dir)?;
     }
@@ -78,6 +66,43 @@ pub fn run(
     Ok(())
 }
 
+/// A node with its displacement [m] and its reaction [N].
+type Node = (u32, [f64; 3], [f64; 3]);
+
+/// Columns of `nodes.csv`.
+const NODES: [Field<Node>; 7] = [
+    ("node", "", |n| f64::from(n.0)),
+    ("ux", "m", |n| n.1[0]),
+    ("uy", "m", |n| n.1[1]),
+    ("uz", "m", |n| n.1[2]),
+    ("rx", "N", |n| n.2[0]),
+    ("ry", "N", |n| n.2[1]),
+    ("rz", "N", |n| n.2[2]),
+];
+
+/// A Gauss point of an element.
+struct GaussPoint {
+    element: u32,
+    xi: [f64; 3],
+    stress: [f64; 6],
+    kappa: f64,
+}
+
+/// Columns of `gauss.csv`; the last for a plastic solid only.
+const GAUSS: [Field<GaussPoint>; 11] = [
+    ("element", "", |p| f64::from(p.element)),
+    ("xi", "", |p| p.xi[0]),
+    ("eta", "", |p| p.xi[1]),
+    ("zeta", "", |p| p.xi[2]),
+    ("sxx", "Pa", |p| p.stress[0]),
+    ("syy", "Pa", |p| p.stress[1]),
+    ("szz", "Pa", |p| p.stress[2]),
+    ("sxy", "Pa", |p| p.stress[3]),
+    ("syz", "Pa", |p| p.stress[4]),
+    ("szx", "Pa", |p| p.stress[5]),
+    ("equivalent_plastic_strain", "", |p| p.kappa),
+];
+
 /// Writes `nodes.csv` (displacement and reaction of every node) and `gauss.csv` (stress at every Gauss point; of a plastic
 /// solid also the equivalent plastic strain).
 ///
@@ -85,58 +110,22 @@ pub fn run(
 /// A value is not finite, or the disk refuses.
 pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path) -> Result<(), Failure> {
     let (mesh, u) = (model.mesh(), &state.u);
-    let columns =
-        |names: &[(&str, &str)]| names.iter().map(|(n, unit)| Column::new(*n, *unit)).collect::<Vec<_>>();
-    let mut nodes = History::create(
-        &dir.join("nodes.csv"),
-        columns(&[
-            ("node", ""),
-            ("ux", "m"),
-            ("uy", "m"),
-            ("uz", "m"),
-            ("rx", "N"),
-            ("ry", "N"),
-            ("rz", "N"),
-        ]),
-    )?;
-    for (n, &id) in mesh.node_ids.iter().enumerate() {
-        let mut row = vec![f64::from(id)];
-        row.extend_from_slice(&u[3 * n..3 * n + 3]);
-        row.extend_from_slice(&reactions[3 * n..3 * n + 3]);
-        nodes.row(&row)?;
-    }
-    let mut names = vec![
-        ("element", ""),
-        ("xi", ""),
-        ("eta", ""),
-        ("zeta", ""),
-        ("sxx", "Pa"),
-        ("syy", "Pa"),
-        ("szz", "Pa"),
-        ("sxy", "Pa"),
-        ("syz", "Pa"),
-        ("szx", "Pa"),
-    ];
+    let nodes = mesh.node_ids.iter().enumerate().map(|(n, &id)| {
+        let of_node = |field: &[f64]| [field[3 * n], field[3 * n + 1], field[3 * n + 2]];
+        (id, of_node(u), of_node(reactions))
+    });
+    write_table(&dir.join("nodes.csv"), &NODES, nodes)?;
     let plastic = !state.points.is_empty();
-    if plastic {
-        names.push(("equivalent_plastic_strain", ""));
-    }
-    let mut gauss = History::create(&dir.join("gauss.csv"), columns(&names))?;
-    for (e, &id) in mesh.element_ids.iter().enumerate() {
+    let columns = if plastic { &GAUSS[..] } else { &GAUSS[..GAUSS.len() - 1] };
+    let points = mesh.element_ids.iter().enumerate().flat_map(|(e, &id)| {
         let points = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
         let elastic = if plastic { Vec::new() } else { fem::stress::gauss(model, u, e) };
-        for (i, point) in points.iter().enumerate() {
-            let mut row = vec![f64::from(id)];
-            row.extend_from_slice(&point.xi);
-            if plastic {
-                let at = &state.points[model.point_start(e) + i];
-                row.extend_from_slice(&at.stress);
-                row.push(at.kappa);
-            } else {
-                row.extend_from_slice(&elastic[i]);
-            }
-            gauss.row(&row)?;
-        }
-    }
+        points.iter().enumerate().map(move |(i, point)| {
+            let plastic = plastic.then(|| &state.points[model.point_start(e) + i]);
+            let stress = plastic.map_or_else(|| elastic[i], |p| p.stress);
+            GaussPoint { element: id, xi: point.xi, stress, kappa: plastic.map_or(0.0, |p| p.kappa) }
+        })
+    });
+    write_table(&dir.join("gauss.csv"), columns, points)?;
     Ok(())
 }

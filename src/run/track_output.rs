@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::write::WallFrame;
-use crate::write::csv::{Column, History};
+use crate::write::csv::{Field, write_table};
 use std::path::Path;
 use trackbed_coupling::track::Track;
 use trackbed_coupling::track::push::PushSummary;
@@ -44,11 +44,8 @@ pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
 /// The disk refuses.
 pub fn push(track: &Track<'_>, dir: &Path) -> Result<Option<PushSummary>, Failure> {
     let Some((rows, summary)) = track.push_curve() else { return Ok(None) };
-    let columns = [("displacement", "m"), ("force", "N"), ("uplift", "m")];
-    let columns = columns.map(|(name, unit)| Column::new(name, unit)).to_vec();
-    let mut file = History::create(&dir.join("push.csv"), columns)?;
-    for row in rows {
-        file.row(row)?;
-    }
+    let columns: [Field<[f64; 3]>; 3] =
+        [("displacement", "m", |r| r[0]), ("force", "N", |r| r[1]), ("uplift", "m", |r| r[2])];
+    write_table(&dir.join("push.csv"), &columns, rows)?;
     Ok(Some(summary))
 }

@@ -1,34 +1,27 @@
 //! Walls in the history and in the pictures.
 
-use super::system::GrainsView;
+use super::record::{Now, Recorder};
+use super::system::{GrainsView, System};
 use crate::model::grains::GrainsPart;
 use crate::write::WallFrame;
-use crate::write::csv::Column;
+use crate::write::csv::Row;
 use trackbed_dem::{Vec3, WallShape};
 
 /// Corners around a ring in a picture.
 const AROUND: u32 = 48;
 
-/// Columns of the recorded walls: force of the grains on the wall, its moment about the wall's centre, and the
-/// displacement of that centre.
-pub fn columns(part: &GrainsPart) -> Vec<Column> {
-    let mut columns = Vec::new();
-    for wall in part.recorded() {
-        for (quantity, unit) in [("force", "N"), ("moment", "N m"), ("displacement", "m")] {
-            for d in ["x", "y", "z"] {
-                columns.push(Column::new(format!("{}_{quantity}_{d}", wall.name), unit));
-            }
-        }
-    }
-    columns
-}
+/// Force of the grains on each recorded wall, its moment about the wall's centre, and the displacement of that centre.
+pub struct Walls;
 
-/// Values of the [`columns`].
-pub fn values(part: &GrainsPart, view: GrainsView<'_>, row: &mut Vec<f64>) {
-    for recorded in part.recorded() {
-        let (force, moment) = view.state.wall_force(recorded.wall);
-        for v in [force, moment, view.state.wall_offset(recorded.wall)] {
-            row.extend(v.iter());
+impl<S: System> Recorder<S> for Walls {
+    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
+        let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
+        for wall in part.recorded() {
+            let (name, wall) = (&wall.name, wall.wall);
+            let (force, moment) = view.state.wall_force(wall);
+            row.vector(format_args!("{name}_force"), "N", force);
+            row.vector(format_args!("{name}_moment"), "N m", moment);
+            row.vector(format_args!("{name}_displacement"), "m", view.state.wall_offset(wall));
         }
     }
 }

@@ -14,6 +14,7 @@ pub mod flow;
 pub mod grains;
 pub mod history;
 pub mod material;
+mod output;
 pub mod periodic;
 pub mod solid;
 pub mod track;
@@ -23,6 +24,7 @@ pub mod walls;
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
+pub use output::{Chains, Output};
 
 use serde::Deserialize;
 use units::{Acceleration, Length, Quantity, Time, Velocity};
@@ -111,41 +113,6 @@ pub struct TimeControl {
 
 fn yes() -> bool {
     true
-}
-
-/// What a run writes.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Output {
-    /// Number of frames of the animation over the run proper, 0–100000; default 20. The start is one more.
-    pub frames: Option<u32>,
-    /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
-    /// solid (coupled and solid runs) or of the grains.
-    pub history_interval: Option<Quantity<Time>>,
-    /// Time by the clock after which the state of the run is kept anew for `--resume` [s]; default 10 minutes. The state is
-    /// kept too when settling ends and when the run is interrupted.
-    pub checkpoint: Option<Quantity<Time>>,
-    /// Write VTK files (`results.pvd`); default true.
-    pub vtk: Option<bool>,
-    /// Write the solid as Tecplot files; default true.
-    pub tecplot: Option<bool>,
-    /// Write nodal displacements, reactions and Gauss-point stresses of the last state as CSV; default false.
-    pub tables: Option<bool>,
-    /// Write the grains at the end as `packing.csv`, which `[[grains]] packing` reads; default false.
-    pub packing: Option<bool>,
-    /// Force chains of the frames: all contacts (default), or those above the mean normal force.
-    pub chains: Option<Chains>,
-}
-
-/// Contacts that the frames show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Chains {
-    /// All of them.
-    #[default]
-    All,
-    /// Those with more than the mean normal force.
-    Strong,
 }
 
 /// A node of the solid, by number or by the place nearest to it, whose motion goes to `history.csv`.

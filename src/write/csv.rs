@@ -4,8 +4,10 @@
 //! rows are ordered by (time or cycle).
 
 use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
+use std::fmt::Display;
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::atomic;
@@ -27,12 +29,77 @@ impl Column {
     }
 }
 
+/// A row under way. Each column is stated once, with its name, its unit and its value.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    /// The columns, in a row that gathers them.
+    columns: Option<Vec<Column>>,
+    values: Vec<f64>,
+}
+
+impl Row {
+    /// The columns that `fill` states.
+    pub fn columns_of(fill: impl FnOnce(&mut Row)) -> Vec<Column> {
+        let mut row = Row { columns: Some(Vec::new()), values: Vec::new() };
+        fill(&mut row);
+        row.columns.unwrap_or_default()
+    }
+
+    /// The values that `fill` states.
+    pub fn values_of(fill: impl FnOnce(&mut Row)) -> Vec<f64> {
+        let mut row = Row::default();
+        fill(&mut row);
+        row.values
+    }
+
+    /// Adds a column; `unit` is empty for a count or a ratio without one.
+    pub fn put(&mut self, name: impl Display, unit: &str, value: f64) {
+        if let Some(columns) = &mut self.columns {
+            columns.push(Column::new(name.to_string(), unit));
+        }
+        self.values.push(value);
+    }
+
+    /// Adds the three columns of a vector, `name_x`, `name_y` and `name_z`.
+    pub fn vector(&mut self, name: impl Display, unit: &str, value: impl Into<[f64; 3]>) {
+        for (axis, value) in ["x", "y", "z"].into_iter().zip(value.into()) {
+            self.put(format_args!("{name}_{axis}"), unit, value);
+        }
+    }
+}
+
+/// A column of a table of items: name, unit, value of an item.
+pub type Field<T> = (&'static str, &'static str, fn(&T) -> f64);
+
+/// Writes a row for each of `items`.
+///
+/// # Errors
+/// As [`History::row`].
+pub fn write_table<T>(
+    file: &Path,
+    fields: &[Field<T>],
+    items: impl IntoIterator<Item: Borrow<T>>,
+) -> Result<(), WriteError> {
+    let columns = fields.iter().map(|(name, unit, _)| Column::new(*name, *unit)).collect();
+    let mut table = History::create(file, columns)?;
+    let mut row = Vec::with_capacity(fields.len());
+    for item in items {
+        row.clear();
+        row.extend(fields.iter().map(|(_, _, value)| value(item.borrow())));
+        table.row(&row)?;
+    }
+    Ok(())
+}
+
+/// Room for a row before it goes to the file [bytes].
+const LINE: usize = 1 << 16;
+
 /// A history file that grows.
 #[derive(Debug)]
 pub struct History {
     file: PathBuf,
     columns: Vec<Column>,
-    out: File,
+    out: csv::Writer<File>,
     rows: usize,
     bytes: u64,
 }
@@ -50,8 +117,8 @@ impl History {
     /// # Errors
     /// What the system refuses.
     pub fn create(file: &Path, columns: Vec<Column>) -> Result<Self, WriteError> {
-        let text = header(&columns) + "\n";
-        atomic::write(file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(file)))?;
+        let text = header(&columns);
+        atomic::write(file, |out| out.write_all(&text).map_err(WriteError::io(file)))?;
         Self::open(file, columns, Mark { rows: 0, bytes: text.len() as u64 })
     }
 
@@ -60,12 +127,13 @@ impl History {
     /// # Errors
     /// The file has other columns, or less than was there at the mark; what the system refuses.
     pub fn resume(file: &Path, columns: Vec<Column>, mark: Mark) -> Result<Self, WriteError> {
-        let head = header(&columns) + "\n";
+        let head = header(&columns);
         let mut old = OpenOptions::new().read(true).write(true).open(file).map_err(WriteError::io(file))?;
         let length = old.metadata().map_err(WriteError::io(file))?.len();
         let mut found = vec![0; head.len().min(length as usize)];
         old.read_exact(&mut found).map_err(WriteError::io(file))?;
-        if found != head.as_bytes() {
+        if found != head {
+            let head = String::from_utf8_lossy(&head);
             let message = format!("has other columns than this run, which writes {}", head.trim_end());
             return Err(WriteError::format(file, message));
         }
@@ -86,6 +154,7 @@ impl History {
 
     fn open(file: &Path, columns: Vec<Column>, mark: Mark) -> Result<Self, WriteError> {
         let out = OpenOptions::new().append(true).open(file).map_err(WriteError::io(file))?;
+        let out = csv::WriterBuilder::new().buffer_capacity(LINE).from_writer(out);
         Ok(History { file: file.to_path_buf(), columns, out, rows: mark.rows, bytes: mark.bytes })
     }
 
@@ -94,7 +163,7 @@ impl History {
     /// # Errors
     /// What the system refuses.
     pub fn mark(&self) -> Result<Mark, WriteError> {
-        self.out.sync_data().map_err(WriteError::io(&self.file))?;
+        self.out.get_ref().sync_data().map_err(WriteError::io(&self.file))?;
         Ok(Mark { rows: self.rows, bytes: self.bytes })
     }
 
@@ -113,12 +182,13 @@ impl History {
             let (file, field) = (self.file.clone(), self.columns[at].name.clone());
             return Err(WriteError::NotFinite { file, field, index: self.rows, value: values[at] });
         }
-        let mut line = values.iter().map(|v| number(*v)).collect::<Vec<_>>().join(",");
-        line.push('\n');
-        // One call per row: a row is there whole or not at all.
-        self.out.write_all(line.as_bytes()).map_err(WriteError::io(&self.file))?;
+        let cells: Vec<String> = values.iter().map(|v| number(*v)).collect();
+        // One call of the system per row: a row is there whole or not at all.
+        let written = self.out.write_record(&cells).map_err(io::Error::from).and_then(|()| self.out.flush());
+        written.map_err(WriteError::io(&self.file))?;
         self.rows += 1;
-        self.bytes += line.len() as u64;
+        // A comma or the end of the line behind each number.
+        self.bytes += cells.iter().map(|cell| cell.len() as u64 + 1).sum::<u64>();
         Ok(())
     }
 }
@@ -129,90 +199,17 @@ fn number(value: f64) -> String {
     if plain.len() <= scientific.len() + 4 { plain } else { scientific }
 }
 
-fn header(columns: &[Column]) -> String {
-    let title = |c: &Column| {
-        let text = if c.unit.is_empty() { c.name.clone() } else { format!("{} [{}]", c.name, c.unit) };
-        if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+/// The first line, with its end.
+fn header(columns: &[Column]) -> Vec<u8> {
+    let title = |c: &Column| match c.unit.as_str() {
+        "" => c.name.clone(),
+        unit => format!("{} [{unit}]", c.name),
     };
-    columns.iter().map(title).collect::<Vec<_>>().join(",")
+    let mut out = csv::Writer::from_writer(Vec::new());
+    out.write_record(columns.iter().map(title)).expect("memory takes every record of a first line");
+    out.into_inner().expect("memory takes all that is buffered")
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::write::sample::folder;
-
-    fn columns() -> Vec<Column> {
-        vec![Column::new("time", "s"), Column::new("settlement", "m"), Column::new("a, b", "")]
-    }
-
-    #[test]
-    fn rows_are_on_disk_at_once_and_keep_their_bits() {
-        let dir = folder("csv");
-        let file = dir.join("history.csv");
-        let mut history = History::create(&file, columns()).unwrap();
-        assert_eq!(std::fs::read_to_string(&file).unwrap(), "time [s],settlement [m],\"a, b\"\n");
-        let values = [0.1 + 0.2, -1.0e-300, f64::MAX, 1.0 / 3.0, 5.0e-324, -0.0, 12345678.9, 1e15, 2.5e-7];
-        for row in values.chunks(3) {
-            history.row(row).unwrap();
-        }
-        let text = std::fs::read_to_string(&file).unwrap();
-        let back: Vec<u64> = text
-            .lines()
-            .skip(1)
-            .flat_map(|row| row.split(','))
-            .map(|v| v.parse::<f64>().unwrap().to_bits())
-            .collect();
-        assert_eq!(back, values.map(f64::to_bits));
-        assert!(text.lines().all(|row| row.len() < 90), "no number takes 300 digits: {text}");
-        std::fs::remove_dir_all(&dir).unwrap();
-    }
-
-    #[test]
-    fn a_value_that_is_not_finite_is_named_and_its_row_left_out() {
-        let dir = folder("csv_nan");
-        let file = dir.join("history.csv");
-        let mut history = History::create(&file, columns()).unwrap();
-        history.row(&[0.0, 1.0, 2.0]).unwrap();
-        let error = history.row(&[0.5, f64::NAN, 2.0]).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            format!("{}: settlement at index 1 is NaN: not written", file.display())
-        );
-        assert!(history.row(&[0.5, 1.0]).unwrap_err().to_string().contains("row 1 has 2 values, expected 3"));
-        assert_eq!(std::fs::read_to_string(&file).unwrap().lines().count(), 2);
-        std::fs::remove_dir_all(&dir).unwrap();
-    }
-
-    #[test]
-    fn a_resumed_history_is_the_one_of_a_run_without_a_break() {
-        let dir = folder("csv_resume");
-        let file = dir.join("history.csv");
-        let row = |i: u32| [0.1 * f64::from(i), f64::from(i), 0.25];
-        let mut whole = History::create(&file, columns()).unwrap();
-        let start = whole.mark().unwrap();
-        (0..3).for_each(|i| whole.row(&row(i)).unwrap());
-        let mark = whole.mark().unwrap();
-        (3..6).for_each(|i| whole.row(&row(i)).unwrap());
-        let expected = std::fs::read_to_string(&file).unwrap();
-        // Later rows already written, the last cut short; then nothing beyond the mark; then nothing at all.
-        for (left, mark, first) in
-            [(expected.len() - 4, mark, 3), (mark.bytes as usize, mark, 3), (40, start, 0)]
-        {
-            std::fs::write(&file, &expected[..left]).unwrap();
-            let mut second = History::resume(&file, columns(), mark).unwrap();
-            (first..6).for_each(|i| second.row(&row(i)).unwrap());
-            assert_eq!(std::fs::read_to_string(&file).unwrap(), expected);
-            assert_eq!(second.mark().unwrap(), Mark { rows: 6, bytes: expected.len() as u64 });
-        }
-
-        let error = History::resume(&file, columns()[..2].to_vec(), mark).unwrap_err();
-        assert!(error.to_string().contains("has other columns"), "{error}");
-        for wrong in [&expected[..mark.bytes as usize - 1], &expected.replace("0.1,", "0.123,")] {
-            std::fs::write(&file, wrong).unwrap();
-            let error = History::resume(&file, columns(), mark).unwrap_err();
-            assert!(error.to_string().contains("is not the history"), "{error}");
-        }
-        std::fs::remove_dir_all(&dir).unwrap();
-    }
-}
+#[path = "csv_tests.rs"]
+mod tests;

@@ -1,5 +1,6 @@
 //! Result files and meshes, one writer per file.
 //!
+//! The frames of a run go through the [`Writers`] of the formats that the scene switches on; [`writer`] says how to add one.
 //! Every file appears whole or not at all ([`atomic`]), except the history ([`csv`]), which grows by whole
 //! rows. No writer writes a number that is not finite: it names the field and the index instead.
 
@@ -9,6 +10,7 @@ pub mod atomic;
 mod cdb;
 pub mod csv;
 pub mod error;
+mod frame;
 mod gmsh;
 mod mesh_file;
 pub mod pvd;
@@ -18,13 +20,18 @@ pub mod stl;
 pub mod svg;
 pub mod tecplot;
 mod vtk;
+mod vtk_frames;
 mod vtk_legacy;
 #[cfg(test)]
 mod vtk_oracle;
 pub mod vtp;
 pub mod vtu;
+pub mod writer;
 
 pub use error::WriteError;
+pub use frame::{ChainFrame, Frame, GrainFrame, SolidFrame, WallFrame};
 pub use mesh_file::{MeshOptions, write_mesh_file};
-pub use vtp::{ChainFrame, GrainFrame, WallFrame};
-pub use vtu::SolidFrame;
+pub use writer::{Format, Mark, Part, Writers};
+
+/// Every format of frames, in the order in which a frame is written.
+pub const FORMATS: [&Format; 2] = [&vtk_frames::FORMAT, &tecplot::FORMAT];

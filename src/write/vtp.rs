@@ -9,61 +9,8 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attributes, PolyDataPiece, VertexNumbers};
 
 use super::error::WriteError;
+use super::frame::{ChainFrame, GrainFrame, WallFrame};
 use super::vtk::{self, Fields};
-
-/// The grains at one moment: one item per sphere, the spheres of a clump with the `id` of their body.
-/// Every field has the shape `[spheres]`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct GrainFrame {
-    /// Centre of the sphere [m].
-    pub position: Vec<[f64; 3]>,
-    /// Radius of the sphere [m].
-    pub radius: Vec<f64>,
-    /// Velocity of the centre [m/s].
-    pub velocity: Vec<[f64; 3]>,
-    /// Angular velocity of the body, world axes [rad/s].
-    pub spin: Vec<[f64; 3]>,
-    /// Orientation of the body: quaternion w, x, y, z [1].
-    pub orientation: Vec<[f64; 4]>,
-    /// Number of the body.
-    pub id: Vec<u32>,
-    /// Number of the part (group) that the body belongs to.
-    pub part: Vec<u32>,
-    /// Mean stress of the body, tension positive [Pa].
-    pub mean_stress: Vec<f64>,
-    /// Sum of contact forces on the body [N].
-    pub force: Vec<[f64; 3]>,
-    /// Number of partners that press on the body.
-    pub coordination: Vec<u32>,
-    /// Number of the fragment: the bodies that bonds hold together.
-    pub fragment: Vec<u32>,
-}
-
-/// The contacts at one moment. Every field has the shape `[contacts]`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ChainFrame {
-    /// Centres of the two partners, or centre and contact point [m].
-    pub ends: Vec<[[f64; 3]; 2]>,
-    /// Normal force, compression positive [N].
-    pub normal_force: Vec<f64>,
-    /// Magnitude of the tangential force [N].
-    pub tangential_force: Vec<f64>,
-    /// Kind of contact, as the run numbers it.
-    pub kind: Vec<u32>,
-    /// 1 where the normal force is above the mean of all contacts, else 0.
-    pub strong: Vec<u32>,
-}
-
-/// The walls at one moment.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WallFrame {
-    /// Corner points [m].
-    pub points: Vec<[f64; 3]>,
-    /// Corners of each polygon, as indices of `points`.
-    pub polygons: Vec<Vec<u32>>,
-    /// Number of the wall that each polygon belongs to. Shape `[polygons]`.
-    pub id: Vec<u32>,
-}
 
 /// Writes the grains: point data of the names of [`GrainFrame`].
 ///

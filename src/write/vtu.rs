@@ -13,26 +13,8 @@ use vtkio::model::{Attributes, CellType, Cells, UnstructuredGridPiece, VertexNum
 use crate::read::MeshFile;
 
 use super::error::WriteError;
+use super::frame::SolidFrame;
 use super::vtk::{self, Fields};
-
-/// The solid at one moment. Coordinates are those of the undeformed mesh: warp by `displacement` to deform.
-#[derive(Clone, Copy, Debug)]
-pub struct SolidFrame<'a> {
-    /// The mesh.
-    pub mesh: &'a Mesh,
-    /// Displacement [m]. Shape `[3 * nodes]`.
-    pub displacement: &'a [f64],
-    /// Velocity [m/s]. Shape `[3 * nodes]`.
-    pub velocity: &'a [f64],
-    /// Stress at the nodes, tension positive: xx, yy, zz, xy, yz, zx [Pa]. Shape `[nodes]`.
-    pub stress: &'a [[f64; 6]],
-    /// Von Mises stress at the nodes [Pa]. Shape `[nodes]`.
-    pub von_mises: &'a [f64],
-    /// Equivalent plastic strain at the nodes [1]. Shape `[nodes]`.
-    pub equivalent_plastic_strain: &'a [f64],
-    /// Yield function at the nodes, negative inside the surface [Pa]. Shape `[nodes]`.
-    pub yield_function: &'a [f64],
-}
 
 /// Writes the solid: point data `displacement`, `velocity`, `stress` (3x3), `von_mises`,
 /// `equivalent_plastic_strain`, `yield_function`, `node_id`; cell data `material`, `element_id`.

@@ -1,0 +1,95 @@
+//! What a run writes, resolved.
+
+use crate::scene::{Chains, Document, Scene, SceneError};
+use crate::write::{FORMATS, Format, Part};
+use std::time::Duration;
+
+/// Time by the clock between two checkpoints where the scene does not say [s].
+const CHECKPOINT: f64 = 600.0;
+
+/// What is written, resolved.
+#[derive(Clone, Debug)]
+pub struct OutputPlan {
+    /// Frames over the run proper; the start is one more.
+    pub frames: u32,
+    /// Time between rows of the history [s].
+    pub history_interval: f64,
+    /// Time by the clock between two checkpoints.
+    pub checkpoint: Duration,
+    /// Formats of the frames.
+    pub formats: Vec<&'static Format>,
+    /// Nodes and Gauss points of the last state as CSV.
+    pub tables: bool,
+    /// Grains of the last state as CSV.
+    pub packing: bool,
+    /// Frames show the contacts above the mean force only.
+    pub strong_chains: bool,
+}
+
+impl OutputPlan {
+    /// Resolves `[output]` of a scene whose run proper lasts `end` [s]; 0 for a static solid.
+    ///
+    /// # Errors
+    /// A key that would have no effect in this scene, or a value out of its range.
+    pub fn new(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, SceneError> {
+        refuse_idle_keys(document, scene, end)?;
+        let o = &scene.output;
+        let frames = o.frames.unwrap_or(20);
+        if frames > 100_000 {
+            return Err(document.error("output.frames", frames.to_string(), "at most 100000"));
+        }
+        let history_interval = o.history_interval.map_or(end / 1000.0, |i| i.si);
+        if o.history_interval.is_some() && (history_interval <= 0.0 || !history_interval.is_finite()) {
+            let found = history_interval.to_string();
+            return Err(document.error("output.history_interval", found, "a time above 0"));
+        }
+        let checkpoint = o.checkpoint.map_or(CHECKPOINT, |c| c.si);
+        let Some(checkpoint) = Duration::try_from_secs_f64(checkpoint).ok().filter(|c| !c.is_zero()) else {
+            return Err(document.error("output.checkpoint", format!("{checkpoint} s"), "a time above 0"));
+        };
+        let asked = |format: &&'static Format| {
+            let shown = scene.solid.is_some() || !of_solid_alone(format);
+            shown && o.formats.get(format.key).copied().unwrap_or(format.default)
+        };
+        Ok(OutputPlan {
+            frames,
+            checkpoint,
+            history_interval,
+            formats: FORMATS.into_iter().filter(asked).collect(),
+            tables: o.tables.unwrap_or(false),
+            packing: o.packing.unwrap_or(false),
+            strong_chains: o.chains == Some(Chains::Strong),
+        })
+    }
+}
+
+/// Whether a format shows nothing but the solid.
+fn of_solid_alone(format: &Format) -> bool {
+    format.parts.iter().all(|part| *part == Part::Solid)
+}
+
+/// Refuses keys that would have no effect.
+fn refuse_idle_keys(document: &Document, scene: &Scene, end: f64) -> Result<(), SceneError> {
+    let o = &scene.output;
+    let formats = FORMATS.into_iter().filter(|format| of_solid_alone(format));
+    let mut of_solid: Vec<(&str, bool)> =
+        formats.map(|format| (format.key, o.formats.contains_key(format.key))).collect();
+    of_solid.push(("tables", o.tables.is_some()));
+    let of_grains = [("packing", o.packing.is_some()), ("chains", o.chains.is_some())];
+    let of_time = [
+        ("frames", o.frames.is_some(), "time: a static solid has one frame"),
+        ("history_interval", o.history_interval.is_some(), "time: a static solid has no history"),
+        ("checkpoint", o.checkpoint.is_some(), "time: a static solid is solved in one go"),
+    ];
+    let of_solid = of_solid.into_iter().map(|(key, given)| (key, given && scene.solid.is_none(), "[solid]"));
+    let of_grains =
+        of_grains.into_iter().map(|(key, given)| (key, given && scene.grains.is_empty(), "[[grains]]"));
+    let of_time = of_time.into_iter().map(|(key, given, needs)| (key, given && end == 0.0, needs));
+    match of_solid.chain(of_grains).chain(of_time).find(|(_, idle, _)| *idle) {
+        None => Ok(()),
+        Some((key, _, needs)) => {
+            let expected = format!("no such key without {needs}");
+            Err(document.error(&format!("output.{key}"), "a value", expected))
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Columns of `cycles.csv`.
+
+use crate::model::Job;
+use crate::run::system::System;
+use crate::write::csv::{Column, Row};
+use trackbed_coupling::track::CyclicLoad;
+use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
+
+/// What follows the cycles of a load.
+pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {
+    let part = job.grains.as_ref();
+    let between = part.and_then(|g| g.after.between).unwrap_or(load.range());
+    let column = match (part.and_then(|g| g.sleeper.as_ref()), system.grains()) {
+        (Some(sleeper), Some(g)) => {
+            let spheres = (0..g.model.body_count())
+                .filter(|&b| g.state.present(b))
+                .flat_map(|b| g.state.spheres(g.model, b));
+            let bottom = spheres.map(|(x, r)| x.z - r).fold(f64::INFINITY, f64::min);
+            let area = 4.0 * sleeper.row.half[0] * sleeper.row.half[1];
+            let below = -sleeper.row.half[2] - bottom;
+            if bottom.is_finite() { BedColumn { area, below } } else { BedColumn::default() }
+        }
+        _ => BedColumn::default(),
+    };
+    CycleRecorder::new(load, between, column)
+}
+
+/// The row of a cycle.
+pub fn record(job: &Job, c: &Cycle, row: &mut Row) {
+    row.put("cycle", "", f64::from(c.number));
+    row.put("settlement", "m", c.settlement);
+    row.put("resilient_deflection", "m", c.resilient_deflection);
+    row.put("secant_stiffness", "N/m", c.secant_stiffness);
+    row.put("dissipated_energy", "J", c.dissipated_energy);
+    row.put("peak_formation_pressure", "Pa", c.peak_formation_pressure);
+    row.put("rate", "m", c.rate);
+    row.put("bed_stiffness", "N/m", c.bed_stiffness);
+    if job.solid.is_none() {
+        row.put("resilient_modulus", "Pa", c.resilient_modulus);
+    }
+    if job.grains.as_ref().is_some_and(|g| g.after.jump.is_some()) {
+        row.put("simulated", "", f64::from(c.simulated));
+        row.put("jump_error", "m", c.jump_error);
+    }
+}
+
+/// Its columns.
+pub fn columns(job: &Job) -> Vec<Column> {
+    Row::columns_of(|row| record(job, &Cycle::default(), row))
+}

@@ -1,0 +1,57 @@
+//! The settlement curves at the end of a run.
+
+use super::Results;
+use crate::failure::Failure;
+use crate::write::svg::{LinePlot, Series};
+use trackbed_coupling::track::cycles::Cycle;
+
+impl Results<'_> {
+    /// Draws the settlement curves.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn plot_settlement(&self) -> Result<(), Failure> {
+        self.plot_lowering()?;
+        self.plot_cycles()
+    }
+
+    /// `sleeper.svg`: lowering of every sleeper against time.
+    fn plot_lowering(&self) -> Result<(), Failure> {
+        let lowering = &self.course.settlement;
+        if lowering.is_empty() {
+            return Ok(());
+        }
+        let (several, whose) = if lowering.len() > 1 { (true, "sleepers") } else { (false, "sleeper") };
+        let name = |k: usize| if several { format!("sleeper {}", k + 1) } else { "sleeper".into() };
+        let series = lowering.iter().enumerate();
+        let plot = LinePlot {
+            title: format!("{}: lowering of the {whose}", self.job.title),
+            x_label: "time [s]".into(),
+            y_label: "lowering [mm]".into(),
+            series: series.map(|(k, points)| Series { name: name(k), points: points.clone() }).collect(),
+        };
+        Ok(plot.write(&self.dir.join("sleeper.svg"))?)
+    }
+
+    /// `settlement.svg`: settlement and resilient deflection against cycles.
+    fn plot_cycles(&self) -> Result<(), Failure> {
+        let cycles = self.cycles();
+        if cycles.is_empty() {
+            return Ok(());
+        }
+        let series = |name: &str, f: fn(&Cycle) -> f64| Series {
+            name: name.into(),
+            points: cycles.iter().map(|c| [f64::from(c.number), 1e3 * f(c)]).collect(),
+        };
+        let plot = LinePlot {
+            title: format!("{}: settlement", self.job.title),
+            x_label: "load cycle".into(),
+            y_label: "[mm]".into(),
+            series: vec![
+                series("settlement", |c| c.settlement),
+                series("resilient deflection", |c| c.resilient_deflection),
+            ],
+        };
+        Ok(plot.write(&self.dir.join("settlement.svg"))?)
+    }
+}

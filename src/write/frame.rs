@@ -1,0 +1,93 @@
+//! What a result file shows of one moment, as plain arrays: the solid, the grains, the contacts, the walls.
+
+use trackbed_fem::mesh::Mesh;
+
+/// One moment of a run. A part that the run has not, or that no writer shows, is absent.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Frame<'a> {
+    /// Number of the frame, from 0.
+    pub number: usize,
+    /// Simulated time [s].
+    pub time: f64,
+    /// The solid.
+    pub solid: Option<SolidFrame<'a>>,
+    /// The grains, one item per sphere.
+    pub grains: Option<&'a GrainFrame>,
+    /// The contacts of the grains.
+    pub chains: Option<&'a ChainFrame>,
+    /// Walls and sleepers.
+    pub walls: Option<&'a WallFrame>,
+}
+
+/// The solid at one moment. Coordinates are those of the undeformed mesh: warp by `displacement` to deform.
+#[derive(Clone, Copy, Debug)]
+pub struct SolidFrame<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// Displacement [m]. Shape `[3 * nodes]`.
+    pub displacement: &'a [f64],
+    /// Velocity [m/s]. Shape `[3 * nodes]`.
+    pub velocity: &'a [f64],
+    /// Stress at the nodes, tension positive: xx, yy, zz, xy, yz, zx [Pa]. Shape `[nodes]`.
+    pub stress: &'a [[f64; 6]],
+    /// Von Mises stress at the nodes [Pa]. Shape `[nodes]`.
+    pub von_mises: &'a [f64],
+    /// Equivalent plastic strain at the nodes [1]. Shape `[nodes]`.
+    pub equivalent_plastic_strain: &'a [f64],
+    /// Yield function at the nodes, negative inside the surface [Pa]. Shape `[nodes]`.
+    pub yield_function: &'a [f64],
+}
+
+/// The grains at one moment: one item per sphere, the spheres of a clump with the `id` of their body.
+/// Every field has the shape `[spheres]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GrainFrame {
+    /// Centre of the sphere [m].
+    pub position: Vec<[f64; 3]>,
+    /// Radius of the sphere [m].
+    pub radius: Vec<f64>,
+    /// Velocity of the centre [m/s].
+    pub velocity: Vec<[f64; 3]>,
+    /// Angular velocity of the body, world axes [rad/s].
+    pub spin: Vec<[f64; 3]>,
+    /// Orientation of the body: quaternion w, x, y, z [1].
+    pub orientation: Vec<[f64; 4]>,
+    /// Number of the body.
+    pub id: Vec<u32>,
+    /// Number of the part (group) that the body belongs to.
+    pub part: Vec<u32>,
+    /// Mean stress of the body, tension positive [Pa].
+    pub mean_stress: Vec<f64>,
+    /// Sum of contact forces on the body [N].
+    pub force: Vec<[f64; 3]>,
+    /// Number of partners that press on the body.
+    pub coordination: Vec<u32>,
+    /// Number of the fragment: the bodies that bonds hold together.
+    pub fragment: Vec<u32>,
+}
+
+/// The contacts at one moment. Every field has the shape `[contacts]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChainFrame {
+    /// Centres of the two partners, or centre and contact point [m].
+    pub ends: Vec<[[f64; 3]; 2]>,
+    /// Normal force, compression positive [N].
+    pub normal_force: Vec<f64>,
+    /// Magnitude of the tangential force [N].
+    pub tangential_force: Vec<f64>,
+    /// Kind of contact, as the run numbers it.
+    pub kind: Vec<u32>,
+    /// 1 where the normal force is above the mean of all contacts, else 0.
+    pub strong: Vec<u32>,
+}
+
+/// The walls at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallFrame {
+    /// Corner points [m].
+    pub points: Vec<[f64; 3]>,
+    /// Corners of each polygon, as indices of `points`.
+    pub polygons: Vec<Vec<u32>>,
+    /// Number of the wall that each polygon belongs to. Shape `[polygons]`.
+    pub id: Vec<u32>,
+}
