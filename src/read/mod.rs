@@ -26,7 +26,7 @@ pub(crate) mod vtk_grid;
 mod vtk_legacy;
 mod vtu;
 mod vtu_data;
-mod xml;
+pub(crate) mod xml;
 
 use std::path::Path;
 

@@ -39,7 +39,7 @@ pub fn read_vtu(file: &Path) -> Result<MeshFile, ReadError> {
     let (mut section, mut known) = (None, false);
     let mut appended: Option<(&[u8], bool)> = None;
     for tag in tags(&bytes) {
-        match tag.name {
+        match tag.name.as_str() {
             "VTKFile" => {
                 let kind = tag.attribute("type").unwrap_or_default();
                 if kind != "UnstructuredGrid" {

@@ -1,32 +1,25 @@
 //! The tags of an XML file that may have binary data behind them.
 
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
 /// An opening or closing tag.
-pub(super) struct Tag<'a> {
+pub(crate) struct Tag<'a> {
     /// Its name, with a slash in front when it closes.
-    pub name: &'a str,
-    attributes: &'a str,
+    pub name: String,
+    /// The opening tag.
+    start: Option<BytesStart<'a>>,
     /// Whether it closes itself.
     closed: bool,
     /// Place of the byte behind it.
     pub end: usize,
 }
 
-impl<'a> Tag<'a> {
+impl Tag<'_> {
     /// The value of an attribute.
     pub fn attribute(&self, name: &str) -> Option<String> {
-        let mut rest = self.attributes;
-        loop {
-            let (key, after) = rest.split_once('=')?;
-            let after = after.trim_start();
-            let quote = after.chars().next().filter(|c| matches!(c, '"' | '\''))?;
-            let (value, left) = after[1..].split_once(quote)?;
-            if key.trim() == name {
-                let entities =
-                    [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
-                return Some(entities.iter().fold(value.to_string(), |v, (from, to)| v.replace(from, to)));
-            }
-            rest = left;
-        }
+        let attribute = self.start.as_ref()?.try_get_attribute(name).ok()??;
+        Some(attribute.unescape_value().ok()?.into_owned())
     }
 
     /// The bytes between the tag and the next one.
@@ -40,38 +33,27 @@ impl<'a> Tag<'a> {
 }
 
 /// The tags of a file in order, without comments and declarations. Stops at the first that is damaged.
-pub(super) fn tags(bytes: &[u8]) -> impl Iterator<Item = Tag<'_>> {
-    let mut at = 0;
+pub(crate) fn tags(bytes: &[u8]) -> impl Iterator<Item = Tag<'_>> {
+    let mut reader = Reader::from_reader(bytes);
+    // Whether tags pair up is not asked: behind the one that binary data follows they may not.
+    reader.config_mut().check_end_names = false;
+    reader.config_mut().allow_unmatched_ends = true;
     std::iter::from_fn(move || {
         loop {
-            at += bytes[at..].iter().position(|b| *b == b'<')?;
-            if bytes[at..].starts_with(b"<!--") {
-                at += 4 + bytes[at + 4..].windows(3).position(|w| w == b"-->")? + 3;
-                continue;
-            }
-            let mut quote = None;
-            let end = bytes[at..].iter().position(|b| {
-                match quote {
-                    Some(q) if q == *b => quote = None,
-                    None if matches!(b, b'"' | b'\'') => quote = Some(*b),
-                    _ => {}
-                }
-                quote.is_none() && *b == b'>'
-            })?;
-            let inner = &bytes[at + 1..at + end];
-            at += end + 1;
-            if inner.starts_with(b"?") || inner.starts_with(b"!") {
-                continue;
-            }
-            let inner = std::str::from_utf8(inner).ok()?;
-            let (inner, closed) = match inner.strip_suffix('/') {
-                Some(open) => (open, true),
-                None => (inner, false),
+            let (name, start, closed) = match reader.read_event().ok()? {
+                Event::Start(start) => (text(start.name().as_ref())?, Some(start), false),
+                Event::Empty(start) => (text(start.name().as_ref())?, Some(start), true),
+                Event::End(end) => (format!("/{}", text(end.name().as_ref())?), None, false),
+                Event::Eof => return None,
+                _ => continue,
             };
-            let split = inner.find(char::is_whitespace).unwrap_or(inner.len());
-            return Some(Tag { name: &inner[..split], attributes: &inner[split..], closed, end: at });
+            return Some(Tag { name, start, closed, end: reader.buffer_position() as usize });
         }
     })
+}
+
+fn text(name: &[u8]) -> Option<String> {
+    std::str::from_utf8(name).ok().map(String::from)
 }
 
 #[cfg(test)]
@@ -82,11 +64,18 @@ mod tests {
     fn tags_with_attributes_comments_and_quotes() {
         let text = b"<?xml version=\"1.0\"?><!-- <a> --><A b=\"1 > 0\" c = 'x&amp;y'>text</A><B/>";
         let found: Vec<Tag> = tags(text).collect();
-        assert_eq!(found.iter().map(|t| t.name).collect::<Vec<_>>(), ["A", "/A", "B"]);
+        assert_eq!(found.iter().map(|t| t.name.as_str()).collect::<Vec<_>>(), ["A", "/A", "B"]);
         assert_eq!(found[0].attribute("b").unwrap(), "1 > 0");
         assert_eq!(found[0].attribute("c").unwrap(), "x&y");
         assert_eq!(found[0].attribute("d"), None);
         assert_eq!(found[0].text_after(text), b"text");
         assert_eq!(found[2].text_after(text), b"");
+    }
+
+    #[test]
+    fn the_first_damaged_tag_is_the_end() {
+        for text in ["<A><B c=", "<A><B", "<A><!-- no end", "<A>\u{0}\u{1}"] {
+            assert_eq!(tags(text.as_bytes()).map(|t| t.name).collect::<Vec<_>>(), ["A"], "{text}");
+        }
     }
 }

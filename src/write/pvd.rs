@@ -3,7 +3,13 @@
 //! The file is written anew, whole, after each frame, so that a run can be watched, and one that was cut short
 //! keeps what it has shown.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
+
+use crate::read::xml::{Tag, tags};
 
 use super::atomic;
 use super::error::WriteError;
@@ -40,10 +46,12 @@ impl Series {
         if entries == 0 {
             return Ok(series);
         }
-        let text = std::fs::read_to_string(file).map_err(WriteError::io(file))?;
-        for row in text.lines().filter(|row| row.trim_start().starts_with("<DataSet")).take(entries) {
-            let frame = parse(row)
-                .ok_or_else(|| WriteError::format(file, format!("not a row of this program: {row}")))?;
+        let bytes = std::fs::read(file).map_err(WriteError::io(file))?;
+        for tag in tags(&bytes).filter(|tag| tag.name == "DataSet").take(entries) {
+            let number = series.frames.len();
+            let frame = parse(&tag).ok_or_else(|| {
+                WriteError::format(file, format!("DataSet {number} is not one of this program"))
+            })?;
             series.frames.push(frame);
         }
         if series.frames.len() < entries {
@@ -73,42 +81,44 @@ impl Series {
             let (file, field) = (self.file.clone(), "time".to_string());
             return Err(WriteError::NotFinite { file, field, index, value: frame.time });
         }
-        let mut text = String::from(
-            "<?xml version=\"1.0\"?>\n\
-             <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
-        );
-        for Frame { time, part, name, file } in &self.frames {
-            let (name, file) = (escape(name), escape(file));
-            text += &format!(
-                "    <DataSet timestep=\"{time}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>\n"
-            );
-        }
-        text += "  </Collection>\n</VTKFile>\n";
-        atomic::write(&self.file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(&self.file)))
+        atomic::write(&self.file, |out| {
+            let mut xml = Writer::new_with_indent(&mut *out, b' ', 2);
+            let written = self.write_xml(&mut xml);
+            written.map_err(|error| WriteError::format(&self.file, error))?;
+            out.write_all(b"\n").map_err(WriteError::io(&self.file))
+        })
+    }
+
+    fn write_xml<W: Write>(&self, xml: &mut Writer<W>) -> Result<(), quick_xml::Error> {
+        xml.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
+        let root = xml.create_element("VTKFile").with_attributes([
+            ("type", "Collection"),
+            ("version", "1.0"),
+            ("byte_order", "LittleEndian"),
+        ]);
+        root.write_inner_content(|xml| {
+            xml.create_element("Collection").write_inner_content(|xml| {
+                for Frame { time, part, name, file } in &self.frames {
+                    let (time, part) = (time.to_string(), part.to_string());
+                    let values = [("timestep", &time), ("part", &part), ("name", name), ("file", file)];
+                    let values = values.map(|(key, value)| (key, value.as_str()));
+                    xml.create_element("DataSet").with_attributes(values).write_empty()?;
+                }
+                Ok::<(), quick_xml::Error>(())
+            })?;
+            Ok::<(), quick_xml::Error>(())
+        })?;
+        Ok(())
     }
 }
 
-fn parse(row: &str) -> Option<Frame> {
-    let value = |key: &str| {
-        let start = row.find(&format!(" {key}=\""))? + key.len() + 3;
-        row[start..].split('"').next()
-    };
+fn parse(tag: &Tag) -> Option<Frame> {
     Some(Frame {
-        time: value("timestep")?.parse().ok()?,
-        part: value("part")?.parse().ok()?,
-        name: unescape(value("name")?),
-        file: unescape(value("file")?),
+        time: tag.attribute("timestep")?.parse().ok()?,
+        part: tag.attribute("part")?.parse().ok()?,
+        name: tag.attribute("name")?,
+        file: tag.attribute("file")?,
     })
-}
-
-/// Text as it stands in XML, also inside quotes.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// The text of [`escape`].
-pub(crate) fn unescape(text: &str) -> String {
-    text.replace("&quot;", "\"").replace("&gt;", ">").replace("&lt;", "<").replace("&amp;", "&")
 }
 
 #[cfg(test)]

@@ -6,9 +6,10 @@
 
 use std::path::Path;
 
+use quick_xml::escape::escape;
+
 use super::atomic;
 use super::error::{WriteError, check_field};
-use super::pvd::escape;
 
 /// A curve.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -231,8 +232,13 @@ fn round(value: f64) -> f64 {
 }
 
 fn text(x: f64, y: f64, anchor: &str, content: &str) -> String {
-    let (x, y, content) = (round(x), round(y), escape(content));
+    let (x, y, content) = (round(x), round(y), escape(&printable(content)).into_owned());
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{content}</text>\n")
+}
+
+/// The text without control characters, which XML 1.0 cannot hold.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 fn stroke(index: usize) -> String {

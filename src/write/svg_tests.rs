@@ -1,8 +1,8 @@
 //! Ticks, placement, and well-formed text.
 
 use super::*;
-use crate::write::pvd::unescape;
 use crate::write::sample::folder;
+use quick_xml::escape::unescape;
 
 fn labels(values: &[f64], most: usize) -> Vec<String> {
     Axis::over(values.iter().copied(), most).labels()
@@ -75,7 +75,7 @@ fn all_text_stays_inside_the_picture_and_tick_labels_apart() {
     for part in svg.split("<text ").skip(1) {
         let number = |key: &str| part.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next().unwrap();
         let (x, y): (f64, f64) = (number("x").parse().unwrap(), number("y").parse().unwrap());
-        let content = unescape(part.split('>').nth(1).unwrap().split('<').next().unwrap());
+        let content = unescape(part.split('>').nth(1).unwrap().split('<').next().unwrap()).unwrap();
         let width = text_width(&content, FONT);
         let (from, to) = match number("text-anchor") {
             "middle" => (x - 0.5 * width, x + 0.5 * width),
@@ -116,6 +116,14 @@ fn the_text_is_well_formed() {
     }
     assert!(open.is_empty());
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn control_characters_of_a_title_do_not_break_the_picture() {
+    let plot = LinePlot { title: "bell \u{7} and \u{1b}[31m red".to_string(), ..settlement() };
+    let svg = plot.render();
+    assert!(svg.contains("bell   and  [31m red"));
+    assert!(!svg.chars().any(|c| c.is_control() && c != '\n'));
 }
 
 #[test]

@@ -1,12 +1,16 @@
-//! What the VTK XML writers share: checked fields, compression, and the atomic file.
+//! VTK XML files: checked fields, compressed in blocks, in an atomic file.
+//!
+//! An array goes out as VTK's own writer does it by default: blocks of 32 KiB, each compressed whole by zlib, in base64 behind a header of
+//! their lengths. Source: VTK's User's Guide, "VTK XML formats".
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use vtkio::IOBuffer;
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, DataSet, PolyDataPiece, ScalarType, Version, VertexNumbers, Vtk,
-};
-use vtkio::xml::Compressor;
+use base64::prelude::{BASE64_STANDARD, Engine};
+use flate2::{Compression, write::ZlibEncoder};
+use quick_xml::Writer;
+use quick_xml::events::BytesText;
+use rayon::prelude::*;
 
 use super::atomic;
 use super::error::{WriteError, check_field};
@@ -14,41 +18,150 @@ use super::error::{WriteError, check_field};
 /// zlib level: result fields are noise in their low bits, so higher levels cost time and gain little.
 const LEVEL: u32 = 1;
 
+/// Bytes of a block before it is compressed.
+const BLOCK: usize = 32768;
+
+/// An array as little-endian bytes.
+pub struct Array {
+    name: String,
+    kind: &'static str,
+    components: usize,
+    bytes: Vec<u8>,
+}
+
+impl Array {
+    /// Numbers of double precision, `components` per item.
+    pub fn doubles(name: &str, values: &[f64], components: usize) -> Array {
+        let bytes = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+        Array { name: name.into(), kind: "Float64", components, bytes }
+    }
+
+    /// Identifiers.
+    pub fn ids(name: &str, values: &[u32]) -> Array {
+        let bytes = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+        Array { name: name.into(), kind: "UInt32", components: 1, bytes }
+    }
+
+    /// Indices of points or of places in a list of them.
+    pub fn indices(name: &str, values: impl Iterator<Item = u64>) -> Array {
+        Array {
+            name: name.into(),
+            kind: "UInt64",
+            components: 1,
+            bytes: values.flat_map(u64::to_le_bytes).collect(),
+        }
+    }
+
+    /// Small numbers.
+    pub fn bytes(name: &str, bytes: Vec<u8>) -> Array {
+        Array { name: name.into(), kind: "UInt8", components: 1, bytes }
+    }
+
+    /// The text of the array in the file.
+    fn encoded(&self) -> std::io::Result<String> {
+        let compressed = self.bytes.chunks(BLOCK).map(|block| {
+            let mut encoder = ZlibEncoder::new(Vec::with_capacity(BLOCK / 2), Compression::new(LEVEL));
+            encoder.write_all(block)?;
+            encoder.finish()
+        });
+        let compressed = compressed.collect::<std::io::Result<Vec<_>>>()?;
+        // A last block that is whole counts as no partial one.
+        let counts = [compressed.len(), BLOCK, self.bytes.len() % BLOCK];
+        let lengths = counts.into_iter().chain(compressed.iter().map(Vec::len));
+        let header: Vec<u8> = lengths.flat_map(|n| (n as u64).to_le_bytes()).collect();
+        let mut text = BASE64_STANDARD.encode(header);
+        BASE64_STANDARD.encode_string(compressed.concat(), &mut text);
+        Ok(text)
+    }
+}
+
+/// Arrays of a file that belong together, such as `PointData`.
+pub struct Section {
+    name: &'static str,
+    /// Attributes of the tag: which array is the one to show first, as scalars, vectors or tensors.
+    active: Vec<(&'static str, String)>,
+    arrays: Vec<Array>,
+}
+
+impl Section {
+    /// A section without arrays to show first.
+    pub fn new(name: &'static str, arrays: Vec<Array>) -> Section {
+        Section { name, active: Vec::new(), arrays }
+    }
+
+    /// Points, checked.
+    ///
+    /// # Errors
+    /// A coordinate that is not finite.
+    pub fn points(file: &Path, points: &[[f64; 3]]) -> Result<Section, WriteError> {
+        let flat = points.as_flattened();
+        check_field(file, "points", flat, 3, points.len())?;
+        Ok(Section::new("Points", vec![Array::doubles("Points", flat, 3)]))
+    }
+
+    /// Cells by the points of all of them, one behind the other, and the end of each in that list.
+    pub fn cells(
+        name: &'static str,
+        connectivity: impl Iterator<Item = u64>,
+        ends: impl Iterator<Item = u64>,
+    ) -> Section {
+        let arrays = vec![Array::indices("connectivity", connectivity), Array::indices("offsets", ends)];
+        Section::new(name, arrays)
+    }
+
+    /// Cells of `size` points each, numbered on.
+    pub fn cells_in_order(name: &'static str, cells: usize, size: usize) -> Section {
+        Section::cells(name, 0..(cells * size) as u64, (1..=cells as u64).map(|c| c * size as u64))
+    }
+
+    /// With one array more.
+    pub fn with(mut self, array: Array) -> Section {
+        self.arrays.push(array);
+        self
+    }
+}
+
 /// Named, checked fields of the points or of the cells of one file.
 pub struct Fields {
     file: PathBuf,
     count: usize,
-    list: Vec<Attribute>,
+    section: Section,
 }
 
 impl Fields {
-    /// Fields of `count` items of `file`.
-    pub fn new(file: &Path, count: usize) -> Self {
-        Fields { file: file.to_path_buf(), count, list: Vec::new() }
+    /// Fields of the `count` points of `file`.
+    pub fn of_points(file: &Path, count: usize) -> Self {
+        Fields { file: file.to_path_buf(), count, section: Section::new("PointData", Vec::new()) }
+    }
+
+    /// Fields of the `count` cells of `file`.
+    pub fn of_cells(file: &Path, count: usize) -> Self {
+        Fields { file: file.to_path_buf(), count, section: Section::new("CellData", Vec::new()) }
     }
 
     /// One number per item.
     pub fn scalar(&mut self, name: &str, values: &[f64]) -> Result<(), WriteError> {
-        self.push(name, values, 1, Attribute::scalars(name, 1))
+        self.show_first("Scalars", name);
+        self.generic(name, values, 1)
     }
 
     /// Three numbers per item.
     pub fn vector(&mut self, name: &str, values: &[f64]) -> Result<(), WriteError> {
-        self.push(name, values, 3, Attribute::vectors(name))
+        self.show_first("Vectors", name);
+        self.generic(name, values, 3)
     }
 
     /// Any number of components per item.
     pub fn generic(&mut self, name: &str, values: &[f64], components: usize) -> Result<(), WriteError> {
-        self.push(name, values, components, Attribute::generic(name, components as u32))
+        check_field(&self.file, name, values, components, self.count)?;
+        self.section.arrays.push(Array::doubles(name, values, components));
+        Ok(())
     }
 
     /// Symmetric tensors xx, yy, zz, xy, yz, zx, written as full 3x3 matrices.
     pub fn tensor(&mut self, name: &str, values: &[[f64; 6]]) -> Result<(), WriteError> {
-        let full: Vec<f64> = values
-            .iter()
-            .flat_map(|&[xx, yy, zz, xy, yz, zx]| [xx, xy, zx, xy, yy, yz, zx, yz, zz])
-            .collect();
-        self.push(name, &full, 9, Attribute::tensors(name))
+        self.show_first("Tensors", name);
+        self.generic(name, &matrices(values), 9)
     }
 
     /// One identifier per item.
@@ -57,102 +170,89 @@ impl Fields {
             let (file, field) = (self.file.clone(), name.to_string());
             return Err(WriteError::Length { file, field, found: values.len(), expected: self.count });
         }
-        self.list.push(Attribute::generic(name, 1).with_data(values.to_vec()));
+        self.section.arrays.push(Array::ids(name, values));
         Ok(())
     }
 
-    fn push(
-        &mut self,
-        name: &str,
-        values: &[f64],
-        components: usize,
-        attribute: Attribute,
-    ) -> Result<(), WriteError> {
-        check_field(&self.file, name, values, components, self.count)?;
-        self.list.push(attribute.with_data(values.to_vec()));
-        Ok(())
+    /// The first field of a kind is the one that a viewer shows.
+    fn show_first(&mut self, kind: &'static str, name: &str) {
+        if self.section.active.iter().all(|(k, _)| *k != kind) {
+            self.section.active.push((kind, name.to_string()));
+        }
     }
 
     /// The fields.
-    pub fn finish(self) -> Vec<Attribute> {
-        self.list
+    pub fn finish(self) -> Section {
+        self.section
     }
 }
 
-/// Cells of `size` points each, numbered on.
-pub fn cells_in_order(cells: usize, size: usize) -> VertexNumbers {
-    VertexNumbers::XML {
-        connectivity: (0..(cells * size) as u64).collect(),
-        offsets: (1..=cells as u64).map(|c| c * size as u64).collect(),
-    }
+/// Symmetric tensors xx, yy, zz, xy, yz, zx as full 3x3 matrices by rows.
+pub fn matrices(values: &[[f64; 6]]) -> Vec<f64> {
+    values.iter().flat_map(|&[xx, yy, zz, xy, yz, zx]| [xx, xy, zx, xy, yy, yz, zx, yz, zz]).collect()
 }
 
-/// Points, checked and flat.
-pub fn points(file: &Path, points: &[[f64; 3]]) -> Result<IOBuffer, WriteError> {
-    let flat = points.as_flattened();
-    check_field(file, "points", flat, 3, points.len())?;
-    Ok(IOBuffer::F64(flat.to_vec()))
+/// Writes a data set of type `kind` with one piece to `file`: its counts, such as `NumberOfPoints`, and its sections.
+///
+/// # Errors
+/// What the system refuses.
+pub fn write(
+    file: &Path,
+    kind: &str,
+    counts: &[(&str, usize)],
+    sections: &[Section],
+) -> Result<(), WriteError> {
+    let arrays: Vec<&Array> = sections.iter().flat_map(|section| &section.arrays).collect();
+    let texts = arrays.par_iter().map(|array| array.encoded()).collect::<Result<Vec<String>, _>>();
+    let mut texts = texts.map_err(WriteError::io(file))?.into_iter();
+    atomic::write(file, |out| {
+        let mut xml = Writer::new(out);
+        let root = xml.create_element("VTKFile").with_attributes([
+            ("type", kind),
+            ("version", "1.0"),
+            ("byte_order", "LittleEndian"),
+            ("header_type", "UInt64"),
+            ("compressor", "vtkZLibDataCompressor"),
+        ]);
+        let written = root.write_inner_content(|xml| {
+            xml.create_element(kind).write_inner_content(|xml| {
+                let counts: Vec<(&str, String)> = counts.iter().map(|(k, n)| (*k, n.to_string())).collect();
+                let counts = counts.iter().map(|(k, n)| (*k, n.as_str()));
+                xml.create_element("Piece").with_attributes(counts).write_inner_content(|xml| {
+                    sections.iter().try_for_each(|section| write_section(xml, section, &mut texts))
+                })?;
+                Ok::<(), quick_xml::Error>(())
+            })?;
+            Ok(())
+        });
+        written.map(|_| ()).map_err(|error: quick_xml::Error| WriteError::format(file, error))
+    })
 }
 
-/// Writes poly data to `file`.
-pub fn write_poly(file: &Path, piece: PolyDataPiece) -> Result<(), WriteError> {
-    if piece.points.is_empty() { write_empty(file, &piece.data) } else { write(file, piece) }
-}
-
-/// Poly data without points: vtkio leaves out counts of zero, which VTK then misses.
-fn write_empty(file: &Path, data: &Attributes) -> Result<(), WriteError> {
-    let arrays = |list: &[Attribute]| -> String {
-        let one = |attribute: &Attribute| match attribute {
-            Attribute::DataArray(array) => {
-                let kind = if array.data.scalar_type() == ScalarType::U32 { "UInt32" } else { "Float64" };
-                let (name, components) = (&array.name, array.elem.num_comp());
-                format!(
-                    "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-                     format=\"ascii\"></DataArray>\n"
-                )
-            }
-            Attribute::Field { .. } => String::new(),
-        };
-        list.iter().map(one).collect()
-    };
-    let (point, cell) = (arrays(&data.point), arrays(&data.cell));
-    let text = format!(
-        "<?xml version=\"1.0\"?>\n\
-         <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <PolyData>\n<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
-         NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n\
-         <PointData>\n{point}</PointData>\n<CellData>\n{cell}</CellData>\n\
-         <Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\"></DataArray>\n</Points>\n\
-         </Piece>\n</PolyData>\n</VTKFile>\n"
-    );
-    atomic::write(file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(file)))
-}
-
-/// Writes a data set that is not empty to `file`.
-pub fn write(file: &Path, data: impl Into<DataSet>) -> Result<(), WriteError> {
-    let vtk = Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::inline(data),
-        file_path: None,
-    };
-    let xml =
-        vtk.try_into_xml_format(Compressor::ZLib, LEVEL).map_err(|error| WriteError::format(file, error))?;
-    atomic::write(file, |out| xml.write(out).map_err(|error| WriteError::format(file, error)))
+/// Writes a section with the texts of its arrays.
+fn write_section<W: Write>(
+    xml: &mut Writer<W>,
+    section: &Section,
+    texts: &mut impl Iterator<Item = String>,
+) -> Result<(), quick_xml::Error> {
+    let active = section.active.iter().map(|(kind, name)| (*kind, name.as_str()));
+    xml.create_element(section.name).with_attributes(active).write_inner_content(|xml| {
+        for (array, text) in section.arrays.iter().zip(texts) {
+            let components = array.components.to_string();
+            xml.create_element("DataArray")
+                .with_attributes([
+                    ("type", array.kind),
+                    ("Name", array.name.as_str()),
+                    ("NumberOfComponents", components.as_str()),
+                    ("format", "binary"),
+                ])
+                .write_text_content(BytesText::from_escaped(text))?;
+        }
+        Ok::<(), quick_xml::Error>(())
+    })?;
+    Ok(())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_symmetric_tensor_becomes_a_matrix_by_rows() {
-        let mut fields = Fields::new(Path::new("a.vtu"), 1);
-        // xx, yy, zz, xy, yz, zx
-        fields.tensor("stress", &[[11.0, 22.0, 33.0, 12.0, 23.0, 31.0]]).unwrap();
-        let Some(Attribute::DataArray(array)) = fields.finish().pop() else { panic!("no array") };
-        let matrix = [11.0, 12.0, 31.0, 12.0, 22.0, 23.0, 31.0, 23.0, 33.0];
-        assert_eq!(array.data.into_vec::<f64>().unwrap(), matrix);
-    }
-}
+#[path = "vtk_tests.rs"]
+mod tests;

@@ -14,9 +14,9 @@ use crate::mesh_tools;
 use crate::read::MeshFile;
 
 /// The interpreter, or `None` where there is no VTK and none was asked for.
-fn python() -> Option<PathBuf> {
-    if let Some(told) = std::env::var_os("TRACKBED_PYTHON") {
-        return Some(told.into());
+pub(super) fn python() -> Option<PathBuf> {
+    if let Some(given) = std::env::var_os("TRACKBED_PYTHON") {
+        return Some(given.into());
     }
     let has_vtk = Command::new("python3").args(["-c", "import vtkmodules.vtkIOXML"]).output();
     match has_vtk {

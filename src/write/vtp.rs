@@ -5,12 +5,9 @@
 
 use std::path::Path;
 
-use vtkio::IOBuffer;
-use vtkio::model::{Attributes, PolyDataPiece, VertexNumbers};
-
 use super::error::WriteError;
 use super::frame::{ChainFrame, GrainFrame, WallFrame};
-use super::vtk::{self, Fields};
+use super::vtk::{self, Fields, Section};
 
 /// Writes the grains: point data of the names of [`GrainFrame`].
 ///
@@ -18,7 +15,7 @@ use super::vtk::{self, Fields};
 /// A field of the wrong length or with a number that is not finite, and what the system refuses.
 pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
     let count = frame.position.len();
-    let mut fields = Fields::new(file, count);
+    let mut fields = Fields::of_points(file, count);
     fields.scalar("radius", &frame.radius)?;
     fields.vector("velocity", frame.velocity.as_flattened())?;
     fields.vector("spin", frame.spin.as_flattened())?;
@@ -29,14 +26,8 @@ pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
     fields.vector("force", frame.force.as_flattened())?;
     fields.ids("coordination", &frame.coordination)?;
     fields.ids("fragment", &frame.fragment)?;
-    let point = fields.finish();
-    let piece = PolyDataPiece {
-        points: vtk::points(file, &frame.position)?,
-        verts: Some(vtk::cells_in_order(count, 1)),
-        data: Attributes { point, cell: Vec::new() },
-        ..empty()
-    };
-    vtk::write_poly(file, piece)
+    let verts = Section::cells_in_order("Verts", count, 1);
+    write(file, &frame.position, fields, verts, ("NumberOfVerts", count))
 }
 
 /// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`.
@@ -45,7 +36,7 @@ pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
 /// As [`write_grains`].
 pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     let count = frame.ends.len();
-    let mut fields = Fields::new(file, count);
+    let mut fields = Fields::of_cells(file, count);
     fields.scalar("normal_force", &frame.normal_force)?;
     fields.scalar("tangential_force", &frame.tangential_force)?;
     let parts = frame.normal_force.iter().zip(&frame.tangential_force);
@@ -53,14 +44,8 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     fields.scalar("magnitude", &magnitude)?;
     fields.ids("kind", &frame.kind)?;
     fields.ids("strong", &frame.strong)?;
-    let cell = fields.finish();
-    let piece = PolyDataPiece {
-        points: vtk::points(file, frame.ends.as_flattened())?,
-        lines: Some(vtk::cells_in_order(count, 2)),
-        data: Attributes { point: Vec::new(), cell },
-        ..empty()
-    };
-    vtk::write_poly(file, piece)
+    let lines = Section::cells_in_order("Lines", count, 2);
+    write(file, frame.ends.as_flattened(), fields, lines, ("NumberOfLines", count))
 }
 
 /// Writes the walls: cell data `id`.
@@ -78,33 +63,27 @@ pub fn write_walls(file: &Path, frame: &WallFrame) -> Result<(), WriteError> {
             return Err(WriteError::format(file, message));
         }
     }
-    let mut fields = Fields::new(file, frame.polygons.len());
+    let mut fields = Fields::of_cells(file, frame.polygons.len());
     fields.ids("id", &frame.id)?;
-    let cell = fields.finish();
-    let connectivity: Vec<u64> = frame.polygons.iter().flatten().map(|c| u64::from(*c)).collect();
+    let connectivity = frame.polygons.iter().flatten().map(|c| u64::from(*c));
     let ends = frame.polygons.iter().scan(0, |end, polygon| {
         *end += polygon.len() as u64;
         Some(*end)
     });
-    let offsets: Vec<u64> = ends.collect();
-    let piece = PolyDataPiece {
-        points: vtk::points(file, &frame.points)?,
-        polys: Some(VertexNumbers::XML { connectivity, offsets }),
-        data: Attributes { point: Vec::new(), cell },
-        ..empty()
-    };
-    vtk::write_poly(file, piece)
+    let polygons = Section::cells("Polys", connectivity, ends);
+    write(file, &frame.points, fields, polygons, ("NumberOfPolys", frame.polygons.len()))
 }
 
-fn empty() -> PolyDataPiece {
-    PolyDataPiece {
-        points: IOBuffer::F64(Vec::new()),
-        verts: None,
-        lines: None,
-        polys: None,
-        strips: None,
-        data: Attributes::new(),
-    }
+/// Writes poly data whose cells are all of one sort, with their number.
+fn write(
+    file: &Path,
+    points: &[[f64; 3]],
+    fields: Fields,
+    cells: Section,
+    count: (&str, usize),
+) -> Result<(), WriteError> {
+    let counts = [("NumberOfPoints", points.len()), count];
+    vtk::write(file, "PolyData", &counts, &[fields.finish(), Section::points(file, points)?, cells])
 }
 
 #[cfg(test)]

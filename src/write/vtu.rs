@@ -6,15 +6,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::read::MeshFile;
+use crate::read::vtk_grid::TYPES;
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
-use vtkio::model::{Attributes, CellType, Cells, UnstructuredGridPiece, VertexNumbers};
-
-use crate::read::MeshFile;
 
 use super::error::WriteError;
 use super::frame::SolidFrame;
-use super::vtk::{self, Fields};
+use super::vtk::{self, Array, Fields, Section};
 
 /// Writes the solid: point data `displacement`, `velocity`, `stress` (3x3), `von_mises`,
 /// `equivalent_plastic_strain`, `yield_function`, `node_id`; cell data `material`, `element_id`.
@@ -22,7 +21,7 @@ use super::vtk::{self, Fields};
 /// # Errors
 /// A field of the wrong length or with a number that is not finite, and what the system refuses.
 pub fn write_solid(file: &Path, frame: &SolidFrame) -> Result<(), WriteError> {
-    let mut fields = Fields::new(file, frame.mesh.node_count());
+    let mut fields = Fields::of_points(file, frame.mesh.node_count());
     fields.vector("displacement", frame.displacement)?;
     fields.vector("velocity", frame.velocity)?;
     fields.tensor("stress", frame.stress)?;
@@ -38,7 +37,7 @@ pub fn write_solid(file: &Path, frame: &SolidFrame) -> Result<(), WriteError> {
 /// # Errors
 /// As [`write_solid`].
 pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteError> {
-    let mut fields = Fields::new(file, mesh.node_count());
+    let mut fields = Fields::of_points(file, mesh.node_count());
     fields.vector("displacement", shape)?;
     fields.ids("node_id", &mesh.node_ids)?;
     write_grid(file, mesh, fields, &BTreeMap::new())
@@ -52,7 +51,7 @@ pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteEr
 pub fn write_mesh_file(file: &Path, content: &MeshFile) -> Result<(), WriteError> {
     let mesh = &content.mesh;
     let (mask, values) = constraint_arrays(content);
-    let mut fields = Fields::new(file, mesh.node_count());
+    let mut fields = Fields::of_points(file, mesh.node_count());
     fields.ids("node_id", &mesh.node_ids)?;
     fields.ids("constraint", &mask)?;
     fields.vector("constraint_value", values.as_flattened())?;
@@ -89,54 +88,41 @@ fn write_grid(
     element_sets: &BTreeMap<String, Vec<u32>>,
 ) -> Result<(), WriteError> {
     let elements = mesh.element_count();
-    let mut cell_fields = Fields::new(file, elements);
+    let mut cell_fields = Fields::of_cells(file, elements);
     cell_fields.ids("material", &mesh.materials)?;
     cell_fields.ids("element_id", &mesh.element_ids)?;
     for (name, members) in element_sets {
         cell_fields.ids(&format!("element_set:{name}"), &membership(members, elements))?;
     }
-    let point = point_fields.finish();
-    let cell = cell_fields.finish();
-    let connectivity: Vec<u64> = mesh.connectivity.nodes().iter().map(|n| u64::from(*n)).collect();
-    let mut end = 0;
-    let offsets: Vec<u64> = mesh
-        .connectivity
-        .kinds()
-        .iter()
-        .map(|kind| {
-            end += kind.node_count() as u64;
-            end
-        })
-        .collect();
-    let piece = UnstructuredGridPiece {
-        points: vtk::points(file, &mesh.coordinates)?,
-        cells: Cells {
-            cell_verts: VertexNumbers::XML { connectivity, offsets },
-            types: mesh.connectivity.kinds().iter().map(|kind| cell_type(*kind)).collect(),
-        },
-        data: Attributes { point, cell },
-    };
-    vtk::write(file, piece)
+    let (nodes, kinds) = (mesh.connectivity.nodes(), mesh.connectivity.kinds());
+    let ends = kinds.iter().scan(0, |end, kind| {
+        *end += kind.node_count() as u64;
+        Some(*end)
+    });
+    let cells = Section::cells("Cells", nodes.iter().map(|n| u64::from(*n)), ends);
+    let types = kinds.iter().map(|kind| cell_type(*kind)).collect();
+    vtk::write(
+        file,
+        "UnstructuredGrid",
+        &[("NumberOfPoints", mesh.node_count()), ("NumberOfCells", elements)],
+        &[
+            point_fields.finish(),
+            cell_fields.finish(),
+            Section::points(file, &mesh.coordinates)?,
+            cells.with(Array::bytes("types", types)),
+        ],
+    )
 }
 
 /// The cell type whose nodes are those of a kind, in the same order.
-fn cell_type(kind: ElementKind) -> CellType {
-    match kind {
-        ElementKind::Hex20 => CellType::QuadraticHexahedron,
-        ElementKind::Wedge15 => CellType::QuadraticWedge,
-        ElementKind::Pyramid13 => CellType::QuadraticPyramid,
-        ElementKind::Tet10 => CellType::QuadraticTetra,
-        ElementKind::Hex8 => CellType::Hexahedron,
-        ElementKind::Wedge6 => CellType::Wedge,
-        ElementKind::Pyramid5 => CellType::Pyramid,
-        ElementKind::Tet4 => CellType::Tetra,
-    }
+pub(super) fn cell_type(kind: ElementKind) -> u8 {
+    TYPES.iter().find(|(_, of, _)| *of == kind).expect("every kind has a VTK type").0
 }
 
 #[cfg(test)]
 mod tests {
     use trackbed_fem::mesh::Constraint;
-    use vtkio::model::DataSet;
+    use vtkio::model::{CellType, DataSet};
 
     use super::*;
     use crate::write::sample;
