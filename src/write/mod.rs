@@ -12,6 +12,7 @@ pub mod csv;
 pub mod error;
 mod frame;
 mod gmsh;
+pub mod hdf5;
 mod mesh_file;
 pub mod pvd;
 #[cfg(test)]
