@@ -25,6 +25,7 @@ mod vtk_frames;
 mod vtk_legacy;
 #[cfg(test)]
 mod vtk_oracle;
+mod vtkhdf;
 pub mod vtp;
 pub mod vtu;
 pub mod writer;
@@ -35,4 +36,4 @@ pub use mesh_file::{MeshOptions, write_mesh_file};
 pub use writer::{Format, Mark, Part, Writers};
 
 /// Every format of frames, in the order in which a frame is written.
-pub const FORMATS: [&Format; 2] = [&vtk_frames::FORMAT, &tecplot::FORMAT];
+pub const FORMATS: [&Format; 3] = [&vtk_frames::FORMAT, &tecplot::FORMAT, &vtkhdf::FORMAT];

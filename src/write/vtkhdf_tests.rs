@@ -1,0 +1,159 @@
+//! VTK's own reader finds what was written, at every time and after a break.
+
+use super::*;
+use crate::write::sample::{self, folder};
+use crate::write::vtk_oracle::python;
+use std::fmt::Write as _;
+use std::process::Command;
+
+/// What `tests/vtkhdf_check.py` prints of a file.
+fn read(python: &Path, file: &Path) -> String {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/vtkhdf_check.py");
+    let output = Command::new(python).arg(script).arg(file).output().expect("the interpreter starts");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && errors.is_empty(), "{errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The first, the middle and the last of `count` items.
+fn picked(count: usize) -> Vec<usize> {
+    if count == 0 { Vec::new() } else { vec![0, count / 2, count - 1] }
+}
+
+fn array(out: &mut String, name: &str, components: usize, values: &[f64]) {
+    let items = picked(values.len() / components);
+    let numbers = items.into_iter().flat_map(|i| &values[components * i..components * (i + 1)]);
+    let text: String = numbers.map(|v| format!(" {v:.17e}")).collect();
+    writeln!(out, "  {name} {components}{text}").unwrap();
+}
+
+/// Grains whose number changes: each field is a function of item and time.
+fn grains(count: usize, time: f64) -> GrainFrame {
+    let v = |i: usize, d: f64| [i as f64 + d, time * d, -(i as f64)];
+    GrainFrame {
+        position: (0..count).map(|i| v(i, 0.25)).collect(),
+        radius: (0..count).map(|i| 0.1 + i as f64).collect(),
+        velocity: (0..count).map(|i| v(i, 1.0)).collect(),
+        spin: (0..count).map(|i| v(i, 2.0)).collect(),
+        orientation: (0..count).map(|i| [1.0, time, 0.0, i as f64]).collect(),
+        id: (0..count as u32).collect(),
+        part: vec![2; count],
+        mean_stress: vec![-time; count],
+        force: (0..count).map(|i| v(i, 3.0)).collect(),
+        coordination: vec![6; count],
+        fragment: vec![1; count],
+    }
+}
+
+/// What VTK should find in them.
+fn expected_grains(count: usize, time: f64) -> String {
+    let f = grains(count, time);
+    let mut out = format!("t = {time:.17e}: {count} points, {count} cells\n");
+    let whole = |list: &[u32]| list.iter().map(|n| f64::from(*n)).collect::<Vec<_>>();
+    array(&mut out, "points", 3, f.position.as_flattened());
+    array(&mut out, "coordination", 1, &whole(&f.coordination));
+    array(&mut out, "force", 3, f.force.as_flattened());
+    array(&mut out, "fragment", 1, &whole(&f.fragment));
+    array(&mut out, "id", 1, &whole(&f.id));
+    array(&mut out, "mean_stress", 1, &f.mean_stress);
+    array(&mut out, "orientation", 4, f.orientation.as_flattened());
+    array(&mut out, "part", 1, &whole(&f.part));
+    array(&mut out, "radius", 1, &f.radius);
+    array(&mut out, "spin", 3, f.spin.as_flattened());
+    array(&mut out, "velocity", 3, f.velocity.as_flattened());
+    out
+}
+
+fn write(writer: &mut dyn Writer, number: usize, grains: &GrainFrame) {
+    let frame = Frame { number, time: 0.5 * number as f64, grains: Some(grains), ..Frame::default() };
+    writer.frame(&frame).unwrap();
+}
+
+#[test]
+fn vtk_finds_the_grains_of_every_time_though_their_number_changes() {
+    let Some(python) = python() else { return };
+    let dir = folder("vtkhdf_grains");
+    let counts = [3, 3, 5, 0, 5, 1];
+    let mut writer = begin(&dir, None).unwrap();
+    for (number, count) in counts.into_iter().enumerate() {
+        write(&mut *writer, number, &grains(count, 0.5 * number as f64));
+    }
+    let times = counts.iter().enumerate();
+    let expected: String = times.map(|(k, count)| expected_grains(*count, 0.5 * k as f64)).collect();
+    assert_eq!(read(&python, &dir.join("grains.vtkhdf")), expected);
+    std::fs::remove_dir_all(&dir).unwrap();
+}
+
+#[test]
+fn vtk_finds_rows_behind_an_index_of_three_levels_and_after_a_break() {
+    let Some(python) = python() else { return };
+    let dir = folder("vtkhdf_long");
+    // Vectors: 682 rows in a chunk, 31 chunks in a node, so that three levels begin at 655,000 rows.
+    let (count, steps) = (9_000, 80);
+    let mut writer = begin(&dir, None).unwrap();
+    (0..60).for_each(|k| write(&mut *writer, k, &grains(count, 0.5 * k as f64)));
+    let mark = writer.mark();
+    (60..70).for_each(|k| write(&mut *writer, k, &grains(count, -1.0)));
+    drop(writer);
+    let mut writer = begin(&dir, Some(&mark)).unwrap();
+    (60..steps).for_each(|k| write(&mut *writer, k, &grains(count, 0.5 * k as f64)));
+    let expected: String = (0..steps).map(|k| expected_grains(count, 0.5 * k as f64)).collect();
+    assert!(read(&python, &dir.join("grains.vtkhdf")) == expected, "VTK finds other values");
+    std::fs::remove_dir_all(&dir).unwrap();
+}
+
+#[test]
+fn vtk_finds_the_solid_of_every_time() {
+    let Some(python) = python() else { return };
+    let dir = folder("vtkhdf_solid");
+    let mesh = sample::block([2, 1, 1]);
+    let n = mesh.node_count();
+    let mut writer = begin(&dir, None).unwrap();
+    let mut expected = String::new();
+    let whole = |list: &[u32]| list.iter().map(|n| f64::from(*n)).collect::<Vec<_>>();
+    for number in 0..3 {
+        let time = 0.5 * number as f64;
+        let vector: Vec<f64> = (0..3 * n).map(|i| time + i as f64).collect();
+        let stress: Vec<[f64; 6]> = (0..n).map(|i| [time, 1.0, 2.0, 3.0, 4.0, i as f64]).collect();
+        let scalar: Vec<f64> = (0..n).map(|i| time * i as f64).collect();
+        let solid = SolidFrame {
+            mesh: &mesh,
+            displacement: &vector,
+            velocity: &vector,
+            stress: &stress,
+            von_mises: &scalar,
+            equivalent_plastic_strain: &scalar,
+            yield_function: &scalar,
+        };
+        writer.frame(&Frame { number, time, solid: Some(solid), ..Frame::default() }).unwrap();
+        writeln!(expected, "t = {time:.17e}: {n} points, 2 cells").unwrap();
+        array(&mut expected, "points", 3, mesh.coordinates.as_flattened());
+        array(&mut expected, "displacement", 3, &vector);
+        array(&mut expected, "equivalent_plastic_strain", 1, &scalar);
+        array(&mut expected, "node_id", 1, &whole(&mesh.node_ids));
+        array(&mut expected, "stress", 9, &matrices(&stress));
+        array(&mut expected, "velocity", 3, &vector);
+        array(&mut expected, "von_mises", 1, &scalar);
+        array(&mut expected, "yield_function", 1, &scalar);
+        array(&mut expected, "element_id of cells", 1, &whole(&mesh.element_ids));
+        array(&mut expected, "material of cells", 1, &whole(&mesh.materials));
+    }
+    assert_eq!(read(&python, &dir.join("solid.vtkhdf")), expected);
+    std::fs::remove_dir_all(&dir).unwrap();
+}
+
+#[test]
+fn a_value_that_is_not_finite_is_named_and_its_frame_left_out() {
+    let dir = folder("vtkhdf_nan");
+    let file = dir.join("grains.vtkhdf");
+    let mut writer = begin(&dir, None).unwrap();
+    write(&mut *writer, 0, &grains(4, 0.0));
+    let before = std::fs::read(&file).unwrap();
+    let mut bad = grains(4, 0.5);
+    bad.force[2][1] = f64::NAN;
+    let frame = Frame { number: 1, time: 0.5, grains: Some(&bad), ..Frame::default() };
+    let error = writer.frame(&frame).unwrap_err();
+    assert_eq!(error.to_string(), format!("{}: force at index 2 is NaN: not written", file.display()));
+    assert!(std::fs::read(&file).unwrap() == before);
+    std::fs::remove_dir_all(&dir).unwrap();
+}
