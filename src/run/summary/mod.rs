@@ -1,0 +1,126 @@
+//! `summary.json`: what a run did, how well its accounts close, and what it found.
+
+mod hash;
+mod records;
+mod report;
+
+pub use hash::Hash;
+pub use records::*;
+
+use super::flow::FlowRecord;
+use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
+use crate::failure::Failure;
+use crate::write::WriteError;
+use serde::Serialize;
+use std::path::Path;
+use trackbed_coupling::track::extremes::TrackRecord;
+use trackbed_coupling::track::push::PushSummary;
+
+/// The content of `summary.json`.
+#[derive(Debug, Default, Serialize)]
+pub struct Summary {
+    /// `"done"`, or what stopped the run.
+    pub status: String,
+    /// Title of the scene.
+    pub title: String,
+    /// Version of the program.
+    pub version: String,
+    /// 64-bit FNV-1a hash of the scene file, its overrides and the files it names, in hexadecimal.
+    pub scene_hash: String,
+    /// Keys overridden on the command line.
+    pub overrides: Vec<String>,
+    /// Threads used; the results do not depend on it.
+    pub threads: usize,
+    /// Largest resident memory [bytes], where the system tells it.
+    pub peak_memory: Option<u64>,
+    /// Stages in order, with seconds of wall time and steps.
+    pub stages: Vec<StageRecord>,
+    /// Sizes of the model.
+    pub model: ModelRecord,
+    /// Energy account of the run proper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<EnergyRecord>,
+    /// Momentum account of the grains in the run proper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub momentum: Option<MomentumRecord>,
+    /// Bonds between grains.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bonds: Option<BondSummary>,
+    /// Force and moment across the interface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coupling: Option<CouplingRecord>,
+    /// Static equilibrium of a solid that ran alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub statics: Option<StaticsRecord>,
+    /// How equilibrium was found in a plastic solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton: Option<NewtonRecord>,
+    /// Sums of the reactions of named supports at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reactions: Vec<ReactionRecord>,
+    /// Search for the factor of safety.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub safety: Option<SafetyRecord>,
+    /// Lateral push of a sleeper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub push: Option<PushSummary>,
+    /// Settlement per load cycle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settlement: Option<SettlementRecord>,
+    /// Sleepers under load.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub track: Option<TrackRecord>,
+    /// Grains that came in and went out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<FlowRecord>,
+    /// Groups that have grown to their size.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub growth: Vec<GrowthRecord>,
+    /// Stages of compaction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compaction: Vec<CompactionRecord>,
+    /// The grains at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<PackingRecord>,
+    /// Remarks that do not stop a run.
+    pub warnings: Vec<String>,
+    /// Sources of the models used.
+    pub sources: Vec<&'static str>,
+}
+
+impl Summary {
+    /// Writes the summary as `summary.json` in `dir`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, dir: &Path) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
+        let file = dir.join("summary.json");
+        crate::write::atomic::write(&file, |out| {
+            writeln!(out, "{text}").map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+        Ok(())
+    }
+
+    /// Writes `log.txt` in `dir`: what a run prints, its status and the sources of the models it used.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_log(&self, dir: &Path) -> Result<(), Failure> {
+        let file = dir.join("log.txt");
+        crate::write::atomic::write(&file, |out| {
+            let sources: String = self.sources.iter().map(|s| format!("source: {s}\n")).collect();
+            write!(out, "{}\nstatus: {}\n{}{sources}", self.title, self.status, self.report())
+                .map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+        Ok(())
+    }
+}
+
+/// Largest resident memory of this process so far [bytes], from the system's own account.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}

@@ -1,0 +1,192 @@
+//! What a run prints when it has ended, also in `log.txt`.
+
+use super::Summary;
+use crate::run::flow::FlowRecord;
+use crate::run::packing;
+use trackbed_coupling::scheme::Scheme;
+
+impl Summary {
+    /// What a user wants to see when a run has ended.
+    pub fn report(&self) -> String {
+        let mut lines = Vec::new();
+        self.report_stages(&mut lines);
+        self.report_solid(&mut lines);
+        self.report_accounts(&mut lines);
+        self.report_coupling(&mut lines);
+        self.report_settlement(&mut lines);
+        self.report_track(&mut lines);
+        lines.extend(self.flow.iter().flat_map(FlowRecord::report));
+        lines.extend(packing::report(self));
+        lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
+        lines.join("\n") + "\n"
+    }
+
+    /// Stages with their times.
+    fn report_stages(&self, lines: &mut Vec<String>) {
+        if let Some(r) = &self.model.reduction {
+            lines.push(format!("solid reduced: {r}"));
+        }
+        for stage in &self.stages {
+            lines.push(format!(
+                "{}: {:.1} s, {} grain steps, {} solid steps",
+                stage.name, stage.seconds, stage.grain_steps, stage.solid_steps
+            ));
+        }
+    }
+
+    /// Static equilibrium, Newton's method, supports, factor of safety.
+    fn report_solid(&self, lines: &mut Vec<String>) {
+        if let Some(s) = &self.statics {
+            let (u, node) = s.largest_displacement;
+            lines.push(format!("largest displacement {u:.6e} m at node {node}"));
+            lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
+        }
+        if let Some(n) = &self.newton {
+            lines.push(format!(
+                "Newton: {} steps ({} halved), {} iterations, {} symmetric and {} unsymmetric factorizations; seconds in \
+                 assembly {:.1}, factorization {:.1}, solves {:.1}",
+                n.steps,
+                n.halvings,
+                n.iterations,
+                n.factorizations_symmetric,
+                n.factorizations_unsymmetric,
+                n.assembly_seconds,
+                n.factor_seconds,
+                n.solve_seconds
+            ));
+        }
+        for r in &self.reactions {
+            let [x, y, z] = r.force;
+            lines.push(format!("reaction of {}: ({x:.6e}, {y:.6e}, {z:.6e}) N", r.name));
+        }
+        if let Some(s) = &self.safety {
+            lines.push(format!(
+                "factor of safety: stands at {:.4}, fails at {:.4} ({} trials)",
+                s.stands_at,
+                s.fails_at,
+                s.trials.len()
+            ));
+        }
+    }
+
+    /// Energy, momentum and bonds.
+    fn report_accounts(&self, lines: &mut Vec<String>) {
+        if let Some(e) = &self.energy {
+            let relative = e
+                .relative_error
+                .map_or(String::new(), |r| format!(" ({:.4} % of what was turned over)", 100.0 * r));
+            lines.push(format!("work {:.6} J, energy error {:.2e} J{relative}", e.work, e.error));
+        }
+        if let Some(m) = &self.momentum {
+            lines.push(format!(
+                "momentum error {:.1e}, angular {:.1e} (relative to the impulses)",
+                m.linear, m.angular
+            ));
+        }
+        if let Some(b) = &self.bonds {
+            lines.push(format!(
+                "bonds: {} of {} broken ({} by tension, {} by shear), {:.3e} J set free; {} fragments, the largest of {} bodies",
+                b.broken_by_tension + b.broken_by_shear,
+                b.made,
+                b.broken_by_tension,
+                b.broken_by_shear,
+                b.energy_of_breaks,
+                b.fragments,
+                b.largest_fragment
+            ));
+        }
+    }
+
+    /// Exchange between grains and solid.
+    fn report_coupling(&self, lines: &mut Vec<String>) {
+        if let Some(c) = &self.coupling {
+            lines.push(format!(
+                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; scheme {}, {} sub-steps, \
+                 transfer {}",
+                c.transfer.force,
+                c.transfer.moment,
+                c.stability.stiffness,
+                c.stability.damping,
+                c.scheme,
+                c.substeps,
+                c.transfer_kind
+            ));
+            for class in &c.classes {
+                lines.push(format!("  {}", class.line()));
+            }
+            if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
+                lines.push(format!(
+                    "  {:.2} passes per window, {} windows not converged",
+                    c.passes.passes as f64 / c.passes.windows as f64,
+                    c.passes.unconverged
+                ));
+            }
+        }
+    }
+
+    /// Settlement under cycles, its laws, jumps.
+    fn report_settlement(&self, lines: &mut Vec<String>) {
+        if let Some(s) = &self.settlement {
+            let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
+            if list.len() <= 20 {
+                lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
+            } else {
+                let last = list.len() - 1;
+                lines.push(format!(
+                    "settlement [mm]: {} after the first cycle, {} after the last",
+                    list[0], list[last]
+                ));
+            }
+            for fit in &s.fits {
+                let p: Vec<String> = fit.parameters.iter().map(|(n, v)| format!("{n} = {v:.4e}")).collect();
+                lines.push(format!("{}: s = {}, {}, R2 = {:.4}", fit.law, fit.form, p.join(", "), fit.r2));
+            }
+            if let Some(b) = &s.bed_stiffness {
+                let [low, high] = b.between.map(|f| 1e-3 * f);
+                lines.push(format!(
+                    "bed stiffness between {low:.1} and {high:.1} kN: {:.3} kN/mm",
+                    1e-6 * b.mean_of_last_ten
+                ));
+            }
+            if let Some(j) = &s.jump {
+                lines.push(format!(
+                    "cycle jumps ({}): {} cycles simulated, {} jumped over; error of the settlement estimated {:.3} mm ({:.1} %)",
+                    j.method,
+                    j.simulated,
+                    j.skipped,
+                    1e3 * j.error_estimate,
+                    100.0 * j.relative_error_estimate
+                ));
+            }
+        }
+    }
+
+    /// Lateral push and sleepers.
+    fn report_track(&self, lines: &mut Vec<String>) {
+        if let Some(p) = &self.push {
+            let at_two =
+                p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
+            lines.push(format!(
+                "lateral push: {at_two}peak {:.3} kN at {:.2} mm, under {:.3} kN",
+                1e-3 * p.peak,
+                1e3 * p.displacement_at_peak,
+                1e-3 * p.vertical_force
+            ));
+        }
+        for (k, s) in self.track.iter().flat_map(|t| t.sleepers.iter().enumerate()) {
+            let share = s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of an axle)", 100.0 * p));
+            let factor =
+                s.dynamic_amplification.map_or(String::new(), |f| format!(", {f:.3} times the static force"));
+            let bend = s.bend.map_or(String::new(), |[low, high]| {
+                format!(", ends {:.4} to {:.4} mm over the middle", 1e3 * low, 1e3 * high)
+            });
+            lines.push(format!(
+                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, lowered by {:.3} mm{bend}",
+                k + 1,
+                1e-3 * s.smallest_force,
+                1e-3 * s.largest_force,
+                1e3 * s.lowering
+            ));
+        }
+    }
+}
