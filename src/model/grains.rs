@@ -9,6 +9,7 @@ mod materials;
 mod periodic;
 mod regions;
 mod sizes;
+mod sources;
 mod track;
 pub mod walls;
 

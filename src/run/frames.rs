@@ -107,8 +107,19 @@ fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|f| if f == f64::NEG_INFINITY { NO_YIELD_SURFACE } else { f }).collect()
 }
 
+/// Kind of a chain by what its contact is with.
+fn kind(partner: &dem::Partner) -> u32 {
+    match partner {
+        dem::Partner::Body(_) => 0,
+        dem::Partner::Plane(_) => 1,
+        dem::Partner::Triangle(_) => 2,
+        dem::Partner::Patch(_) => 3,
+        dem::Partner::Wall(_) => 4,
+    }
+}
+
 /// Kind of a chain that is a bond; its normal force is negative where it pulls.
-const BOND: u32 = 4;
+const BOND: u32 = 5;
 
 /// The grains: one point per sphere.
 fn spheres(view: GrainsView<'_>) -> GrainFrame {
@@ -177,13 +188,7 @@ fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
         frame.ends.push([first.into(), second.into()]);
         frame.normal_force.push(c.normal_force);
         frame.tangential_force.push(tangential.norm());
-        frame.kind.push(match c.b {
-            dem::Partner::Body(_) => 0,
-            dem::Partner::Plane(_) => 1,
-            dem::Partner::Triangle(_) => 2,
-            dem::Partner::Patch(_) => 3,
-            dem::Partner::Wall(_) => 4,
-        });
+        frame.kind.push(kind(&c.b));
     }
     if !strong_only {
         for b in dem::measure::bond_records(view.model, view.state) {
@@ -253,4 +258,19 @@ fn extent(view: GrainsView<'_>) -> (dem::Vec3, f64) {
         high = high.sup(&(x + r));
     }
     (0.5 * (low + high), 0.5 * (high - low).max())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trackbed_dem::Partner;
+
+    #[test]
+    fn every_kind_of_chain_has_a_number_of_its_own() {
+        let partners =
+            [Partner::Body(0), Partner::Plane(0), Partner::Triangle(0), Partner::Patch(0), Partner::Wall(0)];
+        let mut kinds: Vec<u32> = partners.iter().map(kind).chain([BOND]).collect();
+        kinds.dedup();
+        assert_eq!(kinds, [0, 1, 2, 3, 4, 5]);
+    }
 }

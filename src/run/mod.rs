@@ -294,9 +294,7 @@ impl Stage<'_> {
             summary.model.predicted_memory = Some(prediction.total());
             summary.sources.extend(solid_sources(solid, self.job.grains.is_some()));
         }
-        if self.job.grains.is_some() {
-            summary.sources.extend(GRAIN_SOURCES);
-        }
+        summary.sources.extend(self.job.grains.iter().flat_map(GrainsPart::sources));
         match (&self.job.solid, &self.job.grains, &self.job.coupling) {
             (Some(solid), None, _) => self.solid_alone(solid, summary),
             (None, Some(grains), _) => {
@@ -608,9 +606,3 @@ const RAIL_SOURCES: [&str; 2] = [
 
 const BOND_SOURCES: [&str; 1] =
     ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];
-
-const GRAIN_SOURCES: [&str; 3] = [
-    "contact: linear spring-dashpot with Coulomb friction, Cundall & Strack, Geotechnique 29(1), 1979",
-    "restitution of the clipped dashpot: Schwager & Poschel, Granular Matter 9, 2007",
-    "integration: leapfrog (velocity Verlet), Verlet, Phys. Rev. 159, 1967",
-];
