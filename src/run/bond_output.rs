@@ -1,6 +1,6 @@
 //! What a run says of bonds and of groups of grains: columns of `history.csv`, `breaks.csv`, the summary.
 
-use super::record::{Now, Recorder};
+use super::recorder::{Now, Recorder};
 use super::summary::BondSummary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;

@@ -5,12 +5,10 @@
 //! as it can be.
 
 use super::checkpoint::{Body, Loaded};
-use super::record::{Now, Recorder};
 use super::summary::Summary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::model::grains::{FlowPlan, GrainsPart, InletPlan, OutletPlan, OutletRegion};
-use crate::write::csv::Row;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::io;
@@ -71,20 +69,6 @@ struct Course {
     outlets: Vec<Outlet>,
     /// Time, mass in and mass out at the first look in the second half of the run.
     half: Option<[f64; 3]>,
-}
-
-/// Grains that are there, that came in and that went out.
-pub struct Inventory;
-
-impl<S: System> Recorder<S> for Inventory {
-    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
-        let (Some(flow), Some(view)) = (now.flow, now.system.grains()) else { return };
-        let [come, gone] = flow.sums();
-        for (name, amount) in [("present", flow.present(view)), ("in", come), ("out", gone)] {
-            row.put(format_args!("grains_{name}"), "", amount.grains as f64);
-            row.put(format_args!("mass_{name}"), "kg", amount.mass);
-        }
-    }
 }
 
 /// Inlets and outlets of a run in progress.
@@ -164,7 +148,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Grains that are there.
-    fn present(&self, view: GrainsView<'_>) -> Amount {
+    pub fn present(&self, view: GrainsView<'_>) -> Amount {
         let mut sum = Amount::default();
         let there = |b: &usize| view.state.present(*b) && view.model.part(*b) < self.groups;
         (0..view.model.body_count()).filter(there).for_each(|b| sum.add(view.model.mass(b)));
@@ -277,7 +261,7 @@ impl<'a> Flow<'a> {
     }
 
     /// All that came in and all that went out.
-    fn sums(&self) -> [Amount; 2] {
+    pub fn sums(&self) -> [Amount; 2] {
         let sum = |all: &mut dyn Iterator<Item = Amount>| {
             all.fold(Amount::default(), |s, a| Amount { grains: s.grains + a.grains, mass: s.mass + a.mass })
         };

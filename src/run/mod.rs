@@ -16,6 +16,7 @@ mod packed;
 mod packing;
 mod plastic;
 mod record;
+mod recorder;
 mod settle;
 mod solid_alone;
 mod statics;

@@ -1,6 +1,6 @@
 //! Walls in the history and in the pictures.
 
-use super::record::{Now, Recorder};
+use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
 use crate::model::grains::GrainsPart;
 use crate::write::WallFrame;

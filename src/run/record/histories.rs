@@ -1,6 +1,6 @@
-//! Columns of the sleepers, the interface, the energies, the rails, the supports and the probes.
+//! Columns of the sleepers, the interface, the energies, the rails, the supports, the probes, inlets and outlets.
 
-use super::recorder::{Now, Recorder};
+use crate::run::recorder::{Now, Recorder};
 use crate::run::system::System;
 use crate::write::csv::Row;
 
@@ -106,6 +106,20 @@ impl<S: System> Recorder<S> for Probes {
             let of_node = |field: &[f64]| [field[3 * node], field[3 * node + 1], field[3 * node + 2]];
             row.vector(format_args!("{name}_u"), "m", of_node(&solid.state.u));
             row.vector(format_args!("{name}_v"), "m/s", of_node(&solid.state.v));
+        }
+    }
+}
+
+/// Grains that are there, that came in and that went out.
+pub struct Inventory;
+
+impl<S: System> Recorder<S> for Inventory {
+    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
+        let (Some(flow), Some(view)) = (now.flow, now.system.grains()) else { return };
+        let [come, gone] = flow.sums();
+        for (name, amount) in [("present", flow.present(view)), ("in", come), ("out", gone)] {
+            row.put(format_args!("grains_{name}"), "", amount.grains as f64);
+            row.put(format_args!("mass_{name}"), "kg", amount.mass);
         }
     }
 }

@@ -1,17 +1,16 @@
 //! What a run leaves while it goes: `history.csv`, `cycles.csv`, frames for ParaView and Tecplot, and at the end the
 //! settlement curve.
 
+mod columns;
 mod cycle_file;
 mod histories;
 mod plots;
-mod recorder;
-
-pub use recorder::{Now, Recorder};
 
 use super::checkpoint::{Body, Loaded};
 use super::flow::Flow;
 use super::folder;
 use super::frames::{self, Shown};
+use super::recorder::Now;
 use super::system::System;
 use super::track_output;
 use crate::failure::Failure;
@@ -84,7 +83,7 @@ impl<'a> Results<'a> {
             ..Course::default()
         };
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
-        let history = History::create(&dir.join("history.csv"), recorder::columns(&now))?;
+        let history = History::create(&dir.join("history.csv"), columns::columns(&now))?;
         let cycles_file =
             load.map(|_| History::create(&dir.join("cycles.csv"), cycle_file::columns(job))).transpose()?;
         let writers = Writers::begin(dir, &job.output.formats)?;
@@ -108,7 +107,7 @@ impl<'a> Results<'a> {
         let course: Course = loaded.take()?;
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
         let file = dir.join("history.csv");
-        let history = History::resume(&file, recorder::columns(&now), marks.history).map_err(unfit)?;
+        let history = History::resume(&file, columns::columns(&now), marks.history).map_err(unfit)?;
         let cycles_file = marks
             .cycles
             .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_file::columns(job), mark))
@@ -152,7 +151,7 @@ impl<'a> Results<'a> {
         track.account(&mut course.balance.now, &mut course.balance.spent);
         course.largest_error = course.largest_error.max(course.balance.error().abs());
         let now = Now { time, system, job: self.job, track, flow, balance: &course.balance };
-        self.history.row(&recorder::values(&now))?;
+        self.history.row(&columns::values(&now))?;
         Ok(())
     }
 

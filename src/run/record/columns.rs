@@ -1,0 +1,28 @@
+//! The columns of `history.csv`: a list of recorders.
+
+use super::histories::{Energies, Interface, Inventory, Probes, Rails, Sleepers, Supports};
+use crate::run::bond_output::{Bonds, Groups};
+use crate::run::recorder::{Now, Recorder};
+use crate::run::system::System;
+use crate::run::wall_output::Walls;
+use crate::write::csv::{Column, Row};
+
+/// Everything that is recorded, in the order of the columns behind the time.
+fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 10] {
+    [&Sleepers, &Interface, &Energies, &Rails, &Bonds, &Groups, &Supports, &Probes, &Walls, &Inventory]
+}
+
+fn record<S: System>(now: &Now<'_, S>, row: &mut Row) {
+    row.put("time", "s", now.time);
+    recorders().iter().for_each(|recorder| recorder.record(now, row));
+}
+
+/// The columns of a history.
+pub fn columns<S: System>(now: &Now<'_, S>) -> Vec<Column> {
+    Row::columns_of(|row| record(now, row))
+}
+
+/// Their values.
+pub fn values<S: System>(now: &Now<'_, S>) -> Vec<f64> {
+    Row::values_of(|row| record(now, row))
+}
