@@ -71,6 +71,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
                 let ((p, first), (q, second)) = (p.parts(), q.parts());
                 // SAFETY: compared above.
                 let a = unsafe { Own::<RIGID>::new::<R>(block, members, [&p[0], &q[0]]) };
+                // SAFETY: compared above.
                 let b = unsafe { Own::<RIGID>::new::<R>(block, members, [&p[1], &q[1]]) };
                 let (there, springs) = (R::below(len - 4 * g), (first, second));
                 let Some(out) =

@@ -1,6 +1,6 @@
 //! Four lanes in an array, for any processor.
 
-use super::{Four, Real};
+use super::real::{Four, Real};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Four lanes that any processor can do.

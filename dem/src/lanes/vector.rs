@@ -1,6 +1,6 @@
 //! Vectors of three lanes.
 
-use super::Real;
+use super::real::Real;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A vector of three lanes-full of numbers.

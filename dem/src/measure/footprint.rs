@@ -12,13 +12,7 @@ pub fn kernels(model: &Model) -> String {
     let shapes = if model.clumps { "spheres of rigid bodies" } else { "single spheres" };
     let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
     let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };
-    let lanes = match Simd::best() {
-        Simd::Portable => "four at a time (plain arrays)",
-        #[cfg(target_arch = "x86_64")]
-        Simd::Avx2 => "four at a time (AVX2)",
-        #[cfg(target_arch = "x86_64")]
-        Simd::Avx512 => "eight at a time (AVX-512)",
-    };
+    let lanes = Simd::best().name();
     format!("{law}, {shapes}{rolling}{bonds}, {lanes}")
 }
 

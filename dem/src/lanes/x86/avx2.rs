@@ -1,9 +1,6 @@
 //! Four lanes in a register of AVX2.
-//!
-//! SAFETY of every block here: [`Avx2`] is private to the crate and only named as the argument of a kernel below
-//! [`super::with_avx2`], which runs after the processor was found to have AVX2.
 
-use super::{Four, Real};
+use crate::lanes::real::{Four, Real};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -33,7 +30,7 @@ macro_rules! lanewise {
             type Output = $type;
             #[inline(always)]
             fn $f(self, o: $type) -> $type {
-                $type(unsafe { $op(self.0, o.0) })
+                $type(intrinsics!($op(self.0, o.0)))
             }
         }
     };
@@ -49,7 +46,7 @@ impl Neg for Avx2 {
     type Output = Avx2;
     #[inline(always)]
     fn neg(self) -> Avx2 {
-        Avx2(unsafe { _mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)) })
+        Avx2(intrinsics!(_mm256_xor_pd(self.0, _mm256_set1_pd(-0.0))))
     }
 }
 
@@ -57,7 +54,7 @@ impl Not for Avx2Mask {
     type Output = Avx2Mask;
     #[inline(always)]
     fn not(self) -> Avx2Mask {
-        Avx2Mask(unsafe { _mm256_xor_pd(self.0, _mm256_castsi256_pd(_mm256_set1_epi64x(-1))) })
+        Avx2Mask(intrinsics!(_mm256_xor_pd(self.0, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))))
     }
 }
 
@@ -66,39 +63,39 @@ impl Real for Avx2 {
 
     #[inline(always)]
     fn splat(x: f64) -> Avx2 {
-        Avx2(unsafe { _mm256_set1_pd(x) })
+        Avx2(intrinsics!(_mm256_set1_pd(x)))
     }
     #[inline(always)]
     fn sqrt(self) -> Avx2 {
-        Avx2(unsafe { _mm256_sqrt_pd(self.0) })
+        Avx2(intrinsics!(_mm256_sqrt_pd(self.0)))
     }
     #[inline(always)]
     fn abs(self) -> Avx2 {
-        Avx2(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        Avx2(intrinsics!(_mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0)))
     }
     #[inline(always)]
     fn min(self, other: Avx2) -> Avx2 {
-        Avx2(unsafe { _mm256_min_pd(self.0, other.0) })
+        Avx2(intrinsics!(_mm256_min_pd(self.0, other.0)))
     }
     #[inline(always)]
     fn max(self, other: Avx2) -> Avx2 {
-        Avx2(unsafe { _mm256_max_pd(self.0, other.0) })
+        Avx2(intrinsics!(_mm256_max_pd(self.0, other.0)))
     }
     #[inline(always)]
     fn lt(self, other: Avx2) -> Avx2Mask {
-        Avx2Mask(unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) })
+        Avx2Mask(intrinsics!(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0)))
     }
     #[inline(always)]
     fn le(self, other: Avx2) -> Avx2Mask {
-        Avx2Mask(unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0) })
+        Avx2Mask(intrinsics!(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0)))
     }
     #[inline(always)]
     fn equals(self, other: Avx2) -> Avx2Mask {
-        Avx2Mask(unsafe { _mm256_cmp_pd::<_CMP_EQ_OQ>(self.0, other.0) })
+        Avx2Mask(intrinsics!(_mm256_cmp_pd::<_CMP_EQ_OQ>(self.0, other.0)))
     }
     #[inline(always)]
     fn select(mask: Avx2Mask, yes: Avx2, no: Avx2) -> Avx2 {
-        Avx2(unsafe { _mm256_blendv_pd(no.0, yes.0, mask.0) })
+        Avx2(intrinsics!(_mm256_blendv_pd(no.0, yes.0, mask.0)))
     }
     #[inline(always)]
     fn any(mask: Avx2Mask) -> bool {
@@ -113,16 +110,16 @@ impl Real for Avx2 {
 impl Four for Avx2 {
     #[inline(always)]
     fn load(x: &[f64; 4]) -> Avx2 {
-        Avx2(unsafe { _mm256_loadu_pd(x.as_ptr()) })
+        Avx2(intrinsics!(_mm256_loadu_pd(x.as_ptr())))
     }
     #[inline(always)]
     fn store(self, to: &mut [f64; 4]) {
-        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) }
+        intrinsics!(_mm256_storeu_pd(to.as_mut_ptr(), self.0))
     }
     #[inline(always)]
     fn transpose(rows: [Avx2; 4]) -> [Avx2; 4] {
         let [Avx2(a), Avx2(b), Avx2(c), Avx2(d)] = rows;
-        unsafe {
+        intrinsics!({
             let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
             let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
             [
@@ -131,10 +128,10 @@ impl Four for Avx2 {
                 Avx2(_mm256_permute2f128_pd::<0x31>(ab_even, cd_even)),
                 Avx2(_mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd)),
             ]
-        }
+        })
     }
     #[inline(always)]
     fn bits(mask: Avx2Mask) -> u32 {
-        (unsafe { _mm256_movemask_pd(mask.0) }) as u32
+        intrinsics!(_mm256_movemask_pd(mask.0)) as u32
     }
 }
