@@ -13,6 +13,7 @@ use crate::pairs::cross::{Cross, ImagePair};
 use crate::pairs::patches::PatchContact;
 use crate::shape::cuboid;
 use crate::spatial::detect;
+use std::borrow::Cow;
 
 /// One contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,41 +57,57 @@ pub(crate) struct Visited<'a> {
     pub shift: Vec3,
 }
 
-/// Bodies as they are, or moved back in time by `back` seconds.
-struct Snapshot {
-    blocks: Vec<Block>,
+/// Bodies as they are, or moved back in time by `back` seconds: only then are they copied.
+struct Snapshot<'a> {
+    blocks: Cow<'a, [Block]>,
+    /// Spheres of each block, and the places of their bodies; of blocks of single spheres, none.
     spheres: Vec<Vec<Record>>,
     owners: Vec<Vec<u32>>,
     back: f64,
 }
 
-impl Snapshot {
-    fn new(model: &Model, state: &State, back: f64) -> Snapshot {
-        let mut blocks = state.blocks.clone();
-        let mut spheres = Vec::new();
-        let mut owners = Vec::new();
-        for block in &mut blocks {
-            let (mut own, mut owner) = (Vec::new(), Vec::new());
-            for (k, &body) in block.bodies.iter().enumerate() {
-                let x = xyz(&block.centre[k]) - xyz(&block.velocity[k]) * back;
-                block.centre[k] = Record([x.x, x.y, x.z, block.centre[k][3]]);
-                let mut turn = nalgebra::UnitQuaternion::identity();
-                if let Some(r) = block.rotation.get_mut(k) {
-                    let spin = xyz(&block.spin[k]);
-                    r.orientation = crate::integrate::rotation::steady(&r.orientation, &spin, -back);
-                    turn = r.orientation;
-                }
-                for (c, r) in model.members(body as usize) {
-                    let p = x + turn * c;
-                    own.push(Record([p.x, p.y, p.z, r]));
-                    owner.push(k as u32);
-                }
-            }
-            spheres.push(own);
-            owners.push(owner);
+impl<'a> Snapshot<'a> {
+    fn new(model: &Model, state: &'a State, back: f64) -> Snapshot<'a> {
+        let mut blocks = Cow::Borrowed(&state.blocks[..]);
+        if back != 0.0 {
+            blocks.to_mut().iter_mut().for_each(|block| move_back(block, back));
         }
+        let (spheres, owners) = blocks.iter().map(|block| members(model, block)).unzip();
         Snapshot { blocks, spheres, owners, back }
     }
+
+    /// A sphere of a block: centre and radius.
+    fn sphere(&self, b: usize, i: u32) -> &Record {
+        self.spheres[b].get(i as usize).unwrap_or_else(|| &self.blocks[b].centre[i as usize])
+    }
+
+    /// The place of its body.
+    fn owner(&self, b: usize, i: u32) -> usize {
+        self.owners[b].get(i as usize).map_or(i as usize, |k| *k as usize)
+    }
+}
+
+fn move_back(block: &mut Block, back: f64) {
+    for k in 0..block.bodies.len() {
+        let x = xyz(&block.centre[k]) - xyz(&block.velocity[k]) * back;
+        block.centre[k] = Record::of(&x, block.centre[k][3]);
+        if let Some(r) = block.rotation.get_mut(k) {
+            let spin = xyz(&block.spin[k]);
+            r.orientation = crate::integrate::rotation::steady(&r.orientation, &spin, -back);
+        }
+    }
+}
+
+/// The spheres of a block's bodies and the places of these; nothing where every body is its own sphere.
+fn members(model: &Model, block: &Block) -> (Vec<Record>, Vec<u32>) {
+    let (mut own, mut owner) = (Vec::new(), Vec::new());
+    for (k, (&body, r)) in block.bodies.iter().zip(&block.rotation).enumerate() {
+        for (c, radius) in model.members(body as usize) {
+            own.push(Record::of(&(xyz(&block.centre[k]) + r.orientation * c), radius));
+            owner.push(k as u32);
+        }
+    }
+    (own, owner)
 }
 
 /// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
@@ -101,15 +118,13 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         let (block, lists) = (&now.blocks[b], &state.lists[b]);
         let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History, shift: Vec3| {
             let second = &now.blocks[other as usize];
-            let p = &now.spheres[b][i as usize];
-            let a = now.owners[b][i as usize] as usize;
+            let (p, a) = (now.sphere(b, i), now.owner(b, i));
             let (c, touch) = if boxed {
                 let (x, q) = (xyz(&second.centre[j as usize]), &second.rotation[j as usize].orientation);
                 let half = model.half(second.bodies[j as usize] as usize);
                 (j as usize, detect::sphere_box(&xyz(p), p[3], &x, q, &half))
             } else {
-                let q = &now.spheres[other as usize][j as usize];
-                let c = now.owners[other as usize][j as usize] as usize;
+                let (q, c) = (now.sphere(other as usize, j), now.owner(other as usize, j));
                 (c, detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + shift), q[3]))
             };
             if let Some(geometry) = touch {
@@ -176,7 +191,7 @@ struct Partnership {
 }
 
 /// Contacts of pairs whose bond has broken.
-fn debonded(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
+fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>)) {
     super::bonds::each_touch(&now.blocks, state, |p, q, r, geometry| {
         let (i, j) = (r.i as usize, r.j as usize);
         let (ma, mb) = (p.motion(i, &geometry.point), q.motion(j, &geometry.point));
@@ -194,7 +209,7 @@ fn debonded(state: &State, now: &Snapshot, f: &mut impl FnMut(&Visited<'_>)) {
     });
 }
 
-fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
+fn planes(model: &Model, state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
     let block = &now.blocks[b];
     for (name, history) in state.lists[b].planes.iter() {
         let [i, k] = name.map(|n| n as usize);
@@ -206,8 +221,8 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
             let corner = block.rotation[a].orientation * cuboid::corner(&half, i % 8);
             (a, xyz(&block.centre[a]) + corner, 0.0, half.min())
         } else {
-            let p = &now.spheres[b][i];
-            (now.owners[b][i] as usize, xyz(p), p[3], p[3])
+            let p = now.sphere(b, i as u32);
+            (now.owner(b, i as u32), xyz(p), p[3], p[3])
         };
         let origin = plane.point + wall.offset - wall.velocity * now.back;
         if let Some(geometry) = detect::sphere_plane(&x, r, &origin, &plane.normal) {
@@ -230,7 +245,7 @@ fn planes(model: &Model, state: &State, now: &Snapshot, b: usize, f: &mut impl F
 /// A contact with a patch: the geometry of the last step, its overlap brought to the time asked for.
 fn patch(
     model: &Model,
-    now: &Snapshot,
+    now: &Snapshot<'_>,
     b: usize,
     pair: &PatchContact,
     partner: &Partnership,
@@ -240,11 +255,11 @@ fn patch(
         return;
     }
     let block = &now.blocks[b];
-    let a = now.owners[b][pair.i as usize] as usize;
+    let a = now.owner(b, pair.i);
     let velocity = block.motion(a, &pair.point).at_point() - partner.velocity;
     let overlap = pair.overlap - velocity.dot(&pair.normal) * (model.dt() - now.back);
     if overlap > 0.0 {
-        let radius = now.spheres[b][pair.i as usize][3];
+        let radius = now.sphere(b, pair.i)[3];
         f(&Visited {
             body: block.bodies[a],
             partner: partner.partner,
@@ -304,8 +319,13 @@ pub fn coordination(model: &Model, state: &State) -> f64 {
 
 /// Sum of the forces of contacts and bonds on each body [N]. Shape `[bodies]`.
 pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
+    contact_forces_of(model, state, &contacts(model, state))
+}
+
+/// As [`contact_forces`], from contacts that are known already.
+pub fn contact_forces_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<Vec3> {
     let mut sum = vec![Vec3::zeros(); model.body_count()];
-    for c in contacts(model, state) {
+    for c in contacts {
         sum[c.a] += c.force;
         if let Partner::Body(b) = c.b {
             sum[b] -= c.force;
