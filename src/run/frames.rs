@@ -77,8 +77,11 @@ pub fn write(
     let mut frame = Frame { number, time, ..Frame::default() };
     frame.solid = solid.as_ref().map(|(fields, view)| fields.frame(*view));
     let Some(Shown { view, part, strong_only, draw }) = grains else { return Ok(writers.frame(&frame)?) };
-    let spheres = writers.show(Part::Grains).then(|| spheres(view));
-    let chains = writers.show(Part::Chains).then(|| chains(view, strong_only));
+    // Computed once for all that is shown of them.
+    let any = writers.show(Part::Grains) || writers.show(Part::Chains);
+    let contacts = any.then(|| dem::measure::contacts(view.model, view.state)).unwrap_or_default();
+    let spheres = writers.show(Part::Grains).then(|| spheres(view, &contacts));
+    let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {
         let mut walls = walls(view, part);
         draw(&mut walls);
@@ -122,11 +125,10 @@ fn kind(partner: &dem::Partner) -> u32 {
 const BOND: u32 = 5;
 
 /// The grains: one point per sphere.
-fn spheres(view: GrainsView<'_>) -> GrainFrame {
-    let contacts = dem::measure::contacts(view.model, view.state);
-    let stress = dem::measure::mean_stress_of(view.model, view.state, &contacts);
-    let neighbours = dem::measure::neighbours(view.model, &contacts);
-    let force = dem::measure::contact_forces(view.model, view.state);
+fn spheres(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord]) -> GrainFrame {
+    let stress = dem::measure::mean_stress_of(view.model, view.state, contacts);
+    let neighbours = dem::measure::neighbours(view.model, contacts);
+    let force = dem::measure::contact_forces_of(view.model, view.state, contacts);
     let fragments = dem::measure::fragments(view.model, view.state).of;
     let mut frame = GrainFrame::default();
     for body in (0..view.model.body_count()).filter(|&b| view.state.present(b)) {
@@ -167,10 +169,9 @@ fn moved(x: dem::Vec3, way: Option<dem::Vec3>) -> dem::Vec3 {
 
 /// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
 /// than the mean normal force.
-fn chains(view: GrainsView<'_>, strong_only: bool) -> ChainFrame {
+fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
-    let contacts = dem::measure::contacts(view.model, view.state);
-    let mean = dem::measure::strong_network(&contacts).mean_force;
+    let mean = dem::measure::strong_network(contacts).mean_force;
     for c in contacts {
         let strong = c.normal_force > mean;
         if strong_only && !strong {
