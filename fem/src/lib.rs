@@ -71,7 +71,7 @@ pub use mass::Mass;
 pub use material::elastic::Elastic;
 pub use material::{
     Cone, ConstitutiveLaw, DruckerPrager, Hardening, Law, LinearElastic, Material, MohrCoulomb, Point,
-    PointState, Points, Region, Response, ReturnError,
+    PointState, Points, Region, Response, ReturnError, StateValue,
 };
 pub use mesh::{Constraint, Face, Mesh};
 pub use model::{Model, ModelInput};

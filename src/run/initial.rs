@@ -13,7 +13,11 @@ use trackbed_fem::{Model, State};
 /// The stress finds no equilibrium.
 pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State, f64), Failure> {
     let mut state = undeformed(model);
-    let Some(InitialStress { kind, steps }) = &part.initial_stress else { return Ok((state, 0.0)) };
+    let Some(InitialStress { kind, steps, loads }) = &part.initial_stress else { return Ok((state, 0.0)) };
+    let mut carried = gravity.to_vec();
+    if *loads {
+        part.add_loads(0.0, &mut carried);
+    }
     match kind {
         InitialStressKind::Gravity => Ok(0),
         InitialStressKind::Uniform(stress) => initial_stress::set_uniform(model, &mut state, *stress),
@@ -22,7 +26,7 @@ pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State,
             initial_stress::set_k0(model, &mut state, overburden.as_ref().unwrap_or(&top), k0)
         }
     }
-    .and_then(|_| initial_stress::equilibrate(model, &mut state, gravity, part.newton, *steps))
+    .and_then(|_| initial_stress::equilibrate(model, &mut state, &carried, part.newton, *steps))
     .map_err(|e| part.failure(&e).in_stage("initial stress"))?;
     let points = std::mem::take(&mut state.points);
     Ok((State { points, ..undeformed(model) }, 1.0))

@@ -34,6 +34,8 @@ impl Loading for Course<'_> {
     fn load(&mut self, time: f64, load: &mut [f64]) {
         let (time, share, weight) = self.shares(time);
         self.part.add_loads(time, load);
+        let carried = self.part.initial_stress.as_ref().is_some_and(|i| i.loads);
+        let share = if carried { 1.0 } else { share };
         for (l, g) in load.iter_mut().zip(self.gravity) {
             *l = share * *l + weight * g;
         }

@@ -5,7 +5,7 @@ use super::summary::{StageRecord, StaticsRecord, Summary};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::SolidPart;
-use crate::write::csv::{Field, write_table};
+use crate::write::csv::{Column, Field, History, write_table};
 use std::path::Path;
 use std::time::Instant;
 use trackbed_fem as fem;
@@ -116,16 +116,37 @@ pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path)
     });
     write_table(&dir.join("nodes.csv"), &NODES, nodes)?;
     let plastic = !state.points.is_empty();
-    let columns = if plastic { &GAUSS[..] } else { &GAUSS[..GAUSS.len() - 1] };
-    let points = mesh.element_ids.iter().enumerate().flat_map(|(e, &id)| {
+    let fields = if plastic { &GAUSS[..] } else { &GAUSS[..GAUSS.len() - 1] };
+    let own = if plastic { own_values(model) } else { Vec::new() };
+    let columns = fields.iter().map(|(name, unit, _)| Column::new(*name, *unit));
+    let columns = columns.chain(own.iter().map(|value| Column::new(value.name, value.unit)));
+    let mut table = History::create(&dir.join("gauss.csv"), columns.collect())?;
+    for (e, &id) in mesh.element_ids.iter().enumerate() {
         let points = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
         let elastic = if plastic { Vec::new() } else { fem::stress::gauss(model, u, e) };
-        points.iter().enumerate().map(move |(i, point)| {
-            let plastic = plastic.then(|| &state.points[model.point_start(e) + i]);
-            let stress = plastic.map_or_else(|| elastic[i], |p| p.stress);
-            GaussPoint { element: id, xi: point.xi, stress, kappa: plastic.map_or(0.0, |p| p.kappa) }
-        })
-    });
-    write_table(&dir.join("gauss.csv"), columns, points)?;
+        let of_law = model.material(e).law.state_values();
+        for (i, point) in points.iter().enumerate() {
+            let at = plastic.then(|| model.point(&state.points, e, i));
+            let stress = at.map_or_else(|| elastic[i], |p| p.state.stress);
+            let kappa = at.map_or(0.0, |p| p.state.kappa);
+            let point = GaussPoint { element: id, xi: point.xi, stress, kappa };
+            let mut row: Vec<f64> = fields.iter().map(|(_, _, value)| value(&point)).collect();
+            // 0 where the law of the element keeps no such value.
+            let value = |own: &fem::StateValue| Some(at?.values[of_law.iter().position(|v| v == own)?]);
+            row.extend(own.iter().map(|own| value(own).unwrap_or(0.0)));
+            table.row(&row)?;
+        }
+    }
     Ok(())
+}
+
+/// The values that the laws of a body keep at their points, each once.
+fn own_values(model: &Model) -> Vec<fem::StateValue> {
+    let mut own = Vec::new();
+    for value in model.materials().values().flat_map(|m| m.law.state_values()) {
+        if !own.contains(value) {
+            own.push(*value);
+        }
+    }
+    own
 }

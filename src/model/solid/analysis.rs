@@ -54,6 +54,8 @@ pub struct InitialStress {
     pub kind: InitialStressKind,
     /// Steps in which equilibrium is sought.
     pub steps: u32,
+    /// Whether the loads at time 0 take part in the equilibrium.
+    pub loads: bool,
 }
 
 /// How the initial stress is found.
@@ -139,6 +141,10 @@ pub fn plans(
     }
     let initial_stress =
         solid.initial_stress.as_ref().map(|i| initial_stress(document, i, materials)).transpose()?;
+    if coupled && solid.initial_stress.as_ref().is_some_and(|i| i.loads) {
+        let expected = "no such key for a solid under grains, whose loads come after the initial stress";
+        return Err(document.error("solid.initial_stress.loads", "true", expected));
+    }
     if let Some(&first) = materials.k0.keys().next()
         && !matches!(initial_stress, Some(InitialStress { kind: InitialStressKind::K0 { .. }, .. }))
     {
@@ -252,7 +258,7 @@ fn initial_stress(
     };
     let steps = i.steps.unwrap_or(10);
     check(document, &key("steps"), f64::from(steps), (1..=10_000).contains(&steps), "1 to 10000")?;
-    Ok(InitialStress { kind, steps })
+    Ok(InitialStress { kind, steps, loads: i.loads })
 }
 
 fn overburden(document: &Document, i: &SceneInitialStress) -> Result<Option<Overburden>, SceneError> {

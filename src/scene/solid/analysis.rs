@@ -78,6 +78,9 @@ pub struct InitialStress {
     pub stress: Option<[Quantity<Stress>; 6]>,
     /// Steps in which equilibrium is sought; default 10.
     pub steps: Option<u32>,
+    /// Whether the loads at time 0 take part in the equilibrium and act from then on; default false.
+    #[serde(default)]
+    pub loads: bool,
 }
 
 /// How the initial stress is found.

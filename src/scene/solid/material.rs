@@ -1,7 +1,8 @@
-//! Materials of the solid as written in a scene.
+//! Materials of the solid as written in a scene, and the constitutive law that each key set stands for.
 
 use crate::scene::units::{Angle, Density, Quantity, Stress};
 use serde::Deserialize;
+use trackbed_fem::material::{self, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb};
 
 /// `[[solid.material]]`: one for each material number of the mesh.
 #[derive(Clone, Debug, Deserialize)]
@@ -70,4 +71,181 @@ pub enum Cone {
     Extension,
     /// The same collapse load as Mohr–Coulomb in plane strain.
     PlaneStrain,
+}
+
+/// A key of a material that cannot be used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialFault {
+    /// The key within the material.
+    pub key: &'static str,
+    /// What it holds.
+    pub found: String,
+    /// What it should hold.
+    pub expected: String,
+}
+
+fn fault<T>(
+    key: &'static str,
+    found: impl ToString,
+    expected: impl Into<String>,
+) -> Result<T, MaterialFault> {
+    Err(MaterialFault { key, found: found.to_string(), expected: expected.into() })
+}
+
+fn check(key: &'static str, value: f64, good: bool, expected: &str) -> Result<(), MaterialFault> {
+    if good { Ok(()) } else { fault(key, value, expected) }
+}
+
+impl SolidMaterial {
+    /// The material of the solid.
+    ///
+    /// # Errors
+    /// A constant is missing, out of range, or not one of the model.
+    pub fn resolve(&self) -> Result<Material, MaterialFault> {
+        check("young", self.young.si, self.young.si > 0.0, "a modulus above 0")?;
+        check("poisson", self.poisson, self.poisson > -1.0 && self.poisson < 0.5, "above -1 and below 0.5")?;
+        check("density", self.density.si, self.density.si > 0.0, "a density above 0")?;
+        self.refuse_idle_keys()?;
+        let elastic = Elastic { young: self.young.si, poisson: self.poisson, density: self.density.si };
+        let material = match self.model {
+            MaterialModel::Elastic => return Ok(Material::from(elastic)),
+            MaterialModel::VonMises | MaterialModel::Tresca => self.metal(elastic)?,
+            MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager => self.frictional(elastic)?,
+        };
+        match material.fault() {
+            None => Ok(material),
+            Some((constant, value, expected)) => {
+                let found = if constant.contains("angle") {
+                    format!("{} deg", rounded(value.to_degrees()))
+                } else {
+                    value.to_string()
+                };
+                fault(self.key_of(constant), found, expected)
+            }
+        }
+    }
+
+    /// Name of the model as in a scene.
+    fn name(&self) -> &'static str {
+        match self.model {
+            MaterialModel::Elastic => "elastic",
+            MaterialModel::MohrCoulomb => "mohr_coulomb",
+            MaterialModel::DruckerPrager => "drucker_prager",
+            MaterialModel::VonMises => "von_mises",
+            MaterialModel::Tresca => "tresca",
+        }
+    }
+
+    /// A constant that the model needs.
+    fn need(&self, key: &'static str, value: Option<f64>) -> Result<f64, MaterialFault> {
+        match value {
+            Some(value) => Ok(value),
+            None => fault(key, "nothing", format!("a value for the model `{}`", self.name())),
+        }
+    }
+
+    /// A strength with its hardening, by a slope or by a table.
+    fn strength(&self, key: &'static str, value: Option<f64>) -> Result<Hardening, MaterialFault> {
+        match (value, self.hardening, &self.hardening_table) {
+            (None, None, Some(table)) => {
+                Ok(Hardening::Table(table.iter().map(|(x, y)| (*x, y.si)).collect()))
+            }
+            (Some(_), _, Some(_)) => {
+                let expected = format!("either `{key}` (and `hardening`) or `hardening_table`");
+                fault("hardening_table", "a table", expected)
+            }
+            (_, Some(_), Some(_)) => fault("hardening", "a value", "no such key beside `hardening_table`"),
+            (_, modulus, None) => {
+                let initial = self.need(key, value)?;
+                Ok(match modulus {
+                    None => Hardening::Constant(initial),
+                    Some(h) => Hardening::Linear { initial, modulus: h.si, limit: softest(initial, h.si) },
+                })
+            }
+        }
+    }
+
+    fn metal(&self, elastic: Elastic) -> Result<Material, MaterialFault> {
+        let yield_stress = self.strength("yield_stress", self.yield_stress.map(|y| y.si))?;
+        // Both criteria are met at half the yield stress of tension as their cohesion.
+        let cohesion = yield_stress.map(|y| 0.5 * y);
+        Ok(if self.model == MaterialModel::VonMises {
+            Material::plastic(elastic, DruckerPrager { cohesion, ..DruckerPrager::von_mises(1.0) })
+        } else {
+            Material::plastic(elastic, MohrCoulomb { cohesion, ..MohrCoulomb::tresca(1.0) })
+        })
+    }
+
+    fn frictional(&self, elastic: Elastic) -> Result<Material, MaterialFault> {
+        let cohesion = self.strength("cohesion", self.cohesion.map(|c| c.si))?;
+        let friction = match (&self.friction, &self.friction_table) {
+            (None, Some(table)) => Hardening::Table(table.iter().map(|(x, y)| (*x, y.si)).collect()),
+            (Some(_), Some(_)) => {
+                return fault("friction_table", "a table", "either `friction` or `friction_table`");
+            }
+            (friction, None) => Hardening::Constant(self.need("friction", friction.map(|f| f.si))?),
+        };
+        let dilation = self.need("dilation", self.dilation.map(|d| d.si))?;
+        let tension = self.tension.map(|t| t.si);
+        if self.model == MaterialModel::MohrCoulomb {
+            return Ok(Material::plastic(elastic, MohrCoulomb { cohesion, friction, dilation, tension }));
+        }
+        let cone = match self.cone {
+            Some(Cone::Compression) => material::Cone::Compression,
+            Some(Cone::Extension) => material::Cone::Extension,
+            Some(Cone::PlaneStrain) => material::Cone::PlaneStrain,
+            None => {
+                return fault("cone", "nothing", "\"compression\", \"extension\" or \"plane_strain\"");
+            }
+        };
+        Ok(Material::plastic(elastic, DruckerPrager { cohesion, friction, dilation, cone, tension }))
+    }
+
+    /// The key that a faulty constant was written under.
+    fn key_of(&self, constant: &str) -> &'static str {
+        match constant {
+            "Young's modulus" => "young",
+            "Poisson's ratio" => "poisson",
+            "density" => "density",
+            "friction angle" if self.friction_table.is_some() => "friction_table",
+            "friction angle" => "friction",
+            "dilation angle" => "dilation",
+            "tension cut-off" => "tension",
+            _ if self.hardening_table.is_some() => "hardening_table",
+            _ if self.yield_stress.is_some() => "yield_stress",
+            "cohesion" => "cohesion",
+            _ => "hardening",
+        }
+    }
+
+    /// Keys that the model has no use for.
+    fn refuse_idle_keys(&self) -> Result<(), MaterialFault> {
+        let model = self.model;
+        let frictional = matches!(model, MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager);
+        let metal = matches!(model, MaterialModel::VonMises | MaterialModel::Tresca);
+        let keys = [
+            ("cohesion", self.cohesion.is_some(), frictional),
+            ("friction", self.friction.is_some(), frictional),
+            ("dilation", self.dilation.is_some(), frictional),
+            ("tension", self.tension.is_some(), frictional),
+            ("friction_table", self.friction_table.is_some(), frictional),
+            ("cone", self.cone.is_some(), model == MaterialModel::DruckerPrager),
+            ("yield_stress", self.yield_stress.is_some(), metal),
+            ("hardening", self.hardening.is_some(), frictional || metal),
+            ("hardening_table", self.hardening_table.is_some(), frictional || metal),
+        ];
+        match keys.iter().find(|(_, present, used)| *present && !used) {
+            Some((key, ..)) => fault(key, "a value", format!("no such key for the model `{}`", self.name())),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Where a softening strength stops: at a hundredth of its start. Hardening has no end.
+fn softest(initial: f64, modulus: f64) -> Option<f64> {
+    (modulus < 0.0).then_some(0.01 * initial)
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
 }

@@ -10,7 +10,7 @@ pub use analysis::{
     Reduction, ReductionKind, StrengthReduction,
 };
 pub use boundary::{Absorbing, Side, Support};
-pub use material::{Cone, MaterialModel, SolidMaterial};
+pub use material::{Cone, MaterialFault, MaterialModel, SolidMaterial};
 pub use mesh::{Axis, Block, Layer, Order};
 
 use super::history::History;
