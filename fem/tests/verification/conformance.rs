@@ -1,0 +1,85 @@
+//! What every constitutive law must fulfil, whatever its equations. A new law joins by one line of the table below.
+//!
+//! Per law: the tangent is the derivative of the stress (central differences), the response does not depend on the axes,
+//! an elastic cycle gives back its work (or the law says that it does not), an associated law never returns plastic work,
+//! a returned stress is admissible, and a state that went through a checkpoint goes on bit for bit.
+
+mod checks;
+mod paths;
+
+use checks::*;
+use paths::Case;
+use trackbed_fem::{Cone, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb};
+
+const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 1900.0 };
+
+fn coulomb(phi: f64, psi: f64, tension: Option<f64>) -> MohrCoulomb {
+    MohrCoulomb { cohesion: 10e3.into(), friction: phi.into(), dilation: psi, tension }
+}
+
+fn cone(phi: f64, psi: f64, cohesion: Hardening) -> DruckerPrager {
+    let (friction, cone) = (phi.into(), Cone::PlaneStrain);
+    DruckerPrager { cohesion, friction, dilation: psi, cone, tension: None }
+}
+
+fn rising() -> Hardening {
+    Hardening::Linear { initial: 10e3, modulus: 2e6, limit: None }
+}
+
+/// `name: material, isotropic pressure at the start [Pa], strain within which it is elastic, strain of the walks`.
+macro_rules! laws {
+    ($($name:ident: $material:expr, $pressure:expr, $elastic:expr, $walk:expr;)*) => {
+        $(mod $name {
+            use super::*;
+
+            fn case() -> Case {
+                Case { material: $material, pressure: $pressure, elastic: $elastic, walk: $walk }
+            }
+
+            #[test]
+            fn tangent_is_the_derivative_of_the_stress() {
+                tangent(&case());
+            }
+
+            #[test]
+            fn response_does_not_depend_on_the_axes() {
+                objectivity(&case());
+            }
+
+            #[test]
+            fn elastic_cycles_give_back_their_work_as_stated() {
+                elastic_cycles(&case());
+            }
+
+            #[test]
+            fn plastic_work_of_associated_flow_is_never_negative() {
+                dissipation(&case());
+            }
+
+            #[test]
+            fn returned_stresses_are_admissible() {
+                admissibility(&case());
+            }
+
+            #[test]
+            fn state_goes_through_a_checkpoint_bit_for_bit() {
+                round_trip(&case());
+            }
+
+            #[test]
+            fn statements_of_the_law_are_consistent() {
+                statements(&case());
+            }
+        })*
+    };
+}
+
+laws! {
+    linear_elastic: SOIL.into(), 100e3, 1e-3, 1e-3;
+    mohr_coulomb_associated: Material::plastic(SOIL, coulomb(0.5, 0.5, None)), 50e3, 1e-4, 5e-4;
+    mohr_coulomb_cut_off: Material::plastic(SOIL, coulomb(0.5, 0.1, Some(5e3))), 20e3, 1e-4, 5e-4;
+    tresca: Material::plastic(SOIL, MohrCoulomb::tresca(50e3)), 0.0, 1e-4, 2e-3;
+    drucker_prager_associated: Material::plastic(SOIL, cone(0.5, 0.5, 10e3.into())), 50e3, 1e-4, 5e-4;
+    drucker_prager_hardening: Material::plastic(SOIL, cone(0.5, 0.1, rising())), 50e3, 1e-4, 5e-4;
+    von_mises: Material::plastic(SOIL, DruckerPrager::von_mises(50e3)), 0.0, 1e-4, 2e-3;
+}
