@@ -1,8 +1,9 @@
 //! Bricks on a grid: the simplest mesh, for templates, tests and measurements.
 
 use crate::element::ElementKind;
+use crate::element::hex20::HEX20_NODES;
 use crate::element::hex20::NATURAL;
-use crate::mesh::{HEX20_NODES, Mesh};
+use crate::mesh::Mesh;
 
 impl Mesh {
     /// A block with one corner at the origin, `counts` elements and `size` [m] along x, y, z, of material 1.

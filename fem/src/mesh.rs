@@ -1,24 +1,9 @@
 //! The finite-element mesh: nodes, elements, and the faces of its surface.
 
 use crate::connectivity::Connectivity;
+pub use crate::element::hex20::{FACE_NODES, HEX20_NODES};
 use crate::element::{ElementKind, FaceShape, MAX_FACE_NODES, mass_points};
 use crate::kinematics::{ElementCoordinates, jacobian};
-
-/// Number of nodes of the serendipity hexahedron.
-pub const HEX20_NODES: usize = 20;
-
-/// Nodes of each face of a hex20, in local indices (0-based), by SOLID186 face number minus one.
-///
-/// The four corners come first, counter-clockwise seen from outside, then the mid-side node after each
-/// corner. SOLID186 faces: 1 J-I-L-K, 2 I-J-N-M, 3 J-K-O-N, 4 K-L-P-O, 5 L-I-M-P, 6 M-N-O-P.
-pub const FACE_NODES: [[usize; 8]; 6] = [
-    [1, 0, 3, 2, 8, 11, 10, 9],
-    [0, 1, 5, 4, 8, 17, 12, 16],
-    [1, 2, 6, 5, 9, 18, 13, 17],
-    [2, 3, 7, 6, 10, 19, 14, 18],
-    [3, 0, 4, 7, 11, 16, 15, 19],
-    [4, 5, 6, 7, 12, 13, 14, 15],
-];
 
 /// A mesh: 20-node hexahedra in SOLID186 node order (I…P corners, Q…T bottom, U…X top, Y…B uprights), and their
 /// companions.

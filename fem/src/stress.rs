@@ -57,7 +57,7 @@ pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
     }
 }
 
-/// Stress at every node, extrapolated and averaged as told above. Shape `[nodes][6]`.
+/// Stress at every node, extrapolated and averaged as stated above. Shape `[nodes][6]`.
 pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
     nodal_mean(model, |e| {
         let kind = model.mesh().connectivity.kind(e);

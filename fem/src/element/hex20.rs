@@ -18,7 +18,21 @@
 //! The functions hold complete quadratic polynomials, so the error of a smooth field falls as h³ (in the mean of
 //! squares) while mid-side nodes stay near the middle of straight sides.
 
-use crate::mesh::HEX20_NODES;
+/// Number of nodes of the serendipity hexahedron.
+pub const HEX20_NODES: usize = 20;
+
+/// Nodes of each face of a hex20, in local indices (0-based), by SOLID186 face number minus one.
+///
+/// The four corners come first, counter-clockwise seen from outside, then the mid-side node after each
+/// corner. SOLID186 faces: 1 J-I-L-K, 2 I-J-N-M, 3 J-K-O-N, 4 K-L-P-O, 5 L-I-M-P, 6 M-N-O-P.
+pub const FACE_NODES: [[usize; 8]; 6] = [
+    [1, 0, 3, 2, 8, 11, 10, 9],
+    [0, 1, 5, 4, 8, 17, 12, 16],
+    [1, 2, 6, 5, 9, 18, 13, 17],
+    [2, 3, 7, 6, 10, 19, 14, 18],
+    [3, 0, 4, 7, 11, 16, 15, 19],
+    [4, 5, 6, 7, 12, 13, 14, 15],
+];
 
 /// Natural coordinates of the nodes, in SOLID186 order. Shape `[20][3]`, no unit.
 pub const NATURAL: [[f64; 3]; HEX20_NODES] = [

@@ -31,7 +31,7 @@ pub const NATURAL: [[f64; 3]; HEX8_NODES] = [
 ];
 
 /// Local nodes of each face, counter-clockwise seen from outside, by SOLID186 face number minus one: the corners of
-/// [`crate::mesh::FACE_NODES`] (a [`super::quad4`] each).
+/// [`super::hex20::FACE_NODES`] (a [`super::quad4`] each).
 pub const FACES: [&[usize]; 6] =
     [&[1, 0, 3, 2], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7], &[4, 5, 6, 7]];
 
@@ -51,9 +51,9 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; HEX8_NODES] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::hex20::FACE_NODES;
     use crate::element::quadrature::{GAUSS2, GAUSS3};
     use crate::element::{checks, hex20};
-    use crate::mesh::FACE_NODES;
 
     #[test]
     fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {

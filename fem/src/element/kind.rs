@@ -1,13 +1,13 @@
 //! The kinds of volume elements.
 
+use super::hex20::FACE_NODES;
 use super::{hex8, hex20, pyramid5, pyramid13, tet4, tet10, wedge6, wedge15};
-use crate::mesh::FACE_NODES;
 use serde::{Deserialize, Serialize};
 
 /// Nodes of the largest kind.
 pub const MAX_NODES: usize = 20;
 
-/// A kind of volume element. The order of its nodes is told in the module of the same name.
+/// A kind of volume element. The order of its nodes is stated in the module of the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementKind {

@@ -65,7 +65,7 @@ pub fn second_gradients(xi: [f64; 2]) -> [[f64; 3]; QUAD8_NODES] {
 mod tests {
     use super::*;
     use crate::element::hex20;
-    use crate::mesh::FACE_NODES;
+    use crate::element::hex20::FACE_NODES;
 
     #[test]
     fn shape_functions_are_one_at_their_own_node_and_zero_at_the_others() {

@@ -18,7 +18,7 @@ pub(super) struct Updates<'a> {
     /// Part of the work space, and the place where it begins.
     pub work: &'a [f64],
     pub work_start: usize,
-    /// Updates that branches handed to the crown.
+    /// Updates that branches handed to the upper fronts.
     pub handed: &'a [f64],
     /// Number of triangles of an update: 1 or 2.
     pub triangles: usize,
@@ -201,7 +201,7 @@ fn scatter_unsymmetric(
 }
 
 /// Rows of the update of `c` that fall into rows `range` of its parent's front.
-fn hit(structure: &Structure, c: usize, range: Range<usize>) -> Range<usize> {
+fn overlap(structure: &Structure, c: usize, range: Range<usize>) -> Range<usize> {
     let local = structure.local(c);
     let at = |bound: usize| local.partition_point(|&p| (p as usize) < bound);
     at(range.start)..at(range.end)
@@ -217,8 +217,8 @@ fn add(
     diagonal: bool,
 ) {
     let (local, runs, below) = (structure.local(c), structure.runs(c), structure.below(c));
-    let rows = hit(structure, c, origin.0..origin.0 + tile.nrows());
-    let columns = hit(structure, c, origin.1..origin.1 + tile.ncols());
+    let rows = overlap(structure, c, origin.0..origin.0 + tile.nrows());
+    let columns = overlap(structure, c, origin.1..origin.1 + tile.ncols());
     if rows.is_empty() || columns.is_empty() {
         return;
     }
@@ -254,7 +254,7 @@ fn add_mirrored(structure: &Structure, c: usize, update: &[f64], tile: &mut MatM
     let (local, below) = (structure.local(c), structure.below(c));
     let end = start + tile.ncols();
     let parent = structure.parent[c] as usize;
-    let rows = hit(structure, c, start..end.min(structure.width(parent)));
+    let rows = overlap(structure, c, start..end.min(structure.width(parent)));
     for j in 0..rows.end {
         let source = update_column(update, below, j);
         for i in rows.start.max(j + 1)..rows.end {

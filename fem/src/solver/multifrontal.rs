@@ -221,7 +221,7 @@ impl DirectSolver {
             let tasks = &structure.tasks[round.tasks.clone()];
             drive.branches(tasks, branches, &self.slots).map_or(Ok(()), Err)?;
             let (first, second) = (&mut self.first[..], &mut self.second[..]);
-            for &s in &structure.crown[round.crown.clone()] {
+            for &s in &structure.upper[round.upper.clone()] {
                 let s = s as usize;
                 let store = (&mut *first, &mut *second, &mut self.rows[..]);
                 let (update, children) = drive.cut(s, &mut self.work, &self.handed);

@@ -219,7 +219,7 @@ fn random_unsymmetric_systems_with_zero_diagonals_agree_with_a_dense_elimination
 fn a_large_pivot_block_is_factored_with_exchanges_in_tiles() {
     let system = random_system(5, 1, 400, 0, false);
     let analysis = system.analysis();
-    assert!(analysis.structure().crown.len() == 1 && analysis.structure().max_width == 400);
+    assert!(analysis.structure().upper.len() == 1 && analysis.structure().max_width == 400);
     let b = load(400);
     let mut solver = DirectSolver::new(analysis);
     solver.factor_unsymmetric(&system.lower, &system.upper).unwrap();
@@ -233,7 +233,7 @@ fn the_residuals_of_a_brick_are_rounding_and_the_solution_is_that_of_faer() {
     let system = brick(6, 0.0);
     let n = system.size();
     let analysis = system.analysis();
-    assert!(!analysis.structure().crown.is_empty() && analysis.structure().tasks.len() > 8);
+    assert!(!analysis.structure().upper.is_empty() && analysis.structure().tasks.len() > 8);
     let b = load(n);
     let mut solver = DirectSolver::new(analysis);
     solver.factor_symmetric(&system.lower).unwrap();
@@ -295,7 +295,7 @@ fn the_bits_do_not_depend_on_the_threads() {
     let system = brick(8, 0.2);
     let analysis = system.analysis();
     let structure = analysis.structure();
-    let shared = structure.crown.iter().filter(|&&s| structure.front_flops(s as usize) > 3e7).count();
+    let shared = structure.upper.iter().filter(|&&s| structure.front_flops(s as usize) > 3e7).count();
     assert!(shared > 3 && structure.tasks.len() > 8, "{shared} shared fronts");
     let run = |threads: usize| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| {
@@ -403,7 +403,7 @@ fn a_pivot_that_is_not_positive_or_zero_is_named_and_leaves_the_solver_usable() 
 }
 
 #[test]
-fn the_memory_is_foretold() {
+fn the_memory_is_predicted() {
     for system in [brick(7, 0.0), random_system(3, 30, 3, 40, true)] {
         let analysis = system.analysis();
         for symmetric in [true, false] {
@@ -414,10 +414,10 @@ fn the_memory_is_foretold() {
             } else {
                 solver.factor_unsymmetric(&system.lower, &system.lower).unwrap();
             }
-            let (told, taken) = (analysis.memory(symmetric) as f64, solver.allocated() as f64);
-            assert!((told / taken - 1.0).abs() < 0.1, "{told} {taken}");
+            let (predicted, allocated) = (analysis.memory(symmetric) as f64, solver.allocated() as f64);
+            assert!((predicted / allocated - 1.0).abs() < 0.1, "{predicted} {allocated}");
             solver.solve_in_place(&mut load(system.size()));
-            assert_eq!(solver.allocated() as f64, taken);
+            assert_eq!(solver.allocated() as f64, allocated);
         }
     }
 }

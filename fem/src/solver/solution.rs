@@ -2,7 +2,7 @@
 //!
 //! Forward, a front adds what its children hand up, solves with its pivot block, and hands up what its rows below
 //! contribute; backward, it fetches the solution at those rows from its parent. Branches run as tasks; large fronts of the
-//! crown are cut into row or column blocks of fixed size.
+//! upper fronts are cut into row or column blocks of fixed size.
 //!
 //! Source: Liu, SIAM Review 34 (1992) 82-109, section 6.
 
@@ -65,13 +65,13 @@ impl Solution {
         }
         let pass = Pass::<K> { structure, factor };
         pass.branches(&structure.tasks, Space { x, below, column: 0, row: 0 }, false);
-        for &s in &structure.crown {
+        for &s in &structure.upper {
             pass.forward(s as usize, x, below, (0, 0), true);
         }
-        for &s in structure.crown.iter().rev() {
+        for &s in structure.upper.iter().rev() {
             pass.backward(s as usize, x, below, (0, 0), true);
         }
-        // What the branches need from the crown.
+        // What the branches need from the upper fronts.
         for task in &structure.tasks {
             for s in (task.first..task.end).filter(|&s| structure.handed[s]) {
                 pass.fetch(s, x, below, (0, 0));
@@ -209,7 +209,7 @@ impl<const K: usize> Pass<'_, K> {
     }
 
     /// `x_s = L11^-T (x_s - L21^T below)`, or with U in place of L^T.
-    fn backward(&self, s: usize, x: &mut [f64], below: &mut [f64], origin: (usize, usize), crown: bool) {
+    fn backward(&self, s: usize, x: &mut [f64], below: &mut [f64], origin: (usize, usize), upper: bool) {
         let structure = self.structure;
         if !structure.handed[s] {
             self.fetch(s, x, below, origin);
@@ -218,7 +218,7 @@ impl<const K: usize> Pass<'_, K> {
         let ld = width + rows;
         let x = &mut x[(structure.begin[s] as usize - origin.0) * K..][..width * K];
         let own = &below[(structure.rows_start[s] - origin.1) * K..][..rows * K];
-        let parallel = crown && panel.len() > SHARED;
+        let parallel = upper && panel.len() > SHARED;
         if self.factor.rows.is_some() {
             let second = &self.factor.second[structure.second[s]..][..width * rows];
             by_columns::<K>(second, rows, x, own, parallel);

@@ -2,13 +2,13 @@
 //!
 //! A *front* is the dense matrix of a supernode: `width` pivot columns and `below` rows below them. Its pivot columns become
 //! factor; the rest is its *update*, added into the front of the parent. Whole subtrees that cost little are *branches*:
-//! they are independent tasks. The fronts above them, the *crown*, are taken one after another, each cut into tiles.
+//! they are independent tasks. The fronts above them, the *upper fronts*, are factored one after another, each cut into tiles.
 //!
 //! Every place is fixed here, from the pattern alone. The updates of a branch lie on two stacks that grow towards each other
 //! from the ends of a work space (depth even: left, odd: right, so that a front reads its children from one stack and
-//! writes to the other); every thread has one such space. The crown has another. The updates that branches hand to the
-//! crown have places of their own, and to keep these few, large subtrees are done in *rounds*: the branches of one, then
-//! its fronts of the crown, then the next. So the peak is known beforehand.
+//! writes to the other); every thread has one such space. The upper fronts have another. The updates that branches hand to the
+//! upper fronts have places of their own, and to keep these few, large subtrees are done in *rounds*: the branches of one, then
+//! its upper fronts, then the next. So the peak is known beforehand.
 //!
 //! Source: Duff and Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans. Math.
 //! Software 9 (1983) 302-325; Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992) 82-109.
@@ -40,11 +40,11 @@ pub(super) struct Task {
     pub end: usize,
 }
 
-/// Tasks, and the fronts of the crown that can be done after them.
+/// Tasks, and the upper fronts that can be done after them.
 #[derive(Clone, Debug)]
 pub(super) struct Round {
     pub tasks: Range<usize>,
-    pub crown: Range<usize>,
+    pub upper: Range<usize>,
 }
 
 #[derive(Debug, Default)]
@@ -76,15 +76,15 @@ pub(super) struct Structure {
     pub split: Vec<usize>,
     /// Whether the update lies on the left stack, below that boundary.
     pub left: Vec<bool>,
-    /// Whether the update is handed from a branch to the crown.
+    /// Whether the update is handed from a branch to the upper fronts.
     pub handed: Vec<bool>,
     pub handed_len: usize,
-    /// Work space of the crown, and of a thread that does branches; in values of one triangle, like all places.
+    /// Work space of the upper fronts, and of a thread that does branches; in values of one triangle, like all places.
     pub work_len: usize,
     pub branch_len: usize,
     pub rounds: Vec<Round>,
     pub tasks: Vec<Task>,
-    pub crown: Vec<u32>,
+    pub upper: Vec<u32>,
     /// Columns of the widest front, and of the widest one in a branch.
     pub max_width: usize,
     pub branch_width: usize,
@@ -260,7 +260,7 @@ impl Structure {
         }
     }
 
-    /// Cuts the tree into branches and crown and gives every update its place.
+    /// Cuts the tree into branches and upper fronts and gives every update its place.
     fn plan(&mut self) {
         let count = self.count();
         let mut below_flops: Vec<f64> = (0..count).map(|s| self.front_flops(s)).collect();
@@ -285,7 +285,7 @@ impl Structure {
         let mut load = f64::INFINITY;
         for s in 0..count {
             if below_flops[s] > limit {
-                self.crown.push(s as u32);
+                self.upper.push(s as u32);
                 continue;
             }
             self.branch_width = self.branch_width.max(self.width(s));
@@ -309,17 +309,17 @@ impl Structure {
             let fronts: Vec<u32> = (task.first as u32..task.end as u32).collect();
             self.branch_len = self.branch_len.max(self.stack(&fronts));
         }
-        let crown = std::mem::take(&mut self.crown);
-        self.work_len = self.stack(&crown);
-        self.crown = crown;
+        let upper = std::mem::take(&mut self.upper);
+        self.work_len = self.stack(&upper);
+        self.upper = upper;
     }
 
-    /// Ends a round after every subtree of the crown that is as large as a round may be, and places what is handed over.
+    /// Ends a round after every subtree of the upper fronts that is as large as a round may be, and places what is handed over.
     fn make_rounds(&mut self, below_flops: &[f64]) {
         let limit = self.flops / ROUNDS;
         let large = |s: usize| self.parent[s] == NONE || below_flops[self.parent[s] as usize] > limit;
         let ends: Vec<usize> = self
-            .crown
+            .upper
             .iter()
             .map(|&s| s as usize)
             .filter(|&s| below_flops[s] <= limit && large(s))
@@ -329,8 +329,8 @@ impl Structure {
         let (mut task, mut front, mut base) = (0, 0, 0);
         for end in ends {
             let tasks = task..task + self.tasks[task..].partition_point(|t| t.end <= end);
-            let crown = front..front + self.crown[front..].partition_point(|&s| (s as usize) < end);
-            (task, front) = (tasks.end, crown.end);
+            let upper = front..front + self.upper[front..].partition_point(|&s| (s as usize) < end);
+            (task, front) = (tasks.end, upper.end);
             let mut place = base;
             for t in tasks.clone() {
                 for s in self.tasks[t].first..self.tasks[t].end {
@@ -345,7 +345,7 @@ impl Structure {
                 }
             }
             self.handed_len = self.handed_len.max(place);
-            self.rounds.push(Round { tasks, crown });
+            self.rounds.push(Round { tasks, upper });
         }
     }
 

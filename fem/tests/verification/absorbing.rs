@@ -243,7 +243,7 @@ fn energy_balances_with_springs_dashpots_and_prescribed_motion() {
                 ]) {
                     *e += a;
                 }
-                // The supports are where they were told to be.
+                // The supports are where they were prescribed to be.
                 for (&(d, _), m) in model.supports().fixed().iter().zip(&motion) {
                     assert!((state.u[d as usize] - m).abs() < 1e-18);
                 }

@@ -116,7 +116,7 @@ fn bar_in_extension_has_the_closed_frequencies() {
 
 /// A slender cantilever, L/h = 40: bending at `beta² sqrt(EI/(m L^4))`, beta = 1.8751, 4.6941 (Euler-Bernoulli), with the
 /// reduction by rotary inertia and shear that the first-order Timoshenko term gives; both within 1 %. Torsion and
-/// extension come in between and are told by their participation.
+/// extension come in between and are recognised by their participation.
 #[test]
 fn slender_beam_bends_at_the_closed_frequencies() {
     let (length, height, width) = (8.0, 0.2, 0.3);

@@ -7,7 +7,7 @@ use trackbed_fem::boundary::BoundaryLayer;
 use trackbed_fem::mass::Mass;
 use trackbed_fem::newmark::{Drive, Newmark, NewmarkSolver};
 use trackbed_fem::nonlinear::dynamics::{Dynamics, initial_acceleration};
-use trackbed_fem::nonlinear::{Driven, NewtonOptions, PlasticWindowSolver, StepControl};
+use trackbed_fem::nonlinear::{Loading, NewtonOptions, PlasticWindowSolver, StepControl};
 use trackbed_fem::window::WindowSolver;
 use trackbed_fem::{
     Constraint, DruckerPrager, Elastic, ElementKind, Material, Mesh, Model, ModelInput, Rayleigh, State,
@@ -54,52 +54,67 @@ fn top_load(model: &Model, pressure: f64) -> Vec<f64> {
     load
 }
 
-/// Without plasticity the drivers are the linear solvers: Newmark, HHT-α and the window, with all kinds of damping,
-/// springs and moved supports.
+/// A block under its weight and a pulse on its top, on a base that swings, with all kinds of damping.
+struct Shaken {
+    model: Model,
+    weight: Vec<f64>,
+    top: Vec<f64>,
+}
+
+impl Shaken {
+    fn new() -> Shaken {
+        let model = block(SOIL.into(), false);
+        Shaken { weight: model.gravity_load(), top: top_load(&model, 50e3), model }
+    }
+
+    fn at(&self, time: f64) -> Vec<f64> {
+        self.weight.iter().zip(&self.top).map(|(w, t)| w + pulse(time) * t).collect()
+    }
+
+    fn moved(&self, time: f64) -> Vec<f64> {
+        let base = 1e-3 * (200.0 * time).sin();
+        let fixed = self.model.supports().fixed();
+        fixed.iter().map(|(dof, _)| if dof % 3 == 0 { base } else { 0.0 }).collect()
+    }
+}
+
+impl Loading for &Shaken {
+    fn load(&mut self, time: f64, load: &mut [f64]) {
+        load.copy_from_slice(&self.at(time));
+    }
+
+    fn prescribed(&mut self, time: f64, values: &mut [f64]) {
+        values.copy_from_slice(&self.moved(time));
+    }
+}
+
+/// Without plasticity the elastoplastic dynamics are the linear ones: Newmark and HHT-α.
 #[test]
-fn elastic_bodies_move_as_the_linear_solvers_say() {
-    let model = block(SOIL.into(), false);
-    let (weight, top) = (model.gravity_load(), top_load(&model, 50e3));
-    let force = |time: f64, load: &mut [f64]| {
-        for d in 0..load.len() {
-            load[d] = weight[d] + pulse(time) * top[d];
-        }
-    };
-    let at = |time: f64| {
-        let mut load = vec![0.0; model.dof_count()];
-        force(time, &mut load);
-        load
-    };
-    let base = |time: f64| 1e-3 * (200.0 * time).sin();
-    let fixed: Vec<u32> = model.supports().fixed().iter().map(|(dof, _)| *dof).collect();
-    let moved =
-        |time: f64| fixed.iter().map(|d| if d % 3 == 0 { base(time) } else { 0.0 }).collect::<Vec<_>>();
+fn elastic_bodies_move_as_under_the_linear_newmark_and_hht() {
+    let mut shaken = &Shaken::new();
+    let model = &shaken.model;
     let dt = 1e-3;
     for hht in [0.0, -0.2] {
-        let (mut a, mut b) = (State::new(&model), State::new(&model));
-        trackbed_fem::newmark::initial_acceleration(&model, &mut a, &at(0.0)).unwrap();
-        initial_acceleration(&model, &mut b, &at(0.0)).unwrap();
+        let (mut a, mut b) = (State::new(model), State::new(model));
+        trackbed_fem::newmark::initial_acceleration(model, &mut a, &shaken.at(0.0)).unwrap();
+        initial_acceleration(model, &mut b, &shaken.at(0.0)).unwrap();
         assert!(difference(&b.a, &a.a) < 1e-10);
-        let mut linear = NewmarkSolver::hht(&model, hht, dt).unwrap();
-        let mut driver = Dynamics::hht(&model, hht, tight(), StepControl::fixed(dt)).unwrap();
-        let mut loading = Driven {
-            load: force,
-            prescribed: |time: f64, values: &mut [f64]| values.copy_from_slice(&moved(time)),
-        };
+        let mut linear = NewmarkSolver::hht(model, hht, dt).unwrap();
+        let mut driver = Dynamics::hht(model, hht, tight(), StepControl::fixed(dt)).unwrap();
         let (mut sum_a, mut sum_b) = ([0.0; 4], [0.0; 4]);
         let parts =
             |x: &StepAudit| [x.external_work, x.support_work, x.damping_dissipation, x.boundary_dissipation];
         for step in 0..40 {
             let (from, to) = (dt * f64::from(step), dt * f64::from(step + 1));
-            let prescribed = moved(to);
-            let (load_start, load_end) = (at(from), at(to));
+            let prescribed = shaken.moved(to);
+            let (load_start, load_end) = (shaken.at(from), shaken.at(to));
             let drive =
                 Drive { load_start: Some(&load_start), load_end: &load_end, prescribed: Some(&prescribed) };
-            let audit = linear.advance(&model, &mut a, drive).unwrap();
+            let audit = linear.advance(model, &mut a, drive).unwrap();
             (0..4).for_each(|k| sum_a[k] += parts(&audit)[k]);
             let end = b.time + dt;
             driver
-                .advance(&model, &mut b, end, &mut loading, |_, _, x| {
+                .advance(model, &mut b, end, &mut shaken, |_, _, x| {
                     (0..4).for_each(|k| sum_b[k] += parts(x)[k])
                 })
                 .unwrap();
@@ -117,10 +132,17 @@ fn elastic_bodies_move_as_the_linear_solvers_say() {
                 && difference(&sum_b, &sum_a) < 1e-7
         );
     }
+}
+
+/// As above for the window methods, with moved supports and their reactions.
+#[test]
+fn elastic_bodies_move_as_under_the_linear_window() {
+    let shaken = Shaken::new();
+    let (model, dt) = (&shaken.model, 1e-3);
     for theta in [0.5, 0.7] {
-        let (mut a, mut b) = (State::new(&model), State::new(&model));
-        let mut linear = WindowSolver::new(&model, theta, dt).unwrap();
-        let mut driver = PlasticWindowSolver::new(&model, theta, dt, tight()).unwrap();
+        let (mut a, mut b) = (State::new(model), State::new(model));
+        let mut linear = WindowSolver::new(model, theta, dt).unwrap();
+        let mut driver = PlasticWindowSolver::new(model, theta, dt, tight()).unwrap();
         let (mut sum_a, mut sum_b) = ([0.0; 5], [0.0; 5]);
         let parts = |x: &StepAudit| {
             [
@@ -133,20 +155,22 @@ fn elastic_bodies_move_as_the_linear_solvers_say() {
         };
         for step in 1..=40 {
             let (time, before) = (dt * f64::from(step), b.clone());
-            let x = linear.step_prescribed(&model, &mut a, &at(time), Some(&moved(time))).unwrap();
-            let y = driver.step_prescribed(&model, &mut b, &at(time), Some(&moved(time))).unwrap();
+            let x =
+                linear.step_prescribed(model, &mut a, &shaken.at(time), Some(&shaken.moved(time))).unwrap();
+            let y =
+                driver.step_prescribed(model, &mut b, &shaken.at(time), Some(&shaken.moved(time))).unwrap();
             (0..5).for_each(|k| (sum_a[k], sum_b[k]) = (sum_a[k] + parts(&x)[k], sum_b[k] + parts(&y)[k]));
             if step == 20 {
-                let r = linear.mean_reactions(&model, &before, &a, &at(time));
+                let r = linear.mean_reactions(model, &before, &a, &shaken.at(time));
                 let s = driver.mean_reactions(
-                    &model,
+                    model,
                     &{
                         let mut s = before;
-                        s.points.resize(model.point_count(), Default::default());
+                        s.points.resize(model.point_count(), 0);
                         s
                     },
                     &b,
-                    &at(time),
+                    &shaken.at(time),
                 );
                 assert!(difference(&s, &r) < 1e-6, "{:e}", difference(&s, &r));
             }

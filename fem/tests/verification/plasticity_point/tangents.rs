@@ -107,7 +107,7 @@ fn tangents_with_equal_principal_values() {
 
 /// `symmetric_tangent` is true exactly where all tangents of random states are symmetric.
 #[test]
-fn symmetry_is_told_right() {
+fn stated_symmetry_is_that_of_the_tangent() {
     for (name, material, _) in laws() {
         let mut random = Random(5);
         let mut worst = 0.0_f64;
