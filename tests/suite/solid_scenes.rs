@@ -178,6 +178,57 @@ fn triaxial_test_ends_on_its_plateau() {
     assert!(axial.iter().zip(base).all(|(a, b)| (a + b).abs() <= 1e-9 * plateau.abs()));
 }
 
+/// Values at the Gauss points of a triaxial test of clay: `p`, `q` and the preconsolidation pressure [Pa].
+fn clay_points(folder: &Folder) -> Vec<[f64; 3]> {
+    let gauss = Table::read(&folder.join("out/gauss.csv"));
+    let [x, y, z, pc] = ["sxx", "syy", "szz", "preconsolidation_pressure"].map(|name| gauss.column(name));
+    (0..x.len()).map(|i| [-(x[i] + y[i] + z[i]) / 3.0, x[i] - z[i], pc[i]]).collect()
+}
+
+/// Undrained path of modified Cam clay, p/p0 = (R M²/(M² + η²))^Λ, normally and heavily overconsolidated (Wood 1990,
+/// chapter 5). Tolerance 1e-6: the path does not depend on the steps, equilibrium is found to 1e-6.
+#[test]
+fn undrained_triaxial_test_of_clay_follows_the_closed_form() {
+    let (m, exponent, p0) = (0.95, (0.093 - 0.035) / 0.093, 207e3);
+    // How near the critical state 10 % of strain comes: the stiff clay is still softening.
+    for (ratio, end) in [(1.0, 2e-3), (8.0, 4e-2)] {
+        let set = [format!("solid.material.0.overconsolidation={ratio}")];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let (folder, history) = finished("solid/triaxial_undrained.toml", &set);
+        let points = clay_points(&folder);
+        for [p, q, pc] in &points {
+            let eta = q / p;
+            near("p", *p, p0 * (ratio * m * m / (m * m + eta * eta)).powf(exponent), 1e-6);
+            near("pc", *pc, p * (1.0 + eta * eta / (m * m)), 1e-6);
+            near("critical state", eta, m, end);
+        }
+        // The base carries the axial stress of one square metre.
+        let base = *history.column("base_reaction_z").last().unwrap();
+        near("base", base, points[0][0] + 2.0 / 3.0 * points[0][1], 1e-6);
+    }
+}
+
+/// Drained path: q = 3 (p - p0), volume strain κ/v ln(p/p0) + (λ - κ)/v ln(pc/p0). Tolerance 1e-5: the pressure is
+/// exponential in the volume strain, and equilibrium is found to 1e-6 of the forces.
+#[test]
+fn drained_triaxial_test_of_clay_follows_the_closed_form() {
+    let (m, v, lambda, kappa, p0) = (0.95, 1.6, 0.093, 0.035, 207e3_f64);
+    let (folder, history) = finished("solid/triaxial_drained.toml", &[]);
+    let strain: f64 =
+        ["corner_u_x", "corner_u_y", "corner_u_z"].iter().map(|n| -history.column(n).last().unwrap()).sum();
+    for [p, q, pc] in clay_points(&folder) {
+        near("path", q, 3.0 * (p - p0), 1e-5);
+        near("pc", pc, p * (1.0 + (q / (m * p)).powi(2)), 1e-6);
+        near(
+            "volume strain",
+            strain,
+            kappa / v * (p / p0).ln() + (lambda - kappa) / v * (pc / p0).ln(),
+            1e-5,
+        );
+        assert!(q / p > 0.85 * m && q / p < m);
+    }
+}
+
 /// A wave in one dimension: below 1 % of the energy may stay behind, and every point ends lower by ∫ p dt/(ρ c_p), to
 /// 0.5 %.
 #[test]

@@ -18,6 +18,7 @@ pub mod hardening;
 mod law;
 mod linear_elastic;
 mod local;
+pub mod modified_cam_clay;
 pub mod mohr_coulomb;
 mod point;
 mod principal_return;
@@ -29,6 +30,7 @@ pub use elastic::{Elastic, Fault};
 pub use hardening::Hardening;
 pub use law::{ConstitutiveLaw, Response, ReturnError, StateValue};
 pub use linear_elastic::LinearElastic;
+pub use modified_cam_clay::{Consolidation, ModifiedCamClay, Shear};
 pub use mohr_coulomb::MohrCoulomb;
 pub use point::{Point, PointState, Points, Region};
 
@@ -104,6 +106,8 @@ laws! {
     MohrCoulomb,
     /// Drucker–Prager (and von Mises), with a cap on the mean stress.
     DruckerPrager,
+    /// Modified Cam clay: ellipse, volumetric hardening, stiffness in proportion to the pressure.
+    ModifiedCamClay,
 }
 
 /// What a mesh's material number stands for.
@@ -129,7 +133,9 @@ impl Material {
 
     /// What makes the constants unusable, if anything: the name of the constant, its value and what is expected of it.
     pub fn fault(&self) -> Option<Fault> {
-        self.elastic.fault().or_else(|| self.law.fault(&self.elastic))
+        let (law, elastic) = (|| self.law.fault(&self.elastic), || self.elastic.fault());
+        // Reference constants that a law derives are faulty only where its own are.
+        if self.law.has_constant_elasticity() { elastic().or_else(law) } else { law().or_else(elastic) }
     }
 
     /// Whether stress is proportional to strain.

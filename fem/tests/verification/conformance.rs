@@ -9,6 +9,7 @@ mod paths;
 
 use checks::*;
 use paths::Case;
+use trackbed_fem::material::{Consolidation, ModifiedCamClay, Shear};
 use trackbed_fem::{Cone, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb};
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 1900.0 };
@@ -24,6 +25,25 @@ fn cone(phi: f64, psi: f64, cohesion: Hardening) -> DruckerPrager {
 
 fn rising() -> Hardening {
     Hardening::Linear { initial: 10e3, modulus: 2e6, limit: None }
+}
+
+const POISSON: Shear = Shear::Poisson(0.3);
+const MODULUS: Shear = Shear::Modulus(1.5e6);
+
+fn clay(shear: Shear) -> ModifiedCamClay {
+    ModifiedCamClay {
+        lambda: 0.093,
+        kappa: 0.035,
+        critical_ratio: 0.95,
+        void_ratio: 0.6,
+        shear,
+        consolidation: Consolidation::Ratio(1.5),
+        minimum_pressure: 1e3,
+    }
+}
+
+fn dense() -> ModifiedCamClay {
+    ModifiedCamClay { consolidation: Consolidation::Pressure(300e3), ..clay(POISSON) }
 }
 
 /// `name: material, isotropic pressure at the start [Pa], strain within which it is elastic, strain of the walks`.
@@ -81,5 +101,8 @@ laws! {
     tresca: Material::plastic(SOIL, MohrCoulomb::tresca(50e3)), 0.0, 1e-4, 2e-3;
     drucker_prager_associated: Material::plastic(SOIL, cone(0.5, 0.5, 10e3.into())), 50e3, 1e-4, 5e-4;
     drucker_prager_hardening: Material::plastic(SOIL, cone(0.5, 0.1, rising())), 50e3, 1e-4, 5e-4;
+    cam_clay: Material::plastic(clay(POISSON).reference(1900.0), clay(POISSON)), 50e3, 1e-4, 2e-3;
+    cam_clay_conservative: Material::plastic(clay(MODULUS).reference(1900.0), clay(MODULUS)), 50e3, 1e-4, 2e-3;
+    cam_clay_overconsolidated: Material::plastic(dense().reference(1900.0), dense()), 50e3, 1e-4, 1e-2;
     von_mises: Material::plastic(SOIL, DruckerPrager::von_mises(50e3)), 0.0, 1e-4, 2e-3;
 }

@@ -21,6 +21,7 @@ mod hht;
 mod integrators;
 mod mixed;
 mod modal;
+mod modified_cam_clay;
 mod patch;
 mod plastic_common;
 mod plastic_cylinder;

@@ -2,7 +2,9 @@
 
 use crate::scene::units::{Angle, Density, Quantity, Stress};
 use serde::Deserialize;
-use trackbed_fem::material::{self, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb};
+use trackbed_fem::material::{
+    self, Consolidation, DruckerPrager, Elastic, Hardening, Material, ModifiedCamClay, MohrCoulomb, Shear,
+};
 
 /// `[[solid.material]]`: one for each material number of the mesh.
 #[derive(Clone, Debug, Deserialize)]
@@ -16,10 +18,10 @@ pub struct SolidMaterial {
     /// Yield criterion; default `elastic`.
     #[serde(default)]
     pub model: MaterialModel,
-    /// Young's modulus [Pa], above 0.
-    pub young: Quantity<Stress>,
+    /// Young's modulus [Pa], above 0; of all models but `modified_cam_clay`.
+    pub young: Option<Quantity<Stress>>,
     /// Poisson's ratio, above −1 and below 0.5.
-    pub poisson: f64,
+    pub poisson: Option<f64>,
     /// Density [kg/m³], above 0.
     pub density: Quantity<Density>,
     /// Cohesion [Pa].
@@ -40,6 +42,22 @@ pub struct SolidMaterial {
     pub hardening_table: Option<Vec<(f64, Quantity<Stress>)>>,
     /// Friction angle against equivalent plastic strain: [[strain, angle], …].
     pub friction_table: Option<Vec<(f64, Quantity<Angle>)>>,
+    /// Slope of the normal compression line of `modified_cam_clay`, specific volume against ln p.
+    pub lambda: Option<f64>,
+    /// Slope of its swelling lines.
+    pub kappa: Option<f64>,
+    /// Stress ratio q/p of its critical state.
+    pub critical_ratio: Option<f64>,
+    /// Its void ratio at the start.
+    pub void_ratio: Option<f64>,
+    /// Its preconsolidation pressure [Pa].
+    pub preconsolidation: Option<Quantity<Stress>>,
+    /// In place of it, its overconsolidation ratio under the initial stress.
+    pub overconsolidation: Option<f64>,
+    /// Its constant shear modulus [Pa], in place of `poisson`.
+    pub shear_modulus: Option<Quantity<Stress>>,
+    /// Pressure below which its stiffness falls no further [Pa]; default 1 kPa.
+    pub minimum_pressure: Option<Quantity<Stress>>,
     /// Horizontal over vertical initial stress; default that of `initial_stress`.
     pub k0: Option<f64>,
 }
@@ -59,6 +77,8 @@ pub enum MaterialModel {
     VonMises,
     /// Tresca.
     Tresca,
+    /// Modified Cam clay.
+    ModifiedCamClay,
 }
 
 /// Meridian of Mohr–Coulomb that the cone of Drucker–Prager passes through.
@@ -102,15 +122,19 @@ impl SolidMaterial {
     /// # Errors
     /// A constant is missing, out of range, or not one of the model.
     pub fn resolve(&self) -> Result<Material, MaterialFault> {
-        check("young", self.young.si, self.young.si > 0.0, "a modulus above 0")?;
-        check("poisson", self.poisson, self.poisson > -1.0 && self.poisson < 0.5, "above -1 and below 0.5")?;
+        if let Some(young) = self.young {
+            check("young", young.si, young.si > 0.0, "a modulus above 0")?;
+        }
+        if let Some(poisson) = self.poisson {
+            check("poisson", poisson, poisson > -1.0 && poisson < 0.5, "above -1 and below 0.5")?;
+        }
         check("density", self.density.si, self.density.si > 0.0, "a density above 0")?;
         self.refuse_idle_keys()?;
-        let elastic = Elastic { young: self.young.si, poisson: self.poisson, density: self.density.si };
         let material = match self.model {
-            MaterialModel::Elastic => return Ok(Material::from(elastic)),
-            MaterialModel::VonMises | MaterialModel::Tresca => self.metal(elastic)?,
-            MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager => self.frictional(elastic)?,
+            MaterialModel::Elastic => return Ok(Material::from(self.elastic()?)),
+            MaterialModel::VonMises | MaterialModel::Tresca => self.metal(self.elastic()?)?,
+            MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager => self.frictional(self.elastic()?)?,
+            MaterialModel::ModifiedCamClay => self.cam_clay()?,
         };
         match material.fault() {
             None => Ok(material),
@@ -133,7 +157,43 @@ impl SolidMaterial {
             MaterialModel::DruckerPrager => "drucker_prager",
             MaterialModel::VonMises => "von_mises",
             MaterialModel::Tresca => "tresca",
+            MaterialModel::ModifiedCamClay => "modified_cam_clay",
         }
+    }
+
+    fn elastic(&self) -> Result<Elastic, MaterialFault> {
+        let young = self.need("young", self.young.map(|y| y.si))?;
+        Ok(Elastic { young, poisson: self.need("poisson", self.poisson)?, density: self.density.si })
+    }
+
+    fn cam_clay(&self) -> Result<Material, MaterialFault> {
+        let shear = match (self.poisson, self.shear_modulus) {
+            (Some(_), Some(_)) => {
+                return fault("shear_modulus", "a value", "either `poisson` or `shear_modulus`");
+            }
+            (None, Some(modulus)) => Shear::Modulus(modulus.si),
+            (poisson, None) => Shear::Poisson(self.need("poisson", poisson)?),
+        };
+        let consolidation = match (self.preconsolidation, self.overconsolidation) {
+            (Some(_), Some(_)) => {
+                let expected = "either `preconsolidation` or `overconsolidation`";
+                return fault("overconsolidation", "a value", expected);
+            }
+            (None, Some(ratio)) => Consolidation::Ratio(ratio),
+            (pressure, None) => {
+                Consolidation::Pressure(self.need("preconsolidation", pressure.map(|p| p.si))?)
+            }
+        };
+        let law = ModifiedCamClay {
+            lambda: self.need("lambda", self.lambda)?,
+            kappa: self.need("kappa", self.kappa)?,
+            critical_ratio: self.need("critical_ratio", self.critical_ratio)?,
+            void_ratio: self.need("void_ratio", self.void_ratio)?,
+            shear,
+            consolidation,
+            minimum_pressure: self.minimum_pressure.map_or(1e3, |p| p.si),
+        };
+        Ok(Material { elastic: law.reference(self.density.si), law: law.into() })
     }
 
     /// A constant that the model needs.
@@ -211,6 +271,14 @@ impl SolidMaterial {
             "friction angle" => "friction",
             "dilation angle" => "dilation",
             "tension cut-off" => "tension",
+            "lambda" => "lambda",
+            "kappa" => "kappa",
+            "critical ratio" => "critical_ratio",
+            "void ratio" => "void_ratio",
+            "shear modulus" => "shear_modulus",
+            "preconsolidation pressure" => "preconsolidation",
+            "overconsolidation ratio" => "overconsolidation",
+            "minimum pressure" => "minimum_pressure",
             _ if self.hardening_table.is_some() => "hardening_table",
             _ if self.yield_stress.is_some() => "yield_stress",
             "cohesion" => "cohesion",
@@ -223,7 +291,17 @@ impl SolidMaterial {
         let model = self.model;
         let frictional = matches!(model, MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager);
         let metal = matches!(model, MaterialModel::VonMises | MaterialModel::Tresca);
+        let clay = model == MaterialModel::ModifiedCamClay;
         let keys = [
+            ("young", self.young.is_some(), !clay),
+            ("lambda", self.lambda.is_some(), clay),
+            ("kappa", self.kappa.is_some(), clay),
+            ("critical_ratio", self.critical_ratio.is_some(), clay),
+            ("void_ratio", self.void_ratio.is_some(), clay),
+            ("preconsolidation", self.preconsolidation.is_some(), clay),
+            ("overconsolidation", self.overconsolidation.is_some(), clay),
+            ("shear_modulus", self.shear_modulus.is_some(), clay),
+            ("minimum_pressure", self.minimum_pressure.is_some(), clay),
             ("cohesion", self.cohesion.is_some(), frictional),
             ("friction", self.friction.is_some(), frictional),
             ("dilation", self.dilation.is_some(), frictional),
