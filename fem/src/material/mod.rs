@@ -12,6 +12,7 @@
 //! Mohr–Coulomb, where the split of the flow between two principal directions is not unique (triaxial compression with
 //! two equal lateral stresses under load control is the well-known case). [`regularise`] mixes in a small part of the
 //! elastic matrix for use in a global Newton iteration; this changes the path of the iteration, not its solution.
+mod cam_clay_return;
 pub mod drucker_prager;
 pub mod elastic;
 pub mod hardening;
