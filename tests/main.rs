@@ -8,6 +8,7 @@ mod suite {
     mod checkpoint;
     mod checkpoint_kill;
     mod cli;
+    mod contact_laws;
     mod determinism;
     mod exchange;
     mod fem_cases;

@@ -393,29 +393,11 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         })
     };
     let materials = materials::build(document, scene)?;
-    let mut contacts = Vec::new();
-    for (i, c) in scene.contact.iter().enumerate() {
-        let key = |k: &str| format!("contact.{i}.{k}");
-        check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
-        check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
-        check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
-        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
-        if c.stiffness.is_some() && scene.material.iter().any(|m| m.young.is_some()) {
-            let expected = "no stiffness where materials have a Young's modulus";
-            return Err(document.error(&key("stiffness"), "a stiffness", expected).into());
-        }
-        contacts.push(PairOverride {
-            a: find(&key("between"), &c.between[0])?,
-            b: find(&key("between"), &c.between[1])?,
-            friction: c.friction,
-            restitution: c.restitution,
-            stiffness: c.stiffness.map(|s| s.si),
-            adhesion: c.adhesion.map(|w| w.si),
-        });
-    }
+    let contacts = materials::pairs(document, scene, find)?;
+    materials::check_laws(document, scene, &materials, &contacts)?;
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
     check(document, "time.impact_speed", impact_speed, |v| v >= 0.0, "0 or more")?;
-    if impact_speed.is_some() && scene.material.iter().all(|m| m.young.is_none()) {
+    if impact_speed.is_some() && !materials::stiffens(&materials, &contacts) {
         let expected = "no such key without a material with `young`";
         return Err(document.error("time.impact_speed", "a value", expected).into());
     }

@@ -4,7 +4,7 @@ use super::units::{Adhesion, Density, Quantity, Stiffness, Stress};
 use serde::Deserialize;
 
 /// `[[material]]`: contact by a linear spring and dashpot, or after Hertz and Mindlin where materials have a Young's
-/// modulus; with Coulomb friction.
+/// modulus, unless `normal` names another law; with Coulomb friction.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrainMaterial {
@@ -14,6 +14,8 @@ pub struct GrainMaterial {
     pub density: Option<Quantity<Density>>,
     /// Contact stiffness of a like pair [N/m]; absent: rigid (a contact with it is twice as stiff as a like pair).
     pub stiffness: Option<Quantity<Stiffness>>,
+    /// Normal law of its contacts, by name; default: `hertz` with a Young's modulus, `linear` with a stiffness.
+    pub normal: Option<String>,
     /// Young's modulus [Pa], in place of a stiffness: contact after Hertz and Mindlin.
     pub young: Option<Quantity<Stress>>,
     /// Poisson's ratio, above −1 and at most 0.5; needed with a Young's modulus.
@@ -49,4 +51,42 @@ pub struct PairContact {
     pub stiffness: Option<Quantity<Stiffness>>,
     /// Work of adhesion [J/m²].
     pub adhesion: Option<Quantity<Adhesion>>,
+    /// Normal law of the pair, by name; default: that of both materials.
+    pub normal: Option<String>,
+    /// Tangential law of the pair, by name, or `none`; default: the one that belongs to the normal law.
+    pub tangential: Option<String>,
+    /// Where the normal damping is from; default: the restitution.
+    pub damping: Option<DampingKind>,
+    /// Damping ratio of the pair [-], with `damping = "ratio"`.
+    pub damping_ratio: Option<f64>,
+    /// Rolling resistance; default: a spring where both materials have a coefficient.
+    pub rolling: Option<Resistance>,
+    /// Rolling resistance of the pair: largest moment over effective radius times normal force.
+    pub rolling_friction: Option<f64>,
+    /// Twisting resistance; default: a spring where both materials have a coefficient.
+    pub twisting: Option<Resistance>,
+    /// Twisting resistance of the pair: largest moment about the normal over effective radius times normal force.
+    pub twisting_friction: Option<f64>,
+}
+
+/// `contact.damping`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DampingKind {
+    /// The dashpot that gives the restitution.
+    Restitution,
+    /// The dashpot of a damping ratio.
+    Ratio,
+    /// No dashpot.
+    None,
+}
+
+/// `contact.rolling` and `contact.twisting`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resistance {
+    /// A spring that yields.
+    Spring,
+    /// None.
+    None,
 }

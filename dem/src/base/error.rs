@@ -29,6 +29,16 @@ pub enum ModelError {
         /// What it must satisfy.
         requirement: &'static str,
     },
+    /// Two materials have no law of contact.
+    #[error("contact of materials {a} and {b}: {problem}")]
+    Law {
+        /// One material.
+        a: usize,
+        /// The other.
+        b: usize,
+        /// What is wrong.
+        problem: String,
+    },
     /// An index points nowhere.
     #[error("{owner} {index} names {kind} {found}, but there are {count}")]
     Index {

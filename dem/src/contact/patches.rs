@@ -389,7 +389,7 @@ fn apply<S: Surface>(
             exchange.impulse.angular += moment * dt;
             // What springs do not explain; a spring that slides holds what the limit has left to it.
             let (normal, tangential) =
-                single::springs(setting.laws, materials, contact.overlap, result.radius());
+                single::springs(setting.laws, materials, contact.overlap, result.radius(), &contact.history);
             let sprung = contact.normal * normal - contact.history.spring * tangential;
             contacts.push(SurfaceContact {
                 dashpot: (sprung - force).into(),

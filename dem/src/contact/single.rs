@@ -71,6 +71,12 @@ pub(crate) fn end(laws: &Laws, [a, b]: [u32; 2], history: &mut History) -> f64 {
 }
 
 /// Force of the normal spring [N] and stiffness of the tangential spring [N/m] at an overlap and an effective radius [m].
-pub(crate) fn springs(laws: &Laws, [a, b]: [u32; 2], overlap: f64, radius: f64) -> (f64, f64) {
-    with_law!(laws, laws => laws.get(a, b).springs(overlap, radius))
+pub(crate) fn springs(
+    laws: &Laws,
+    [a, b]: [u32; 2],
+    overlap: f64,
+    radius: f64,
+    history: &History,
+) -> (f64, f64) {
+    with_law!(laws, laws => laws.get(a, b).springs(overlap, radius, history))
 }

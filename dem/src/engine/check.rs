@@ -3,6 +3,7 @@
 use super::input::{ModelInput, TimeStep};
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Kind};
+use crate::law::{self, Laws};
 use crate::shape::Shape;
 use crate::wall::check::in_range;
 
@@ -32,7 +33,6 @@ pub(crate) fn input(input: &ModelInput) -> Result<(), ModelError> {
 }
 
 fn materials(input: &ModelInput) -> Result<(), ModelError> {
-    let hertz = input.materials.iter().any(|m| m.young.is_some());
     for (material, m) in input.materials.iter().enumerate() {
         for (quantity, value, good, requirement) in [
             ("density", m.density, positive(m.density), POSITIVE),
@@ -55,12 +55,6 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             ),
             ("rolling friction", m.rolling_friction, not_negative(m.rolling_friction), NOT_NEGATIVE),
             ("twisting friction", m.twisting_friction, not_negative(m.twisting_friction), NOT_NEGATIVE),
-            (
-                "stiffness",
-                m.stiffness,
-                !hertz || m.stiffness.is_infinite(),
-                "be absent (infinite) where a material has a Young's modulus",
-            ),
         ] {
             if !good {
                 return Err(ModelError::Material { material, quantity, value, requirement });
@@ -77,10 +71,16 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             ("stiffness", e.stiffness, e.stiffness.is_none_or(positive), POSITIVE),
             ("adhesion", e.adhesion, e.adhesion.is_none_or(not_negative), NOT_NEGATIVE),
             (
-                "stiffness",
-                e.stiffness,
-                !hertz || e.stiffness.is_none(),
-                "be absent where materials have a Young's modulus",
+                "rolling friction",
+                e.rolling_friction,
+                e.rolling_friction.is_none_or(not_negative),
+                NOT_NEGATIVE,
+            ),
+            (
+                "twisting friction",
+                e.twisting_friction,
+                e.twisting_friction.is_none_or(not_negative),
+                NOT_NEGATIVE,
             ),
         ] {
             if !good {
@@ -89,7 +89,7 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             }
         }
     }
-    Ok(())
+    law::check::laws(&input.materials, &input.contacts)
 }
 
 fn shapes(input: &ModelInput) -> Result<(), ModelError> {
@@ -214,14 +214,11 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
 }
 
 /// Refuses contacts between two rigid partners that may come about.
-pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelError> {
-    let hard = |m: usize| input.materials[m].stiffness.is_infinite() && input.materials[m].young.is_none();
-    let endless = |a: u32, b: usize| {
-        let a = a as usize;
-        let exception = input.contacts.iter().rfind(|e| (e.a, e.b) == (a, b) || (e.a, e.b) == (b, a));
-        hard(a) && hard(b) && exception.is_none_or(|e| e.stiffness.is_none())
-    };
-    let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies.get(k).material as usize)).collect();
+pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Result<(), ModelError> {
+    let endless = |a: u32, b: usize| laws.rigid(a, b as u32);
+    let count = input.materials.len();
+    let hard = |m: u32| (0..count).any(|other| endless(m, other));
+    let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies.get(k).material)).collect();
     for (n, &i) in rigid.iter().enumerate() {
         let a = &bodies.get(i);
         let error = |b: String| Err(ModelError::RigidPair { a: format!("body {i}"), b });

@@ -58,7 +58,7 @@ impl Model {
         let laws = Laws::new(&input.materials, &input.contacts);
         let walls: Vec<WallInput> = input.all_walls().collect();
         let mut walls = Walls::new(&walls, input.triangles.len())?;
-        check::rigid_pairs(&bodies, &input)?;
+        check::rigid_pairs(&bodies, &input, &laws)?;
 
         let mut radii = (f64::INFINITY, 0.0_f64);
         let (mut spheres, mut sum) = (0_usize, 0.0);
@@ -262,8 +262,7 @@ impl Model {
     /// Force of the normal spring [N] and its stiffness [N/m] between two materials at an overlap and an effective radius
     /// [m].
     pub fn contact_spring(&self, a: usize, b: usize, overlap: f64, radius: f64) -> (f64, f64) {
-        let stiffness = self.laws.stiffness(a as u32, b as u32, overlap, radius);
-        (self.laws.force_share() * stiffness * overlap, stiffness)
+        self.laws.loading(a as u32, b as u32, overlap, radius)
     }
 
     /// Tangential over normal stiffness of a contact between two materials.

@@ -18,18 +18,13 @@
 //! A rolling or twisting spring turns the body as the tangential spring does, with a lever no longer than the sphere's
 //! radius: it counts as a second tangential spring.
 //!
-//! Contacts after Hertz stiffen with the overlap, S = 2 E* √(R d), so the limit holds up to an overlap that must be
-//! estimated. Taken is the larger of two, as a fraction of the radius, for the softest contact and the densest body:
+//! Where contacts stiffen with the overlap the limit holds up to the largest overlap that a law expects (`law/hertz.rs`),
+//! given the densest body, the height H of all bodies and the speed at which they meet: [`ModelInput::impact_speed`], or
+//! else the largest of the starting speeds of bodies, planes and triangle surfaces, added to that of a fall through the
+//! height of all bodies, √(2 g H).
 //!
-//! * impact at speed v: d/R = (5π/4 · ρ v²/E*)^(2/5), the overlap of a sphere that meets a plane
-//!   (Johnson, Contact Mechanics, 1985, eq. 11.24, with m = 4/3 π ρ R³). v is [`ModelInput::impact_speed`], or else
-//!   the largest of the starting speeds of bodies, planes and triangle surfaces, added to that of a fall through the
-//!   height of all bodies, √(2 g H);
-//! * rest below all others: a column of height H presses with F = 4 R² ρ g H on a sphere,
-//!   d/R = (3 ρ g H/E*)^(2/3).
-//!
-//! The limit falls only with d^(-1/4): a load that presses 16 times as deep halves it, and the fraction of the limit
-//! that is taken (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
+//! Under Hertz's law the limit falls only with d^(-1/4): a load that presses 16 times as deep halves it, and the usual
+//! fraction of the limit (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
 //! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
 //!
 //! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
@@ -40,6 +35,7 @@ use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Body, Kind};
 use crate::bond;
 use crate::law::Laws;
+use crate::law::normal::Expected;
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
 use crate::shape::plane::Plane;
@@ -169,7 +165,6 @@ pub(crate) fn limit(
 
 /// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.
 pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
-    let Laws::Hertz(table) = laws else { return 0.0 };
     let gravity = input.gravity.norm();
     let down = if gravity > 0.0 { input.gravity / gravity } else { Vec3::z() };
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
@@ -184,14 +179,7 @@ pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws)
     let walls = input.planes.iter().map(|p| p.velocity.norm());
     let walls = walls.chain(input.triangles.iter().map(|t| t.velocity.norm())).fold(0.0, f64::max);
     let speed = input.impact_speed.unwrap_or(speed.max(walls) + (2.0 * gravity * height).sqrt());
-    let count = input.materials.len() as u32;
-    let moduli =
-        (0..count).flat_map(|a| (a..count).map(move |b| (a, b))).map(|(a, b)| table.get(a, b).modulus);
-    let modulus = moduli.filter(|e| e.is_finite()).fold(f64::INFINITY, f64::min);
-    let impact = (1.25 * std::f64::consts::PI * density * speed * speed / modulus).powf(0.4);
-    let rest = (3.0 * density * gravity * height / modulus).powf(2.0 / 3.0);
-    // A floor for bodies at rest without weight: no spring may be without stiffness.
-    impact.max(rest).clamp(1e-9, 1.0)
+    laws.expected_overlap(&Expected { density, speed, gravity, height })
 }
 
 /// Materials that something to touch is made of, ascending.

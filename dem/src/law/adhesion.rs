@@ -15,10 +15,13 @@
 //! force counts for a whole step, which books up to F v dt/2 too much or too little. No boxes, no bonds, no rigid bodies
 //! of triangles.
 
-use crate::law::material::PairOverride;
+use crate::law::material::Pair;
 use std::f64::consts::TAU;
 
+/// Where it is published.
+pub(super) const SOURCE: &str = "adhesion: Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53, 1975";
+
 /// Adhesive force over the effective radius, 2π w [N/m].
-pub(crate) fn pull(pair: Option<&PairOverride>) -> f64 {
-    pair.and_then(|p| p.adhesion).map_or(0.0, |work| TAU * work)
+pub(super) fn pull(pair: &Pair<'_>) -> f64 {
+    pair.given(|e| e.adhesion).map_or(0.0, |work| TAU * work)
 }

@@ -1,10 +1,11 @@
 //! Contact materials and exceptions for pairs of them.
 
-use serde::{Deserialize, Serialize};
+use super::damping::Damping;
 
-/// A contact material. Either all materials of a model that are not rigid have a `stiffness` (linear contact), or all
-/// have a Young's modulus (contact after Hertz and Mindlin).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A contact material. The law of a pair of materials is that of [`PairOverride::normal`], else the one that both have
+/// (`table.rs`): [`Material::normal`], or Hertz's where there is a Young's modulus and the linear one where there is a
+/// stiffness. A material with neither is rigid and takes the law of its partner.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Mass per volume of the body [kg/m³].
     pub density: f64,
@@ -19,7 +20,7 @@ pub struct Material {
     pub friction: f64,
     /// Coefficient of restitution of a central impact, in (0, 1].
     pub restitution: f64,
-    /// Young's modulus [Pa]; the stiffness is then infinite, and that of contacts follows from their sizes.
+    /// Young's modulus [Pa]; the stiffness of contacts then follows from their sizes.
     pub young: Option<f64>,
     /// Poisson's ratio [-]; used with a Young's modulus.
     pub poisson: f64,
@@ -27,6 +28,8 @@ pub struct Material {
     pub rolling_friction: f64,
     /// Twisting resistance: largest moment about the normal over R* F [-]; zero: none.
     pub twisting_friction: f64,
+    /// Normal law of its contacts; absent: that of its constants.
+    pub normal: Option<LawName>,
 }
 
 impl Material {
@@ -42,6 +45,7 @@ impl Material {
         poisson: 0.0,
         rolling_friction: 0.0,
         twisting_friction: 0.0,
+        normal: None,
     };
 }
 
@@ -53,7 +57,7 @@ impl Default for Material {
 }
 
 /// Values of one pair of materials that replace the mixed ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairOverride {
     /// First material (index).
     pub a: usize,
@@ -67,4 +71,81 @@ pub struct PairOverride {
     pub stiffness: Option<f64>,
     /// Work of adhesion w [J/m²]: spheres and walls in touch attract each other with 2π w R*; absent: they do not.
     pub adhesion: Option<f64>,
+    /// Normal law.
+    pub normal: Option<LawName>,
+    /// Tangential law; absent: the one that belongs to the normal law.
+    pub tangential: Option<LawName>,
+    /// Where the damping ratio is from; absent: from the restitution.
+    pub damping: Option<Damping>,
+    /// Rolling resistance: largest moment over R* F [-].
+    pub rolling_friction: Option<f64>,
+    /// Twisting resistance: largest moment about the normal over R* F [-].
+    pub twisting_friction: Option<f64>,
+}
+
+/// Name of a law of the table (`table.rs`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LawName(pub(super) &'static str);
+
+impl LawName {
+    /// No tangential force.
+    pub const NONE: LawName = LawName("none");
+
+    /// As written in a scene.
+    pub fn as_str(&self) -> &'static str {
+        self.0
+    }
+}
+
+/// Two materials and what a scene says of the pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<'a> {
+    /// One material.
+    pub a: &'a Material,
+    /// The other.
+    pub b: &'a Material,
+    /// Values in place of the mixed ones.
+    pub exception: Option<&'a PairOverride>,
+}
+
+impl<'a> Pair<'a> {
+    /// The pair of two materials by index, the same for (i, j) and (j, i). Of several exceptions for it the last holds.
+    pub fn of(materials: &'a [Material], exceptions: &'a [PairOverride], i: usize, j: usize) -> Pair<'a> {
+        let exception = exceptions.iter().rfind(|e| (e.a, e.b) == (i, j) || (e.a, e.b) == (j, i));
+        // In index order, so that (i, j) and (j, i) have the same bits.
+        Pair { a: &materials[i.min(j)], b: &materials[i.max(j)], exception }
+    }
+
+    /// A value of the exception.
+    pub fn given<T>(&self, pick: fn(&PairOverride) -> Option<T>) -> Option<T> {
+        self.exception.and_then(pick)
+    }
+
+    /// The smaller value of the two materials, if the exception has none.
+    pub fn smaller(&self, given: fn(&PairOverride) -> Option<f64>, own: fn(&Material) -> f64) -> f64 {
+        self.given(given).unwrap_or(own(self.a).min(own(self.b)))
+    }
+
+    /// Coefficient of restitution.
+    pub fn restitution(&self) -> f64 {
+        self.smaller(|e| e.restitution, |m| m.restitution)
+    }
+
+    /// Normal stiffness [N/m].
+    pub fn stiffness(&self) -> f64 {
+        self.given(|e| e.stiffness).unwrap_or(harmonic(self.a.stiffness, self.b.stiffness))
+    }
+}
+
+/// 2xy/(x + y), also for infinite values.
+pub(crate) fn harmonic(x: f64, y: f64) -> f64 {
+    if x.is_infinite() {
+        2.0 * y
+    } else if y.is_infinite() {
+        2.0 * x
+    } else if x + y > 0.0 {
+        2.0 * x * y / (x + y)
+    } else {
+        0.0
+    }
 }

@@ -8,7 +8,11 @@
 //! * ζ > 1: e = exp[−(2ζ/s) ln(ζ + s)], s = √(ζ² − 1).
 //!
 //! e falls steadily with ζ, so bisection inverts it. The usual ζ = −ln e/√(π² + ln²e) ignores the clip and gives
-//! 0.325 where 0.2 is asked for.
+//! 0.325 where 0.2 is wanted.
+
+/// Where it is published.
+pub(super) const SOURCE: &str =
+    "restitution of the clipped dashpot: Schwager & Poschel, Granular Matter 9, 2007";
 
 /// Restitution of the clipped law for damping ratio `zeta` ≥ 0.
 pub fn restitution(zeta: f64) -> f64 {

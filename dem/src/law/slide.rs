@@ -1,4 +1,4 @@
-//! Springs that yield: the tangential spring of Coulomb friction, and the same for rolling and twisting.
+//! Springs that yield: the tangential spring of Coulomb friction, also used for rolling and twisting (`turning.rs`).
 //!
 //! A spring in the tangent plane is turned into the present plane with its length kept, lengthened by the sliding
 //! displacement, and, with a dashpot beside it, limited in force; it is then shortened so that it holds exactly the
@@ -9,6 +9,7 @@
 //! was put into it. (With the dashpot at the full velocity, as in LAMMPS' `gran/hooke/history`, a
 //! fast graze leaves the spring stretched by −Cs v/Ks, far beyond what the contact has done.)
 
+use super::tangential::Grip;
 use crate::lanes::{Real, V3};
 
 /// What a spring and its dashpot did in a step.
@@ -18,22 +19,21 @@ pub(crate) struct Slid<V, R> {
     pub friction: R,
 }
 
-/// A spring in the plane across `normal`. `velocity` lies in that plane; `softness` is one over the stiffness, where that
-/// is known; `time` is the part of the step during which
-/// the contact was there [s].
+/// A spring in the plane across `normal`. `velocity` lies in that plane; `time` is the part of the step during which the
+/// contact was there [s].
 #[inline(always)]
 pub(crate) fn plane<R: Real>(
     spring: &mut V3<R>,
     normal: V3<R>,
     velocity: V3<R>,
-    stiffness: R,
-    softness: Option<R>,
+    grip: &Grip<R>,
     damping: R,
     limit: R,
     time: R,
     dt: f64,
     on: R::Mask,
 ) -> Slid<V3<R>, R> {
+    let stiffness = grip.stiffness;
     let along = spring.dot(normal);
     let flat = *spring - normal * along;
     let (along2, flat2) = (along * along, flat.norm2());
@@ -57,11 +57,11 @@ pub(crate) fn plane<R: Real>(
     if R::any(slides) {
         let limited = force * (limit / size2.sqrt());
         let sprung = R::zero().lt(stiffness);
-        let softness = match softness {
+        let compliance = match grip.compliance {
             Some(known) => known,
             None => R::splat(1.0) / stiffness,
         };
-        let mut short = -limited * softness;
+        let mut short = -limited * compliance;
         let mut lost = R::splat(0.5) * stiffness * (stretched - short).dot(short + before);
         let damped = R::zero().lt(damping);
         if R::any(damped & slides) {
@@ -71,8 +71,8 @@ pub(crate) fn plane<R: Real>(
             let held = (own + ends) * (R::splat(0.5) * stiffness) + rate * damping;
             short = V3::select(damped, ends, short);
             lost = R::select(damped, held.dot(velocity - rate) * time, lost);
-            let taken = rate.norm2() * damping * R::splat(dt);
-            dashpot = R::select(damped & slides, taken, dashpot);
+            let viscous = rate.norm2() * damping * R::splat(dt);
+            dashpot = R::select(damped & slides, viscous, dashpot);
         }
         short = short.only(sprung);
         friction = lost.only(slides);
@@ -107,71 +107,8 @@ pub(crate) fn line<R: Real>(
     let slide = R::select(damped, (velocity - rate) * time, stretched - short);
     let lost = held.only(damped) + (R::splat(0.5) * stiffness * (short + before)).only(!damped);
     *spring = R::select(slides, short, stretched);
-    let taken = R::select(slides & damped, rate * rate * damping, viscous * velocity);
-    Slid { force, dashpot: taken * R::splat(dt), friction: (lost * slide).only(slides) }
-}
-
-/// Springs against rolling and twisting as a law has them: stiffness and damping of the tangential springs, and the
-/// limits as fractions of the normal force.
-pub(crate) struct Turning<R> {
-    pub stiffness: R,
-    pub damping: R,
-    pub rolling: R,
-    pub twisting: R,
-    pub normal_force: R,
-    pub radius: R,
-    pub time: R,
-}
-
-/// Moment of rolling and twisting resistance on a, and the energy it took.
-///
-/// With R the effective radius and ω the spin of a less that of b, the rolling velocity is R (ω − (ω·n) n) and the
-/// twisting velocity R ω·n. Each stretches a spring with the stiffness of the tangential one, whose force is limited to
-/// μᵣ F and μₜ F; times R it is the moment (Luding, Granular Matter 10, 2008, sections 2.5 to 2.7; with moments
-/// against angles: stiffness Ks R², limit μ R F, as in Ai, Chen, Rotter & Ooi, Powder Technology 206, 2011, model C).
-#[inline(always)]
-pub(crate) fn turning<R: Real>(
-    t: &Turning<R>,
-    roll: &mut V3<R>,
-    twist: &mut R,
-    normal: V3<R>,
-    spin: V3<R>,
-    dt: f64,
-    on: R::Mask,
-) -> Slid<V3<R>, R> {
-    let about = spin.dot(normal);
-    let rolling = (spin - normal * about) * t.radius;
-    // Without a limit there is no resistance and no spring.
-    let rolls = R::zero().lt(t.rolling);
-    let twists = R::zero().lt(t.twisting);
-    let r = plane(
-        roll,
-        normal,
-        rolling,
-        t.stiffness.only(rolls),
-        None,
-        t.damping.only(rolls),
-        t.rolling * t.normal_force,
-        t.time,
-        dt,
-        on & rolls,
-    );
-    let w = line(
-        twist,
-        about * t.radius,
-        t.stiffness.only(twists),
-        t.damping.only(twists),
-        t.twisting * t.normal_force,
-        t.time,
-        dt,
-    );
-    *roll = roll.only(rolls);
-    *twist = twist.only(twists);
-    Slid {
-        force: (r.force.only(rolls) + normal * w.force.only(twists)) * t.radius,
-        dashpot: r.dashpot.only(rolls) + w.dashpot.only(twists),
-        friction: r.friction.only(rolls) + w.friction.only(twists),
-    }
+    let power = R::select(slides & damped, rate * rate * damping, viscous * velocity);
+    Slid { force, dashpot: power * R::splat(dt), friction: (lost * slide).only(slides) }
 }
 
 #[cfg(test)]
@@ -181,7 +118,7 @@ mod tests {
     /// Neither friction nor the dashpot ever gives energy, however strong the dashpot; both together are the work less what the
     /// spring stores (to an error that vanishes with the step); and the spring alone never holds more than the limit.
     #[test]
-    fn friction_takes_and_the_account_closes() {
+    fn friction_dissipates_and_the_account_closes() {
         let (stiffness, limit, dt) = (1e5, 10.0, 1e-5);
         for damping in [0.0, 30.0, 3000.0] {
             for velocity in [-0.5, 0.02, 0.3] {
@@ -190,7 +127,17 @@ mod tests {
                 for _ in 0..100 {
                     let v = V3::new(velocity, 0.0, 0.0);
                     let n = V3::new(0.0, 0.0, 1.0);
-                    let p = plane(&mut flat, n, v, stiffness, None, damping, limit, dt, dt, true);
+                    let p = plane(
+                        &mut flat,
+                        n,
+                        v,
+                        &Grip { stiffness, compliance: None },
+                        damping,
+                        limit,
+                        dt,
+                        dt,
+                        true,
+                    );
                     let l = line(&mut straight, velocity, stiffness, damping, limit, dt, dt);
                     for (sum, (force, s)) in sums
                         .iter_mut()

@@ -8,7 +8,7 @@ use crate::lanes::Simd;
 
 /// The loops that the contacts of a model run through, in words.
 pub fn kernels(model: &Model) -> String {
-    let law = model.laws.name();
+    let law = model.laws.title();
     let shapes = if model.clumps { "spheres of rigid bodies" } else { "single spheres" };
     let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
     let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };

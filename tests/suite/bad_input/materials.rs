@@ -46,3 +46,43 @@ fn adhesion_below_zero() {
         .scene("[time]", &format!("{pair}[time]"))
         .refused("scene.toml:24: contact.0.adhesion: found -0.1, expected 0 or more");
 }
+
+const PAIR: &str = "[[contact]]\nbetween = [\"stone\", \"stone\"]\n";
+
+#[test]
+fn unknown_normal_law() {
+    grains_scene()
+        .scene("friction = 0.5", "friction = 0.5\nnormal = \"herz\"")
+        .refused("scene.toml:8: material.0.normal: found \"herz\", expected one of linear, hertz");
+}
+
+#[test]
+fn laws_that_do_not_go_together() {
+    grains_scene().scene("[time]", &format!("{PAIR}normal = \"linear\"\ntangential = \"mindlin\"\n[time]")).refused(
+        "scene.toml:24: contact.0.normal: found for \"stone\" and \"stone\" normal law \"linear\" with tangential law \"mindlin\", \
+         which do not go together, expected a law for each pair of materials, from both or from `normal` of their [[contact]]",
+    );
+}
+
+#[test]
+fn unlike_laws_without_one_for_the_pair() {
+    let glass = "[[material]]\nname = \"glass\"\nyoung = \"50 MPa\"\npoisson = 0.3\nfriction = 0.5\nrestitution = 0.4\n";
+    grains_scene().scene("[time]", &format!("{glass}[time]")).refused(
+        "scene.toml:22: material.1: found for \"stone\" and \"glass\" unlike normal laws, \"linear\" and \"hertz\", and none \
+         for the pair, expected a law for each pair of materials, from both or from `normal` of their [[contact]]",
+    );
+}
+
+#[test]
+fn damping_ratio_without_its_part() {
+    grains_scene().scene("[time]", &format!("{PAIR}damping_ratio = 0.2\n[time]")).refused(
+        "scene.toml:24: contact.0.damping_ratio: found a value, expected no such key without `damping = \"ratio\"`",
+    );
+}
+
+#[test]
+fn hertz_without_a_modulus() {
+    grains_scene().scene("stiffness = \"1 MN/m\"", "normal = \"hertz\"").refused(
+        "scene.toml:3: material.0.young: found nothing, expected a value for this key, which `normal = \"hertz\"` needs",
+    );
+}

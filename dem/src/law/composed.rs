@@ -1,0 +1,288 @@
+//! A law of contact put together from its parts: normal force and dashpot, tangential spring and Coulomb friction, rolling
+//! and twisting resistance, adhesion. What they have in common is written here once.
+//!
+//! Second order in time in spite of the leapfrog's velocities at half steps: the dashpot sees the approach speed
+//! extrapolated to the full step, 3/2 ḋ(n−½) − 1/2 ḋ(n−3/2). A force that jumps from zero at first touch (the linear law's
+//! dashpot, adhesion) first counts for the part θ + ½ of the step, θ = d/(ḋ dt) being the part for which the contact has
+//! been there.
+//!
+//! The parts: `linear.rs`, `hertz.rs` (normal), `spring.rs`, `mindlin.rs` (tangential), `damping.rs`, `turning.rs` (rolling
+//! and twisting), `adhesion.rs`. Friction, rolling and twisting coefficients of a pair are the smaller of the two.
+
+use super::adhesion;
+use super::constants::{Constants, constants};
+use super::contact::{FRESH, History, LawInput, LawOutput, Memory};
+use super::contact_law::ContactLaw;
+use super::damping::Damping;
+use super::material::{LawName, Pair, harmonic};
+use super::normal::{Expected, NormalLaw};
+use super::slide;
+use super::tangential::TangentialLaw;
+use super::turning::{self, Turning, turning};
+use crate::lanes::{Real, V3};
+
+/// Constants of one pair of materials, with normal part `N` and tangential part `T`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Composed<N, T> {
+    /// The normal part.
+    pub normal: N,
+    /// The tangential part.
+    pub tangential: T,
+    /// What all laws have.
+    pub common: Common,
+    damping: Damping,
+}
+
+/// Constants that do not depend on the normal and the tangential part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Common<R = f64> {
+    /// Cs/C [-].
+    tangential_damping: R,
+    /// Friction coefficient [-].
+    pub friction: R,
+    /// Coefficient of rolling resistance [-].
+    rolling: R,
+    /// Coefficient of twisting resistance [-].
+    twisting: R,
+    /// Adhesive force over the effective radius [N/m].
+    pull: R,
+}
+
+constants!(Common { tangential_damping, friction, rolling, twisting, pull });
+
+/// [`Composed`] in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct ComposedLanes<N, T, R> {
+    normal: N,
+    tangential: T,
+    common: Common<R>,
+}
+
+impl<N: NormalLaw, T: TangentialLaw<N>> Constants for Composed<N, T> {
+    type Lanes<R: Real> = ComposedLanes<N::Lanes<R>, T::Lanes<R>, R>;
+
+    const ZERO: Self =
+        Composed { normal: N::ZERO, tangential: T::ZERO, common: Common::ZERO, damping: Damping::None };
+
+    #[inline(always)]
+    fn splat<R: Real>(&self) -> Self::Lanes<R> {
+        ComposedLanes {
+            normal: self.normal.splat(),
+            tangential: self.tangential.splat(),
+            common: self.common.splat(),
+        }
+    }
+
+    #[inline(always)]
+    fn mixed<R: Real>(all: [&Self; 8], join: fn(&[f64; 8]) -> R) -> Self::Lanes<R> {
+        ComposedLanes {
+            normal: N::mixed(all.map(|l| &l.normal), join),
+            tangential: T::mixed(all.map(|l| &l.tangential), join),
+            common: Common::mixed(all.map(|l| &l.common), join),
+        }
+    }
+}
+
+/// What the beginning of contacts means for a step.
+struct Onset<R> {
+    /// Approach speed at this instant [m/s].
+    now: R,
+    /// Part of the step during which the contact was there [s].
+    time: R,
+    /// Weight of a force that jumps at first touch [-].
+    weight: R,
+}
+
+/// `weighted`: whether a force jumps.
+#[inline(always)]
+fn onset<R: Real, N: NormalLaw>(
+    approach: R,
+    remembered: R,
+    overlap: R,
+    fresh: R::Mask,
+    on: R::Mask,
+    dt: f64,
+    weighted: bool,
+) -> Onset<R> {
+    let (one, step) = (R::splat(1.0), R::splat(dt));
+    let mut now = R::splat(1.5) * approach - R::splat(0.5) * remembered;
+    let (mut time, mut weight) = (step, one);
+    if R::any(fresh & on) {
+        // Far above 1: the contact is there from the start of the run, not from within this step.
+        let closing = R::zero().lt(approach);
+        let since = R::select(closing, overlap / (approach * step), R::splat(f64::INFINITY));
+        let share = since.min(one);
+        now = R::select(fresh, approach, now);
+        time = R::select(fresh, step * share, step);
+        if weighted {
+            let begun = R::select(since.lt(R::splat(1.5)), share + R::splat(0.5), one);
+            weight = R::select(fresh, begun, one);
+        }
+    }
+    Onset { now, time, weight }
+}
+
+impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
+    fn mix(pair: &Pair<'_>) -> Self {
+        let damping = pair.given(|e| e.damping).unwrap_or_default();
+        let normal = N::mix(pair, if N::DASHPOT { damping.ratio(pair.restitution()) } else { 0.0 });
+        let (a, b) = (pair.a, pair.b);
+        let slips = pair.given(|e| e.tangential) == Some(LawName::NONE);
+        let beta = harmonic(a.tangential_damping_ratio, b.tangential_damping_ratio);
+        Composed {
+            normal,
+            tangential: T::mix(pair, &normal),
+            common: Common {
+                tangential_damping: if slips { 0.0 } else { beta },
+                friction: if slips { 0.0 } else { pair.smaller(|e| e.friction, |m| m.friction) },
+                rolling: pair.smaller(|e| e.rolling_friction, |m| m.rolling_friction),
+                twisting: pair.smaller(|e| e.twisting_friction, |m| m.twisting_friction),
+                pull: adhesion::pull(pair),
+            },
+            damping,
+        }
+    }
+
+    #[inline(always)]
+    fn evaluate<R: Real, const ROLL: bool>(
+        law: &Self::Lanes<R>,
+        touch: &LawInput<R>,
+        memory: &mut Memory<R>,
+        on: R::Mask,
+        dt: f64,
+    ) -> LawOutput<R> {
+        let (n, overlap, common) = (touch.normal, touch.overlap, &law.common);
+        let approach = -touch.velocity.dot(n);
+        let slip_velocity = touch.velocity + n * approach;
+        let step = R::splat(dt);
+        let fresh = memory.rate.equals(R::splat(FRESH));
+        let Onset { now, time, weight } =
+            onset::<R, N>(approach, memory.rate, overlap, fresh, on, dt, N::JUMPS || ROLL);
+
+        let own = N::respond(&law.normal, touch.mass, touch.radius, overlap, memory.rate, fresh);
+        let (elastic, c) = (own.elastic, own.damping);
+        let (mut normal, mut dashpot, mut cs) = (elastic, own.lost, R::zero());
+        if N::DASHPOT {
+            let viscous = if N::JUMPS { weight * c * now } else { c * now };
+            normal = (elastic + viscous).max(R::zero());
+            dashpot = (normal - elastic) * now * step;
+            cs = c * common.tangential_damping;
+            memory.rate = approach;
+        } else {
+            memory.rate = own.remembered;
+        }
+
+        let carried = T::carry(&law.tangential, own.circle, touch.radius, overlap, approach, step);
+        let mut lost = R::zero();
+        if let Some(c) = &carried {
+            lost = (c.loss * memory.spring.norm2()).only(!fresh);
+            memory.spring = memory.spring * c.kept;
+        }
+        let grip = T::grip(&law.tangential, own.circle);
+        let limit = common.friction * normal;
+        let slid = slide::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, dt, on);
+        dashpot = dashpot + slid.dashpot;
+        let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };
+
+        let (mut moment, mut net) = (V3::zero(), normal);
+        if ROLL {
+            net = normal - common.pull * touch.radius * weight;
+            if let Some(c) = &carried {
+                let length2 = memory.roll.norm2() + memory.twist * memory.twist;
+                friction = friction + (c.loss * length2).only(!fresh);
+                memory.roll = memory.roll * c.kept;
+                memory.twist = memory.twist * c.kept;
+            }
+            let part = Turning {
+                stiffness: grip.stiffness,
+                damping: cs,
+                rolling: common.rolling,
+                twisting: common.twisting,
+                normal_force: normal,
+                radius: touch.radius,
+                time,
+            };
+            let t = turning(&part, &mut memory.roll, &mut memory.twist, n, touch.spin, dt, on);
+            moment = t.force;
+            dashpot = dashpot + t.dashpot;
+            friction = friction + t.friction;
+        }
+        LawOutput { force: n * net + slid.force, normal: net, moment, dashpot, friction }
+    }
+
+    fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
+        let turn2: f64 = history.turn.iter().map(|x| x * x).sum();
+        let stiffness = self.tangential.stiffness((radius * overlap).sqrt());
+        let held = 0.5 * stiffness * (history.spring.norm_squared() + turn2);
+        let normal = self.normal.stored(overlap, radius, history.rate);
+        (normal - self.common.pull * radius * overlap, held)
+    }
+
+    #[inline(always)]
+    fn springs(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
+        let force = self.normal.force(overlap, radius, history.rate);
+        let stiffness = self.tangential.stiffness((radius * overlap).sqrt());
+        (force - self.common.pull * radius, stiffness)
+    }
+
+    #[inline(always)]
+    fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R {
+        let Some(stiffness) = T::at_end::<R>(&law.tangential) else { return R::zero() };
+        let mut length2 = memory.spring.norm2();
+        if ROLL {
+            length2 = length2 + memory.roll.norm2() + memory.twist * memory.twist;
+        }
+        R::splat(0.5) * stiffness * length2
+    }
+
+    fn loading(&self, overlap: f64, radius: f64) -> (f64, f64) {
+        self.normal.loading(overlap, radius)
+    }
+
+    fn stiffness(&self, overlap: f64, radius: f64) -> f64 {
+        self.normal.stiffness(overlap, radius)
+    }
+
+    fn tangential_ratio(&self) -> f64 {
+        // Where both depend on the overlap they do in the same way.
+        let normal = self.normal.stiffness(1.0, 1.0);
+        if normal > 0.0 && normal.is_finite() { self.tangential.stiffness(1.0) / normal } else { 0.0 }
+    }
+
+    fn damping_ratio(&self) -> f64 {
+        self.normal.damping_ratio()
+    }
+
+    fn expected_overlap(&self, expected: &Expected) -> f64 {
+        self.normal.expected_overlap(expected)
+    }
+
+    fn begun(&self, approach: f64) -> f64 {
+        if N::DASHPOT { approach } else { 0.0 }
+    }
+
+    fn rolls(&self) -> bool {
+        let c = &self.common;
+        c.rolling > 0.0 || c.twisting > 0.0 || c.pull > 0.0
+    }
+
+    fn names(&self) -> [&'static str; 2] {
+        [N::NAME, T::NAME]
+    }
+
+    fn sources(&self) -> Vec<&'static str> {
+        let c = &self.common;
+        let mut sources = vec![N::SOURCE];
+        if self.tangential.stiffness(1.0) > 0.0 && T::SOURCE != N::SOURCE {
+            sources.push(T::SOURCE);
+        }
+        sources.extend(if N::DASHPOT { self.damping.source() } else { None });
+        sources.extend((c.rolling > 0.0 || c.twisting > 0.0).then_some(turning::SOURCE));
+        sources.extend((c.pull > 0.0).then_some(adhesion::SOURCE));
+        sources
+    }
+}
+
+#[cfg(test)]
+#[path = "composed_tests.rs"]
+mod tests;

@@ -1,0 +1,97 @@
+//! Energy: what motion puts into a contact is stored or dissipated, and nothing is created.
+
+use super::{Path, RADIUS, law, plain};
+use crate::base::Vec3;
+use crate::law::material::Material;
+use crate::law::{ContactForce, ContactGeometry, ContactLaw, History};
+
+/// An impact that slips, rolls and twists: all work on it is dissipated by its end, and no step gives energy back.
+pub fn a_closed_path_dissipates_its_work<L: ContactLaw>(material: &Material) {
+    let law = law::<L>(material);
+    for pace in [1.0, 50.0] {
+        let path = Path { pace, ..Path::USUAL };
+        let dt = path.dt();
+        let (mut history, mut work, mut dashpot, mut friction) = (History::NONE, 0.0, 0.0, 0.0);
+        for m in path.moments() {
+            let f = m.evaluate(&law, &mut history, dt);
+            let (velocity, spin) = (m.velocity + m.next.0, m.spin + m.next.1);
+            work -= 0.5 * dt * (f.force.dot(&velocity) + f.moment.dot(&spin));
+            let scale = 1e-9 * work.abs();
+            assert!(f.dashpot >= -scale && f.friction >= -scale, "{f:?} of {work:e}");
+            dashpot += f.dashpot;
+            friction += f.friction;
+        }
+        friction += law.release(&mut history);
+        let gap = work - dashpot - friction;
+        assert!(dashpot > 0.0 && friction > 0.0, "{dashpot:e} {friction:e}");
+        assert!(gap.abs() < 2e-3 * work, "{gap:e} of {work:e}: {dashpot:e}, {friction:e}, pace {pace}");
+    }
+}
+
+/// A contact whose overlap and tangential displacement are led along a path.
+struct Led<L> {
+    law: L,
+    history: History,
+    at: (f64, f64),
+    last: ContactForce,
+    work: f64,
+    booked: f64,
+}
+
+impl<L: ContactLaw> Led<L> {
+    fn new(law: L) -> Led<L> {
+        let history = History { rate: law.begun(0.0), ..History::NONE };
+        Led { law, history, at: (0.0, 0.0), last: ContactForce::default(), work: 0.0, booked: 0.0 }
+    }
+
+    /// Goes to overlap `d` and displacement `s` on a straight line.
+    fn go(&mut self, d: f64, s: f64) {
+        let (n, dt) = (4000, 1e-3);
+        let (from_d, from_s) = self.at;
+        let rate = ((d - from_d) / (f64::from(n) * dt), (s - from_s) / (f64::from(n) * dt));
+        for k in 1..=n {
+            let part = f64::from(k) / f64::from(n);
+            let overlap = from_d + (d - from_d) * part;
+            let g = ContactGeometry { point: Vec3::zeros(), normal: Vec3::z(), overlap, radius: RADIUS };
+            let velocity = Vec3::new(rate.1, 0.0, -rate.0);
+            let f = self.law.evaluate_one(0.1, &g, &velocity, &Vec3::zeros(), &mut self.history, dt);
+            // Work that the path does on the contact, by the trapezoidal rule.
+            self.work -= 0.5 * (f.force + self.last.force).dot(&velocity) * dt;
+            self.booked += f.friction + f.dashpot;
+            self.last = f;
+        }
+        self.at = (d, s);
+    }
+
+    fn stored(&self) -> f64 {
+        let (normal, tangential) = self.law.stored(self.at.0, RADIUS, &self.history);
+        normal + tangential
+    }
+}
+
+/// Cycles of pressing and shearing in both orders (Elata & Berryman 1996), so slow that no dashpot counts: what the path
+/// puts in is stored or dissipated, and no cycle gives energy away.
+pub fn energy_is_stored_or_dissipated_along_a_path<L: ContactLaw>(material: &Material) {
+    let (high, low, s) = (2e-5, 5e-6, 2e-6);
+    let cycles = [
+        [(high, 0.0), (high, s), (low, s), (low, 0.0), (high, 0.0)],
+        [(low, 0.0), (low, s), (high, s), (high, 0.0), (low, 0.0)],
+    ];
+    for (k, cycle) in cycles.iter().enumerate() {
+        for (friction, restitution) in [(0.1, 1.0), (1e3, 1.0), (0.3, 0.5)] {
+            let mut led = Led::new(plain::<L>(&Material { friction, ..*material }, restitution));
+            for turn in 0..3 {
+                let (work, booked, stored) = (led.work, led.booked, led.stored());
+                let mut most = 0.0_f64;
+                for &(d, s) in cycle {
+                    led.go(d, s);
+                    most = most.max(led.stored());
+                }
+                let (work, booked) = (led.work - work, led.booked - booked);
+                let gap = work - booked - (led.stored() - stored);
+                assert!(booked >= 0.0, "cycle {k}, {turn}: {booked:e}");
+                assert!(gap.abs() < 2e-3 * booked + 1e-9 * most, "cycle {k}, {turn}: {gap:e} of {booked:e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The same bits four or eight at a time as one by one.
+
+use super::{MASS, Path, law, plain};
+use crate::base::Vec3;
+use crate::lanes::{Kernel, Pack, Simd, V3, run};
+use crate::law::material::{Material, Pair, PairOverride};
+use crate::law::table::{COMBINATIONS, Mixed, normal_named, tangential_named};
+use crate::law::{ContactGeometry, ContactLaw, FRESH, History, LawInput, Memory};
+
+/// A contact in the middle of a path, and its law.
+#[derive(Clone, Copy)]
+struct Case<L> {
+    law: L,
+    geometry: ContactGeometry,
+    velocity: Vec3,
+    spin: Vec3,
+    history: History,
+    dt: f64,
+}
+
+/// Evaluates up to eight contacts in lanes; numbers of force, moment, energies and memory, for each.
+struct InLanes<'a, L, const ROLL: bool>(&'a [Case<L>; 8]);
+
+impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
+    type Output = Vec<[u64; 8]>;
+
+    #[inline(always)]
+    fn run<R: Pack>(self) -> Vec<[u64; 8]> {
+        let cases = self.0;
+        let of = |pick: fn(&Case<L>) -> f64| R::of(&cases.each_ref().map(pick));
+        let vector = |pick: fn(&Case<L>) -> Vec3| {
+            let v = cases.each_ref().map(pick);
+            V3::new(R::of(&v.map(|v| v.x)), R::of(&v.map(|v| v.y)), R::of(&v.map(|v| v.z)))
+        };
+        let law = L::mixed(cases.each_ref().map(|c| &c.law), R::of);
+        let touch = LawInput {
+            mass: R::splat(MASS),
+            radius: of(|c| c.geometry.radius),
+            overlap: of(|c| c.geometry.overlap),
+            normal: vector(|c| c.geometry.normal),
+            velocity: vector(|c| c.velocity),
+            spin: vector(|c| c.spin),
+        };
+        let mut memory = Memory {
+            spring: vector(|c| c.history.spring),
+            rate: of(|c| c.history.rate),
+            roll: vector(|c| Vec3::new(c.history.turn[0], c.history.turn[1], c.history.turn[2])),
+            twist: of(|c| c.history.turn[3]),
+        };
+        let f = L::evaluate::<R, ROLL>(&law, &touch, &mut memory, R::below(8), cases[0].dt);
+        let left = L::stored_in_springs::<R, ROLL>(&law, &memory);
+        let numbers = [
+            [f.force.x, f.force.y, f.force.z, f.normal, f.moment.x, f.moment.y, f.moment.z, f.dashpot],
+            [
+                f.friction,
+                memory.spring.x,
+                memory.spring.y,
+                memory.spring.z,
+                memory.rate,
+                memory.twist,
+                left,
+                left,
+            ],
+        ];
+        numbers.as_flattened().iter().map(|n| bits(&n.numbers(), R::LANES)).collect()
+    }
+}
+
+/// Bits of the lanes, signs of zeros left out.
+fn bits(numbers: &[f64; 8], lanes: usize) -> [u64; 8] {
+    std::array::from_fn(|l| if l < lanes { (numbers[l] + 0.0).to_bits() } else { 0 })
+}
+
+/// One by one.
+fn alone<L: ContactLaw>(cases: &[Case<L>; 8], lanes: usize) -> Vec<[u64; 8]> {
+    let each = cases.each_ref().map(|c| {
+        let mut h = c.history;
+        let f = c.law.evaluate_one(MASS, &c.geometry, &c.velocity, &c.spin, &mut h, c.dt);
+        let left = c.law.release(&mut h.clone());
+        let ([x, y, z], [a, b, d]) = (f.force.into(), f.moment.into());
+        let [s, t, u] = h.spring.into();
+        [x, y, z, f.normal, a, b, d, f.dashpot, f.friction, s, t, u, h.rate, h.turn[3], left, left]
+    });
+    (0..16).map(|k| bits(&each.map(|numbers: [f64; 16]| numbers[k]), lanes)).collect()
+}
+
+/// Eight contacts at various places of a path, some of them just begun; `laws` gives the law of each.
+fn cases<L: ContactLaw>(laws: impl Fn(usize) -> L, seed: usize) -> [Case<L>; 8] {
+    std::array::from_fn(|l| {
+        let law = laws(l);
+        let path = Path { steps: 400, pace: 5.0 + 30.0 * ((l + seed) % 3) as f64, ..Path::USUAL };
+        let dt = 1e-5;
+        let mut history = History::NONE;
+        let stop = (37 * (l + 1) + 11 * seed) % 399;
+        let mut moments = path.moments();
+        for m in moments.by_ref().take(stop) {
+            m.evaluate(&law, &mut history, dt);
+        }
+        if (l + seed).is_multiple_of(5) {
+            history = History { rate: FRESH, ..History::NONE };
+        }
+        let m = moments.next().unwrap_or_else(|| path.moments().next().unwrap());
+        Case { law, geometry: m.geometry, velocity: m.velocity, spin: m.spin, history, dt }
+    })
+}
+
+fn compare<L: ContactLaw, const ROLL: bool>(laws: impl Fn(usize) -> L) {
+    for seed in 0..40 {
+        let cases = cases(&laws, seed);
+        for simd in Simd::all() {
+            let found = run(simd, InLanes::<L, ROLL>(&cases));
+            let lanes = found[0].iter().rposition(|&b| b != 0).map_or(0, |l| if l < 4 { 4 } else { 8 });
+            assert_eq!(found, alone(&cases, lanes), "{simd:?}, seed {seed}");
+        }
+    }
+}
+
+pub fn lanes_give_the_bits_of_single_contacts<L: ContactLaw>(material: &Material) {
+    compare::<L, true>(|_| law(material));
+    compare::<L, false>(|_| plain(material, 0.5));
+}
+
+/// All laws of the table side by side: each lane has the bits that it has under its own law.
+#[test]
+fn laws_side_by_side_keep_their_bits() {
+    let material = Material { stiffness: super::SOFT.stiffness, ..super::GLASS };
+    let mixed = |l: usize| -> Mixed {
+        let row = &COMBINATIONS[l % COMBINATIONS.len()];
+        let exception = PairOverride {
+            normal: normal_named(row.normal),
+            tangential: tangential_named(row.tangential),
+            ..PairOverride::default()
+        };
+        Mixed::mix(&Pair { a: &material, b: &material, exception: Some(&exception) })
+    };
+    compare::<Mixed, false>(mixed);
+    for (l, row) in COMBINATIONS.iter().enumerate() {
+        assert_eq!(mixed(l).names(), [row.normal, row.tangential]);
+    }
+}

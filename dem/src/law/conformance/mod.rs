@@ -1,0 +1,164 @@
+//! What every law of contact must do. A law takes part with one line of `conforms!`: its type and a material.
+
+mod energy;
+mod force;
+mod lanes;
+
+use super::material::{Material, Pair};
+use super::table::{HertzLaw, LinearLaw};
+use super::{ContactForce, ContactGeometry, ContactLaw, History};
+use crate::base::Vec3;
+use crate::testing::SOFT;
+
+/// Stiff enough for overlaps of some hundredths of the radius.
+const GLASS: Material =
+    Material { young: Some(6e7), poisson: 0.25, stiffness: f64::INFINITY, friction: 0.4, ..SOFT };
+
+/// Effective radius [m] and mass [kg] of the contacts.
+const RADIUS: f64 = 0.005;
+const MASS: f64 = 0.1;
+
+/// Tests a law of its own module each.
+macro_rules! conforms {
+    ($($name:ident: $law:ty, $material:expr;)+) => {$(
+        mod $name {
+            use super::*;
+
+            #[test]
+            fn no_force_at_zero_overlap() {
+                force::no_force_at_zero_overlap::<$law>(&$material);
+            }
+
+            #[test]
+            fn restitution_at_any_speed() {
+                force::restitution_at_any_speed::<$law>(&$material);
+            }
+
+            #[test]
+            fn partners_are_alike() {
+                force::partners_are_alike::<$law>(&$material);
+            }
+
+            #[test]
+            fn rotation_of_everything_rotates_the_force() {
+                force::rotation_of_everything_rotates_the_force::<$law>(&$material);
+            }
+
+            #[test]
+            fn friction_below_its_limit() {
+                force::friction_below_its_limit::<$law>(&$material);
+            }
+
+            #[test]
+            fn stiffness_is_the_slope_of_the_force() {
+                force::stiffness_is_the_slope_of_the_force::<$law>(&$material);
+            }
+
+            #[test]
+            fn a_closed_path_dissipates_its_work() {
+                energy::a_closed_path_dissipates_its_work::<$law>(&$material);
+            }
+
+            #[test]
+            fn energy_is_stored_or_dissipated_along_a_path() {
+                energy::energy_is_stored_or_dissipated_along_a_path::<$law>(&$material);
+            }
+
+            #[test]
+            fn memory_survives_a_checkpoint() {
+                force::memory_survives_a_checkpoint::<$law>(&$material);
+            }
+
+            #[test]
+            fn lanes_give_the_bits_of_single_contacts() {
+                lanes::lanes_give_the_bits_of_single_contacts::<$law>(&$material);
+            }
+        }
+    )+};
+}
+
+conforms! {
+    linear: LinearLaw, SOFT;
+    hertz: HertzLaw, GLASS;
+}
+
+/// The law of two bodies of a material with resistance of every kind.
+fn law<L: ContactLaw>(material: &Material) -> L {
+    let m = Material {
+        tangential_damping_ratio: 0.3,
+        rolling_friction: 0.1,
+        twisting_friction: 0.05,
+        ..*material
+    };
+    L::mix(&Pair { a: &m, b: &m, exception: None })
+}
+
+/// The same with no resistance against rolling and twisting, and with a restitution.
+fn plain<L: ContactLaw>(material: &Material, restitution: f64) -> L {
+    let m = Material { restitution, ..*material };
+    L::mix(&Pair { a: &m, b: &m, exception: None })
+}
+
+/// Relative motion of two partners: an impact that slips, rolls and twists. It starts and ends at zero overlap.
+#[derive(Clone, Copy)]
+struct Path {
+    /// Steps in all.
+    steps: usize,
+    /// Largest overlap [m].
+    depth: f64,
+    /// How fast everything is [1/s].
+    pace: f64,
+}
+
+/// One step of a path.
+struct Moment {
+    geometry: ContactGeometry,
+    /// Velocity and spin half a step ago.
+    velocity: Vec3,
+    spin: Vec3,
+    /// The same in half a step.
+    next: (Vec3, Vec3),
+}
+
+impl Path {
+    const USUAL: Path = Path { steps: 4000, depth: 2e-4, pace: 50.0 };
+
+    fn dt(&self) -> f64 {
+        1.0 / (self.pace * self.steps as f64)
+    }
+
+    /// Part of the way after `k` steps.
+    fn overlap(&self, k: f64) -> f64 {
+        let part = std::f64::consts::PI * k / self.steps as f64;
+        // Two visits, the second on top of what is left of the first.
+        self.depth * part.sin() * (1.0 - 0.6 * (3.0 * part).cos()).max(0.0)
+    }
+
+    fn motion(&self, k: f64) -> (Vec3, Vec3) {
+        let part = std::f64::consts::TAU * k / self.steps as f64;
+        let approach = (self.overlap(k + 0.5) - self.overlap(k - 0.5)) / self.dt();
+        let slip = self.depth * self.pace;
+        let velocity = Vec3::new(2.0 * slip * part.sin(), slip * (2.0 * part).cos(), -approach);
+        let spin = Vec3::new((3.0 * part).cos(), (2.0 * part).sin(), part.cos()) * (slip / RADIUS);
+        (velocity, spin)
+    }
+
+    fn moments(self) -> impl Iterator<Item = Moment> {
+        (1..self.steps).map(move |k| {
+            let (velocity, spin) = self.motion(k as f64 - 0.5);
+            let geometry = ContactGeometry {
+                point: Vec3::zeros(),
+                normal: Vec3::z(),
+                overlap: self.overlap(k as f64),
+                radius: RADIUS,
+            };
+            Moment { geometry, velocity, spin, next: self.motion(k as f64 + 0.5) }
+        })
+    }
+}
+
+impl Moment {
+    fn evaluate<L: ContactLaw>(&self, law: &L, history: &mut History, dt: f64) -> ContactForce {
+        law.evaluate_one(MASS, &self.geometry, &self.velocity, &self.spin, history, dt)
+    }
+}

@@ -1,0 +1,163 @@
+//! The laws of all pairs of materials of a model.
+
+use super::contact::History;
+use super::contact_law::ContactLaw;
+use super::material::{Material, Pair, PairOverride};
+use super::normal::Expected;
+use super::table::{HertzLaw, LinearLaw, Mixed, Row, number_of, once, title};
+use crate::lanes::Pack;
+
+/// The mixed constants of all pairs of materials.
+#[derive(Clone, Debug)]
+pub struct PairTable<L> {
+    count: usize,
+    pairs: Vec<L>,
+}
+
+impl<L: ContactLaw> PairTable<L> {
+    /// Mixes every pair once. Of several exceptions for one pair the last holds.
+    pub fn new(materials: &[Material], exceptions: &[PairOverride]) -> PairTable<L> {
+        let count = materials.len();
+        let all = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let pairs = all.map(|(i, j)| L::mix(&Pair::of(materials, exceptions, i, j))).collect();
+        PairTable { count, pairs }
+    }
+
+    /// Constants of materials `a` and `b`.
+    #[inline(always)]
+    pub fn get(&self, a: u32, b: u32) -> &L {
+        &self.pairs[a as usize * self.count + b as usize]
+    }
+
+    /// Constants of a pair of materials per lane, given as numbers in lanes.
+    #[inline(always)]
+    pub(crate) fn lanes<R: Pack>(&self, a: R, b: R) -> L::Lanes<R> {
+        let (a, b) = (a.numbers(), b.numbers());
+        let mut laws = [&self.pairs[0]; 8];
+        for l in 0..R::LANES {
+            laws[l] = self.get(a[l] as u32, b[l] as u32);
+        }
+        L::mixed(laws, R::of)
+    }
+
+    /// Whether any pair resists rolling or twisting, or adheres.
+    pub(crate) fn rolls(&self) -> bool {
+        self.pairs.iter().any(L::rolls)
+    }
+
+    /// The laws of pairs that are not rigid, each pair once.
+    fn in_use(&self) -> impl Iterator<Item = &L> {
+        let upper = (0..self.count).flat_map(move |i| (i..self.count).map(move |j| i * self.count + j));
+        upper.map(|k| &self.pairs[k]).filter(|law| law.stiffness(1.0, 1.0).is_finite())
+    }
+
+    fn expected_overlap(&self, expected: &Expected) -> f64 {
+        self.in_use().map(|law| law.expected_overlap(expected)).fold(0.0, f64::max)
+    }
+
+    fn titles(&self) -> Vec<&'static str> {
+        once(self.in_use().map(|law| title(law.names())))
+    }
+
+    fn sources(&self) -> Vec<&'static str> {
+        once(self.in_use().flat_map(L::sources))
+    }
+}
+
+/// The laws of all contacts of a model. Those of every pair alike have kernels of their own.
+#[derive(Clone, Debug)]
+pub(crate) enum Laws {
+    Linear(PairTable<LinearLaw>),
+    Hertz(PairTable<HertzLaw>),
+    Mixed(PairTable<Mixed>),
+}
+
+/// Runs an expression with the table of the law in use.
+macro_rules! with_law {
+    ($laws:expr, $table:ident => $body:expr) => {
+        match $laws {
+            $crate::law::Laws::Linear($table) => $body,
+            $crate::law::Laws::Hertz($table) => $body,
+            $crate::law::Laws::Mixed($table) => $body,
+        }
+    };
+}
+pub(crate) use with_law;
+
+impl Laws {
+    /// The laws of materials and pairs that [`super::check::laws`] has let pass.
+    pub fn new(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
+        let count = materials.len();
+        let all = (0..count).flat_map(|i| (i..count).map(move |j| (i, j)));
+        let rows = all.filter_map(|(i, j)| number_of(&Pair::of(materials, exceptions, i, j)).ok().flatten());
+        let rows: std::collections::BTreeSet<usize> = rows.collect();
+        let only = |row: Row| rows.iter().all(|&r| r == row as usize);
+        if only(Row::Linear) {
+            Laws::Linear(PairTable::new(materials, exceptions))
+        } else if only(Row::Hertz) {
+            Laws::Hertz(PairTable::new(materials, exceptions))
+        } else {
+            Laws::Mixed(PairTable::new(materials, exceptions))
+        }
+    }
+
+    pub fn loading(&self, a: u32, b: u32, overlap: f64, radius: f64) -> (f64, f64) {
+        with_law!(self, t => t.get(a, b).loading(overlap, radius))
+    }
+
+    pub fn stiffness(&self, a: u32, b: u32, overlap: f64, radius: f64) -> f64 {
+        with_law!(self, t => t.get(a, b).stiffness(overlap, radius))
+    }
+
+    /// Whether two materials are both rigid, so that they must never touch.
+    pub fn rigid(&self, a: u32, b: u32) -> bool {
+        self.stiffness(a, b, 1.0, 1.0).is_infinite()
+    }
+
+    pub fn tangential_ratio(&self, a: u32, b: u32) -> f64 {
+        with_law!(self, t => t.get(a, b).tangential_ratio())
+    }
+
+    pub fn damping_ratio(&self, a: u32, b: u32) -> f64 {
+        with_law!(self, t => t.get(a, b).damping_ratio())
+    }
+
+    /// Largest overlap expected over the effective radius; zero where no stiffness depends on it.
+    pub fn expected_overlap(&self, expected: &Expected) -> f64 {
+        with_law!(self, t => t.expected_overlap(expected))
+    }
+
+    /// What the normal law remembers of a contact that is there already and closes at `approach` [m/s].
+    pub fn begun(&self, a: u32, b: u32, approach: f64) -> f64 {
+        with_law!(self, t => t.get(a, b).begun(approach))
+    }
+
+    pub fn stored(&self, a: u32, b: u32, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
+        with_law!(self, t => t.get(a, b).stored(overlap, radius, history))
+    }
+
+    pub fn rolls(&self) -> bool {
+        with_law!(self, t => t.rolls())
+    }
+
+    /// Whether any pair of one material of each list resists rolling or twisting, or adheres.
+    pub fn rolls_among(&self, a: &[u32], b: &[u32]) -> bool {
+        with_law!(self, t => a.iter().any(|&a| b.iter().any(|&b| t.get(a, b).rolls())))
+    }
+
+    /// The laws in use, in words.
+    pub fn title(&self) -> String {
+        let titles = with_law!(self, t => t.titles());
+        if titles.is_empty() { "no contacts".to_string() } else { titles.join(" and ") }
+    }
+
+    /// Sources of the laws in use.
+    pub fn sources(&self) -> Vec<&'static str> {
+        with_law!(self, t => t.sources())
+    }
+}
+
+/// Sources of the laws of contact that materials and exceptions for their pairs use.
+pub fn sources(materials: &[Material], exceptions: &[PairOverride]) -> Vec<&'static str> {
+    Laws::new(materials, exceptions).sources()
+}

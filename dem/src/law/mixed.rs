@@ -1,0 +1,145 @@
+//! Several laws in one model: one per pair of materials.
+//!
+//! In lanes each law that is there is evaluated for its own contacts, and the results are put together by mask; so a
+//! contact has the bits that it has under its law alone, and only models with several laws pay for it.
+
+/// Writes the table of laws: the list of its rows, and the law that is one of them for each pair of materials.
+macro_rules! combinations {
+    ($($row:ident($normal:ty, $tangential:ty) = $title:literal),+ $(,)?) => {
+        /// All combinations of laws.
+        pub const COMBINATIONS: &[Combination] =
+            &[$(Combination::of::<$normal, $tangential>($title)),+];
+
+        /// Rows of the table.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(super) enum Row { $($row),+ }
+
+        /// The law of one pair of materials, which is any row of the table.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) enum Mixed { $($row(Composed<$normal, $tangential>)),+ }
+
+        /// Constants of all rows, and which one holds for a lane.
+        #[derive(Clone, Copy, Debug)]
+        #[allow(non_snake_case)]
+        pub(crate) struct MixedLanes<R: $crate::lanes::Real> {
+            number: R,
+            $($row: <Composed<$normal, $tangential> as $crate::law::constants::Constants>::Lanes<R>),+
+        }
+
+        impl Mixed {
+            #[inline(always)]
+            fn number(&self) -> f64 {
+                match self { $(Mixed::$row(_) => Row::$row as usize as f64),+ }
+            }
+        }
+
+        impl $crate::law::constants::Constants for Mixed {
+            type Lanes<R: $crate::lanes::Real> = MixedLanes<R>;
+
+            const ZERO: Mixed = {
+                [$(Mixed::$row(<Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO)),+][0]
+            };
+
+            #[inline(always)]
+            fn splat<R: $crate::lanes::Real>(&self) -> MixedLanes<R> {
+                MixedLanes {
+                    number: R::splat(self.number()),
+                    $($row: match self {
+                        Mixed::$row(own) => own.splat(),
+                        _ => <Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO.splat(),
+                    }),+
+                }
+            }
+
+            #[inline(always)]
+            fn mixed<R: $crate::lanes::Real>(all: [&Mixed; 8], join: fn(&[f64; 8]) -> R) -> MixedLanes<R> {
+                MixedLanes {
+                    number: join(&all.map(|law| law.number())),
+                    $($row: {
+                        let zero = <Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO;
+                        let own = all.map(|law| if let Mixed::$row(own) = law { *own } else { zero });
+                        let [a, b, c, d, e, f, g, h] = &own;
+                        $crate::law::constants::Constants::mixed([a, b, c, d, e, f, g, h], join)
+                    }),+
+                }
+            }
+        }
+
+        impl ContactLaw for Mixed {
+            fn mix(pair: &Pair<'_>) -> Mixed {
+                // Rigid pairs never touch; the law of others has been found before.
+                let number = number_of(pair).ok().flatten().unwrap_or(0);
+                [$(|pair: &Pair<'_>| Mixed::$row(ContactLaw::mix(pair))),+][number](pair)
+            }
+
+            #[inline(always)]
+            fn evaluate<R: $crate::lanes::Real, const ROLL: bool>(
+                law: &MixedLanes<R>,
+                touch: &$crate::law::contact::LawInput<R>,
+                memory: &mut $crate::law::contact::Memory<R>,
+                on: R::Mask,
+                dt: f64,
+            ) -> $crate::law::contact::LawOutput<R> {
+                use $crate::law::contact::{LawOutput, Memory};
+                let before = *memory;
+                let mut out = LawOutput::none();
+                $({
+                    let own = law.number.equals(R::splat(Row::$row as usize as f64)) & on;
+                    if R::any(own) {
+                        let mut after = before;
+                        let force = <Composed<$normal, $tangential>>::evaluate::<R, ROLL>(
+                            &law.$row, touch, &mut after, own, dt,
+                        );
+                        out = LawOutput::select(own, &force, &out);
+                        *memory = Memory::select(own, &after, memory);
+                    }
+                })+
+                out
+            }
+
+            #[inline(always)]
+            fn stored_in_springs<R: $crate::lanes::Real, const ROLL: bool>(
+                law: &MixedLanes<R>,
+                memory: &$crate::law::contact::Memory<R>,
+            ) -> R {
+                let mut out = R::zero();
+                $({
+                    let own = law.number.equals(R::splat(Row::$row as usize as f64));
+                    let left = <Composed<$normal, $tangential>>::stored_in_springs::<R, ROLL>(&law.$row, memory);
+                    out = R::select(own, left, out);
+                })+
+                out
+            }
+
+            $crate::law::mixed::of_each_row! { $($row),+ => {
+                stored(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> (f64, f64), (overlap, radius, history);
+                springs(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> (f64, f64), (overlap, radius, history);
+                loading(overlap: f64, radius: f64) -> (f64, f64), (overlap, radius);
+                stiffness(overlap: f64, radius: f64) -> f64, (overlap, radius);
+                tangential_ratio() -> f64, ();
+                damping_ratio() -> f64, ();
+                expected_overlap(expected: &$crate::law::normal::Expected) -> f64, (expected);
+                begun(approach: f64) -> f64, (approach);
+                rolls() -> bool, ();
+                names() -> [&'static str; 2], ();
+                sources() -> Vec<&'static str>, ();
+            } }
+        }
+    };
+}
+pub(super) use combinations;
+
+/// Methods that the law of the row has: signature and call.
+macro_rules! of_each_row {
+    ($($row:ident),+ => {}) => {};
+    ($($row:ident),+ => {
+        $name:ident($($arg:ident: $type:ty),*) -> $out:ty, $call:tt; $($rest:tt)*
+    }) => {
+        #[inline(always)]
+        fn $name(&self, $($arg: $type),*) -> $out {
+            match self { $(Self::$row(law) => law.$name $call),+ }
+        }
+        $crate::law::mixed::of_each_row! { $($row),+ => { $($rest)* } }
+    };
+}
+pub(super) use of_each_row;

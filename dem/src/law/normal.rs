@@ -1,0 +1,89 @@
+//! The normal part of a law: an elastic force, or one that keeps a deformation, and the dashpot beside it.
+
+use super::constants::Constants;
+use super::material::Pair;
+use crate::lanes::Real;
+
+/// What a normal law makes of contacts, in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<R> {
+    /// Force of the spring [N].
+    pub elastic: R,
+    /// Coefficient C of the dashpot [N s/m]; without meaning where the law has none.
+    pub damping: R,
+    /// Radius of the contact circle √(R d) [m]. Who does not use it does not pay for it: the root is then left out.
+    pub circle: R,
+    /// The number to remember; without meaning where the law has a dashpot.
+    pub remembered: R,
+    /// Energy that deformation took for good in this step [J]; without meaning where the law has a dashpot.
+    pub lost: R,
+}
+
+/// What a model expects of its contacts, for stiffnesses that grow with the overlap.
+#[derive(Clone, Copy, Debug)]
+pub struct Expected {
+    /// Largest density of the bodies [kg/m³].
+    pub density: f64,
+    /// Speed at which they meet [m/s].
+    pub speed: f64,
+    /// Magnitude of gravity [m/s²].
+    pub gravity: f64,
+    /// Height of all bodies [m].
+    pub height: f64,
+}
+
+/// A normal law: constants of one pair of materials.
+pub trait NormalLaw: Constants {
+    /// Name in a scene.
+    const NAME: &'static str;
+    /// Where it is published.
+    const SOURCE: &'static str;
+    /// Keys of a material that it needs, the first also when the partner is rigid.
+    const KEYS: &'static [&'static str];
+    /// Whether it has a dashpot, which gives the restitution. The number of its memory is then the approach speed half a
+    /// step before, which the dashpot extrapolates from; else it is the law's own, [`Response::remembered`].
+    const DASHPOT: bool;
+    /// Whether the dashpot's force jumps at first touch, so that its first one counts for a part of the step.
+    const JUMPS: bool;
+    /// Whether the stiffness grows with the overlap, so that the limit of the step needs the overlap expected.
+    const STIFFENS: bool;
+
+    /// Mixes the constants of two materials; `zeta` is the damping ratio of the pair.
+    fn mix(pair: &Pair<'_>, zeta: f64) -> Self;
+
+    /// Force and dashpot. `remembered` is the number of the memory, which has no meaning where `fresh`.
+    fn respond<R: Real>(
+        law: &Self::Lanes<R>,
+        mass: R,
+        radius: R,
+        overlap: R,
+        remembered: R,
+        fresh: R::Mask,
+    ) -> Response<R>;
+
+    /// Force of the spring [N], with the number of its memory.
+    fn force(&self, overlap: f64, radius: f64, remembered: f64) -> f64;
+
+    /// Energy stored in the spring [J], with the number of its memory.
+    fn stored(&self, overlap: f64, radius: f64, remembered: f64) -> f64;
+
+    /// Force of the spring on first loading [N] and its tangent stiffness [N/m].
+    fn loading(&self, overlap: f64, radius: f64) -> (f64, f64);
+
+    /// Largest stiffness [N/m] at an overlap [m].
+    fn stiffness(&self, overlap: f64, radius: f64) -> f64;
+
+    /// Damping ratio ζ [-].
+    fn damping_ratio(&self) -> f64;
+
+    /// Largest overlap expected, over the effective radius; zero where the stiffness does not depend on it.
+    fn expected_overlap(&self, _: &Expected) -> f64 {
+        0.0
+    }
+}
+
+/// A normal law whose stiffness on first loading does not depend on the overlap.
+pub trait ConstantStiffness: NormalLaw {
+    /// That stiffness [N/m].
+    fn constant(&self) -> f64;
+}

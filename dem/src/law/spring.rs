@@ -1,0 +1,58 @@
+//! Tangential law: a spring of constant stiffness.
+//!
+//! Ks = α K with K of the normal law on first loading, and Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slide.rs`).
+//! Mixing: α harmonic like the stiffness, 2α₁α₂/(α₁ + α₂). Source: Cundall & Strack, Géotechnique 29 (1979).
+
+use super::constants::constants;
+use super::material::{LawName, Pair, harmonic};
+use super::normal::ConstantStiffness;
+use super::tangential::{Carried, Grip, TangentialLaw};
+use crate::lanes::Real;
+
+/// Source of the linear law, normal and tangential.
+pub(super) const SOURCE: &str =
+    "contact: linear spring-dashpot with Coulomb friction, Cundall & Strack, Geotechnique 29(1), 1979";
+
+/// Constants of one pair of materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring<R = f64> {
+    /// Tangential stiffness Ks [N/m].
+    pub stiffness: R,
+    /// 1/Ks [m/N].
+    compliance: R,
+}
+
+constants!(Spring { stiffness, compliance });
+
+impl<N: ConstantStiffness> TangentialLaw<N> for Spring {
+    const NAME: &'static str = "linear";
+    const SOURCE: &'static str = SOURCE;
+    const KEYS: &'static [&'static str] = &["tangential_ratio"];
+
+    fn mix(pair: &Pair<'_>, normal: &N) -> Spring {
+        let ratio = harmonic(pair.a.tangential_ratio, pair.b.tangential_ratio);
+        let none = pair.given(|e| e.tangential) == Some(LawName::NONE);
+        let stiffness = if none { 0.0 } else { normal.constant() * ratio };
+        Spring { stiffness, compliance: 1.0 / stiffness }
+    }
+
+    #[inline(always)]
+    fn grip<R: Real>(law: &Spring<R>, _: R) -> Grip<R> {
+        Grip { stiffness: law.stiffness, compliance: Some(law.compliance) }
+    }
+
+    #[inline(always)]
+    fn carry<R: Real>(_: &Spring<R>, _: R, _: R, _: R, _: R, _: R) -> Option<Carried<R>> {
+        None
+    }
+
+    #[inline(always)]
+    fn at_end<R: Real>(law: &Spring<R>) -> Option<R> {
+        Some(law.stiffness)
+    }
+
+    #[inline(always)]
+    fn stiffness(&self, _: f64) -> f64 {
+        self.stiffness
+    }
+}

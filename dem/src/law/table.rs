@@ -1,0 +1,152 @@
+//! The laws there are: one row for each combination of a normal and a tangential law.
+//!
+//! A new law is a file beside this one and a row here. All rows can meet in one model (`mixed.rs`); two have kernels of
+//! their own for models that have no other ([`Laws`]).
+
+use super::composed::Composed;
+use super::contact_law::ContactLaw;
+use super::hertz::Hertz;
+use super::linear::Linear;
+use super::material::{LawName, Material, Pair};
+use super::mindlin::Mindlin;
+use super::mixed::combinations;
+use super::normal::NormalLaw;
+use super::spring::Spring;
+use super::tangential::TangentialLaw;
+
+combinations! {
+    Linear(Linear, Spring) = "linear spring-dashpot",
+    Hertz(Hertz, Mindlin) = "Hertz-Mindlin",
+}
+
+/// The linear law.
+pub type LinearLaw = Composed<Linear, Spring>;
+/// Hertz's law with Mindlin's.
+pub type HertzLaw = Composed<Hertz, Mindlin>;
+
+/// A normal and a tangential law that go together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Combination {
+    /// Name of the normal law in a scene.
+    pub normal: &'static str,
+    /// Name of the tangential law in a scene.
+    pub tangential: &'static str,
+    /// Both in words.
+    pub title: &'static str,
+    /// Keys of a material that the normal law needs.
+    pub normal_keys: &'static [&'static str],
+    /// Keys of a material that the tangential law needs.
+    pub tangential_keys: &'static [&'static str],
+    /// Whether the restitution is that of a dashpot.
+    pub dashpot: bool,
+    /// Whether the stiffness grows with the overlap.
+    pub stiffens: bool,
+}
+
+impl Combination {
+    const fn of<N: NormalLaw, T: TangentialLaw<N>>(title: &'static str) -> Combination {
+        Combination {
+            normal: N::NAME,
+            tangential: T::NAME,
+            title,
+            normal_keys: N::KEYS,
+            tangential_keys: T::KEYS,
+            dashpot: N::DASHPOT,
+            stiffens: N::STIFFENS,
+        }
+    }
+
+    /// Whether the laws use a key of a material.
+    pub fn uses(&self, key: &str) -> bool {
+        self.normal_keys.contains(&key) || self.tangential_keys.contains(&key)
+    }
+}
+
+/// A combination in words.
+pub(super) fn title([normal, tangential]: [&str; 2]) -> &'static str {
+    let row = COMBINATIONS.iter().find(|c| c.normal == normal && c.tangential == tangential);
+    row.map_or("a law of its own", |c| c.title)
+}
+
+/// The normal law of this name.
+pub fn normal_named(name: &str) -> Option<LawName> {
+    COMBINATIONS.iter().find(|c| c.normal == name).map(|c| LawName(c.normal))
+}
+
+/// The tangential law of this name, or [`LawName::NONE`].
+pub fn tangential_named(name: &str) -> Option<LawName> {
+    let none = LawName::NONE.as_str();
+    COMBINATIONS.iter().map(|c| c.tangential).chain([none]).find(|known| *known == name).map(LawName)
+}
+
+/// Names of all normal laws.
+pub fn normals() -> Vec<&'static str> {
+    once(COMBINATIONS.iter().map(|c| c.normal))
+}
+
+/// Names of all tangential laws, and that of none.
+pub fn tangentials() -> Vec<&'static str> {
+    once(COMBINATIONS.iter().map(|c| c.tangential).chain([LawName::NONE.as_str()]))
+}
+
+/// Each text once, in order.
+pub(super) fn once(texts: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
+    let mut out = Vec::new();
+    texts.for_each(|t| {
+        if !out.contains(&t) {
+            out.push(t)
+        }
+    });
+    out
+}
+
+/// Why a pair of materials has no law.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoLaw {
+    /// The two have unlike normal laws.
+    #[error("unlike normal laws, \"{0}\" and \"{1}\", and none for the pair")]
+    Unlike(&'static str, &'static str),
+    /// Normal and tangential law do not go together.
+    #[error("normal law \"{0}\" with tangential law \"{1}\", which do not go together")]
+    NoSuch(&'static str, &'static str),
+}
+
+/// Number of the row for a pair of materials, `None` where both are rigid, so that they never touch.
+///
+/// # Errors
+/// [`NoLaw`] where the scene does not say which, or names laws that do not go together.
+pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
+    let own = |m: &Material| {
+        let implied = if m.young.is_some() {
+            Some(Hertz::NAME)
+        } else {
+            m.stiffness.is_finite().then_some(Linear::NAME)
+        };
+        m.normal.map(|n| n.0).or(implied)
+    };
+    let (a, b) = (own(pair.a), own(pair.b));
+    let given = pair.given(|e| e.normal).map(|n| n.0);
+    let spring = pair.given(|e| e.stiffness).map(|_| Linear::NAME);
+    let normal = match (given, a, b) {
+        (Some(name), _, _) => name,
+        (None, Some(a), Some(b)) if a != b => return Err(NoLaw::Unlike(a, b)),
+        (None, a, b) => match a.or(b).or(spring) {
+            Some(name) => name,
+            None => return Ok(None),
+        },
+    };
+    let tangential = pair.given(|e| e.tangential).filter(|t| *t != LawName::NONE);
+    let fits = |c: &Combination| c.normal == normal && tangential.is_none_or(|LawName(t)| c.tangential == t);
+    match COMBINATIONS.iter().position(fits) {
+        Some(k) => Ok(Some(k)),
+        None => Err(NoLaw::NoSuch(normal, tangential.map_or("none", |t| t.0))),
+    }
+}
+
+/// The laws of a pair of materials, `None` where both are rigid.
+///
+/// # Errors
+/// [`NoLaw`] where the scene does not say which, or names laws that do not go together.
+pub fn combination(pair: &Pair<'_>) -> Result<Option<&'static Combination>, NoLaw> {
+    Ok(number_of(pair)?.map(|k| &COMBINATIONS[k]))
+}
