@@ -290,6 +290,9 @@ impl TimeIntegrator for PlasticWindowSolver {
         for step in steps_of(model, state.time, to, self.dt)? {
             let (load, prescribed) = step.mean(loading);
             let audit = self.step_prescribed(model, state, &load, Some(&prescribed))?;
+            // The end itself, where the sum of the steps would miss it by rounding.
+            state.time = step.ends[1];
+            self.newton.report.time = state.time;
             on_step(state, &self.newton.report, Some(&audit));
         }
         Ok(())
