@@ -190,10 +190,10 @@ def check_file(path, volume):
     if kind == "chains":
         parts = [vtk_to_numpy(data.GetCellData().GetArray(name)) for name, _ in cell_arrays[:3]]
         expect(numpy.allclose(numpy.hypot(parts[0], parts[1]), parts[2]), "magnitude is not that of its parts")
-    told = f"{kind}: {points} points, {cells} cells"
+    found = f"{kind}: {points} points, {cells} cells"
     if path.endswith((".vtu", ".vtk")):
-        told += f", volume {check_solid(data, volume):.12g}"
-    return told
+        found += f", volume {check_solid(data, volume):.12g}"
+    return found
 
 
 def frames(path):
@@ -230,11 +230,11 @@ def main():
             if path.endswith(".pvd"):
                 listed = frames(path)
                 queue[:0] = listed
-                told = f"series: {len(listed)} files"
+                found = f"series: {len(listed)} files"
             else:
                 expect(path.endswith((".vtu", ".vtk", ".vtp")), "neither .pvd nor .vtu, .vtk, .vtp")
-                told = check_file(path, arguments.volume)
-            print(f"ok   {path}: {told}")
+                found = check_file(path, arguments.volume)
+            print(f"ok   {path}: {found}")
         except (Failure, ElementTree.ParseError, ValueError) as error:
             failed += 1
             print(f"FAIL {path}: {error}")

@@ -1,5 +1,6 @@
 //! The binary arrays of VTK XML files: lengths in front, base64 or raw, plain or compressed in blocks.
 
+use base64::prelude::{BASE64_STANDARD, Engine};
 use std::io::Read;
 
 /// How a file writes its binary arrays.
@@ -15,24 +16,24 @@ pub(super) struct Coding {
 /// zlib makes data at most 1032 times shorter (Deflate's longest match); a damaged length says more.
 const MOST_COMPRESSION: u64 = 1032;
 
-/// Bytes of an array, taken piece by piece.
+/// Bytes of an array, read piece by piece.
 struct Stream<'a> {
     bytes: &'a [u8],
     base64: bool,
-    /// Bytes of the last group of base64 that were not taken yet.
+    /// Bytes of the last group of base64 that were not read yet.
     pending: Vec<u8>,
 }
 
 impl Stream<'_> {
-    fn take(&mut self, count: usize) -> Result<Vec<u8>, String> {
+    fn read(&mut self, count: usize) -> Result<Vec<u8>, String> {
         let ends = || "the end of the data".to_string();
         if count > self.bytes.len() + self.pending.len() {
             return Err(ends());
         }
         if !self.base64 {
-            let (taken, rest) = self.bytes.split_at(count);
+            let (head, rest) = self.bytes.split_at(count);
             self.bytes = rest;
-            return Ok(taken.to_vec());
+            return Ok(head.to_vec());
         }
         let mut out = std::mem::take(&mut self.pending);
         while out.len() < count {
@@ -47,34 +48,16 @@ impl Stream<'_> {
                     filled += 1;
                 }
             }
-            let padding = group.iter().rev().take_while(|l| **l == b'=').count();
-            let mut bits = 0_u32;
-            for letter in group {
-                bits = bits << 6 | letter_value(letter).ok_or("a letter that is not base64")?;
-            }
-            if padding > 2 {
-                return Err("padding that is not base64".into());
-            }
-            out.extend(&bits.to_be_bytes()[1..4 - padding]);
+            let mut bytes = [0; 3];
+            let decoded = BASE64_STANDARD.decode_slice(group, &mut bytes);
+            out.extend(&bytes[..decoded.map_err(|_| "letters that are not base64")?]);
         }
         self.pending = out.split_off(count);
         Ok(out)
     }
 }
 
-fn letter_value(letter: u8) -> Option<u32> {
-    Some(u32::from(match letter {
-        b'A'..=b'Z' => letter - b'A',
-        b'a'..=b'z' => letter - b'a' + 26,
-        b'0'..=b'9' => letter - b'0' + 52,
-        b'+' => 62,
-        b'/' => 63,
-        b'=' => 0,
-        _ => return None,
-    }))
-}
-
-/// The numbers of an array of type `kind` from the start of `bytes`; the error tells what was found.
+/// The numbers of an array of type `kind` from the start of `bytes`; the error names what was found.
 pub(super) fn decode(bytes: &[u8], base64: bool, kind: &str, coding: Coding) -> Result<Vec<f64>, String> {
     let mut stream = Stream { bytes, base64, pending: Vec::new() };
     let data = if coding.zlib { inflate(&mut stream, coding)? } else { plain(&mut stream, coding)? };
@@ -82,7 +65,7 @@ pub(super) fn decode(bytes: &[u8], base64: bool, kind: &str, coding: Coding) -> 
 }
 
 fn length(stream: &mut Stream, coding: Coding) -> Result<u64, String> {
-    let bytes = stream.take(if coding.wide { 8 } else { 4 })?;
+    let bytes = stream.read(if coding.wide { 8 } else { 4 })?;
     Ok(unsigned(&bytes, coding.big_endian))
 }
 
@@ -93,7 +76,7 @@ fn unsigned(bytes: &[u8], big_endian: bool) -> u64 {
 
 fn plain(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
     let count = length(stream, coding)?;
-    stream.take(usize::try_from(count).map_err(|_| format!("a length of {count}"))?)
+    stream.read(usize::try_from(count).map_err(|_| format!("a length of {count}"))?)
 }
 
 /// Number of blocks, length of a block, length of the last one if shorter, compressed lengths, and the blocks.
@@ -114,7 +97,7 @@ fn inflate(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
         if *packed > most || expected > packed.saturating_mul(MOST_COMPRESSION) {
             return Err(format!("a block of {packed} bytes for {expected}"));
         }
-        let packed = stream.take(*packed as usize)?;
+        let packed = stream.read(*packed as usize)?;
         let before = out.len();
         flate2::read::ZlibDecoder::new(&packed[..])
             .take(expected)
@@ -162,7 +145,9 @@ mod tests {
             let mut stream = Stream { bytes: text.as_bytes(), base64: true, pending: Vec::new() };
             assert_eq!(plain(&mut stream, Coding::default()).unwrap(), b"abc", "{text}");
         }
-        let mut stream = Stream { bytes: b"AwAAAGFi", base64: true, pending: Vec::new() };
-        assert!(plain(&mut stream, Coding::default()).is_err());
+        for text in ["AwAAAGFi", "AwAAAGF!Yw==", "AwAA==FiYw=="] {
+            let mut stream = Stream { bytes: text.as_bytes(), base64: true, pending: Vec::new() };
+            assert!(plain(&mut stream, Coding::default()).is_err(), "{text}");
+        }
     }
 }

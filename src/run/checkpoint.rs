@@ -115,7 +115,7 @@ fn keys(document: &Document) -> BTreeMap<String, String> {
         }
     }
     let mut out = BTreeMap::new();
-    // A tree that cannot be read shows no keys; the hash still tells the scenes apart.
+    // A tree that cannot be read shows no keys; the hash still distinguishes the scenes.
     if let Ok(tree) = document.read::<toml::Table>() {
         visit("", &toml::Value::Table(tree), &mut out);
     }
@@ -247,7 +247,7 @@ fn failure(file: &Path, error: &io::Error) -> Failure {
     Failure::Other(format!("{}: {error}", file.display()))
 }
 
-/// Why a file is not taken.
+/// Why a file is refused.
 enum Unfit {
     Form(String),
     Damaged(String),

@@ -85,7 +85,7 @@ pub fn prepare(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
 ///
 /// # Errors
 /// The folder cannot be made or cleaned.
-pub fn take_up(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
+pub fn resume(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
     let fail = failure(dir);
     make(dir, output).map_err(&fail)?;
     let halves = files().map(|name| PathBuf::from(format!("{name}.part"))).collect::<Vec<_>>();

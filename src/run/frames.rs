@@ -1,4 +1,4 @@
-//! What the writers show, taken from a running system.
+//! What the writers show of a running system.
 
 use super::system::{GrainsView, SolidView};
 use super::wall_output;

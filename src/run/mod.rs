@@ -371,7 +371,7 @@ impl Stage<'_> {
 
     fn prepare(&self) -> Result<(), Failure> {
         if self.goes_on {
-            folder::take_up(self.dir, &self.job.output)?;
+            folder::resume(self.dir, &self.job.output)?;
         } else {
             self.keeper.clear_others()?;
             folder::prepare(self.dir, &self.job.output)?;

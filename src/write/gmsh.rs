@@ -125,9 +125,9 @@ fn format4(file: &MeshFile, groups: &[Group]) -> Result<String, std::fmt::Error>
         writeln!(out, "{set} {x:?} {y:?} {z:?} 1 {set}")?;
     }
     for (group, volume) in &volumes {
-        let told: String = group.iter().map(|g| format!(" {g}")).collect();
+        let physical: String = group.iter().map(|g| format!(" {g}")).collect();
         let [a, b, c, d, e, f] = [low[0], low[1], low[2], high[0], high[1], high[2]];
-        writeln!(out, "{volume} {a:?} {b:?} {c:?} {d:?} {e:?} {f:?} {}{told} 0", group.len())?;
+        writeln!(out, "{volume} {a:?} {b:?} {c:?} {d:?} {e:?} {f:?} {}{physical} 0", group.len())?;
     }
     writeln!(out, "$EndEntities\n$Nodes")?;
     let least = |ids: &[u32]| ids.iter().copied().min().unwrap_or(0);

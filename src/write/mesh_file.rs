@@ -98,13 +98,13 @@ pub(super) fn fortran(value: f64) -> String {
 }
 
 /// Names of sets that a form allows: other characters become `_`, a name that does not start with a letter gets an `S`
-/// in front, long ones are cut, and names that are the same then get a number. Changed ones are told in `lost`.
+/// in front, long ones are cut, and names that are the same then get a number. Changed ones are listed in `lost`.
 pub(super) fn plain_names<'a>(
     sets: &'a BTreeMap<String, Vec<u32>>,
     most: usize,
     lost: &mut Vec<String>,
 ) -> Vec<(String, &'a [u32])> {
-    let mut taken: Vec<String> = Vec::new();
+    let mut used: Vec<String> = Vec::new();
     sets.iter()
         .map(|(name, members)| {
             let fits = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
@@ -115,7 +115,7 @@ pub(super) fn plain_names<'a>(
             plain.truncate(most);
             let base = plain.clone();
             let mut number = 2;
-            while taken.iter().any(|t| t.eq_ignore_ascii_case(&plain)) {
+            while used.iter().any(|t| t.eq_ignore_ascii_case(&plain)) {
                 let end = format!("_{number}");
                 plain = base[..base.len().min(most - end.len())].to_string() + &end;
                 number += 1;
@@ -123,7 +123,7 @@ pub(super) fn plain_names<'a>(
             if plain != *name {
                 lost.push(format!("set \"{name}\" is called {plain} in the file"));
             }
-            taken.push(plain.clone());
+            used.push(plain.clone());
             (plain, members.as_slice())
         })
         .collect()

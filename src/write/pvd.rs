@@ -127,7 +127,7 @@ mod tests {
     use crate::write::sample::folder;
 
     #[test]
-    fn a_series_is_taken_up_again_after_some_files() {
+    fn a_series_is_resumed_after_some_files() {
         let dir = folder("pvd");
         let file = dir.join("results.pvd");
         assert_eq!(Series::resume(&file, 0).unwrap(), Series::new(&file));

@@ -90,7 +90,7 @@ impl<'a> Results<'a> {
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, cycles_file, course })
     }
 
-    /// Takes up the files of a run in `dir` where a checkpoint has them; what was written later is taken away.
+    /// Resumes the files of a run in `dir` where a checkpoint has them; what was written later is removed.
     ///
     /// # Errors
     /// Files that are not those of the run that the checkpoint is of; the folder cannot be written.

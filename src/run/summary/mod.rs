@@ -31,7 +31,7 @@ pub struct Summary {
     pub overrides: Vec<String>,
     /// Threads used; the results do not depend on it.
     pub threads: usize,
-    /// Largest resident memory [bytes], where the system tells it.
+    /// Largest resident memory [bytes], where the system reports it.
     pub peak_memory: Option<u64>,
     /// Stages in order, with seconds of wall time and steps.
     pub stages: Vec<StageRecord>,

@@ -131,7 +131,7 @@ pub fn group<'a>(members: impl Iterator<Item = (&'a str, u64)>) -> Vec<(u8, Vec<
     out
 }
 
-/// The message that tells how wide the nodes of chunk indices are.
+/// The message with the widths of the nodes of chunk indices.
 pub fn node_sizes() -> Vec<(u8, Vec<u8>)> {
     let widths = [HALF_NODE as u16, 16, 4];
     vec![(0x13, [0].into_iter().chain(widths.into_iter().flat_map(u16::to_le_bytes)).collect())]

@@ -80,7 +80,7 @@ impl File {
         Ok(file)
     }
 
-    /// Takes up a file at a [`File::mark`]; what was written after it is cut off.
+    /// Resumes a file at a [`File::mark`]; what was written after it is cut off.
     ///
     /// # Errors
     /// The file is shorter than it was at the mark; what the system refuses.

@@ -45,7 +45,7 @@ fn a_file_is_there_from_the_first_commit_on_and_whole_after_each() {
 }
 
 #[test]
-fn a_file_taken_up_at_any_mark_grows_to_the_same_bytes() {
+fn a_file_resumed_at_any_mark_grows_to_the_same_bytes() {
     let dir = folder("hdf5_resume");
     let path = dir.join("a.h5");
     let rows = 60_000;
@@ -58,7 +58,7 @@ fn a_file_taken_up_at_any_mark_grows_to_the_same_bytes() {
             add(&mut file, from..(from + 700).min(rows));
             file.commit().unwrap();
         }
-        assert!(fs::read(&path).unwrap() == whole, "taken up at mark {at}");
+        assert!(fs::read(&path).unwrap() == whole, "resumed at mark {at}");
     }
     fs::write(&path, &whole[..whole.len() - 1]).unwrap();
     let error = File::resume(&path, marks.last().unwrap()).unwrap_err();
