@@ -68,3 +68,31 @@ fn parts_switched_off_dissipate_nothing() {
     }
     assert!(history.column("contact_springs").iter().any(|e| *e > 0.0));
 }
+
+/// Walton & Braun 1986: e = √(k₁/k₂) and the plastic work (1 − e²) m v²/2 at any speed. Tolerance 0.5 %.
+#[test]
+fn plastic_bounce_keeps_the_part_of_the_closed_form() {
+    for e in [0.3, 0.6, 0.9] {
+        for speed in [0.1, 2.0, 6.0] {
+            let folder = Folder::new("bounce");
+            let set = [
+                format!("grains.0.velocity=[0, 0, -{speed}]"),
+                format!("material.0.restitution={e}"),
+                format!("time.end={}", 0.04 / speed / e + 0.01),
+                "output.vtk=false".to_string(),
+            ];
+            let set: Vec<&str> = set.iter().map(String::as_str).collect();
+            run(&repository().join("inputs/verify/bounce.toml"), &folder.join("out"), &set).good();
+            let history = Table::read(&folder.join("out/history.csv"));
+            let kinetic = history.column("grains_kinetic");
+            let (first, last) = (kinetic[0], *kinetic.last().unwrap());
+            let found = (last / first).sqrt();
+            let plastic = history.column("dissipated_dashpot").last().unwrap() / first;
+            println!("e {e}, {speed} m/s: found {found:.5}, plastic work {plastic:.5} of {:.5}", 1.0 - e * e);
+            assert!((found / e - 1.0).abs() < 5e-3, "wanted {e}, found {found} at {speed} m/s");
+            assert!((plastic / (1.0 - e * e) - 1.0).abs() < 5e-3, "{plastic} at {speed} m/s");
+            assert_eq!(*history.column("contact_springs").last().unwrap(), 0.0);
+            assert!(sources(&json(&folder.join("out/summary.json"))).iter().any(|s| s.contains("Walton")));
+        }
+    }
+}

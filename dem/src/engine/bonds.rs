@@ -221,8 +221,7 @@ fn part(
         let reference = if taken > 0.0 { then - taken } else { then.max(0.0) };
         energy -= stored((half - reference).max(0.0));
         let rate = model.laws.begun(one, two, broken.approach);
-        let history =
-            if taken > 0.0 { History { rate, ..History::NONE } } else { History::NONE };
+        let history = if taken > 0.0 { History { rate, ..History::NONE } } else { History::NONE };
         pair = Some(DebondedPair { number: e.number, i: e.i, block: e.block, j: e.j, reference, history });
     }
     state.bonds.broken[usize::from(broken.mode == BreakMode::Shear)] += 1;

@@ -26,6 +26,7 @@ pub mod spring;
 pub mod table;
 pub mod tangential;
 pub(crate) mod turning;
+pub mod walton_braun;
 
 #[cfg(test)]
 mod conformance;

@@ -13,10 +13,12 @@ use super::mixed::combinations;
 use super::normal::NormalLaw;
 use super::spring::Spring;
 use super::tangential::TangentialLaw;
+use super::walton_braun::WaltonBraun;
 
 combinations! {
     Linear(Linear, Spring) = "linear spring-dashpot",
     Hertz(Hertz, Mindlin) = "Hertz-Mindlin",
+    WaltonBraun(WaltonBraun, Spring) = "Walton-Braun",
 }
 
 /// The linear law.

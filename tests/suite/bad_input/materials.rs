@@ -51,9 +51,9 @@ const PAIR: &str = "[[contact]]\nbetween = [\"stone\", \"stone\"]\n";
 
 #[test]
 fn unknown_normal_law() {
-    grains_scene()
-        .scene("friction = 0.5", "friction = 0.5\nnormal = \"herz\"")
-        .refused("scene.toml:8: material.0.normal: found \"herz\", expected one of linear, hertz");
+    grains_scene().scene("friction = 0.5", "friction = 0.5\nnormal = \"herz\"").refused(
+        "scene.toml:8: material.0.normal: found \"herz\", expected one of linear, hertz, walton_braun",
+    );
 }
 
 #[test]
@@ -84,5 +84,13 @@ fn damping_ratio_without_its_part() {
 fn hertz_without_a_modulus() {
     grains_scene().scene("stiffness = \"1 MN/m\"", "normal = \"hertz\"").refused(
         "scene.toml:3: material.0.young: found nothing, expected a value for this key, which `normal = \"hertz\"` needs",
+    );
+}
+
+#[test]
+fn damping_of_a_law_without_a_dashpot() {
+    let pair = format!("{PAIR}normal = \"walton_braun\"\ndamping = \"none\"\n[time]");
+    grains_scene().scene("[time]", &pair).refused(
+        "scene.toml:25: contact.0.damping: found a value, expected no such key, as normal law \"walton_braun\" has no dashpot",
     );
 }

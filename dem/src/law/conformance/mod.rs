@@ -4,8 +4,11 @@ mod energy;
 mod force;
 mod lanes;
 
+use super::composed::Composed;
 use super::material::{Material, Pair};
+use super::spring::Spring;
 use super::table::{HertzLaw, LinearLaw};
+use super::walton_braun::WaltonBraun;
 use super::{ContactForce, ContactGeometry, ContactLaw, History};
 use crate::base::Vec3;
 use crate::testing::SOFT;
@@ -80,6 +83,7 @@ macro_rules! conforms {
 conforms! {
     linear: LinearLaw, SOFT;
     hertz: HertzLaw, GLASS;
+    walton_braun: Composed<WaltonBraun, Spring>, SOFT;
 }
 
 /// The law of two bodies of a material with resistance of every kind.
