@@ -4,12 +4,13 @@ mod check;
 mod explain;
 mod mesh;
 mod modal;
+mod output;
 mod stone;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
 use crate::run;
-use std::io::Write;
+use output::print;
 
 /// Carries out a command.
 ///
@@ -61,12 +62,4 @@ fn memory(text: Option<&str>) -> Result<Option<u64>, Failure> {
         run::parse_size(t).ok_or_else(|| Failure::Input(format!("--memory: found {t}, expected {expected}")))
     };
     text.map(parse).transpose()
-}
-
-/// Prints to standard output; a reader that has gone away is no failure.
-fn print(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(e.into()),
-        _ => Ok(()),
-    }
 }

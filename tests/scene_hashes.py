@@ -263,8 +263,8 @@ def compare(found, expected):
     differing = sorted(key for key in found.keys() | expected.keys() if found.get(key) != expected.get(key))
     for key in differing:
         word = "new" if key not in expected else "missing" if key not in found else "differs"
-        told = f": {found[key]}" if word != "missing" and not re.fullmatch("[0-9a-f]{64}", found[key]) else ""
-        print(f"{word:8} {key[0]}  {key[1]}{told}")
+        value = f": {found[key]}" if word != "missing" and not re.fullmatch("[0-9a-f]{64}", found[key]) else ""
+        print(f"{word:8} {key[0]}  {key[1]}{value}")
     print(f"{len(found)} rows, {len(differing)} differ")
     return len(differing)
 

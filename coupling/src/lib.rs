@@ -6,6 +6,7 @@
 //! the energy of the whole system. [`track`] holds rails, trains and load cycles on sleepers. [`inverse_map`] is the three-dimensional map of a point into an element.
 
 mod accelerate;
+mod discs;
 pub mod face;
 pub mod inverse_map;
 pub mod ledger;
@@ -13,7 +14,6 @@ pub mod scheme;
 pub mod spread;
 pub mod stability;
 pub mod step;
-mod stiffened;
 pub mod surface;
 #[cfg(test)]
 mod testing;

@@ -3,7 +3,7 @@
 //! m is the mass that a point of the solid's surface offers, 1/(Nᵀ M⁻¹ N) with the shape functions N of the touched face
 //! (and the spread, if there is one) and the mass matrix M of the solid: least at a corner of the lightest element, and
 //! found there, at mid-sides and in the middle, for the lightest face and the lightest within. At the border of the surface
-//! it is half of that, and a quarter at its corners; that mass is told but not judged by, since walls or slopes as a rule
+//! it is half of that, and a quarter at its corners; that mass is reported but not a criterion, since walls or slopes as a rule
 //! keep stones from it by their radius. A stone with the
 //! mass M_s and the dashpot C = 2 ζ √(M_s Kₙ) damps the pair of masses with
 //! ζ' = C/(2 √(m' Kₙ)) = ζ √((m + M_s)/m), m' = m M_s/(m + M_s), which is the damping that the limits refer to.

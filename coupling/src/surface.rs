@@ -40,7 +40,7 @@ pub struct SolidSurface {
     max_speed: f64,
     tree: Bvh,
     boxes: Vec<([f64; 3], [f64; 3])>,
-    spread: Option<Spread>,
+    pub(crate) spread: Option<Spread>,
     /// Pairs of faces that share a side.
     seams: Vec<[u32; 2]>,
     /// Whether each side of a face is that face's alone.
@@ -112,14 +112,6 @@ impl SolidSurface {
             border,
             areas,
         }
-    }
-
-    /// The same surface with each contact force spread over a disc of `radius` [m], see [`Spread`]. Zero: not spread.
-    ///
-    /// The surface must be in the mesh's own shape.
-    pub fn spread_over(mut self, radius: f64) -> SolidSurface {
-        self.spread = (radius > 0.0).then(|| Spread::new(&self, radius));
-        self
     }
 
     /// How contact forces are spread, if they are.
@@ -213,7 +205,7 @@ impl SolidSurface {
         self.begin(mesh, &Motion { start: u, reference, rate: v, velocity: None, duration });
     }
 
-    /// Begins a window in which the nodes of the solid move as told.
+    /// Begins a window in which the nodes of the solid move as given.
     pub fn begin(&mut self, mesh: &Mesh, motion: &Motion<'_>) {
         debug_assert_eq!(mesh.node_count() * 3, motion.start.len());
         let at = |values: &[f64], node: u32| [0, 1, 2].map(|d| values[3 * node as usize + d]);

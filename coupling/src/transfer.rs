@@ -191,10 +191,10 @@ impl Transfer {
             let given = impulse.map(|i| i / window);
             let x = surface.mesh_position(k);
             let put = [0, 1, 2].map(|d| load[3 * node as usize + d]);
-            let (arm, taken) = (cross(x, given), cross(x, put));
+            let (arm, put_moment) = (cross(x, given), cross(x, put));
             for d in 0..3 {
                 force[d] += given[d] - put[d];
-                moment[d] += arm[d] - taken[d];
+                moment[d] += arm[d] - put_moment[d];
             }
             scales[0] += norm(given);
             scales[1] += norm(x) * norm(given);

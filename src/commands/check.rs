@@ -1,109 +1,135 @@
-//! `trackbed check`: reads and resolves everything that a run would, runs nothing, and says what would happen.
+//! `trackbed check`: reads and resolves everything that a run would, runs nothing, and reports what would happen.
 
 use crate::failure::Failure;
-use crate::model::grains::refused;
-use crate::model::solid::Analysis;
-use crate::model::{Job, exchange};
-use crate::run;
+use crate::model::Job;
+use crate::model::exchange::{self, CouplingPart};
+use crate::model::grains::{GrainsPart, refused};
+use crate::model::solid::SolidPart;
+use crate::run::{self, stages};
 use crate::scene::{Document, Scene};
-use std::fmt::Write;
 use std::path::Path;
 use trackbed_dem as dem;
 
-/// Validates a scene; the text says what a run of it would do.
+/// Validates a scene; the text is what a run of it would do.
 ///
 /// # Errors
 /// The same bad input that a run would refuse.
 pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String, Failure> {
+    let (document, job) = read(scene, set)?;
+    report(&document, &job, memory)
+}
+
+/// A scene with overrides, resolved.
+///
+/// # Errors
+/// Bad input.
+pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
     let mut document = Document::open(scene)?;
     for assignment in set {
         document.set(assignment)?;
     }
     let parsed: Scene = document.read()?;
     let job = Job::new(&document, &parsed)?;
-    let mut text = format!("{}\n", job.title);
-    let mut line = |t: String| writeln!(text, "  {t}").expect("writing to a string does not fail");
+    Ok((document, job))
+}
+
+/// What a run of a scene would do.
+///
+/// # Errors
+/// Bad input that shows only when models are made; a solid that needs more than `memory` [bytes].
+pub fn report(document: &Document, job: &Job, memory: Option<u64>) -> Result<String, Failure> {
+    let mut lines = Vec::new();
     if let Some(solid) = &job.solid {
-        let prediction = run::Prediction::of(solid)?;
-        prediction.check(memory)?;
-        let mesh = solid.model.mesh();
-        line(format!(
-            "solid: {} nodes, {} elements, {} unknowns, {:?} rule, {:.3e} kg",
-            mesh.node_count(),
-            mesh.element_count(),
-            solid.model.free_dof_count(),
-            solid.model.quadrature(),
-            solid.model.total_mass(),
-        ));
-        for (id, name) in &solid.material_names {
-            line(format!("  material {id}: {name}"));
-        }
-        if let Some(s) = &solid.sleepers {
-            let elements = (mesh.element_count() - s.ground_elements()) / s.count();
-            line(format!("  sleepers: {} of {elements} elements, {:.3e} kg each", s.count(), s.mass()));
-        }
-        line(format!(
-            "  memory: {} in all, {} of it for the equations; one factorization {:.2} Gflop",
-            run::size(prediction.total()),
-            run::size(prediction.solver),
-            1e-9 * prediction.flops
-        ));
-        for warning in &solid.warnings {
-            line(format!("  note: {warning}"));
-        }
+        lines.extend(solid_lines(solid, memory)?);
     }
-    if let Some(grains) = &job.grains {
-        // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
-        let alone =
-            dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
-        let sleepers = grains
-            .rigid_sleeper()
-            .into_iter()
-            .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
-        let bodies = grains.bodies.iter().cloned().chain(sleepers).collect();
-        let model = dem::Model::new(grains.input(bodies)).map_err(|e| refused(&document, &e))?;
-        grains.check_pads(&document, model.dt())?;
-        line(format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()));
-        line(format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()));
-        if let Some(d) = &grains.deposition {
-            line(format!("  settling: at most {} s, {:.0} steps", d.max_time, d.max_time / model.dt()));
-        }
-        line(format!("  run: {} s, {:.0} steps", job.end, job.end / model.dt()));
-        let waiting = |part| grains.bodies.iter().filter(|b| b.absent && b.part == part).count();
-        for text in grains.flow.iter().flat_map(|f| f.lines(&grains.parts, waiting)) {
-            line(format!("  {text}"));
-        }
-        if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-            let surface = coupling.ground(solid, grains);
-            let (classes, substeps) = coupling.classes(grains, &model, solid, &surface);
-            let window = model.dt() * f64::from(substeps);
-            let s = exchange::stability(&classes);
-            line(format!(
-                "coupling: {} faces, {} grain steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of \
-                 all contacts); scheme {}, transfer: {}",
-                coupling.faces.len(),
-                substeps,
-                if coupling.automatic() { " (automatic)" } else { "" },
-                s.stiffness,
-                s.damping,
-                coupling.scheme,
-                coupling.transfer_kind(&surface),
-            ));
-            classes.iter().for_each(|c| line(format!("  {}", c.line())));
-            for remark in exchange::remarks(&classes, coupling.scheme, substeps) {
-                line(format!("  note: {remark}"));
+    match &job.grains {
+        Some(grains) => {
+            let (model, own) = grain_lines(document, job, grains)?;
+            lines.extend(own);
+            if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
+                lines.extend(coupling_lines(coupling, solid, grains, &model));
             }
         }
-    } else if let Some(solid) = &job.solid {
-        let steps = |step: f64| format!("{} s in {:.0} steps of {step} s", job.end, job.end / step);
-        line(match (&solid.analysis, job.solid_step) {
-            (Analysis::Dynamic(_), Some(step)) => format!("dynamics: {}", steps(step)),
-            (Analysis::QuasiStatic(_), Some(step)) => format!("quasi-static: {}", steps(step)),
-            (Analysis::StrengthReduction(plan), _) => {
-                format!("strength reduction: from the factor {} on, to within {}", plan.start, plan.tolerance)
-            }
-            _ => "statics: one solve".into(),
-        });
+        None => lines.extend(stages::of(job).flat_map(|s| s.report(job, 0.0))),
     }
-    Ok(text)
+    Ok(lines.iter().fold(format!("{}\n", job.title), |text, line| text + "  " + line + "\n"))
+}
+
+fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<Vec<String>, Failure> {
+    let prediction = run::Prediction::of(solid)?;
+    prediction.check(memory)?;
+    let mesh = solid.model.mesh();
+    let mut lines = vec![format!(
+        "solid: {} nodes, {} elements, {} unknowns, {:?} rule, {:.3e} kg",
+        mesh.node_count(),
+        mesh.element_count(),
+        solid.model.free_dof_count(),
+        solid.model.quadrature(),
+        solid.model.total_mass(),
+    )];
+    lines.extend(solid.material_names.iter().map(|(id, name)| format!("  material {id}: {name}")));
+    if let Some(s) = &solid.sleepers {
+        let elements = (mesh.element_count() - s.ground_elements()) / s.count();
+        lines.push(format!("  sleepers: {} of {elements} elements, {:.3e} kg each", s.count(), s.mass()));
+    }
+    lines.push(format!(
+        "  memory: {} in all, {} of it for the equations; one factorization {:.2} Gflop",
+        run::size(prediction.total()),
+        run::size(prediction.solver),
+        1e-9 * prediction.flops
+    ));
+    lines.extend(solid.warnings.iter().map(|warning| format!("  note: {warning}")));
+    Ok(lines)
+}
+
+/// The model of the grains with rigid sleepers, and its lines with those of the stages.
+fn grain_lines(
+    document: &Document,
+    job: &Job,
+    grains: &GrainsPart,
+) -> Result<(dem::Model, Vec<String>), Failure> {
+    let model_of = |bodies| dem::Model::new(grains.input(bodies)).map_err(|e| refused(document, &e));
+    // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
+    let alone = model_of(grains.bodies.clone())?;
+    let sleepers = grains
+        .rigid_sleeper()
+        .into_iter()
+        .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
+    let model = model_of(grains.bodies.iter().cloned().chain(sleepers).collect())?;
+    grains.check_pads(document, model.dt())?;
+    grains.check_ram(document, model.dt())?;
+    let mut lines = vec![
+        format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()),
+        format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
+    ];
+    let stages = stages::of(job).flat_map(|s| s.report(job, model.dt()));
+    lines.extend(stages.map(|line| format!("  {line}")));
+    Ok((model, lines))
+}
+
+fn coupling_lines(
+    coupling: &CouplingPart,
+    solid: &SolidPart,
+    grains: &GrainsPart,
+    model: &dem::Model,
+) -> Vec<String> {
+    let surface = coupling.ground(solid, grains);
+    let (classes, substeps) = coupling.classes(grains, model, solid, &surface);
+    let window = model.dt() * f64::from(substeps);
+    let s = exchange::stability(&classes);
+    let mut lines = vec![format!(
+        "coupling: {} faces, {} grain steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of \
+         all contacts); scheme {}, transfer: {}",
+        coupling.faces.len(),
+        substeps,
+        if coupling.automatic() { " (automatic)" } else { "" },
+        s.stiffness,
+        s.damping,
+        coupling.scheme,
+        coupling.transfer_kind(&surface),
+    )];
+    lines.extend(classes.iter().map(|c| format!("  {}", c.line())));
+    let remarks = exchange::remarks(&classes, coupling.scheme, substeps);
+    lines.extend(remarks.iter().map(|remark| format!("  note: {remark}")));
+    lines
 }

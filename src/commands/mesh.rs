@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::print;
+use super::output::print;
 use crate::cli::{MeshArgs, MeshFormat};
 use crate::failure::Failure;
 use crate::mesh_tools;
@@ -16,7 +16,7 @@ use crate::write::{MeshOptions, write_mesh_file};
 pub(super) fn info(args: &MeshArgs) -> Result<(), Failure> {
     let file = read(args)?;
     let mut text = mesh_tools::info(&file.mesh, &file.constraints).to_string();
-    let mut line = |told: String| writeln!(text, "{told}").expect("writing to a string does not fail");
+    let mut line = |t: String| writeln!(text, "{t}").expect("writing to a string does not fail");
     for (name, count) in &file.element_types {
         line(format!("in the file       {count:>10}   {name}"));
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::print;
+use super::output::print;
 use crate::cli::{StoneArgs, StoneCommand, StoneKind};
 use crate::failure::Failure;
 use crate::read::read_surface;
@@ -49,23 +49,23 @@ pub(super) fn stone(command: &StoneCommand) -> Result<(), Failure> {
             if let Some(dir) = surfaces {
                 write_surfaces(dir, &sources, stones.force)?;
             }
-            let told = format!(
+            let command = format!(
                 "trackbed stone random --count {count} --seed {seed} --elongation {elongation} --flatness {flatness} \
                  --angularity {angularity}"
             );
-            finish(&sources, kind, stones, &told)
+            finish(&sources, kind, stones, &command)
         }
         StoneCommand::Info { input } => info(input),
     }
 }
 
 /// Makes the stones, prints their measures, writes the library.
-fn finish(sources: &[Source], kind: Kind, args: &StoneArgs, told: &str) -> Result<(), Failure> {
+fn finish(sources: &[Source], kind: Kind, args: &StoneArgs, command: &str) -> Result<(), Failure> {
     let made = make(sources, kind).map_err(|e| Failure::Input(e.to_string()))?;
     let mut text: String = made.iter().map(|m| format!("{}: {}\n", m.stone.name, m.report)).collect();
     if let Some(out) = &args.out {
         let name = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        write_library(out, &name, told, &made)?;
+        write_library(out, &name, command, &made)?;
         let _ = writeln!(text, "{} written", out.display());
     }
     print(&text)
@@ -187,17 +187,17 @@ fn info(input: &Path) -> Result<(), Failure> {
         return library_info(input);
     }
     let surface = read_surface(input)?;
-    let told = surface.topology().map_err(|e| Failure::Input(e.to_string()))?;
+    let topology = surface.topology().map_err(|e| Failure::Input(e.to_string()))?;
     let [lo, hi] = surface.bounds();
     let mut text = String::new();
     let mut line = |t: String| writeln!(text, "{t}").expect("writing to a string does not fail");
     line(format!("vertices          {:>12}", surface.vertices.len()));
     line(format!("triangles         {:>12}", surface.triangles.len()));
-    line(format!("edges             {:>12}", told.edges));
-    line(format!("  open            {:>12}", told.open_edges));
-    line(format!("  branching       {:>12}", told.branching_edges));
-    line(format!("  turned          {:>12}   wound unlike their neighbours", told.turned_edges));
-    line(format!("pieces            {:>12}", told.pieces));
+    line(format!("edges             {:>12}", topology.edges));
+    line(format!("  open            {:>12}", topology.open_edges));
+    line(format!("  branching       {:>12}", topology.branching_edges));
+    line(format!("  turned          {:>12}   wound unlike their neighbours", topology.turned_edges));
+    line(format!("pieces            {:>12}", topology.pieces));
     for (k, name) in ["x", "y", "z"].iter().enumerate() {
         line(format!("{name}                 {:>12.6} to {:.6} m", lo[k], hi[k]));
     }

@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unheld_body_and_unused_nodes_are_told() {
+    fn an_unheld_body_and_unused_nodes_are_reported() {
         let mut mesh = sample::block([2, 1, 1]);
         mesh.node_ids.push(5000);
         mesh.coordinates.push([9.0; 3]);

@@ -1,5 +1,6 @@
 //! The grains of a scene: materials, shapes, bodies, walls, sleeper.
 
+mod after;
 mod bonded;
 mod bonds;
 mod compaction;
@@ -13,10 +14,11 @@ mod sources;
 mod track;
 pub mod walls;
 
-use super::after::{self, AfterPlan};
 use super::tables::Grading;
 use crate::failure::Failure;
+use crate::scene::deposition::Deposition;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
+pub use after::AfterPlan;
 pub use bonds::{BondPart, check_joined};
 pub use compaction::{CompactionPlan, Measure, Press, Radial};
 pub use flow::{FlowPlan, InletPlan, InletRate, OutletPlan, OutletRegion};
@@ -196,6 +198,11 @@ impl GrainsPart {
         }
         self.bonds.add_stones_to(&mut input);
         input
+    }
+
+    /// All materials, and what single pairs of them have of their own.
+    pub fn contact_constants(&self) -> (Vec<Material>, Vec<PairOverride>) {
+        (self.materials.clone(), self.contacts.clone())
     }
 
     /// Stiffness, density and the like of the material of a body.
@@ -382,16 +389,7 @@ impl GrainsPart {
 /// # Errors
 /// Bad input in the scene or in the tables it names.
 pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<GrainsPart, Failure> {
-    let names: Vec<&str> = scene.material.iter().map(|m| m.name.as_str()).collect();
-    let find = |key: &str, name: &str| -> Result<usize, SceneError> {
-        names.iter().position(|n| *n == name).ok_or_else(|| {
-            document.error(
-                key,
-                format!("\"{name}\""),
-                format!("the name of a [[material]]: {}", names.join(", ")),
-            )
-        })
-    };
+    let find = |key: &str, name: &str| find(document, scene, key, name);
     let materials = materials::build(document, scene)?;
     let contacts = materials::pairs(document, scene, find)?;
     materials::check_laws(document, scene, &materials, &contacts)?;
@@ -428,7 +426,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         fouling: Vec::new(),
         recorded_groups: Vec::new(),
         grain_materials: Vec::new(),
-        material_names: names.iter().map(|n| n.to_string()).collect(),
+        material_names: scene.material.iter().map(|m| m.name.clone()).collect(),
         deposition: None,
         compaction: Vec::new(),
         measures: Vec::new(),
@@ -438,8 +436,35 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         rail: None,
         flow: None,
     };
+    add_groups(document, scene, &mut part)?;
+    periodic::add(document, scene, &mut part)?;
+    flow::add(document, scene, &mut part)?;
+    add_walls(document, scene, &mut part)?;
+    part.deposition = scene.deposition.as_ref().map(|d| deposition(document, d)).transpose()?;
+    compaction::add(document, scene, &find, &mut part)?;
+    bonds::rules(document, scene, &mut part)?;
+    if let Some(track) = &scene.track {
+        let material = find("track.sleeper.material", &track.sleeper.material)?;
+        track::add(document, track, material, &mut part)?;
+        part.after = after::build(document, track, &part)?;
+    }
+    Ok(part)
+}
+
+/// Number of a material.
+fn find(document: &Document, scene: &Scene, key: &str, name: &str) -> Result<usize, SceneError> {
+    let names: Vec<&str> = scene.material.iter().map(|m| m.name.as_str()).collect();
+    let found = names.iter().position(|n| *n == name);
+    found.ok_or_else(|| {
+        let expected = format!("the name of a [[material]]: {}", names.join(", "));
+        document.error(key, format!("\"{name}\""), expected)
+    })
+}
+
+/// `[[grains]]` resolved.
+fn add_groups(document: &Document, scene: &Scene, part: &mut GrainsPart) -> Result<(), Failure> {
     for (i, group) in scene.grains.iter().enumerate() {
-        let material = find(&format!("grains.{i}.material"), &group.material)?;
+        let material = find(document, scene, &format!("grains.{i}.material"), &group.material)?;
         if scene.material[material].density.is_none() {
             let key = format!("material.{material}.density");
             return Err(document.error(&key, "nothing", "the density of a material of grains").into());
@@ -451,18 +476,21 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             part.fouling.push(part.parts.len() as u32);
         }
         part.parts.push(group.name.clone());
-        groups::add(document, i, group, material, &mut part)?;
+        groups::add(document, i, group, material, part)?;
     }
     if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
         let expected = "a group of grains beside it that is fouled";
         return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
     }
-    periodic::add(document, scene, &mut part)?;
-    flow::add(document, scene, &mut part)?;
+    Ok(())
+}
+
+/// `[[walls]]` resolved.
+fn add_walls(document: &Document, scene: &Scene, part: &mut GrainsPart) -> Result<(), Failure> {
     for (i, wall) in scene.walls.iter().enumerate() {
-        let material = find(&format!("walls.{i}.material"), &wall.material)?;
+        let material = find(document, scene, &format!("walls.{i}.material"), &wall.material)?;
         let before = part.walls.len();
-        walls::add(document, i, wall, material, &mut part)?;
+        walls::add(document, i, wall, material, part)?;
         let new = part.walls.get(before).map(|w| &w.shape);
         if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
             let expected =
@@ -470,50 +498,45 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
             return Err(document.error(&format!("walls.{i}"), "a plane that is more", expected).into());
         }
     }
-    if let Some(d) = &scene.deposition {
-        check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
-        check(
-            document,
-            "deposition.settled_speed",
-            d.settled_speed.map(|v| v.si),
-            |v| v > 0.0,
-            "a speed above 0",
-        )?;
-        let ratio = d.unbalanced_ratio;
-        check(document, "deposition.unbalanced_ratio", ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
-        let layers = Some(f64::from(d.layers));
-        check(document, "deposition.layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
-        check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
-        check(
-            document,
-            "deposition.local_damping",
-            Some(d.local_damping),
-            |a| (0.0..1.0).contains(&a),
-            "0 or more, below 1",
-        )?;
-        part.deposition = Some(DepositionPlan {
-            max_time: d.max_time.si,
-            // With a ratio of forces alone, speed does not matter.
-            settled_speed: match (d.settled_speed, ratio) {
-                (Some(speed), _) => speed.si,
-                (None, Some(_)) => f64::INFINITY,
-                (None, None) => SETTLED_SPEED,
-            },
-            unbalanced_ratio: ratio,
-            layers: d.layers,
-            level: d.level.map(|l| l.si),
-            friction: d.friction,
-            local_damping: d.local_damping,
-        });
-    }
-    compaction::add(document, scene, &find, &mut part)?;
-    bonds::rules(document, scene, &mut part)?;
-    if let Some(track) = &scene.track {
-        let material = find("track.sleeper.material", &track.sleeper.material)?;
-        track::add(document, track, material, &mut part)?;
-        part.after = after::build(document, track, &part)?;
-    }
-    Ok(part)
+    Ok(())
+}
+
+/// `[deposition]` resolved.
+fn deposition(document: &Document, d: &Deposition) -> Result<DepositionPlan, SceneError> {
+    check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
+    check(
+        document,
+        "deposition.settled_speed",
+        d.settled_speed.map(|v| v.si),
+        |v| v > 0.0,
+        "a speed above 0",
+    )?;
+    let ratio = d.unbalanced_ratio;
+    check(document, "deposition.unbalanced_ratio", ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
+    let layers = Some(f64::from(d.layers));
+    check(document, "deposition.layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
+    check(
+        document,
+        "deposition.local_damping",
+        Some(d.local_damping),
+        |a| (0.0..1.0).contains(&a),
+        "0 or more, below 1",
+    )?;
+    Ok(DepositionPlan {
+        max_time: d.max_time.si,
+        // With a ratio of forces alone, speed does not matter.
+        settled_speed: match (d.settled_speed, ratio) {
+            (Some(speed), _) => speed.si,
+            (None, Some(_)) => f64::INFINITY,
+            (None, None) => SETTLED_SPEED,
+        },
+        unbalanced_ratio: ratio,
+        layers: d.layers,
+        level: d.level.map(|l| l.si),
+        friction: d.friction,
+        local_damping: d.local_damping,
+    })
 }
 
 /// What is wrong with the grains as a whole, which shows only when their model is made.

@@ -1,7 +1,6 @@
 //! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
 //! key of the scene was set.
 
-pub mod after;
 pub mod exchange;
 pub mod grains;
 mod output;

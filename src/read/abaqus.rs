@@ -97,7 +97,7 @@ pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
         return Err(ReadError::whole(file, "Abaqus input", "no keyword", "keywords such as *NODE"));
     }
     for block in &blocks {
-        // Faults are told with the file that the keyword stands in.
+        // Faults are reported with the file that the keyword stands in.
         builder.file.clone_from(&block.file);
         keyword(&mut builder, &mut deck, block)?;
     }
@@ -106,8 +106,8 @@ pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
     data::boundaries(&mut builder, &deck)?;
     data::sets(&mut builder, &deck);
     if !deck.skipped.is_empty() {
-        let told: Vec<String> = deck.skipped.iter().map(|(name, n)| format!("*{name} ({n})")).collect();
-        builder.warn(format!("keywords that were not read: {}", told.join(", ")));
+        let skipped: Vec<String> = deck.skipped.iter().map(|(name, n)| format!("*{name} ({n})")).collect();
+        builder.warn(format!("keywords that were not read: {}", skipped.join(", ")));
     }
     builder.finish()
 }
@@ -278,8 +278,8 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
                 builder.fault(line, format!("element {id} ({name})"), fault.found, fault.expected)
             })?,
         };
-        let told = format!("{name} {}", kind.name());
-        builder.element(line, id, 0, (kind, &told), &nodes)?;
+        let label = format!("{name} {}", kind.name());
+        builder.element(line, id, 0, (kind, &label), &nodes)?;
     }
     if let Some(set) = block.option("ELSET") {
         let name = deck.name(set);

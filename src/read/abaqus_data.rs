@@ -145,9 +145,9 @@ fn numbers(materials: &[Material]) -> Vec<u32> {
         let digits = name.len() - name.trim_end_matches(|c: char| c.is_ascii_digit()).len();
         name[name.len() - digits..].parse::<u32>().ok()
     };
-    let told: Option<Vec<u32>> = materials.iter().map(|m| trailing(&m.name)).collect();
-    match told {
-        Some(told) if told.iter().collect::<HashSet<_>>().len() == told.len() => told,
+    let numbers: Option<Vec<u32>> = materials.iter().map(|m| trailing(&m.name)).collect();
+    match numbers {
+        Some(numbers) if numbers.iter().collect::<HashSet<_>>().len() == numbers.len() => numbers,
         _ => (1..=materials.len() as u32).collect(),
     }
 }
@@ -155,18 +155,18 @@ fn numbers(materials: &[Material]) -> Vec<u32> {
 /// Gives the elements the materials of their sections.
 pub(super) fn sections(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
     let numbers = numbers(&deck.materials);
-    let mut told = Vec::new();
+    let mut renumbered = Vec::new();
     for (material, number) in deck.materials.iter().zip(&numbers) {
         if !material.name.ends_with(&number.to_string()) {
-            told.push(format!("{} is material {number}", material.name));
+            renumbered.push(format!("{} is material {number}", material.name));
         }
         if let Some((young, poisson)) = material.elastic {
             let constants = FileMaterial { young, poisson, density: material.density };
             builder.made.materials.insert(*number, constants);
         }
     }
-    if !told.is_empty() {
-        builder.warn(told.join(", "));
+    if !renumbered.is_empty() {
+        builder.warn(renumbered.join(", "));
     }
     let mesh = &mut builder.made.mesh;
     if deck.sections.is_empty() {

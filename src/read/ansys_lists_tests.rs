@@ -108,14 +108,14 @@ fn columns_are_recognised_by_count_and_content() {
 fn the_scene_may_tell_the_columns() {
     let text = format!("7 {}\n3 {}\n", element_nodes(1), element_nodes(13));
     let layout = ListLayout { columns: ElementColumns::MaterialNodes, material: 9 };
-    let lists = read_as("told_mat", &brick_nodes(), &text, None, layout).unwrap();
+    let lists = read_as("given_mat", &brick_nodes(), &text, None, layout).unwrap();
     assert_eq!((lists.mesh.materials, lists.mesh.element_ids), (vec![7, 3], vec![1, 2]));
     let layout = ListLayout { columns: ElementColumns::IdNodes, material: 9 };
-    let lists = read_as("told_id", &brick_nodes(), &text, None, layout).unwrap();
+    let lists = read_as("given_id", &brick_nodes(), &text, None, layout).unwrap();
     assert_eq!((lists.mesh.materials, lists.mesh.element_ids), (vec![9, 9], vec![7, 3]));
     assert!(lists.warnings.is_empty());
     let layout = ListLayout { columns: ElementColumns::IdMaterialNodes, material: 1 };
-    let error = read_as("told_wrong", &brick_nodes(), &text, None, layout).unwrap_err();
+    let error = read_as("given_wrong", &brick_nodes(), &text, None, layout).unwrap_err();
     let expected = "ELEMENTNUM.DAT:1: columns of an element: found 21, and 42 with the lines up to 2, \
                     expected 22 (id mat n1…n20)";
     assert_eq!(error, expected);

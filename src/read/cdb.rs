@@ -70,8 +70,8 @@ pub fn read_cdb(file: &Path) -> Result<MeshFile, ReadError> {
     }
     add_materials(&mut builder, &archive);
     if !archive.skipped.is_empty() {
-        let told: Vec<String> = archive.skipped.iter().map(|(name, n)| format!("{name} ({n})")).collect();
-        builder.warn(format!("commands that were not read: {}", told.join(", ")));
+        let skipped: Vec<String> = archive.skipped.iter().map(|(name, n)| format!("{name} ({n})")).collect();
+        builder.warn(format!("commands that were not read: {}", skipped.join(", ")));
     }
     builder.finish()
 }

@@ -67,7 +67,7 @@ pub struct Fault {
 /// # Errors
 /// Nodes that repeat in another way, missing corners, and some mid-side nodes missing but not all.
 pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
-    const FORMS_TOLD: &str = "different nodes, or those of a wedge (K = L, O = P), a pyramid (M = N = O = P) or a \
+    const FORMS_EXPECTED: &str = "different nodes, or those of a wedge (K = L, O = P), a pyramid (M = N = O = P) or a \
                               tetrahedron (both)";
     debug_assert!(ids.len() == 8 || ids.len() == 20);
     if let Some(corner) = ids[..8].iter().position(|id| *id == 0) {
@@ -99,7 +99,7 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
     let mut sorted = nodes.clone();
     sorted.sort_unstable();
     if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(Fault { found: format!("node {} more than once", pair[0]), expected: FORMS_TOLD });
+        return Err(Fault { found: format!("node {} more than once", pair[0]), expected: FORMS_EXPECTED });
     }
     Ok((kind, nodes))
 }

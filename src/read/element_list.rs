@@ -67,14 +67,14 @@ pub fn split(
     wanted: ElementColumns,
     warnings: &mut Vec<String>,
 ) -> Result<(Columns, Vec<Record>), ReadError> {
-    let told = match wanted {
+    let given = match wanted {
         ElementColumns::IdMaterialNodes => Some(ID_MATERIAL),
         ElementColumns::IdNodes => Some(ID),
         ElementColumns::MaterialNodes => Some(MATERIAL),
         ElementColumns::Nodes => Some(NEITHER),
         ElementColumns::Auto => None,
     };
-    if let Some(columns) = told {
+    if let Some(columns) = given {
         let eight = table.rows.iter().all(|row| row.width() == columns.of_eight().width());
         let columns = if eight { columns.of_eight() } else { columns };
         let (records, fault) = group(table, columns);

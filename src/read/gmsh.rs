@@ -137,8 +137,8 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
             return Err(tokens.fault("section", format!("\"{shown}\""), "a section such as $Nodes"));
         }
         if name == "$MeshFormat" {
-            let (told, how) = mesh_format(&mut tokens)?;
-            (version, encoding) = (Some(told), how);
+            let (stated, how) = mesh_format(&mut tokens)?;
+            (version, encoding) = (Some(stated), how);
         }
         let old = match (version, name) {
             (_, "$MeshFormat") => true,

@@ -198,11 +198,11 @@ impl Builder {
         }
         if self.made.mesh.element_count() == 0 {
             let nodes = self.made.mesh.node_count();
-            let told = self.made.warnings.iter().filter(|w| w.contains("left out")).cloned();
-            let told: Vec<String> = told.collect();
-            let found = match told.is_empty() {
+            let types = self.made.warnings.iter().filter(|w| w.contains("left out")).cloned();
+            let types: Vec<String> = types.collect();
+            let found = match types.is_empty() {
                 true => format!("{nodes} nodes and no volume element"),
-                false => format!("{nodes} nodes and no volume element ({})", told.join("; ")),
+                false => format!("{nodes} nodes and no volume element ({})", types.join("; ")),
             };
             return Err(self.fault(0, "elements", found, "at least one volume element"));
         }

@@ -45,7 +45,7 @@ pub use vtu::read_vtu;
 /// Endings of mesh files that can be read and written.
 pub const MESH_ENDINGS: [&str; 5] = ["cdb", "msh", "inp", "vtu", "vtk"];
 
-/// Reads a mesh of any form, told by the ending of its name: `.cdb` (ANSYS archive), `.msh` (Gmsh), `.inp` (Abaqus,
+/// Reads a mesh of any form, identified by the ending of its name: `.cdb` (ANSYS archive), `.msh` (Gmsh), `.inp` (Abaqus,
 /// CalculiX), `.vtu`, `.vtk`; a folder holds `NODECOORD.DAT`, `ELEMENTNUM.DAT` and, where there are constraints,
 /// `DOF.DAT`.
 ///

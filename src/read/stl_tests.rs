@@ -1,4 +1,4 @@
-//! Text and binary STL, told apart, and damaged files.
+//! Text and binary STL, distinguished, and damaged files.
 
 use super::*;
 

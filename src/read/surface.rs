@@ -19,7 +19,7 @@ pub const SURFACE_ENDINGS: [&str; 6] = ["stl", "obj", "dat", "txt", "tri", "srf"
 /// Vertices of an STL file nearer than this times the diagonal of its box are one, where equal ones alone leave it open.
 const STL_TOLERANCE: f64 = 1e-6;
 
-/// Reads a surface, told by the ending of its name: `.stl` (text or binary), `.obj`, and the plain list `.dat`, `.txt`,
+/// Reads a surface, identified by the ending of its name: `.stl` (text or binary), `.obj`, and the plain list `.dat`, `.txt`,
 /// `.tri`, `.srf`. Lengths are taken as metres.
 ///
 /// Equal vertices are merged, since STL repeats each for every triangle; where an STL file then still is open, vertices

@@ -1,6 +1,6 @@
 //! A bed of grains on its way to the run proper: it settles, is shaken, pressed, squeezed.
 
-use super::keeper::Keeper;
+use super::checkpoint_store::CheckpointStore;
 use crate::failure::Failure;
 use crate::model::grains::DepositionPlan;
 use trackbed_coupling::surface::SolidSurface;
@@ -18,7 +18,7 @@ pub struct Bed<'a> {
     pub state: dem::State,
     work: dem::Work,
     surface: Option<&'a SolidSurface>,
-    keeper: &'a Keeper,
+    checkpoints: &'a CheckpointStore,
     doing: &'static str,
 }
 
@@ -27,12 +27,12 @@ impl<'a> Bed<'a> {
     pub fn new(
         model: dem::Model,
         surface: Option<&'a SolidSurface>,
-        keeper: &'a Keeper,
+        checkpoints: &'a CheckpointStore,
         doing: &'static str,
     ) -> Bed<'a> {
         let state = dem::State::new(&model);
         let work = dem::Work::new(&model, &state);
-        Bed { model, state, work, surface, keeper, doing }
+        Bed { model, state, work, surface, checkpoints, doing }
     }
 
     /// One step under forces.
@@ -47,7 +47,7 @@ impl<'a> Bed<'a> {
             }
         }
         .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
-        self.keeper.check(self.doing)
+        self.checkpoints.check(self.doing)
     }
 
     /// Steps in about a millisecond, the time between two looks at the bed.
@@ -73,7 +73,7 @@ impl<'a> Bed<'a> {
         Ok(false)
     }
 
-    /// The first bodies of the model where they are now, at rest: as many as `inputs`, which tell all else.
+    /// The first bodies of the model where they are now, at rest: as many as `inputs`, which hold all else.
     pub fn at_rest(&self, inputs: &[BodyInput]) -> Vec<BodyInput> {
         let place = |(b, input): (usize, &BodyInput)| match input.absent {
             true => input.clone(),

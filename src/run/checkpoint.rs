@@ -14,7 +14,7 @@
 //! There are two slots. A checkpoint goes to the one that the last did not go to, beside the old file first and in its
 //! place when it is whole and on the disk. So at any moment one good checkpoint exists.
 
-use super::summary::Hash;
+use super::hash::Hash;
 use crate::failure::Failure;
 use crate::scene::Document;
 use crate::write::WriteError;

@@ -47,7 +47,7 @@ fn parts_come_back_with_all_their_bits() {
 }
 
 #[test]
-fn the_later_slot_is_taken_and_the_other_when_it_is_damaged() {
+fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
     let dir = folder("checkpoint_slots");
     let new = || Slots::new(&dir, origin(SCENE, "5"));
     let none = new().load(&document(SCENE)).err().unwrap().to_string();
@@ -125,26 +125,26 @@ fn a_failed_write_leaves_the_last_one() {
 #[test]
 fn another_program_or_scene_is_named() {
     let old = origin(SCENE, "5");
-    let told = |now: Origin, text: &str, set: &[&str]| {
+    let difference_of = |now: Origin, text: &str, set: &[&str]| {
         let mut document = document(text);
         set.iter().for_each(|s| document.set(s).unwrap());
         now.difference(&old, &document).unwrap_or_default()
     };
-    assert_eq!(told(old.clone(), SCENE, &[]), "");
+    assert_eq!(difference_of(old.clone(), SCENE, &[]), "");
     assert_eq!(
-        told(Origin { version: "1.2.4".into(), ..old.clone() }, SCENE, &[]),
+        difference_of(Origin { version: "1.2.4".into(), ..old.clone() }, SCENE, &[]),
         "is of version 1.2.3 of the program, this is 1.2.4"
     );
     let changed = SCENE.replace("1.0", "2.0");
-    assert!(told(origin(&changed, "6"), &changed, &[]).ends_with("time.end was 1.0, now 2.0"));
+    assert!(difference_of(origin(&changed, "6"), &changed, &[]).ends_with("time.end was 1.0, now 2.0"));
     let longer = format!("{SCENE}at = [1, 2]\n");
-    assert!(told(origin(&longer, "6"), &longer, &[]).ends_with("probe.0.at was absent, now [1, 2]"));
+    assert!(difference_of(origin(&longer, "6"), &longer, &[]).ends_with("probe.0.at was absent, now [1, 2]"));
     let overridden = Origin { overrides: vec!["probe.0.node=2".into()], ..origin(SCENE, "6") };
-    assert!(told(overridden, SCENE, &["probe.0.node=2"]).ends_with("probe.0.node was 1, now 2"));
+    assert!(difference_of(overridden, SCENE, &["probe.0.node=2"]).ends_with("probe.0.node was 1, now 2"));
     let mesh = Origin { files: vec![("mesh.cdb".into(), "78".into())], ..origin(SCENE, "6") };
-    assert!(told(mesh, SCENE, &[]).ends_with("mesh.cdb has changed"));
+    assert!(difference_of(mesh, SCENE, &[]).ends_with("mesh.cdb has changed"));
     let comment = format!("# more\n{SCENE}");
-    assert!(told(origin(&comment, "6"), &comment, &[]).ends_with("though no key has"));
+    assert!(difference_of(origin(&comment, "6"), &comment, &[]).ends_with("though no key has"));
 }
 
 #[test]

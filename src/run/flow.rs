@@ -5,7 +5,6 @@
 //! as it can be.
 
 use super::checkpoint::{Body, Loaded};
-use super::summary::Summary;
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::model::grains::{FlowPlan, GrainsPart, InletPlan, OutletPlan, OutletRegion};
@@ -269,8 +268,8 @@ impl<'a> Flow<'a> {
         [sum(&mut course.inlets.iter().map(|i| i.amount)), sum(&mut course.outlets.iter().map(|o| o.amount))]
     }
 
-    /// Tells the summary, at `time` [s].
-    pub fn finish(&self, time: f64, view: GrainsView<'_>, summary: &mut Summary) {
+    /// Results at `time` [s], and warnings about them.
+    pub fn finish(&self, time: f64, view: GrainsView<'_>) -> (FlowRecord, Vec<String>) {
         let [come, gone] = self.sums();
         let over = |mass: f64, time: f64| if time > 0.0 { mass / time } else { 0.0 };
         let [half, half_in, half_out] = self.course.half.unwrap_or([time, come.mass, gone.mass]);
@@ -278,10 +277,10 @@ impl<'a> Flow<'a> {
             self.plan.inlets.iter().zip(&self.course.inlets).map(|(p, i)| record(p, i, time)).collect();
         let outlets: Vec<OutletRecord> =
             self.plan.outlets.iter().zip(&self.course.outlets).map(outlet).collect();
-        summary.warnings.extend(inlets.iter().filter_map(InletRecord::remark));
         let interval = self.every as f64 * self.window;
-        summary.warnings.extend(outlets.iter().filter_map(|o| o.remark(interval)));
-        summary.flow = Some(FlowRecord {
+        let remarks = outlets.iter().filter_map(|o| o.remark(interval));
+        let warnings = inlets.iter().filter_map(InletRecord::remark).chain(remarks).collect();
+        let record = FlowRecord {
             interval,
             at_start: self.course.start,
             at_end: self.present(view),
@@ -294,7 +293,8 @@ impl<'a> Flow<'a> {
             later_rate_out: over(gone.mass - half_out, time - half),
             inlets,
             outlets,
-        });
+        };
+        (record, warnings)
     }
 }
 
@@ -355,10 +355,11 @@ pub struct InletRecord {
     pub group: String,
     /// What it let in.
     pub amount: Amount,
-    /// What `asked` and `owed` count: `"kg"` or `"grains"`.
+    /// What `requested` and `owed` count: `"kg"` or `"grains"`.
     pub unit: &'static str,
-    /// What its rate asked for.
-    pub asked: f64,
+    /// What its rate requests.
+    #[serde(rename = "asked")]
+    pub requested: f64,
     /// What of it has not come in.
     pub owed: f64,
     /// Grains that still wait.
@@ -381,13 +382,13 @@ pub struct OutletRecord {
 }
 
 fn record(plan: &InletPlan, inlet: &Inlet, time: f64) -> InletRecord {
-    let asked = plan.rate.value() * (time.min(plan.stop) - plan.start).max(0.0);
+    let requested = plan.rate.value() * (time.min(plan.stop) - plan.start).max(0.0);
     InletRecord {
         group: plan.group.clone(),
         amount: inlet.amount,
         unit: plan.rate.unit(),
-        asked,
-        owed: asked - inlet.given,
+        requested,
+        owed: requested - inlet.given,
         waiting: inlet.waiting.len(),
         without_room: inlet.full,
         without_grains: inlet.empty,
@@ -407,7 +408,7 @@ impl InletRecord {
                  looks, and none waited at {}",
                 self.group,
                 self.owed,
-                self.asked,
+                self.requested,
                 self.without_room,
                 self.without_grains,
                 unit = self.unit,
@@ -449,8 +450,8 @@ impl FlowRecord {
             lines.push(format!(
                 "  inlet of {}: {:.4} of {:.4} {}, {} grains wait",
                 i.group,
-                i.asked - i.owed,
-                i.asked,
+                i.requested - i.owed,
+                i.requested,
                 i.unit,
                 i.waiting
             ));

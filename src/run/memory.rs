@@ -1,4 +1,4 @@
-//! How much memory a solid will need, told before it is solved.
+//! How much memory a solid will need, predicted before it is solved.
 //!
 //! What the model takes is there already and is asked of the system; what the factorization will take follows from the
 //! structure of its equations; what the results take is a handful of nodal vectors. A run that will not fit is refused.
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_are_read_and_told() {
+    fn sizes_are_read_and_printed() {
         assert_eq!(parse_size("800MB"), Some(800_000_000));
         assert_eq!(parse_size(" 1.5 GiB"), Some(1_610_612_736));
         assert_eq!((parse_size("4096"), parse_size("2 parsec"), parse_size("-1")), (Some(4096), None, None));

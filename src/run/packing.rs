@@ -1,10 +1,9 @@
 //! What the grains are like at the end of a run: porosity, coordination, fabric, stress, sieve curves; and the files that
 //! hold it: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
 
-use super::Stage;
-use super::summary::Summary;
-use super::system::{GrainsView, System};
+use super::system::GrainsView;
 use crate::failure::Failure;
+use crate::model::Job;
 use crate::model::grains::{GradedGroup, GrainsPart, Measure, Radial};
 use crate::write::csv::{Field, write_table};
 use crate::write::svg::{LinePlot, Series};
@@ -123,65 +122,63 @@ pub struct GradationRecord {
     pub largest_deviation: f64,
 }
 
-impl Stage<'_> {
-    /// Measures the grains at the end and writes their files.
-    pub(super) fn record_packing(
-        &self,
-        system: &impl System,
-        grains: &GrainsPart,
-        summary: &mut Summary,
-    ) -> Result<(), Failure> {
-        let Some(view) = system.grains() else { return Ok(()) };
-        let GrainsView { model, state } = view;
-        let sleeper = grains.rigid_sleeper().map(|_| grains.parts.len() as u32 - 1);
-        // Those that are not there at the end do not count.
-        let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
-        let contacts = measure::contacts(model, state);
-        let stress = measure::mean_stress_of(model, state, &contacts);
-        let all = measure::coordination_of(model, state, &contacts, is_grain);
-        let strong = measure::strong_network(&contacts);
-        let ratio = measure::unbalanced_ratio(model, state, &contacts);
-        let between =
-            |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
-        let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
-            let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
-            let own = measure::coordination_of(model, state, &contacts, inside);
-            MeasureRecord {
-                name: name.clone(),
-                porosity: porosity(view, region, is_grain),
-                grains: (0..model.body_count()).filter(|&b| inside(b)).count(),
-                coordination: own.mean,
-                mechanical_coordination: own.mechanical,
-                fabric: measure::fabric(&contacts, |c| between(c) && region.holds(&c.point)),
-                stress: measure::region_stress(model, state, &stress, region),
-            }
-        });
-        let gradations = grains.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
-        if !gradations.is_empty() {
-            write_gradations(self.dir, &self.job.title, view, &grains.graded)?;
+/// Measures the grains at the end and writes their files.
+///
+/// # Errors
+/// The disk refuses.
+pub fn record(
+    job: &Job,
+    dir: &Path,
+    view: GrainsView<'_>,
+    grains: &GrainsPart,
+) -> Result<PackingRecord, Failure> {
+    let GrainsView { model, state } = view;
+    let sleeper = grains.rigid_sleeper().map(|_| grains.parts.len() as u32 - 1);
+    // Those that are not there at the end do not count.
+    let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
+    let contacts = measure::contacts(model, state);
+    let stress = measure::mean_stress_of(model, state, &contacts);
+    let all = measure::coordination_of(model, state, &contacts, is_grain);
+    let strong = measure::strong_network(&contacts);
+    let ratio = measure::unbalanced_ratio(model, state, &contacts);
+    let between = |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
+    let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
+        let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
+        let own = measure::coordination_of(model, state, &contacts, inside);
+        MeasureRecord {
+            name: name.clone(),
+            porosity: porosity(view, region, is_grain),
+            grains: (0..model.body_count()).filter(|&b| inside(b)).count(),
+            coordination: own.mean,
+            mechanical_coordination: own.mechanical,
+            fabric: measure::fabric(&contacts, |c| between(c) && region.holds(&c.point)),
+            stress: measure::region_stress(model, state, &stress, region),
         }
-        if grains.measures.iter().any(|m| m.radial.is_some()) {
-            write_radial(self.dir, view, &grains.measures, is_grain)?;
-        }
-        if self.job.output.packing {
-            write_packings(self.dir, view, grains)?;
-        }
-        summary.packing = Some(PackingRecord {
-            coordination: all.mean,
-            mechanical_coordination: all.mechanical,
-            rattlers: all.rattlers,
-            neighbours: all.distribution,
-            fabric: measure::fabric(&contacts, between),
-            mean_contact_force: strong.mean_force,
-            strong_contacts: strong.contacts,
-            strong_load: strong.load,
-            unbalanced_ratio: ratio.is_finite().then_some(ratio),
-            measures: measures.collect(),
-            fouling: fouling(view, grains, is_grain),
-            gradations,
-        });
-        Ok(())
+    });
+    let gradations = grains.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
+    if !gradations.is_empty() {
+        write_gradations(dir, &job.title, view, &grains.graded)?;
     }
+    if grains.measures.iter().any(|m| m.radial.is_some()) {
+        write_radial(dir, view, &grains.measures, is_grain)?;
+    }
+    if job.output.packing {
+        write_packings(dir, view, grains)?;
+    }
+    Ok(PackingRecord {
+        coordination: all.mean,
+        mechanical_coordination: all.mechanical,
+        rattlers: all.rattlers,
+        neighbours: all.distribution,
+        fabric: measure::fabric(&contacts, between),
+        mean_contact_force: strong.mean_force,
+        strong_contacts: strong.contacts,
+        strong_load: strong.load,
+        unbalanced_ratio: ratio.is_finite().then_some(ratio),
+        measures: measures.collect(),
+        fouling: fouling(view, grains, is_grain),
+        gradations,
+    })
 }
 
 /// How much of the fouling groups is in the bed.
@@ -367,15 +364,19 @@ fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
 }
 
 /// Lines of the report about grains.
-pub(super) fn report(summary: &Summary) -> Vec<String> {
+pub(super) fn report(
+    growth: &[GrowthRecord],
+    compaction: &[CompactionRecord],
+    packing: Option<&PackingRecord>,
+) -> Vec<String> {
     let mut lines = Vec::new();
-    for g in &summary.growth {
+    for g in growth {
         lines.push(format!(
             "growth of {}: porosity {:.4}, largest overlap {:.2e} of the radius, unbalanced force {:.1e}",
             g.group, g.porosity, g.largest_overlap, g.unbalanced_ratio
         ));
     }
-    for (i, c) in summary.compaction.iter().enumerate() {
+    for (i, c) in compaction.iter().enumerate() {
         let force = c.wall_force.map_or(String::new(), |f| format!(", force on the plane {f:.3e} N"));
         lines.push(format!(
             "compaction {} ({}): porosity {:.4} to {:.4}{force}",
@@ -385,7 +386,7 @@ pub(super) fn report(summary: &Summary) -> Vec<String> {
             c.porosity_after
         ));
     }
-    let Some(p) = &summary.packing else { return lines };
+    let Some(p) = packing else { return lines };
     lines.push(format!(
         "grains: {:.2} neighbours, {:.2} without rattlers ({:.1} % of the grains); {:.0} % of the contacts carry {:.0} % of \
          the normal forces",

@@ -280,7 +280,7 @@ pub struct Meshed<'a> {
     /// Their nodes.
     pub bodies: &'a SleeperBodies,
     /// Heights of their bases when they were set down [m].
-    pub bases: &'a [f64],
+    pub bases: Vec<f64>,
     /// The load on their seats.
     pub load: Option<&'a CyclicLoad>,
     /// Their first face in the surface.

@@ -181,7 +181,7 @@ fn the_same_bits_for_any_number_of_threads_and_other_stones_for_another_seed() {
 }
 
 #[test]
-fn random_stones_have_the_form_asked_for() {
+fn random_stones_have_the_form_requested() {
     for i in 0..6 {
         let form = random::Form {
             elongation: [0.55, 0.65],

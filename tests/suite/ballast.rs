@@ -346,7 +346,7 @@ fn runs_with_jumps_and_a_push_go_on_bit_for_bit() {
 }
 
 #[test]
-fn fines_in_the_voids_are_told() {
+fn fines_in_the_voids_are_reported() {
     let fines = r#"
 [[grains]]
 name = "sand"

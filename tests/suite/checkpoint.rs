@@ -325,8 +325,8 @@ fn nothing_to_go_on_from() {
     .good();
     same(&folder.join("whole"), &out);
     // Now it is done, and says so; for another scene it is not this run.
-    let told = trackbed_in(folder.path(), ["run", "scene.toml", "--resume", "--out", "out"]).good();
-    assert!(told.stdout.contains("the run is finished"), "{told:?}");
+    let outcome = trackbed_in(folder.path(), ["run", "scene.toml", "--resume", "--out", "out"]).good();
+    assert!(outcome.stdout.contains("the run is finished"), "{outcome:?}");
     refused(&scene, &out, &["coupling.substeps=20"], &["holds the finished run of another scene"]);
 }
 

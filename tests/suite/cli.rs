@@ -23,9 +23,9 @@ fn help_names_every_command_and_option() {
     }
 }
 
-/// `explain` says what `check` says, then the stages, the loops, the memory and the time of the grains.
+/// `explain` reports what `check` reports, then the stages, the loops, the memory and the time of the grains.
 #[test]
-fn explain_says_more_than_check() {
+fn explain_reports_more_than_check() {
     let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
     let (checked, explained) =
         (trackbed(["check", &scene]).good().stdout, trackbed(["explain", &scene]).good().stdout);
@@ -78,6 +78,55 @@ fn scenes(dir: &Path) -> Vec<PathBuf> {
         }
     }
     found
+}
+
+/// All scene files below `inputs`, whatever their names: those with a solid or grains.
+fn inputs() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![repository().join("inputs")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "toml") {
+                let text = fs::read_to_string(&path).unwrap();
+                let is_scene =
+                    text.lines().any(|l| ["[solid]", "[[grains]]"].iter().any(|head| l.starts_with(head)));
+                found.extend(is_scene.then_some(path));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Every shipped scene has a list of stages, and one with grains an estimate of their time.
+#[test]
+fn explain_reports_every_scene_that_is_shipped() {
+    let scenes = inputs();
+    assert!(scenes.len() >= 35, "{scenes:?}");
+    for scene in scenes {
+        let explained = trackbed([Path::new("explain"), &scene]).good().stdout;
+        assert!(explained.contains("\n  stages: "), "{scene:?}: {explained}");
+        assert_eq!(
+            explained.contains("\n  grains: "),
+            explained.contains("M sphere-steps/s"),
+            "{scene:?}: {explained}"
+        );
+    }
+}
+
+/// Contacts so soft that no probe can be timed are reported, and the rest is printed.
+#[test]
+fn explain_survives_materials_beyond_reason() {
+    let scene = repository().join("inputs/grains/column.toml").display().to_string();
+    for stiffness in ["1e-300", "1e300"] {
+        let set = format!("material.0.stiffness={stiffness}");
+        let outcome = trackbed(["explain", &scene, "--set", &set]);
+        assert!(!outcome.stderr.contains("panicked"), "{outcome:?}");
+        assert!(outcome.code == 2 || outcome.stdout.contains("stages: "), "{outcome:?}");
+    }
 }
 
 #[test]

@@ -126,9 +126,9 @@ fn rain_in_steady_flow() {
     // Potential energy of what came less that of what went, and the kinetic energy, to a per cent or so.
     let height = 0.95 * G + 0.5 * 1.05;
     let brought = float(&flow["came_in"]["mass"]) * height;
-    let taken = float(&flow["went_out"]["mass"]) * (0.3 * G + 0.5 * (1.05 + 2.0 * G * 0.65));
+    let removed = float(&flow["went_out"]["mass"]) * (0.3 * G + 0.5 * (1.05 + 2.0 * G * 0.65));
     let energy = float(&flow["energy_in"]);
-    assert!((energy - (brought - taken)).abs() < 0.05 * brought, "{energy} {brought} {taken}");
+    assert!((energy - (brought - removed)).abs() < 0.05 * brought, "{energy} {brought} {removed}");
     // Frames show those that are there.
     let rows = history.column("grains_present");
     for frame in 0..=4 {
@@ -222,7 +222,7 @@ fn grains_come_again_at_twice_the_rate_at_most() {
     );
 }
 
-/// An inlet without room waits; what it owes is told.
+/// An inlet without room waits; what it owes is reported.
 #[test]
 fn no_room_at_the_inlet() {
     let folder = Folder::new("no_room");
@@ -238,15 +238,15 @@ fn no_room_at_the_inlet() {
     adds_up(&out);
     let flow = &json(&out.join("summary.json"))["flow"];
     let inlet = &flow["inlets"][0];
-    let (asked, owed) = (float(&inlet["asked"]), float(&inlet["owed"]));
-    assert!((asked - 0.15).abs() < 1e-4 && owed > 0.05 && owed < asked, "{inlet}");
-    assert!((float(&inlet["amount"]["mass"]) - (asked - owed)).abs() < 1e-12, "{inlet}");
+    let (requested, owed) = (float(&inlet["asked"]), float(&inlet["owed"]));
+    assert!((requested - 0.15).abs() < 1e-4 && owed > 0.05 && owed < requested, "{inlet}");
+    assert!((float(&inlet["amount"]["mass"]) - (requested - owed)).abs() < 1e-12, "{inlet}");
     assert!(inlet["without_room"].as_u64().unwrap() > 100 && inlet["without_grains"] == 0, "{inlet}");
     let waiting = inlet["waiting"].as_u64().unwrap();
     assert_eq!(waiting + flow["came_in"]["grains"].as_u64().unwrap(), 600);
 }
 
-/// A thin box that grains fly through between two looks is told of.
+/// A thin box that grains fly through between two looks is reported.
 #[test]
 fn a_box_that_is_flown_through() {
     let folder = Folder::new("thin");

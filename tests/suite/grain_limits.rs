@@ -47,7 +47,7 @@ fn head_on_at_two_hundred_metres_per_second() {
 
 /// 1000 m/s at a floor that is far too soft for it.
 #[test]
-fn floor_hit_at_a_thousand_metres_per_second() {
+fn floor_struck_at_a_thousand_metres_per_second() {
     let spheres = "spheres = [[0.0, 0.0, 0.051, 0.05], [0.01, 0.0, 0.152, 0.05]]";
     let fast = "spheres = [[0.0, 0.0, 0.3, 0.05]]\nvelocity = [0.0, 0.0, -1000.0]";
     assert!(GRAINS.contains(spheres));

@@ -230,11 +230,11 @@ fn archives_in_any_order_with_compact_blocks_components_and_constraints() {
     assert_eq!(constraints, expected);
     let constants = FileMaterial { young: 2e8, poisson: 0.3, density: Some(1800.0) };
     assert_eq!(file.materials, [(1, constants)].into());
-    let told = file.warnings.join("\n");
+    let warnings = file.warnings.join("\n");
     for part in
         ["1 elements of type TARGE170 are left out", "D of TEMP", "F (1)", "1 elements that were left out"]
     {
-        assert!(told.contains(part), "{part} is missing in {told}");
+        assert!(warnings.contains(part), "{part} is missing in {warnings}");
     }
 }
 

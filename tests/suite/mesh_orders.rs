@@ -215,7 +215,7 @@ pub fn all_kinds() -> Mesh {
 #[test]
 fn gmsh_files_have_the_volumes_that_gmsh_finds() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
-    let told: serde_json::Value =
+    let volumes: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(data.join("gmsh_volumes.json")).unwrap()).unwrap();
     for order in ["order1", "order2"] {
         let mut first: Option<Vec<(ElementKind, Vec<u32>)>> = None;
@@ -228,7 +228,7 @@ fn gmsh_files_have_the_volumes_that_gmsh_finds() {
                 let of_kind = || (0..mesh.element_count()).filter(|e| mesh.connectivity.kind(*e) == kind);
                 let mut found: Vec<f64> = of_kind().map(|e| mesh.element_volume(e)).collect();
                 found.sort_by(f64::total_cmp);
-                let expected = told[order][kind.name()].as_array().map_or(&[][..], Vec::as_slice);
+                let expected = volumes[order][kind.name()].as_array().map_or(&[][..], Vec::as_slice);
                 assert_eq!(found.len(), expected.len(), "{name}: {}", kind.name());
                 for (found, expected) in found.iter().zip(expected) {
                     let expected = expected.as_f64().unwrap();
@@ -347,10 +347,10 @@ fn calculix_reads_what_is_written() {
 /// VTK finds the same volume in `.vtu` and `.vtk` of all kinds, and sees a wrong order.
 #[test]
 fn vtk_reads_what_is_written() {
-    let told = std::env::var_os("TRACKBED_PYTHON");
-    let python = told.clone().map_or_else(|| PathBuf::from("python3"), PathBuf::from);
+    let named = std::env::var_os("TRACKBED_PYTHON");
+    let python = named.clone().map_or_else(|| PathBuf::from("python3"), PathBuf::from);
     let probe = Command::new(&python).args(["-c", "import vtkmodules.vtkIOXML"]).output();
-    if told.is_none() && !probe.is_ok_and(|output| output.status.success()) {
+    if named.is_none() && !probe.is_ok_and(|output| output.status.success()) {
         eprintln!("skipped: python3 has no package vtk, and TRACKBED_PYTHON is not set");
         return;
     }

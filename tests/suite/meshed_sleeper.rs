@@ -390,7 +390,7 @@ fn the_same_bits_on_any_threads() {
 
 /// Stopped while the bed settles, and in the run; on elastic ground by several schemes, and on ground that yields.
 #[test]
-fn stopped_and_taken_up_it_leaves_the_same_bytes() {
+fn stopped_and_continued_it_leaves_the_same_bytes() {
     let folder = Folder::new("meshed_broken");
     let scene = folder.write("scene.toml", &on_a_bed());
     let plastic = [

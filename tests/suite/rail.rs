@@ -61,8 +61,8 @@ fn a_bogie_on_a_beam() {
         let begun = time.iter().position(|t| *t > 0.13).unwrap();
         for k in 1..=3 {
             let [least, most] = extremes(&history.column(&format!("load_{k}")));
-            let told = &summary["track"]["sleepers"][k - 1];
-            let number = |key: &str| told[key].as_f64().unwrap();
+            let record = &summary["track"]["sleepers"][k - 1];
+            let number = |key: &str| record[key].as_f64().unwrap();
             println!(
                 "{speed}, sleeper {k}: {most:.0} N, {:.4} of Winkler's, {:.4} of the static beam's; least {least:.0} N; \
                  energy {energy:.1e}",
@@ -128,7 +128,7 @@ fn two_rails_do_what_one_of_their_sum_does() {
         let apart = loads[0].iter().zip(&loads[1]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!("sleeper {k}: {apart:.1e} N apart of {most:.0} N");
         assert!(apart < 1e-7 * most, "{apart}");
-        let fixed = [&one, &two].map(|run| told(&run.1, k - 1, "static_force"));
+        let fixed = [&one, &two].map(|run| recorded(&run.1, k - 1, "static_force"));
         assert!((fixed[1] / fixed[0] - 1.0).abs() < 1e-9, "{fixed:?}");
     }
 }
@@ -155,7 +155,7 @@ fn rails_go_back_with_a_window_that_is_made_again() {
         println!("{scheme}: {passes} passes, energy {energy:.1e}, pads {sides:?} J");
         assert!(energy < 5e-3, "{energy}");
         assert!((sides[0] - sides[1]).abs() < 1e-9 * sides[0].abs(), "{sides:?}");
-        peaks.push(told(&summary, 0, "largest_force"));
+        peaks.push(recorded(&summary, 0, "largest_force"));
     }
     assert!((peaks[1] / peaks[0] - 1.0).abs() < 0.01, "{peaks:?}");
 }
@@ -279,7 +279,7 @@ ramp = "0 s"
 }
 
 /// Number of a sleeper's record in the summary.
-fn told(summary: &serde_json::Value, k: usize, key: &str) -> f64 {
+fn recorded(summary: &serde_json::Value, k: usize, key: &str) -> f64 {
     let path = format!("/track/sleepers/{k}/{key}");
     summary
         .pointer(&path)
@@ -331,7 +331,8 @@ ramp = "0 s"
     assert!(pulled > 30 && free > 80, "{pulled} {free}");
     let summary = json(&out.join("summary.json"));
     // The pull is that of the weight 4.9 ms after it begins; the springs need a part of their period of 17 ms to let go.
-    let (first, seconds) = (told(&summary, 0, "lifted_off/first"), told(&summary, 0, "lifted_off/seconds"));
+    let (first, seconds) =
+        (recorded(&summary, 0, "lifted_off/first"), recorded(&summary, 0, "lifted_off/seconds"));
     assert!((0.0549..0.062).contains(&first), "{first}");
     // It hardly touches at 0.2 m; from the top it falls to there, and bounces with a fifth of its speed.
     let highest = extremes(&z)[1];
@@ -340,7 +341,7 @@ ramp = "0 s"
     let flight = top + fall - first;
     println!("off at {first:.6} s for {seconds:.6} s, the first flight {flight:.6} s; top {highest:.6} m");
     assert!(seconds > flight - 2e-3 && seconds < flight + 0.6 * fall, "{seconds} {flight}");
-    let rise = told(&summary, 0, "lifted_off/rise");
+    let rise = recorded(&summary, 0, "lifted_off/rise");
     assert!((rise - (highest - (0.2 - 300.0 * 9.81 / BED))).abs() < 2e-5, "{rise}");
     let warnings = summary["warnings"].to_string();
     assert!(warnings.contains(&format!("sleeper 1 was lifted off: from t = {first:.6} s on")), "{warnings}");
@@ -373,10 +374,10 @@ fn a_wave_that_pulls_lifts_a_sleeper_off_stones() {
         let summary = json(&out.join("summary.json"));
         let energy = summary["energy"]["relative_error"].as_f64().unwrap();
         println!("{scheme}: {}, energy {energy:.1e}", summary["track"]["sleepers"][0]["lifted_off"]);
-        assert!(told(&summary, 0, "lifted_off/rise") > 0.01);
+        assert!(recorded(&summary, 0, "lifted_off/rise") > 0.01);
         assert!(summary["warnings"].to_string().contains("sleeper 1 was lifted off: from t = "));
         assert!(energy < 0.01, "{energy}");
-        seconds.push(told(&summary, 0, "lifted_off/seconds"));
+        seconds.push(recorded(&summary, 0, "lifted_off/seconds"));
     }
     assert!((seconds[1] / seconds[0] - 1.0).abs() < 0.02, "{seconds:?}");
 }
@@ -396,13 +397,13 @@ fn refused(scene: &str, old: &str, new: &str, line: &str) {
     assert_eq!(scene.matches(old).count(), 1, "{old}");
     let (folder, file) = written(&scene.replace(old, new));
     folder.write("force.csv", "time, force\n0, 0\n1, 5\n");
-    let told = run(&file, &folder.join("out"), &[]);
-    assert_eq!(told.code, 2, "{}", told.stderr);
-    assert!(told.stderr.contains(line), "{}\n{line}", told.stderr);
+    let outcome = run(&file, &folder.join("out"), &[]);
+    assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+    assert!(outcome.stderr.contains(line), "{}\n{line}", outcome.stderr);
     assert!(!folder.join("out").exists());
     if !line.contains("grain steps") {
         let checked = trackbed([std::path::Path::new("check"), &file]);
-        assert_eq!(checked.stderr, told.stderr);
+        assert_eq!(checked.stderr, outcome.stderr);
     }
     let _: &Folder = &folder;
 }

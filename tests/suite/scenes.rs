@@ -244,8 +244,8 @@ fn vtk_itself_opens_the_results() {
 
 /// An interpreter with the package `vtk`: the one that `TRACKBED_PYTHON` names, or else `python3` if it has it.
 fn python() -> Option<PathBuf> {
-    if let Some(told) = std::env::var_os("TRACKBED_PYTHON") {
-        return Some(told.into());
+    if let Some(path) = std::env::var_os("TRACKBED_PYTHON") {
+        return Some(path.into());
     }
     match Command::new("python3").args(["-c", "import vtkmodules.vtkIOXML"]).output() {
         Ok(output) if output.status.success() => Some("python3".into()),
@@ -375,7 +375,7 @@ fn grains_inside_each_other_are_named() {
 }
 
 #[test]
-fn a_failure_while_settling_is_told() {
+fn a_failure_while_settling_is_reported() {
     let folder = Folder::new("overlap_settling");
     folder.write("scene.toml", &(one_in_the_other() + "\n[deposition]\nmax_time = 0.1\n"));
     fails(&folder, &["grains while settling: ", "body 0 and body 1 overlap"]);

@@ -271,7 +271,7 @@ fn free_beam_has_six_rigid_motions() {
 /// d'Alembert: the surface of a layer moves by 2 [u(t − H/c) − u(t − 3H/c) + …] when its base moves by u. Tolerance 1 %
 /// of the largest motion, at every row.
 #[test]
-fn layer_answers_the_motion_of_its_base() {
+fn layer_responds_to_the_motion_of_its_base() {
     let (_folder, history) = finished("solid/base_motion/scene.toml", &["output.vtk=false"]);
     let pulse = |t: f64| if (0.0..0.1).contains(&t) { 0.01 * (PI * t / 0.1).sin().powi(4) } else { 0.0 };
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

@@ -60,7 +60,7 @@ fn drum_lifts_its_bed() {
     assert!((work / (-all * 2.0 * 0.6) - 1.0).abs() < 0.2, "{work} against {all} N m times 1.2 rad");
 }
 
-/// The plate of the oedometer carries what it is told, within one per cent where the target rests.
+/// The plate of the oedometer carries what is prescribed, within one per cent where the target rests.
 #[test]
 fn oedometer_follows_its_programme() {
     let out = Folder::new("servo");

@@ -11,10 +11,10 @@ use trackbed_fem as fem;
 const SPHERE_MASS: f64 = 1.0;
 const BLOCK_MASS: f64 = 20.0;
 const SIDE: f64 = 0.2;
-/// Soft enough that the hit lasts about 50 periods of the block's lowest vibration.
+/// Soft enough that the impact lasts about 50 periods of the block's lowest vibration.
 const STIFFNESS: f64 = 1e6;
 
-struct Hit<'a> {
+struct Impact<'a> {
     coupled: Coupled<'a>,
     /// Linear and angular momentum of both, about the origin.
     momentum: (Vec3, Vec3),
@@ -62,8 +62,8 @@ fn momentum(c: &Coupled) -> (Vec3, Vec3) {
     (grains.linear + Vec3::from(linear), grains.angular + Vec3::from(angular))
 }
 
-impl<'a> Hit<'a> {
-    fn new(solid: &'a fem::Model, offset: f64, speed: f64, substeps: u32, dt: f64) -> Hit<'a> {
+impl<'a> Impact<'a> {
+    fn new(solid: &'a fem::Model, offset: f64, speed: f64, substeps: u32, dt: f64) -> Impact<'a> {
         let sphere = dem::BodyInput {
             position: Vec3::new(0.5 * SIDE + offset, 0.5 * SIDE, 0.03 + 1e-5 * speed),
             velocity: Vec3::new(0.0, 0.0, -speed),
@@ -73,7 +73,7 @@ impl<'a> Hit<'a> {
         let coupled = on_cube(solid, 0.0, vec![sphere], (substeps, dt));
         let momentum = momentum(&coupled);
         let energy = step::stored(&coupled.model, &coupled.state).total();
-        Hit { coupled, momentum, energy, geometric: Vec3::zeros() }
+        Impact { coupled, momentum, energy, geometric: Vec3::zeros() }
     }
 
     /// Advances until the sphere has left and 20 % longer.
@@ -120,7 +120,7 @@ impl<'a> Hit<'a> {
         (now + spent.dissipated() - self.energy).abs() / self.energy
     }
 
-    /// Energy of the block beyond that of a rigid body with its momentum, over the energy of the hit.
+    /// Energy of the block beyond that of a rigid body with its momentum, over the energy of the impact.
     fn vibration(&self) -> f64 {
         let stored = step::stored(&self.coupled.model, &self.coupled.state);
         let (p, _) = fem::energy::momentum(self.coupled.model.solid, &self.coupled.state.solid);
@@ -129,25 +129,25 @@ impl<'a> Hit<'a> {
     }
 }
 
-/// Central hit: momentum to 1e-10; sphere's speed after within 0.5 % of (m − M)/(m + M), the rigid
+/// Central impact: momentum to 1e-10; sphere's speed after within 0.5 % of (m − M)/(m + M), the rigid
 /// limit of an elastic contact; less than 1 % of the energy stays in the block as vibration; energy to 1e-5.
 #[test]
-fn central_hit_keeps_momentum_and_energy() {
+fn central_impact_keeps_momentum_and_energy() {
     let solid = cube();
-    let mut hit = Hit::new(&solid, 0.0, 1.0, 1, 5e-6);
-    hit.run();
-    let (linear, _, _) = hit.drift();
-    let after = -hit.sphere().z;
+    let mut impact = Impact::new(&solid, 0.0, 1.0, 1, 5e-6);
+    impact.run();
+    let (linear, _, _) = impact.drift();
+    let after = -impact.sphere().z;
     let rigid = (SPHERE_MASS - BLOCK_MASS) / (SPHERE_MASS + BLOCK_MASS);
     println!(
         "momentum drift {linear:.1e}, sphere {after:.5} against {rigid:.5} m/s, vibration {:.2e}, energy error {:.1e}",
-        hit.vibration(),
-        hit.energy_error()
+        impact.vibration(),
+        impact.energy_error()
     );
     assert!(linear < 1e-10);
     assert!((after / rigid - 1.0).abs() < 0.005);
-    assert!(hit.vibration() < 0.01);
-    assert!(hit.energy_error() < 1e-5);
+    assert!(impact.vibration() < 0.01);
+    assert!(impact.energy_error() < 1e-5);
 }
 
 /// Off centre by d = 0.06 m: impulse J = (1 + e) v/(1/m + 1/M + d²/I) within 1 %.
@@ -156,16 +156,16 @@ fn central_hit_keeps_momentum_and_energy() {
 /// contact point that has moved by u gives it the moment of the undeformed point. What is missing, ∫ u × F dt, is
 /// known and is checked to 1e-8 at v = 1 m/s; at 1 µm/s, where u vanishes, the plain sum holds to 1e-8.
 #[test]
-fn off_centre_hit_keeps_angular_momentum() {
+fn off_centre_impact_keeps_angular_momentum() {
     let solid = cube();
     let d = 0.06;
     let inertia = BLOCK_MASS * SIDE * SIDE / 6.0;
     for (speed, plain) in [(1.0, 1e-3), (1e-6, 1e-8)] {
-        let mut hit = Hit::new(&solid, d, speed, 1, 5e-6);
-        hit.run();
-        let impulse = SPHERE_MASS * (hit.sphere().z + speed);
+        let mut impact = Impact::new(&solid, d, speed, 1, 5e-6);
+        impact.run();
+        let impulse = SPHERE_MASS * (impact.sphere().z + speed);
         let exact = 2.0 * speed / (1.0 / SPHERE_MASS + 1.0 / BLOCK_MASS + d * d / inertia);
-        let (linear, angular, with_geometry) = hit.drift();
+        let (linear, angular, with_geometry) = impact.drift();
         println!(
             "v = {speed} m/s: impulse/exact - 1 = {:.1e}, momentum {linear:.1e}, angular momentum {angular:.1e}, with u x F {with_geometry:.1e}",
             impulse / exact - 1.0
@@ -181,13 +181,13 @@ fn off_centre_hit_keeps_angular_momentum() {
 fn energy_drift_with_sub_stepping_is_small() {
     let solid = cube();
     for (substeps, bound) in [(1, 2e-6), (10, 2e-6), (100, 1e-4)] {
-        let mut hit = Hit::new(&solid, 0.0, 1.0, substeps, 2e-6);
-        hit.run();
-        let error = hit.energy_error();
-        let interface = step::spent(&hit.coupled.state).interface() / hit.energy;
+        let mut impact = Impact::new(&solid, 0.0, 1.0, substeps, 2e-6);
+        impact.run();
+        let error = impact.energy_error();
+        let interface = step::spent(&impact.coupled.state).interface() / impact.energy;
         println!("{substeps} sub-steps: energy error {error:.2e}, of it at the interface {interface:.2e}");
         assert!(error < bound);
-        assert!(hit.drift().0 < 1e-10);
+        assert!(impact.drift().0 < 1e-10);
     }
 }
 
@@ -291,7 +291,7 @@ fn the_surface_speeds_up_within_a_lagged_window() {
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
 
-/// A block that is hit from below leaps within its window, further than its velocity told: a sphere just above its top is touched
+/// A block that is struck from below leaps within its window, further than its velocity predicts: a sphere just above its top is touched
 /// from the first sub-step of the next window on.
 #[test]
 fn a_surface_that_leaps_is_touched_at_once() {
@@ -314,7 +314,7 @@ fn a_surface_that_leaps_is_touched_at_once() {
 }
 
 /// The prediction of the stiffened scheme knows how a stone slides and spins: a block under a sphere that turns on it, or is dragged
-/// over it, goes where it was told to, a thousand times closer than with its present velocity.
+/// over it, goes where it was predicted to, a thousand times closer than with its present velocity.
 #[test]
 fn the_stiffened_prediction_knows_slip_and_spin() {
     let solid = cube();
@@ -336,18 +336,18 @@ fn the_stiffened_prediction_knows_slip_and_spin() {
             c.step(&[]);
             step::spent(&c.state).interface() - before
         };
-        let (told, present) = (missed(Scheme::Stiffened), missed(Scheme::Predicted));
+        let (stiffened, present) = (missed(Scheme::Stiffened), missed(Scheme::Predicted));
         println!(
-            "velocity {velocity:?}, spin {spin:?}: interface {told:.2e} J stiffened, {present:.2e} J predicted"
+            "velocity {velocity:?}, spin {spin:?}: interface {stiffened:.2e} J stiffened, {present:.2e} J predicted"
         );
-        assert!(told.abs() < 1e-3 * present.abs(), "{told} {present}");
+        assert!(stiffened.abs() < 1e-3 * present.abs(), "{stiffened} {present}");
     }
 }
 
 /// A grain that is taken out while it touches the solid loads it no more, under any scheme: one of two like spheres that are
 /// pressed in leaves half of the force.
 #[test]
-fn a_grain_taken_out_loads_the_solid_no_more() {
+fn a_removed_grain_loads_the_solid_no_more() {
     let solid = cube();
     let iterated = Scheme::Iterated { tolerance: 1e-9, passes: 30 };
     for scheme in [Scheme::Predicted, Scheme::Lagged, Scheme::Stiffened, iterated] {

@@ -47,8 +47,8 @@ fn plate(width: f64) -> fem::Model {
     .expect("a valid plate")
 }
 
-/// Restitution and peak force over m v/T of one hit that lasts about `duration` times T.
-fn hit(lambda: f64, duration: f64) -> (f64, f64) {
+/// Restitution and peak force over m v/T of one impact that lasts about `duration` times T.
+fn impact(lambda: f64, duration: f64) -> (f64, f64) {
     let (d, impedance) = bending();
     let mass = lambda * UNIT * 8.0 * impedance;
     let stiffness = mass / (UNIT.powf(2.5) * SPEED.sqrt());
@@ -112,7 +112,7 @@ const TABLE: [(f64, f64, f64, f64); 5] = [
 
 fn check(rows: &[(f64, f64, f64, f64)]) {
     for &(lambda, restitution, peak, duration) in rows {
-        let found = hit(lambda, duration);
+        let found = impact(lambda, duration);
         println!(
             "lambda {lambda}: e {:.4}, reference {restitution} ({:+.4}); peak {:.4}, reference {peak} ({:+.2} %)",
             found.0,

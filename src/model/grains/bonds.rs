@@ -299,6 +299,22 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
     };
     let between =
         table.between.as_ref().map(|[a, b]| Ok::<_, SceneError>([find(a)?, find(b)?])).transpose()?;
+    let source = source(document, i, table, between.is_some(), part)?;
+    let spread = spread(document, i, table)?;
+    let regions = regions(document, i, table)?;
+    let (seed, together) = table.spread.as_ref().map_or((1, false), |s| (s.seed.unwrap_or(1), s.together));
+    Ok(Rule { between, source, spread, seed, together, regions })
+}
+
+/// Which pairs a table joins; `between` is whether it names two groups.
+fn source(
+    document: &Document,
+    i: usize,
+    table: &BondTable,
+    between: bool,
+    part: &GrainsPart,
+) -> Result<Source, Failure> {
+    let key = |k: &str| format!("bond.{i}.{k}");
     let named = part.bonds.stones.iter().any(|(_, kind)| *kind == i);
     let source = match (&table.gap, &table.pairs) {
         (Some(gap), None) => {
@@ -310,7 +326,7 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
                 let expected = "no such key beside deposition.level, which takes grains away";
                 return Err(document.error(&key("pairs"), "a file", expected).into());
             }
-            if between.is_some() {
+            if between {
                 return Err(document
                     .error(&key("between"), "two groups", "no such key beside `pairs`")
                     .into());
@@ -318,7 +334,7 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
             Source::Pairs(tables::pairs(&document.resolve(file), part.bodies.len())?)
         }
         (None, None) if named => {
-            if between.is_some() {
+            if between {
                 let expected = "a `gap` beside it, or no such key for the bonds of stones";
                 return Err(document.error(&key("between"), "two groups", expected).into());
             }
@@ -333,49 +349,46 @@ fn rule(document: &Document, i: usize, table: &BondTable, part: &GrainsPart) -> 
         let expected = "no such key for a bond that stones are made with";
         return Err(document.error(&key("gap"), "a rule", expected).into());
     }
-    let spread = match &table.spread {
-        None => Spread::Constant,
-        Some(s) => match (s.kind, s.deviation, s.modulus) {
-            (SpreadKind::Normal, Some(deviation), None) => {
-                check(
-                    document,
-                    &key("spread.deviation"),
-                    Some(deviation),
-                    |d| d > 0.0 && d <= 10.0,
-                    "above 0, at most 10",
-                )?;
-                Spread::Normal { deviation }
-            }
-            (SpreadKind::Weibull, None, Some(modulus)) => {
-                check(
-                    document,
-                    &key("spread.modulus"),
-                    Some(modulus),
-                    |m| m > 0.05 && m <= 1e3,
-                    "above 0.05, at most 1000",
-                )?;
-                Spread::Weibull { modulus }
-            }
-            _ => {
-                let expected = "`deviation` for `normal`, `modulus` for `weibull`";
-                return Err(document.error(&key("spread"), "other keys", expected).into());
-            }
-        },
-    };
+    Ok(source)
+}
+
+/// How strengths vary from bond to bond.
+fn spread(document: &Document, i: usize, table: &BondTable) -> Result<Spread, SceneError> {
+    let key = |k: &str| format!("bond.{i}.{k}");
+    let Some(s) = &table.spread else { return Ok(Spread::Constant) };
+    match (s.kind, s.deviation, s.modulus) {
+        (SpreadKind::Normal, Some(deviation), None) => {
+            let key = key("spread.deviation");
+            check(document, &key, Some(deviation), |d| d > 0.0 && d <= 10.0, "above 0, at most 10")?;
+            Ok(Spread::Normal { deviation })
+        }
+        (SpreadKind::Weibull, None, Some(modulus)) => {
+            let key = key("spread.modulus");
+            check(document, &key, Some(modulus), |m| m > 0.05 && m <= 1e3, "above 0.05, at most 1000")?;
+            Ok(Spread::Weibull { modulus })
+        }
+        _ => {
+            let expected = "`deviation` for `normal`, `modulus` for `weibull`";
+            Err(document.error(&key("spread"), "other keys", expected))
+        }
+    }
+}
+
+/// Boxes in which bonds are weaker or stronger.
+fn regions(document: &Document, i: usize, table: &BondTable) -> Result<Vec<Region>, SceneError> {
     let mut regions = Vec::new();
     for (k, r) in table.region.iter().enumerate() {
         let key = |name: &str| format!("bond.{i}.region.{k}.{name}");
         let (low, high) = (Vec3::from(vector(&r.low)), Vec3::from(vector(&r.high)));
         if (0..3).any(|d| low[d] >= high[d]) {
-            return Err(document.error(&key("high"), "a corner not above `low`", "low < high").into());
+            return Err(document.error(&key("high"), "a corner not above `low`", "low < high"));
         }
         check(document, &key("strength"), r.strength, |f| f > 0.0, "above 0")?;
         check(document, &key("stiffness"), r.stiffness, |f| f > 0.0, "above 0")?;
         let (strength, stiffness) = (r.strength.unwrap_or(1.0), r.stiffness.unwrap_or(1.0));
         regions.push(Region { low, high, strength, stiffness });
     }
-    let (seed, together) = table.spread.as_ref().map_or((1, false), |s| (s.seed.unwrap_or(1), s.together));
-    Ok(Rule { between, source, spread, seed, together, regions })
+    Ok(regions)
 }
 
 /// Refuses rules that join nothing in the bodies that a run starts with.

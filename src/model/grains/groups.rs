@@ -215,17 +215,17 @@ pub(super) struct Sampled {
     pub scale: f64,
 }
 
-/// Adds the shapes of a group of `count` grains and draws their sizes; `asked` says what the count is. A group with a
+/// Adds the shapes of a group of `count` grains and draws their sizes; `expected` says what the count is. A group with a
 /// gradation is noted, so that the run tells how its grains meet the curve.
 pub(super) fn sampled(
     document: &Document,
     index: usize,
     group: &Grains,
     part: &mut GrainsPart,
-    asked: &str,
+    expected: &str,
 ) -> Result<Vec<Sampled>, Failure> {
     let key = format!("grains.{index}.count");
-    let count = group.count.ok_or_else(|| document.error(&key, "nothing", asked))?;
+    let count = group.count.ok_or_else(|| document.error(&key, "nothing", expected))?;
     check(document, &key, Some(count as f64), |n| (1.0..=1e7).contains(&n), "1 to 10000000")?;
     let first = part.shapes.len();
     let unit_scale = shapes(document, index, group, part)?;

@@ -96,33 +96,9 @@ pub(super) fn scattered(
     let mean_volume = source.mean_cube() * unit_volume.iter().sum::<f64>() / unit_volume.len() as f64;
 
     let growth = group.growth.as_ref().map(|g| growth(document, index, g)).transpose()?;
-    check(document, &key("concentration"), group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
-    let share = match (&growth, group.concentration) {
-        (Some(_), Some(_)) => {
-            return Err(document
-                .error(&key("concentration"), "a value", "no such key beside `growth`")
-                .into());
-        }
-        (Some((porosity, _)), None) => Some(1.0 - porosity),
-        (None, share) => share,
-    };
-    let count = match (group.count, share) {
-        (Some(_), Some(_)) if growth.is_none() => {
-            return Err(document
-                .error(&key("count"), "a value", "no such key beside `concentration`")
-                .into());
-        }
-        (Some(count), _) => count as f64,
-        (None, Some(share)) => (share * volume / mean_volume).round(),
-        (None, None) => {
-            let expected = "`count`, `concentration` or `growth`";
-            return Err(document.error(&key("count"), "nothing", expected).into());
-        }
-    };
-    if !(1.0..=MOST).contains(&count) {
-        return Err(document.error(&key("count"), format!("{count} grains"), "1 to 10000000").into());
-    }
-    let mut sizes = source.sample(count as usize, group.seed);
+    let porosity = growth.as_ref().map(|g| g.0);
+    let count = count(document, index, group, porosity, [volume, mean_volume])?;
+    let mut sizes = source.sample(count, group.seed);
     let dealt = deal(&sizes, unit_scale.len());
     let (mut start, mut factor) = (1.0, 1.0);
     if let Some((porosity, _)) = &growth {
@@ -159,6 +135,40 @@ pub(super) fn scattered(
         part.graded.push(GradedGroup { part: model.part, name: group.name.clone(), grading });
     }
     Ok(())
+}
+
+/// Number of grains of a group in a container, whose volume and the mean volume of a grain are `volumes` [m³]; `porosity` is that which they grow to.
+fn count(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    porosity: Option<f64>,
+    volumes: [f64; 2],
+) -> Result<usize, SceneError> {
+    let key = |k: &str| format!("grains.{index}.{k}");
+    check(document, &key("concentration"), group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
+    let share = match (porosity, group.concentration) {
+        (Some(_), Some(_)) => {
+            return Err(document.error(&key("concentration"), "a value", "no such key beside `growth`"));
+        }
+        (Some(porosity), None) => Some(1.0 - porosity),
+        (None, share) => share,
+    };
+    let count = match (group.count, share) {
+        (Some(_), Some(_)) if porosity.is_none() => {
+            return Err(document.error(&key("count"), "a value", "no such key beside `concentration`"));
+        }
+        (Some(count), _) => count as f64,
+        (None, Some(share)) => (share * volumes[0] / volumes[1]).round(),
+        (None, None) => {
+            let expected = "`count`, `concentration` or `growth`";
+            return Err(document.error(&key("count"), "nothing", expected));
+        }
+    };
+    if !(1.0..=MOST).contains(&count) {
+        return Err(document.error(&key("count"), format!("{count} grains"), "1 to 10000000"));
+    }
+    Ok(count as usize)
 }
 
 fn growth(document: &Document, index: usize, g: &GrowthSource) -> Result<(f64, Growth), SceneError> {

@@ -110,36 +110,8 @@ fn shape(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, Fa
             direction(document, &key("normal"), normal)?;
             WallShape::Plane { point: Vec3::from(vector(&point)), normal: Vec3::from(normal) }
         }
-        WallKind::Triangles => {
-            let expected = "the vertices and triangles of the wall";
-            let vertices = wall.vertices.as_ref().ok_or_else(|| missing("vertices", expected))?;
-            let triangles = wall.triangles.clone().ok_or_else(|| missing("triangles", expected))?;
-            if let Some(bad) = triangles.iter().flatten().find(|v| **v as usize >= vertices.len()) {
-                let expected = format!("0 to {}", vertices.len().max(1) - 1);
-                return Err(document.error(&key("triangles"), format!("vertex {bad}"), expected).into());
-            }
-            WallShape::Triangles {
-                vertices: vertices.iter().map(|v| Vec3::from(vector(v))).collect(),
-                triangles,
-            }
-        }
-        WallKind::Mesh => {
-            let file = wall
-                .file
-                .as_ref()
-                .ok_or_else(|| missing("file", "a surface file: .stl, .obj, or a plain list"))?;
-            let scale = wall.scale.unwrap_or(1.0);
-            check(document, &key("scale"), Some(scale), |s| s > 0.0, "above 0")?;
-            let shift = wall.translation.map_or(Vec3::zeros(), |t| Vec3::from(vector(&t)));
-            let surface = read_surface(&document.resolve(file))?;
-            let vertices: Vec<Vec3> =
-                surface.vertices.iter().map(|v| Vec3::from(*v) * scale + shift).collect();
-            let triangles = with_area(&vertices, surface.triangles);
-            if triangles.is_empty() {
-                return Err(document.error(&key("file"), "no triangle with an area", "at least one").into());
-            }
-            WallShape::Triangles { vertices, triangles }
-        }
+        WallKind::Triangles => triangles(document, index, wall)?,
+        WallKind::Mesh => mesh(document, index, wall)?,
         WallKind::Cylinder => {
             let (radius, height) = (radius()?, height()?);
             above("radius", radius)?;
@@ -151,15 +123,7 @@ fn shape(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, Fa
             let radii =
                 wall.radii.ok_or_else(|| missing("radii", "the radii of the two ends"))?.map(|r| r.si);
             let height = height()?;
-            check(document, &key("height"), Some(height), |h| h >= 0.0, "0 or more")?;
-            for r in radii {
-                check(document, &key("radii"), Some(r), |r| r >= 0.0, "0 or more")?;
-            }
-            let area = radii[0].max(radii[1]) > 0.0 && (height > 0.0 || radii[0] != radii[1]);
-            if !area {
-                let found = format!("[{}, {}]", radii[0], radii[1]);
-                return Err(document.error(&key("radii"), found, "radii that give the cone an area").into());
-            }
+            check_cone(document, index, radii, height)?;
             WallShape::Frustum {
                 base: base()?,
                 axis: axis()?,
@@ -174,6 +138,52 @@ fn shape(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, Fa
             WallShape::Sphere { centre: base()?, radius }
         }
     })
+}
+
+/// A wall of triangles in the scene.
+fn triangles(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, SceneError> {
+    let key = |k: &str| format!("walls.{index}.{k}");
+    let missing = |k: &str| document.error(&key(k), "nothing", "the vertices and triangles of the wall");
+    let vertices = wall.vertices.as_ref().ok_or_else(|| missing("vertices"))?;
+    let triangles = wall.triangles.clone().ok_or_else(|| missing("triangles"))?;
+    if let Some(bad) = triangles.iter().flatten().find(|v| **v as usize >= vertices.len()) {
+        let expected = format!("0 to {}", vertices.len().max(1) - 1);
+        return Err(document.error(&key("triangles"), format!("vertex {bad}"), expected));
+    }
+    Ok(WallShape::Triangles { vertices: vertices.iter().map(|v| Vec3::from(vector(v))).collect(), triangles })
+}
+
+/// A wall from a file.
+fn mesh(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, Failure> {
+    let key = |k: &str| format!("walls.{index}.{k}");
+    let Some(file) = &wall.file else {
+        let expected = "a surface file: .stl, .obj, or a plain list";
+        return Err(document.error(&key("file"), "nothing", expected).into());
+    };
+    let scale = wall.scale.unwrap_or(1.0);
+    check(document, &key("scale"), Some(scale), |s| s > 0.0, "above 0")?;
+    let shift = wall.translation.map_or(Vec3::zeros(), |t| Vec3::from(vector(&t)));
+    let surface = read_surface(&document.resolve(file))?;
+    let vertices: Vec<Vec3> = surface.vertices.iter().map(|v| Vec3::from(*v) * scale + shift).collect();
+    let triangles = with_area(&vertices, surface.triangles);
+    if triangles.is_empty() {
+        return Err(document.error(&key("file"), "no triangle with an area", "at least one").into());
+    }
+    Ok(WallShape::Triangles { vertices, triangles })
+}
+
+/// Refuses a cone without an area.
+fn check_cone(document: &Document, index: usize, radii: [f64; 2], height: f64) -> Result<(), SceneError> {
+    let key = |k: &str| format!("walls.{index}.{k}");
+    check(document, &key("height"), Some(height), |h| h >= 0.0, "0 or more")?;
+    for r in radii {
+        check(document, &key("radii"), Some(r), |r| r >= 0.0, "0 or more")?;
+    }
+    if radii[0].max(radii[1]) > 0.0 && (height > 0.0 || radii[0] != radii[1]) {
+        return Ok(());
+    }
+    let found = format!("[{}, {}]", radii[0], radii[1]);
+    Err(document.error(&key("radii"), found, "radii that give the cone an area"))
 }
 
 /// Triangles that have an area; files hold some without, which nothing can touch that does not touch their neighbours.

@@ -1,6 +1,6 @@
 //! How the solid is solved, resolved.
 
-use super::check;
+use super::common::check;
 use super::material::Materials;
 use crate::scene::solid::{
     Dynamics, InitialStress as SceneInitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant,

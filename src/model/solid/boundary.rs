@@ -1,7 +1,8 @@
 //! Supports and absorbing boundaries of the solid, resolved.
 
+use super::common::{check, time_function};
 use super::geometry::Geometry;
-use super::{check, selection, time_function};
+use super::selection;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::Solid;
 use crate::scene::{Document, SceneError};

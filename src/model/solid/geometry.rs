@@ -1,6 +1,6 @@
 //! The mesh of a scene's solid: read from files, or made on the spot.
 
-use super::check;
+use super::common::check;
 use crate::failure::Failure;
 use crate::read::{self, MeshFile};
 use crate::scene::solid::{Axis, Block, Order, Solid};

@@ -1,7 +1,8 @@
 //! Loads on the solid, resolved to nodal forces with a course in time.
 
+use super::common::time_function;
 use super::geometry::Geometry;
-use super::{selection, time_function};
+use super::selection;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::{SolidLoad, SolidLoadKind};
 use crate::scene::units::vector;

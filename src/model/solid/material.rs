@@ -32,7 +32,7 @@ pub fn materials(document: &Document, solid: &Solid) -> Result<Materials, SceneE
         let name = if m.name.is_empty() { format!("material {}", m.id) } else { m.name.clone() };
         materials.names.insert(m.id, name);
         if let Some(k0) = m.k0 {
-            super::check(document, &key("k0"), k0, k0 >= 0.0 && k0.is_finite(), "0 or more")?;
+            super::common::check(document, &key("k0"), k0, k0 >= 0.0 && k0.is_finite(), "0 or more")?;
             materials.k0.insert(m.id, k0);
         }
     }

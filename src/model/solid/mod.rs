@@ -2,6 +2,7 @@
 
 mod analysis;
 mod boundary;
+mod common;
 mod geometry;
 mod load;
 mod material;
@@ -19,12 +20,12 @@ pub use sleepers::SleeperBodies;
 
 use crate::failure::Failure;
 use crate::mesh_tools;
-use crate::model::tables;
 use crate::model::track::sleeper::MeshedSleepers;
 use crate::read::MeshFile;
-use crate::scene::history::{History, TimeFunction};
+use crate::scene::history::TimeFunction;
 use crate::scene::solid::{Integration, Mass, Rayleigh, ReductionKind, Solid};
 use crate::scene::{Document, SceneError};
+use common::check;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trackbed_fem as fem;
@@ -279,27 +280,6 @@ fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
         other => ("mesh".into(), other.to_string(), "a mesh that makes a model"),
     };
     SceneError { file: elements.to_path_buf(), line: None, key, found, expected: expected.into() }
-}
-
-fn check(document: &Document, key: &str, value: f64, good: bool, expected: &str) -> Result<(), SceneError> {
-    if good { Ok(()) } else { Err(document.error(key, value.to_string(), expected)) }
-}
-
-/// Resolves the `history` of the table at `path`.
-fn time_function(
-    document: &Document,
-    path: &str,
-    history: Option<&History>,
-) -> Result<TimeFunction, SceneError> {
-    match history {
-        None => Ok(TimeFunction::CONSTANT),
-        Some(h) => {
-            let rows = h.file.as_ref().map(|f| tables::history(&document.resolve(f))).transpose()?;
-            TimeFunction::new(h, rows).map_err(|(k, found, expected)| {
-                document.error(&format!("{path}.history.{k}"), found, expected)
-            })
-        }
-    }
 }
 
 fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::damping::Rayleigh, SceneError> {

@@ -1,7 +1,7 @@
 //! Meshed sleepers: bodies of 20-node hexahedra behind the ground in the solid's mesh, joined to nothing.
 //!
 //! They wait above the ground until the bed is made, and are then set down on it: matrices do not depend on a body's
-//! place. All sleepers of a scene are alike and numbered alike, so that what is told of the nodes of one holds for all.
+//! place. All sleepers of a scene are alike and numbered alike, so that what holds for the nodes of one does for all.
 
 use crate::model::track::sleeper::MeshedSleepers;
 use std::collections::BTreeMap;
@@ -339,9 +339,9 @@ mod tests {
         (bodies, mesh)
     }
 
-    /// A rigid motion, and a parabola, are told exactly, whatever the grid and for each sleeper.
+    /// A rigid motion, and a parabola, are measured exactly, whatever the grid and for each sleeper.
     #[test]
-    fn motions_are_told() {
+    fn motions_are_measured_exactly() {
         for elements in [[6, 2, 1], [7, 1, 2], [1, 1, 1]] {
             let (bodies, mesh) = on_a_block(elements);
             for k in 0..2 {

@@ -196,8 +196,8 @@ fn refuse_company(document: &Document, scene: &Scene, track: &Track) -> Result<(
 fn symmetric(document: &Document, s: &Sleeper) -> Result<[bool; 2], SceneError> {
     let held = held(s);
     let [x, y] = [[0, 4, 5], [1, 3, 5]].map(|plane: [usize; 3]| plane.iter().all(|&k| held[k]));
-    let told = [x, y, false, y, x, x || y];
-    if held == told {
+    let of_planes = [x, y, false, y, x, x || y];
+    if held == of_planes {
         return Ok([x, y]);
     }
     let names = ["x", "y", "z", "rx", "ry", "rz"];

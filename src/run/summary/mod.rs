@@ -1,10 +1,8 @@
 //! `summary.json`: what a run did, how well its accounts close, and what it found.
 
-mod hash;
 mod records;
 mod report;
 
-pub use hash::Hash;
 pub use records::*;
 
 use super::flow::FlowRecord;

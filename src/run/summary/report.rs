@@ -16,7 +16,7 @@ impl Summary {
         self.report_settlement(&mut lines);
         self.report_track(&mut lines);
         lines.extend(self.flow.iter().flat_map(FlowRecord::report));
-        lines.extend(packing::report(self));
+        lines.extend(packing::report(&self.growth, &self.compaction, self.packing.as_ref()));
         lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
         lines.join("\n") + "\n"
     }

@@ -80,14 +80,14 @@ def body(order, name, version, binary):
 
 
 if __name__ == "__main__":
-    told = {}
+    found = {}
     for order in (1, 2):
         for version, short in ((2.2, "2"), (4.1, "4")):
             for binary in (0, 1):
                 name = f"gmsh{short}_order{order}" + ("_binary" if binary else "")
                 volumes = body(order, name, version, binary)
-                told.setdefault(f"order{order}", volumes)
-                assert told[f"order{order}"] == volumes
+                found.setdefault(f"order{order}", volumes)
+                assert found[f"order{order}"] == volumes
     with open("gmsh_volumes.json", "w") as out:
-        json.dump(told, out, indent=0)
+        json.dump(found, out, indent=0)
         out.write("\n")

@@ -1,6 +1,6 @@
 //! `[track.jump]`, `[track.push]` and `track.bed_stiffness` resolved.
 
-use super::grains::{GrainsPart, check};
+use super::{GrainsPart, check};
 use crate::scene::after::{CycleJump, JumpMethod, Push};
 use crate::scene::track::Track;
 use crate::scene::{Document, SceneError};

@@ -1,4 +1,4 @@
-//! A hash of what a run is of.
+//! A hash of texts, for checkpoints and for the identity of a scene.
 
 /// 64-bit FNV-1a hash (Fowler, Noll, Vo) of a sequence of texts.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +11,7 @@ impl Default for Hash {
 }
 
 impl Hash {
-    /// Takes in some bytes.
+    /// Adds some bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);

@@ -1,4 +1,4 @@
-//! When a checkpoint is due: after an interval of the clock, and when the user interrupts the run.
+//! Checkpoints of a run, written when they are due: after an interval of the clock, and when the user interrupts the run.
 
 use super::checkpoint::{Body, Moment, Slots};
 use crate::failure::Failure;
@@ -49,7 +49,7 @@ const LOOK: Duration = Duration::from_millis(2);
 const STRIDE: u32 = 1024;
 
 /// Writes the checkpoints of a run when they are due.
-pub struct Keeper {
+pub struct CheckpointStore {
     slots: RefCell<Slots>,
     interrupt: Interrupt,
     interval: Duration,
@@ -62,11 +62,11 @@ pub struct Keeper {
     command: String,
 }
 
-impl Keeper {
-    /// A keeper that writes about every `interval`; `command` is what continues the run.
-    pub fn new(slots: Slots, interrupt: Interrupt, interval: Duration, command: String) -> Keeper {
+impl CheckpointStore {
+    /// A store that is written about every `interval`; `command` is what continues the run.
+    pub fn new(slots: Slots, interrupt: Interrupt, interval: Duration, command: String) -> CheckpointStore {
         let now = Cell::new(Instant::now());
-        Keeper {
+        CheckpointStore {
             slots: RefCell::new(slots),
             interrupt,
             interval,
@@ -79,7 +79,7 @@ impl Keeper {
         }
     }
 
-    /// Begins a stage that asks [`Keeper::step`] after every step.
+    /// Begins a stage that calls [`CheckpointStore::step`] after every step.
     pub fn begin(&self) {
         self.interrupt.at_once.store(false, Ordering::Relaxed);
     }
@@ -89,10 +89,10 @@ impl Keeper {
         self.interrupt.at_once.store(true, Ordering::Relaxed);
     }
 
-    /// After a step: writes a checkpoint if one is due. `moment` tells where the run is, `fill` puts its state in.
+    /// After a step: writes a checkpoint if one is due. `moment` is where the run is, `fill` puts its state in.
     ///
     /// # Errors
-    /// [`Failure::Interrupted`] after the checkpoint that an interrupt asks for; what the system refuses.
+    /// [`Failure::Interrupted`] after the checkpoint that an interrupt requests; what the system refuses.
     #[inline]
     pub fn step(
         &self,
@@ -112,7 +112,7 @@ impl Keeper {
     /// After a step of a stage that only starts again from its beginning, where a checkpoint was written.
     ///
     /// # Errors
-    /// [`Failure::Interrupted`] when an interrupt asks for it.
+    /// [`Failure::Interrupted`] when an interrupt requests it.
     #[inline]
     pub fn check(&self, stage: &str) -> Result<(), Failure> {
         if !self.stopped() {

@@ -1,10 +1,14 @@
 //! Factor of safety of a solid by strength reduction.
 
-use super::summary::{SafetyRecord, StageRecord, Summary, TrialRecord};
-use super::{Stage, frames, initial, system::SolidView};
+use super::stage::{RunState, Stage};
 use crate::failure::Failure;
-use crate::model::solid::{SolidPart, StrengthReductionPlan};
+use crate::model::Job;
+use crate::model::solid::{Analysis, SolidPart, StrengthReductionPlan};
 use crate::progress::Progress;
+use crate::run::context::Run;
+use crate::run::summary::{SafetyRecord, StageRecord, Summary, TrialRecord};
+use crate::run::system::SolidView;
+use crate::run::{frames, initial};
 use crate::write::csv::{Field, write_table};
 use std::time::Instant;
 use trackbed_fem::nonlinear::strength_reduction::{self, Trial};
@@ -18,12 +22,46 @@ const TRIALS: [Field<Trial>; 5] = [
     ("largest_displacement", "m", |t| t.largest_displacement),
 ];
 
+/// Search for the factor of safety.
+pub struct StrengthReduction;
+
+/// The plan of a scene that has one.
+fn plan_of(job: &Job) -> Option<(&SolidPart, &StrengthReductionPlan)> {
+    let solid = job.solid.as_ref().filter(|_| job.grains.is_none())?;
+    match &solid.analysis {
+        Analysis::StrengthReduction(plan) => Some((solid, plan)),
+        _ => None,
+    }
+}
+
+impl Stage for StrengthReduction {
+    fn name(&self) -> Option<&'static str> {
+        Some("strength reduction")
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        plan_of(job).is_some()
+    }
+
+    fn report(&self, job: &Job, _: f64) -> Vec<String> {
+        let line = |(_, plan): (&SolidPart, &StrengthReductionPlan)| {
+            format!("strength reduction: from the factor {} on, to within {}", plan.start, plan.tolerance)
+        };
+        plan_of(job).map(line).into_iter().collect()
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let Some((solid, plan)) = plan_of(run.job) else { return Ok(()) };
+        bracket(run, solid, plan, &mut state.summary)
+    }
+}
+
 /// Brackets the factor of safety and writes `safety.csv` and the state at the largest factor that stands.
 ///
 /// # Errors
 /// No factor stands, or none fails.
-pub fn run(
-    stage: &Stage<'_>,
+fn bracket(
+    stage: &Run<'_>,
     part: &SolidPart,
     plan: &StrengthReductionPlan,
     summary: &mut Summary,

@@ -10,8 +10,8 @@
 //! their velocity. Contacts that would pull are left out; those that slide count as sticking, which only makes the
 //! prediction a little stiffer. The forces that act in the end are those of the grains' own steps.
 
+use super::model::Model;
 use crate::face::dot;
-use crate::step::Model;
 use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
@@ -53,6 +53,50 @@ struct Spring {
     across: f64,
 }
 
+impl Spring {
+    /// A contact linearized for the next window, and its force on the solid; none where it is open or would pull.
+    fn of(
+        model: &Model<'_>,
+        grains: &dem::State,
+        surface: &SolidSurface,
+        c: &Held,
+    ) -> Option<(Spring, [f64; 3])> {
+        let body = c.body as usize;
+        let (material, own) = (model.grains.material(body), model.grains.patch_material(c.patch));
+        // Where the surface is now, not where the last window left it.
+        let &(centre, radius) = grains.spheres(&model.grains, body).get(c.sphere as usize)?;
+        let near = surface.closest_point(c.patch, centre.into(), c.local);
+        let offset = centre - dem::Vec3::from(near.point);
+        let overlap = radius - offset.norm();
+        if overlap <= 0.0 || offset.dot(&dem::Vec3::from(near.normal)) <= 0.0 {
+            return None;
+        }
+        let normal: [f64; 3] = (offset / offset.norm()).into();
+        let (spring, stiffness) = model.grains.contact_spring(material, own, overlap, radius);
+        let tangential = stiffness * model.grains.tangential_ratio(material, own);
+        let (_, ratio) = model.grains.contact_stiffness(material, own);
+        let dashpot = 2.0 * ratio * (model.grains.mass(body) * stiffness).sqrt();
+        let arm = dem::Vec3::from(near.point) - grains.position(body);
+        let stone = grains.velocity(body) + grains.spin(body).cross(&arm);
+        let slip = [0, 1, 2].map(|d| near.velocity[d] - stone[d]);
+        let closing = dot(slip, normal);
+        let half = 0.5 * model.window();
+        let pressure = spring + (half * stiffness + dashpot) * closing;
+        if pressure <= 0.0 {
+            return None;
+        }
+        let pressed = dot(c.force, normal);
+        let force = [0, 1, 2].map(|d| {
+            let held = c.force[d] - pressed * normal[d];
+            let across = slip[d] - closing * normal[d];
+            held - half * tangential * across - pressure * normal[d]
+        });
+        let (shape, nodes) = (quad8::shape_functions(near.local), *surface.face_nodes(c.patch));
+        let (along, across) = (half * stiffness + dashpot, half * tangential);
+        Some((Spring { nodes, shape, normal, along, across }, force))
+    }
+}
+
 /// Scratch of the prediction.
 #[derive(Default)]
 pub(crate) struct Stiffened {
@@ -76,51 +120,16 @@ impl Stiffened {
         load: &mut [f64],
         rate: &mut [f64],
     ) -> Result<u32, SolveError> {
-        let window = model.window();
         self.springs.clear();
         self.field.resize(surface.nodes().len(), [0.0; 3]);
         self.mean.resize(surface.nodes().len(), [0.0; 3]);
         self.field.fill([0.0; 3]);
         for c in held {
-            let body = c.body as usize;
-            let (material, own) = (model.grains.material(body), model.grains.patch_material(c.patch));
-            // Where the surface is now, not where the last window left it.
-            let Some(&(centre, radius)) = grains.spheres(&model.grains, body).get(c.sphere as usize) else {
-                continue;
-            };
-            let near = surface.closest_point(c.patch, centre.into(), c.local);
-            let offset = centre - dem::Vec3::from(near.point);
-            let overlap = radius - offset.norm();
-            if overlap <= 0.0 || offset.dot(&dem::Vec3::from(near.normal)) <= 0.0 {
-                continue;
-            }
-            let normal: [f64; 3] = (offset / offset.norm()).into();
-            let (spring, stiffness) = model.grains.contact_spring(material, own, overlap, radius);
-            let tangential = stiffness * model.grains.tangential_ratio(material, own);
-            let (_, ratio) = model.grains.contact_stiffness(material, own);
-            let dashpot = 2.0 * ratio * (model.grains.mass(body) * stiffness).sqrt();
-            let arm = dem::Vec3::from(near.point) - grains.position(body);
-            let stone = grains.velocity(body) + grains.spin(body).cross(&arm);
-            let slip = [0, 1, 2].map(|d| near.velocity[d] - stone[d]);
-            let closing = dot(slip, normal);
-            let half = 0.5 * window;
-            let pressure = spring + (half * stiffness + dashpot) * closing;
-            if pressure <= 0.0 {
-                continue;
-            }
-            let pressed = dot(c.force, normal);
-            let force = [0, 1, 2].map(|d| {
-                let held = c.force[d] - pressed * normal[d];
-                let across = slip[d] - closing * normal[d];
-                held - half * tangential * across - pressure * normal[d]
-            });
-            let shape = quad8::shape_functions(near.local);
-            let nodes = *surface.face_nodes(c.patch);
-            for (&n, s) in nodes.iter().zip(shape) {
+            let Some((spring, force)) = Spring::of(model, grains, surface, c) else { continue };
+            for (&n, s) in spring.nodes.iter().zip(spring.shape) {
                 (0..3).for_each(|d| self.field[n as usize][d] += s * force[d]);
             }
-            let along = half * stiffness + dashpot;
-            self.springs.push(Spring { nodes, shape, normal, along, across: half * tangential });
+            self.springs.push(spring);
         }
         let nodes = surface.nodes();
         spread(surface, &self.field, |n, f| {

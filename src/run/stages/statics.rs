@@ -1,10 +1,13 @@
 //! A static solid: one solve, its reactions, its tables.
 
-use super::frames;
-use super::summary::{StageRecord, StaticsRecord, Summary};
+use super::stage::{RunState, Stage};
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::solid::SolidPart;
+use crate::model::solid::{Analysis, SolidPart};
+use crate::run::context::Run;
+use crate::run::frames;
+use crate::run::summary::{StageRecord, StaticsRecord, Summary};
+use crate::run::system::SolidView;
 use crate::write::csv::{Column, Field, History, write_table};
 use std::path::Path;
 use std::time::Instant;
@@ -13,12 +16,34 @@ use trackbed_fem::State;
 use trackbed_fem::element::stiffness_points;
 use trackbed_fem::model::Model;
 
+/// One solve of a solid that stands still.
+pub struct Statics;
+
+impl Stage for Statics {
+    fn name(&self) -> Option<&'static str> {
+        Some("statics")
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.grains.is_none() && job.solid.as_ref().is_some_and(|s| matches!(s.analysis, Analysis::Static))
+    }
+
+    fn report(&self, _: &Job, _: f64) -> Vec<String> {
+        vec!["statics: one solve".into()]
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let Some(solid) = &run.job.solid else { return Ok(()) };
+        solve(run.job, solid, run.dir, || run.prepare(), &mut state.summary)
+    }
+}
+
 /// Solves the static problem of a scene and writes its results into `dir`, which `prepare` makes once there is a
 /// solution.
 ///
 /// # Errors
 /// The body is not held, or the result is no solution.
-pub fn run(
+fn solve(
     job: &Job,
     solid: &SolidPart,
     dir: &Path,
@@ -34,7 +59,7 @@ pub fn run(
     state.u.copy_from_slice(&result.u);
 
     prepare()?;
-    let view = super::system::SolidView { model, state: &state };
+    let view = SolidView { model, state: &state };
     frames::write_state(dir, &job.output.formats, view)?;
     if job.output.tables {
         write_tables(model, &state, &result.reactions, dir)?;

@@ -1,0 +1,220 @@
+//! The discs about the nodes of a surface, and the operator that spreads contact forces over them (see [`spread`](crate::spread)).
+
+use crate::face::{Closest, Location, cross, dot};
+use crate::spread::{Spread, Turned};
+use crate::surface::SolidSurface;
+use std::collections::BTreeMap;
+use trackbed_fem::element::quad8;
+
+/// Rings of quadrature points, at Gauss points in the square of the radius: each ring stands for its share of the area.
+const RINGS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// Pairs of opposite points on a ring.
+const PAIRS: usize = 6;
+/// Part of the radius by which a point may miss the surface along it.
+const MISSED: f64 = 1e-7;
+/// Part of the radius below which the centroid lies on the node.
+const CENTRED: f64 = 1e-14;
+
+/// A quadrature point on the surface.
+struct Point {
+    patch: u32,
+    natural: [f64; 2],
+    place: [f64; 3],
+    weight: f64,
+}
+
+impl SolidSurface {
+    /// The same surface with each contact force spread over a disc of `radius` [m], see [`Spread`]. Zero: not spread.
+    ///
+    /// The surface must be in the mesh's own shape.
+    pub fn spread_over(mut self, radius: f64) -> SolidSurface {
+        self.spread = (radius > 0.0).then(|| operator(&self, radius));
+        self
+    }
+}
+
+/// The operator of `surface`, in its present shape, for discs of `radius` [m].
+fn operator(surface: &SolidSurface, radius: f64) -> Spread {
+    let n = surface.nodes().len();
+    let border = border(surface);
+    let normals = normals(surface);
+    let mut spread =
+        Spread { radius, first: vec![0], weights: Vec::with_capacity(30 * n), turned: Vec::new() };
+    for i in 0..n as u32 {
+        let x = surface.position(i);
+        let points = disc(surface, x, normals[i as usize], &border, radius);
+        let mut own: BTreeMap<u32, f64> = BTreeMap::new();
+        let c = [0, 1, 2].map(|d| points.iter().map(|p| p.weight * p.place[d]).sum::<f64>());
+        let arm = [0, 1, 2].map(|d| x[d] - c[d]);
+        let centred = dot(arm, arm).sqrt() <= CENTRED * radius;
+        let inverse = if centred { None } else { inertia(&points, c).and_then(|j| inverse(&j, radius)) };
+        if centred || inverse.is_some() {
+            for p in &points {
+                let shape = quad8::shape_functions(p.natural);
+                for (&node, s) in surface.face_nodes(p.patch).iter().zip(shape) {
+                    *own.entry(node).or_default() += p.weight * s;
+                }
+            }
+        } else {
+            // Points on a line that does not pass through the node: no couple can make up for that.
+            own.insert(i, 1.0);
+        }
+        if let Some(inverse) = inverse {
+            let mut levers: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+            for p in &points {
+                let shape = quad8::shape_functions(p.natural);
+                for (&node, s) in surface.face_nodes(p.patch).iter().zip(shape) {
+                    let b = levers.entry(node).or_default();
+                    (0..3).for_each(|d| b[d] += p.weight * s * (p.place[d] - c[d]));
+                }
+            }
+            spread.turned.push(Turned { node: i, arm, inverse, levers: levers.into_iter().collect() });
+        }
+        spread.weights.extend(own.into_iter().filter(|(_, w)| *w != 0.0));
+        spread.first.push(spread.weights.len() as u32);
+    }
+    spread
+}
+
+/// Sides that one face has alone, as the two halves from corner to mid-side to corner.
+fn border(surface: &SolidSurface) -> Vec<[[f64; 3]; 2]> {
+    let mut out = Vec::new();
+    for patch in 0..surface.faces().len() as u32 {
+        let x = surface.face_nodes(patch).map(|n| surface.position(n));
+        for side in (0..4).filter(|&side| surface.on_border(patch, side)) {
+            out.push([x[side], x[4 + side]]);
+            out.push([x[4 + side], x[(side + 1) % 4]]);
+        }
+    }
+    out
+}
+
+/// Unit normals at the surface nodes: mean of the faces around them, weighted by area.
+fn normals(surface: &SolidSurface) -> Vec<[f64; 3]> {
+    let mut out = vec![[0.0; 3]; surface.nodes().len()];
+    for patch in 0..surface.faces().len() as u32 {
+        let area = surface.area_vector(patch);
+        for &n in surface.face_nodes(patch) {
+            (0..3).for_each(|d| out[n as usize][d] += area[d]);
+        }
+    }
+    out.into_iter().map(|n| n.map(|c| c / dot(n, n).sqrt())).collect()
+}
+
+/// The quadrature points of the disc about `x`.
+fn disc(
+    surface: &SolidSurface,
+    x: [f64; 3],
+    normal: [f64; 3],
+    border: &[[[f64; 3]; 2]],
+    radius: f64,
+) -> Vec<Point> {
+    let (across, squeeze) = nearest_border(x, normal, border, radius);
+    let along = cross(across, normal);
+    let mut points = Vec::with_capacity(RINGS.len() * PAIRS * 2);
+    for (ring, (share, weight)) in RINGS.iter().enumerate() {
+        for pair in 0..PAIRS {
+            let angle = std::f64::consts::PI * (pair as f64 + 0.5 * (ring % 2) as f64) / PAIRS as f64;
+            let (s, c) = angle.sin_cos();
+            let reach = radius * share.sqrt();
+            let offset = [0, 1, 2].map(|d| reach * (c * along[d] + s * squeeze * across[d]));
+            let both = |part: f64| {
+                let at = |sign: f64| {
+                    let point = [0, 1, 2].map(|d| x[d] + sign * part * offset[d]);
+                    place(surface, point, radius)
+                };
+                Some([at(1.0)?, at(-1.0)?])
+            };
+            let found = both(1.0).or_else(|| {
+                let (mut low, mut high) = (0.0, 1.0);
+                for _ in 0..30 {
+                    let middle = 0.5 * (low + high);
+                    if both(middle).is_some() { low = middle } else { high = middle }
+                }
+                both(low)
+            });
+            // The node itself lies on the surface, so the shortest pair does.
+            for (patch, closest) in found.into_iter().flatten() {
+                points.push(Point {
+                    patch,
+                    natural: closest.natural,
+                    place: closest.point,
+                    weight: 0.5 * weight / PAIRS as f64,
+                });
+            }
+        }
+    }
+    let sum: f64 = points.iter().map(|p| p.weight).sum();
+    points.iter_mut().for_each(|p| p.weight /= sum);
+    points
+}
+
+/// The point of the surface below or above `point`; none beside its border.
+fn place(surface: &SolidSurface, point: [f64; 3], radius: f64) -> Option<(u32, Closest)> {
+    let (patch, closest) = surface.nearest(point, radius)?;
+    let off = [0, 1, 2].map(|d| point[d] - closest.point[d]);
+    let along = dot(off, closest.normal);
+    let beside = [0, 1, 2].map(|d| off[d] - along * closest.normal[d]);
+    let missed = dot(beside, beside).sqrt() > MISSED * radius;
+    let outside = match closest.location {
+        Location::Inside => false,
+        Location::Side(side) => missed && surface.on_border(patch, side as usize),
+        Location::Corner(_) => missed,
+    };
+    (!outside).then_some((patch, closest))
+}
+
+/// Unit vector in the tangent plane towards the nearest border, and its distance over the radius, 1 at most. Any
+/// direction where none is near.
+fn nearest_border(x: [f64; 3], normal: [f64; 3], border: &[[[f64; 3]; 2]], radius: f64) -> ([f64; 3], f64) {
+    let tangential = |v: [f64; 3]| {
+        let along = dot(v, normal);
+        let t = [0, 1, 2].map(|d| v[d] - along * normal[d]);
+        let length = dot(t, t).sqrt();
+        (t.map(|c| c / length), length)
+    };
+    let mut best = (radius, None);
+    for [a, b] in border {
+        let (side, r) = ([0, 1, 2].map(|d| b[d] - a[d]), [0, 1, 2].map(|d| x[d] - a[d]));
+        let t = (dot(side, r) / dot(side, side)).clamp(0.0, 1.0);
+        let to = [0, 1, 2].map(|d| t * side[d] - r[d]);
+        let distance = dot(to, to).sqrt();
+        if distance < best.0 {
+            let (direction, length) = tangential(to);
+            let near = length < 1e-9 * radius;
+            best = (distance, Some(if near { tangential(cross(normal, side)).0 } else { direction }));
+        }
+    }
+    let any = || {
+        let axis = if normal[0].abs() < 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        tangential(axis).0
+    };
+    let squeeze = best.0 / radius;
+    (best.1.unwrap_or_else(any), if squeeze < 1e-9 { 0.0 } else { squeeze })
+}
+
+/// Σ w (|r|² − r rᵀ) of the points about `c`; none for less than two of them.
+fn inertia(points: &[Point], c: [f64; 3]) -> Option<[[f64; 3]; 3]> {
+    let mut j = [[0.0; 3]; 3];
+    for p in points {
+        let r = [0, 1, 2].map(|d| p.place[d] - c[d]);
+        let r2 = dot(r, r);
+        for a in 0..3 {
+            for b in 0..3 {
+                j[a][b] += p.weight * (if a == b { r2 } else { 0.0 } - r[a] * r[b]);
+            }
+        }
+    }
+    (points.len() > 2).then_some(j)
+}
+
+/// Inverse of a symmetric matrix; none where the points lie on a line.
+fn inverse(j: &[[f64; 3]; 3], radius: f64) -> Option<[[f64; 3]; 3]> {
+    let rows = [cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])];
+    let det = dot(j[0], rows[0]);
+    (det > 1e-9 * radius.powi(6)).then(|| {
+        // Transposed cofactors; symmetric like the matrix.
+        [0, 1, 2].map(|a| [0, 1, 2].map(|b| rows[b][a] / det))
+    })
+}

@@ -1,0 +1,86 @@
+//! The account of energy of the coupled step.
+
+use super::model::Model;
+use super::state::{State, Work};
+use crate::ledger::{Spent, Stored};
+use crate::scheme::Scheme;
+use trackbed_dem as dem;
+use trackbed_fem as fem;
+use trackbed_fem::state::StepAudit;
+
+/// Work of each kind of load on the window's displacement, which the solver does not split, and what was dissipated.
+pub(super) fn book(model: &Model<'_>, state: &mut State, work: &Work, step: &StepAudit) {
+    for (i, u) in state.solid.u.iter().enumerate() {
+        let du = u - work.before.u[i];
+        state.spent.contacts_on_solid += work.contact_load[i] * du;
+        state.spent.solid_load_work += work.other_load[i] * du;
+    }
+    let (u, before) = (&state.solid.u, &work.before.u);
+    let rate = |i: usize| work.rate[i];
+    let found = |i: usize| (u[i] - before[i]) / model.window();
+    let last = |i: usize| if state.rate.is_empty() { work.rate[i] } else { state.rate[i] };
+    state.spent.dashpot_lag += work.transfer.dashpot_lag(&work.surface, rate, last, found);
+    if model.scheme != Scheme::Lagged {
+        // The lagged scheme shows a velocity that does not jump.
+        state.rate.clear();
+        state.rate.extend_from_slice(&work.rate);
+    }
+    state.spent.rayleigh += step.damping_dissipation;
+    state.spent.absorbed += step.boundary_dissipation;
+    state.spent.plastic += step.plastic_dissipation;
+    state.spent.numerical += step.numerical_dissipation;
+}
+
+/// Energy stored in the system now.
+pub fn stored(model: &Model<'_>, state: &State) -> Stored {
+    let grains = dem::measure::energies(&model.grains, &state.grains);
+    Stored {
+        grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
+        contact_springs: grains.elastic_normal + grains.elastic_tangential,
+        bonds: grains.elastic_bonds,
+        grains_gravity: grains.gravity,
+        solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
+        solid_strain: fem::energy::strain(model.solid, &state.solid),
+        solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
+        ..Stored::default()
+    }
+}
+
+/// Work and dissipation of both sides since the start.
+pub fn spent(state: &State) -> Spent {
+    let solid = &state.spent;
+    let grains = spent_by_grains(&state.grains);
+    Spent {
+        dashpot: grains.dashpot + solid.dashpot_lag,
+        dashpot_lag: solid.dashpot_lag,
+        solid_load_work: solid.solid_load_work,
+        rayleigh: solid.rayleigh,
+        absorbed: solid.absorbed,
+        plastic: solid.plastic,
+        numerical: solid.numerical,
+        contacts_on_solid: solid.contacts_on_solid,
+        ..grains
+    }
+}
+
+/// The grains' share of [`spent`].
+pub fn spent_by_grains(grains: &dem::State) -> Spent {
+    let ledger = &grains.ledger;
+    Spent {
+        applied_work: ledger.work_applied,
+        // Grains put back at the upper end of a periodic slope have their potential energy anew, and those that come in
+        // bring all of theirs.
+        wall_work: ledger.work_walls
+            + ledger.work_servo
+            + ledger.work_constraints
+            + ledger.work_periodic
+            + ledger.work_flow,
+        dashpot: ledger.dissipated_dashpot,
+        friction: ledger.dissipated_friction,
+        bonds: ledger.dissipated_bonds,
+        breaks: ledger.released_by_breaks,
+        local_damping: ledger.dissipated_local_damping,
+        surface_on_grains: ledger.work_surface,
+        ..Spent::default()
+    }
+}

@@ -1,0 +1,249 @@
+//! One window of the coupled step, in the order of its scheme.
+
+use super::account::book;
+use super::model::Model;
+use super::solver::{SolidSolver, StepError, not_constant};
+use super::state::{State, Work};
+use super::stiffened::Held;
+use crate::scheme::Scheme;
+use crate::surface::Motion;
+use trackbed_dem as dem;
+use trackbed_fem as fem;
+use trackbed_fem::state::StepAudit;
+
+/// Speed below which changes of the surface's motion are rounding [m/s].
+const STILL: f64 = 1e-12;
+
+/// Advances the system by one window. `applied` fills in the forces on bodies at a given time; `solid_load` adds
+/// loads on the solid other than gravity and contact at a given time, which are taken at the middle of the window.
+/// Both may be evaluated more than once for the same time.
+///
+/// # Errors
+/// The grains or the solid cannot make the step; `state` is then not fit to go on from.
+pub fn step(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    mut applied: impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
+    solid_load: impl Fn(f64, &mut [f64]),
+) -> Result<(), StepError> {
+    let window = model.window();
+    work.other_load.fill(0.0);
+    solid_load(state.solid.time + 0.5 * window, &mut work.other_load);
+    copy(&state.solid, &mut work.before);
+    work.rate.copy_from_slice(&state.solid.v);
+    let (passes, audit) = match model.scheme {
+        Scheme::Predicted => {
+            grains(model, state, work, &mut applied)?;
+            (1, solid(model, state, work)?)
+        }
+        Scheme::Stiffened => (1, stiffened(model, state, work, &mut applied)?),
+        Scheme::Lagged => return lagged(model, state, work, &mut applied),
+        Scheme::Iterated { tolerance, passes } => {
+            iterated(model, state, work, &mut applied, tolerance, passes)?
+        }
+    };
+    state.passes.windows += 1;
+    state.passes.passes += u64::from(passes);
+    book(model, state, work, &audit);
+    // The surface of the next window begins where the solid is, not where this window left it.
+    let (u, before, rate) = (&state.solid.u, &work.before.u, &work.rate);
+    let jump = work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
+    let jump = jump.fold(0.0_f64, |m, i| m.max((u[i] - before[i] - rate[i] * window).abs()));
+    state.grains.allow_for_jump(work.surface.reach_of(2.0 * jump));
+    Ok(())
+}
+
+/// A window of the stiffened scheme.
+fn stiffened(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
+) -> Result<StepAudit, StepError> {
+    // The contacts of the start are not known: the first window goes on with the present velocity.
+    if state.passes.windows > 0 {
+        begin(model, state, work)?;
+        state.passes.solves += u64::from(predict(model, state, work)?);
+    }
+    grains(model, state, work, applied)?;
+    state.held.clear();
+    state.held.extend(work.grains.surface_contacts().iter().map(Held::from));
+    solid(model, state, work)
+}
+
+/// A window of the lagged scheme, with its account.
+fn lagged(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
+) -> Result<(), StepError> {
+    let n = work.contact_load.len();
+    state.lagged.iter_mut().for_each(|l| l.resize(n, 0.0));
+    for (load, (a, b)) in work.contact_load.iter_mut().zip(state.lagged[0].iter().zip(&state.lagged[1])) {
+        *load = 0.5 * (a + b);
+    }
+    let audit = solid(model, state, work)?;
+    mean_velocity(&state.solid, work, model.window());
+    // What the grains do in this window loads the solid in the next; what did so now is still in the account.
+    book(model, state, work, &audit);
+    grains(model, state, work, applied)?;
+    state.lagged.swap(0, 1);
+    state.lagged[0].copy_from_slice(&work.contact_load);
+    state.passes.windows += 1;
+    state.passes.passes += 1;
+    Ok(())
+}
+
+/// A window of the iterated scheme: passes until the velocity of the surface is that of the solid, `most` at most. Returns the
+/// passes made.
+fn iterated(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
+    tolerance: f64,
+    most: u32,
+) -> Result<(u32, StepAudit), StepError> {
+    let window = model.window();
+    work.before.points.clone_from(&state.solid.points);
+    let start = (state.grains.clone(), state.audit);
+    work.accelerator.start();
+    let nodes = work.surface.nodes().to_vec();
+    let unknowns = || nodes.iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
+    let mut at: Vec<f64> = unknowns().map(|i| work.rate[i]).collect();
+    let mut passes = 1;
+    loop {
+        grains(model, state, work, applied)?;
+        let audit = solid(model, state, work)?;
+        let found: Vec<f64> = unknowns().map(|i| (state.solid.u[i] - work.before.u[i]) / window).collect();
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let change = found.iter().zip(&at).fold(0.0_f64, |m, (f, a)| m.max((f - a).abs()));
+        let there = change <= tolerance * largest(&found).max(largest(&at)) + STILL;
+        if there || passes >= most {
+            state.passes.unconverged += u64::from(!there);
+            return Ok((passes, audit));
+        }
+        work.accelerator.next(&mut at, &found);
+        unknowns().zip(&at).for_each(|(i, a)| work.rate[i] = *a);
+        copy(&work.before, &mut state.solid);
+        state.solid.points.clone_from(&work.before.points);
+        (state.grains, state.audit) = start.clone();
+        work.grains.follow(&model.grains, &state.grains);
+        passes += 1;
+    }
+}
+
+/// Copies displacement and motion without new memory. The stresses at Gauss points are many, and only a window that may be
+/// made again needs them.
+fn copy(from: &fem::state::State, to: &mut fem::state::State) {
+    to.time = from.time;
+    to.u.copy_from_slice(&from.u);
+    to.v.copy_from_slice(&from.v);
+    to.a.copy_from_slice(&from.a);
+}
+
+/// The mean velocity of the window just made by the solid.
+fn mean_velocity(solid: &fem::state::State, work: &mut Work, window: f64) {
+    for ((rate, u), before) in work.rate.iter_mut().zip(&solid.u).zip(&work.before.u) {
+        *rate = (u - before) / window;
+    }
+}
+
+/// Puts the surface at the start of the window, to move with [`Work::rate`].
+fn begin(model: &Model<'_>, state: &State, work: &mut Work) -> Result<(), StepError> {
+    let velocity =
+        (model.scheme == Scheme::Lagged).then_some([work.before.v.as_slice(), state.solid.v.as_slice()]);
+    let motion = Motion {
+        start: &work.before.u,
+        reference: &model.reference,
+        rate: &work.rate,
+        velocity,
+        duration: model.window(),
+    };
+    work.surface.begin(model.solid.mesh(), &motion);
+    match work.surface.folded() {
+        None => Ok(()),
+        Some(face) => {
+            let element = work.surface.faces()[face].element as usize;
+            let element = model.solid.mesh().element_ids[element];
+            Err(StepError::Folded { element, time: work.before.time })
+        }
+    }
+}
+
+/// The grains' steps of a window; their mean load on the solid is then in [`Work::contact_load`].
+fn grains(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
+) -> Result<(), StepError> {
+    let dt = model.grains.dt();
+    begin(model, state, work)?;
+    work.transfer.begin_window();
+    for k in 0..model.substeps {
+        work.surface.advance((f64::from(k) + 0.5) * dt);
+        work.applied.clear();
+        applied(state.grains.time, &state.grains, &mut work.applied);
+        dem::step(&model.grains, &mut state.grains, &mut work.grains, &work.surface, &work.applied)?;
+        work.transfer.add(&work.surface, work.grains.surface_contacts(), dt, &mut state.audit);
+    }
+    work.contact_load.fill(0.0);
+    work.transfer.add_mean_load(&work.surface, model.window(), &mut work.contact_load);
+    work.transfer.audit_spread(&work.surface, model.window(), &work.contact_load, &mut state.audit);
+    Ok(())
+}
+
+/// The solid's step of a window, under [`Work::contact_load`], the other loads and its weight.
+fn solid(model: &Model<'_>, state: &mut State, work: &mut Work) -> Result<StepAudit, StepError> {
+    let loads = work.contact_load.iter().zip(&work.other_load).zip(&model.dead_load);
+    for (load, ((contact, other), dead)) in work.load.iter_mut().zip(loads) {
+        *load = other + (contact + dead);
+    }
+    let time = state.solid.time;
+    work.solver
+        .step(model.solid, &mut state.solid, &work.load)
+        .map_err(|source| StepError::Solid { time, source })
+}
+
+/// The velocity that the surface goes on with in the stiffened scheme.
+fn predict(model: &Model<'_>, state: &State, work: &mut Work) -> Result<u32, StepError> {
+    let time = state.solid.time;
+    let SolidSolver::Elastic(solver) = &mut work.solver else {
+        return Err(StepError::Solid { time, source: not_constant(model) });
+    };
+    for ((load, other), dead) in work.load.iter_mut().zip(&work.other_load).zip(&model.dead_load) {
+        *load = other + dead;
+    }
+    work.stiffened
+        .predict(
+            model,
+            &state.grains,
+            &state.held,
+            &work.surface,
+            solver,
+            &state.solid,
+            &mut work.load,
+            &mut work.rate,
+        )
+        .map_err(|source| StepError::Solid { time, source })
+}
+
+/// Takes grains out and puts grains in between two windows, as [`dem::flow::exchange`] does.
+///
+/// # Errors
+/// A grain that cannot leave or come.
+pub fn exchange(
+    model: &Model<'_>,
+    state: &mut State,
+    work: &mut Work,
+    leave: &[usize],
+    arrive: &[dem::flow::Arrival],
+) -> Result<(), dem::flow::FlowError> {
+    dem::flow::exchange(&model.grains, &mut state.grains, &mut work.grains, leave, arrive)?;
+    // Contacts of grains that have left load the solid no more, not even in a prediction.
+    state.held.retain(|c| !leave.contains(&c.body()));
+    Ok(())
+}

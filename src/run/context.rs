@@ -1,0 +1,49 @@
+//! What all stages of a run share and none changes.
+
+use super::checkpoint_store::CheckpointStore;
+use super::folder;
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::scene::Document;
+use std::cell::{Cell, OnceCell};
+use std::path::Path;
+use trackbed_fem as fem;
+
+/// One run in progress.
+pub struct Run<'a> {
+    /// The scene file, for messages about its keys.
+    pub document: &'a Document,
+    /// The scene, resolved.
+    pub job: &'a Job,
+    /// Folder of the results.
+    pub dir: &'a Path,
+    /// Whether nothing is printed.
+    pub quiet: bool,
+    /// Most memory that a solid may need [bytes].
+    pub memory: Option<u64>,
+    /// Whether the folder is cleared of earlier results and holds those of this run.
+    pub prepared: Cell<bool>,
+    /// Where checkpoints go.
+    pub checkpoints: CheckpointStore,
+    /// Whether the main loop is continued from a checkpoint, so that the files in the folder are its own.
+    pub continued: bool,
+    /// The solid with its meshed sleepers where they were set down.
+    pub set_down: &'a OnceCell<fem::Model>,
+}
+
+impl Run<'_> {
+    /// Makes the folder of the results; of a run that is continued its files stay.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn prepare(&self) -> Result<(), Failure> {
+        if self.continued {
+            folder::resume(self.dir, &self.job.output)?;
+        } else {
+            self.checkpoints.clear_others()?;
+            folder::prepare(self.dir, &self.job.output)?;
+        }
+        self.prepared.set(true);
+        Ok(())
+    }
+}

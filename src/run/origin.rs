@@ -1,0 +1,98 @@
+//! What a run is of: its scene, overrides and files; where its results go, and how it is continued.
+
+use super::checkpoint::{self, Origin};
+use super::hash::Hash;
+use crate::failure::Failure;
+use crate::scene::{Document, Scene};
+use std::path::{Path, PathBuf};
+
+/// Whether the results in `dir` are those of a finished run of the same scene, without any checkpoint of a later one.
+///
+/// # Errors
+/// Bad input: they are of another scene.
+pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
+    let text = std::fs::read_to_string(dir.join("summary.json")).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    if summary["status"] != "done" || dir.join(checkpoint::FOLDER).exists() {
+        return Ok(false);
+    }
+    if summary["scene_hash"] != scene_hash {
+        let dir = dir.display();
+        return Err(Failure::Input(format!("--resume: {dir} holds the finished run of another scene")));
+    }
+    Ok(true)
+}
+
+/// The command that continues a run.
+pub fn resume_command(scene: &Path, dir: &Path, set: &[String]) -> String {
+    let quoted = |text: String| match text.chars().all(|c| c.is_alphanumeric() || "/._-=+".contains(c)) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    };
+    let mut command = format!(
+        "trackbed run {} --resume --out {}",
+        quoted(scene.display().to_string()),
+        quoted(dir.display().to_string())
+    );
+    set.iter().for_each(|s| command += &format!(" --set {}", quoted(s.clone())));
+    command
+}
+
+/// `results/` and the name of the scene file, or of its folder when the file is just called `scene.toml`.
+pub fn default_folder(scene: &Path) -> PathBuf {
+    let stem = scene.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = scene.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    let name = match (stem.as_str(), folder) {
+        ("scene", Some(folder)) => folder,
+        _ => stem,
+    };
+    Path::new("results").join(name)
+}
+
+/// What the results of a run depend on: scene, overrides, and the files that the scene names.
+pub fn origin(document: &Document, scene: &Scene) -> Origin {
+    let mut hash = Hash::default();
+    hash.add(document.text().as_bytes());
+    for (key, value) in document.overrides() {
+        hash.add(key.as_bytes());
+        hash.add(value.as_bytes());
+    }
+    let mut files = Vec::new();
+    for file in files_of(scene) {
+        // One that is missing or has gone changes the hash, which is what it is for.
+        let content = std::fs::read(document.resolve(file)).unwrap_or_default();
+        hash.add(&content);
+        let mut own = Hash::default();
+        own.add(&content);
+        files.push((file.to_path_buf(), own.hex()));
+    }
+    Origin {
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene_hash: hash.hex(),
+        scene: document.text().into(),
+        overrides: document.overrides().iter().map(|(k, v)| format!("{k}={v}")).collect(),
+        files,
+    }
+}
+
+/// The files that a scene names.
+fn files_of(scene: &Scene) -> Vec<&Path> {
+    let mut files: Vec<&Path> = Vec::new();
+    if let Some(s) = &scene.solid {
+        files.extend(
+            [&s.mesh, &s.nodes, &s.elements, &s.constraints].into_iter().flatten().map(PathBuf::as_path),
+        );
+        let histories = s.load.iter().map(|l| &l.history).chain(s.support.iter().map(|l| &l.history));
+        files.extend(histories.flatten().filter_map(|h| h.file.as_deref()));
+    }
+    for g in &scene.grains {
+        files.extend(g.library.as_deref());
+        files.extend(g.packing.as_deref());
+        files.extend(g.gradation.as_ref().map(|g| g.file.as_path()));
+        files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
+    }
+    files.extend(scene.track.iter().filter_map(|t| t.load.as_ref()?.file.as_deref()));
+    files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
+    files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
+    files
+}

@@ -1,0 +1,227 @@
+//! Compaction of a settled bed: planes that swing, a plate that presses, a plane that moves in.
+
+use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::grains::{CompactionPlan, GrainsPart, Press, refused};
+use crate::progress::Progress;
+use crate::run::bed::{Bed, rms_speed, top_below};
+use crate::run::context::Run;
+use crate::run::packing::CompactionRecord;
+use crate::run::summary::StageRecord;
+use std::f64::consts::{PI, TAU};
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::measure::{BoxRegion, body_volume_in};
+use trackbed_dem::{AppliedForce, BodyInput, Vec3};
+
+/// A bed after a stage.
+struct Pressed<'a> {
+    bed: Bed<'a>,
+    /// Steps in all.
+    steps: u64,
+    /// Whether it came to rest.
+    rested: bool,
+    /// Where its porosity is measured now.
+    region: BoxRegion,
+    /// Force on the plane that was moved [N].
+    wall_force: Option<f64>,
+}
+
+/// Longest simulated time of one press with the rests that follow it [s].
+fn longest(plan: &CompactionPlan) -> f64 {
+    let rest = plan.rest.max_time;
+    match &plan.press {
+        Press::Vibration { frequency, cycles, .. } => f64::from(*cycles) / frequency + rest,
+        Press::Squeeze { velocity, max_travel, .. } => max_travel / velocity.norm() + rest,
+        Press::Tamping { at, frequency, cycles, .. } => {
+            at.len() as f64 * (f64::from(*cycles) / frequency + rest)
+        }
+    }
+}
+
+/// The settled bed is pressed, stage by stage.
+pub struct Compaction;
+
+impl Stage for Compaction {
+    fn name(&self) -> Option<&'static str> {
+        Some("compaction")
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.grains.as_ref().is_some_and(|g| !g.compaction.is_empty())
+    }
+
+    fn grain_time(&self, job: &Job) -> Option<GrainTime> {
+        Some(GrainTime::AtMost(job.grains.as_ref()?.compaction.iter().map(longest).sum()))
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Finished) else { return Ok(()) };
+        for index in grains.bed.compaction.len()..grains.part.compaction.len() {
+            grains.keep(run, Packed::Settled)?;
+            run.checkpoints.begin();
+            compact(run, &mut grains.part, index, grains.ground.as_ref(), &mut grains.bed)?;
+            run.checkpoints.end();
+        }
+        Ok(())
+    }
+}
+
+/// One stage of compaction.
+fn compact(
+    run: &Run<'_>,
+    grains: &mut GrainsPart,
+    index: usize,
+    surface: Option<&SolidSurface>,
+    settled: &mut Settled,
+) -> Result<(), Failure> {
+    let plan = grains.compaction[index].clone();
+    let progress = Progress::start("compacting", 1.0, run.quiet);
+    let mut bed = new_bed(run, grains, &plan, settled.bodies.clone(), surface)?;
+    let before = porosity(&bed, settled.bodies.len(), &plan.region);
+    let region = plan.region;
+    let done = match &plan.press {
+        Press::Vibration { planes, amplitude, frequency, cycles } => {
+            shake(&mut bed, planes, amplitude, *frequency, *cycles)?;
+            let rested = bed.rest(&plan.rest)?;
+            Pressed { steps: bed.state.steps, bed, rested, region, wall_force: None }
+        }
+        Press::Squeeze { plane, velocity, porosity: target, max_travel } => {
+            let (region, reached) = squeeze(&mut bed, &plan.region, *plane, velocity, *target, *max_travel)?;
+            let rested = bed.rest(&plan.rest)?;
+            if !reached {
+                settled.warnings.push(format!(
+                    "squeezing stopped after {max_travel} m at the porosity {:.4}, above {target}",
+                    porosity(&bed, settled.bodies.len(), &region)
+                ));
+            }
+            grains.place_plane(*plane, bed.state.plane_point(&bed.model, *plane));
+            let contacts = dem::measure::contacts(&bed.model, &bed.state);
+            let on_it = contacts.iter().filter(|c| c.b == dem::Partner::Plane(*plane));
+            let wall_force = Some(on_it.map(|c| c.normal_force).sum());
+            Pressed { steps: bed.state.steps, bed, rested, region, wall_force }
+        }
+        Press::Tamping { plate, half, at, force, frequency, cycles } => {
+            let mut done = Pressed { steps: 0, bed, rested: true, region, wall_force: None };
+            for place in at {
+                // A model with the plate for every place, and one without it to come to rest in.
+                let mut bodies = done.bed.at_rest(&settled.bodies);
+                let z = top_below(&done.bed.model, &done.bed.state, *place, half, surface) + half[2];
+                bodies.push(BodyInput { position: Vec3::new(place[0], place[1], z), ..plate.clone() });
+                let mut pressed = new_bed(run, grains, &plan, bodies, surface)?;
+                tamp(&mut pressed, settled.bodies.len(), *force, *frequency, *cycles)?;
+                done.bed = new_bed(run, grains, &plan, pressed.at_rest(&settled.bodies), surface)?;
+                done.rested &= done.bed.rest(&plan.rest)?;
+                done.steps += pressed.state.steps + done.bed.state.steps;
+            }
+            done
+        }
+    };
+    let after = porosity(&done.bed, settled.bodies.len(), &done.region);
+    settled.bodies = done.bed.at_rest(&settled.bodies);
+    if !done.rested {
+        settled.warnings.push(format!(
+            "the grains were still moving at {:.2e} m/s (root mean square) after stage {} of the compaction",
+            rms_speed(&done.bed.model, &done.bed.state),
+            index + 1
+        ));
+    }
+    let kind = plan.press.name();
+    let seconds = progress.finish(&format!("{kind}: porosity {before:.4} to {after:.4}"));
+    let name = format!("compaction {}: {kind}", index + 1);
+    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0 });
+    settled.compaction.push(CompactionRecord {
+        kind: kind.into(),
+        porosity_before: before,
+        porosity_after: after,
+        wall_force: done.wall_force,
+    });
+    Ok(())
+}
+
+/// A bed of these bodies with the friction and damping of the stage.
+fn new_bed<'b>(
+    run: &'b Run<'_>,
+    grains: &GrainsPart,
+    plan: &CompactionPlan,
+    bodies: Vec<BodyInput>,
+    surface: Option<&'b SolidSurface>,
+) -> Result<Bed<'b>, Failure> {
+    let input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
+    let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+    Ok(Bed::new(model, surface, &run.checkpoints, "being compacted"))
+}
+
+/// Share of a region that the first `grains` bodies leave: a plate is no grain.
+fn porosity(bed: &Bed<'_>, grains: usize, region: &BoxRegion) -> f64 {
+    let solid: f64 = (0..grains).map(|b| body_volume_in(&bed.model, &bed.state, b, region)).sum();
+    1.0 - solid / region.volume()
+}
+
+/// Planes swing as A sin(2πft) for whole cycles and are then where they were.
+fn shake(
+    bed: &mut Bed<'_>,
+    planes: &[usize],
+    amplitude: &Vec3,
+    frequency: f64,
+    cycles: u32,
+) -> Result<(), Failure> {
+    let dt = bed.model.dt();
+    let steps = (f64::from(cycles) / frequency / dt).ceil() as u64;
+    let at = |k: u64| if k < steps { (TAU * frequency * k as f64 * dt).sin() } else { 0.0 };
+    for k in 0..steps {
+        // The velocity that takes the plane from one place to the next exactly.
+        let velocity = amplitude * ((at(k + 1) - at(k)) / dt);
+        planes.iter().for_each(|&p| bed.state.set_plane_velocity(p, velocity));
+        bed.step(&[])?;
+    }
+    planes.iter().for_each(|&p| bed.state.set_plane_velocity(p, Vec3::zeros()));
+    Ok(())
+}
+
+/// A plate (the body `plate`) is pressed down with F sin²(πft).
+fn tamp(bed: &mut Bed<'_>, plate: usize, force: f64, frequency: f64, cycles: u32) -> Result<(), Failure> {
+    let end = f64::from(cycles) / frequency;
+    while bed.state.time < end {
+        let share = (PI * frequency * bed.state.time).sin().powi(2);
+        let force = Vec3::new(0.0, 0.0, -force * share);
+        bed.step(&[AppliedForce { body: plate, force, point: bed.state.position(plate) }])?;
+    }
+    Ok(())
+}
+
+/// A plane moves in until the region, cut off at it, has the porosity, or for the longest way. Returns the cut region and
+/// whether the porosity was reached.
+fn squeeze(
+    bed: &mut Bed<'_>,
+    whole: &BoxRegion,
+    plane: usize,
+    velocity: &Vec3,
+    target: f64,
+    max_travel: f64,
+) -> Result<(BoxRegion, bool), Failure> {
+    let start = bed.state.plane_point(&bed.model, plane);
+    let (axis, rising) = (velocity.iamax(), velocity.sum() > 0.0);
+    bed.state.set_plane_velocity(plane, *velocity);
+    let outcome = loop {
+        let now = bed.state.plane_point(&bed.model, plane);
+        let mut region = *whole;
+        if rising {
+            region.low[axis] = region.low[axis].max(now[axis]);
+        } else {
+            region.high[axis] = region.high[axis].min(now[axis]);
+        }
+        if porosity(bed, bed.model.body_count(), &region) <= target {
+            break (region, true);
+        }
+        if (now - start).norm() >= max_travel {
+            break (region, false);
+        }
+        for _ in 0..bed.stride() {
+            bed.step(&[])?;
+        }
+    };
+    bed.state.set_plane_velocity(plane, Vec3::zeros());
+    Ok(outcome)
+}

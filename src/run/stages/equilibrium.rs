@@ -1,0 +1,185 @@
+//! Grains and solid are joined, the solid in equilibrium with its weight and the bed.
+
+use super::stage::{CoupledRun, RunState, Stage};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::exchange::{self, CouplingPart};
+use crate::model::solid::SolidPart;
+use crate::progress::Progress;
+use crate::run::checkpoint::Loaded;
+use crate::run::context::Run;
+use crate::run::initial;
+use crate::run::summary::{CouplingRecord, Summary};
+use crate::run::system::{CoupledSystem, Meshed};
+use std::sync::Arc;
+use trackbed_coupling as coupling;
+use trackbed_coupling::scheme::Scheme;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_coupling::track::CyclicLoad;
+use trackbed_dem as dem;
+use trackbed_fem as fem;
+
+/// The solid finds the state that it has under its weight and the grains at rest.
+pub struct Equilibrium;
+
+impl Stage for Equilibrium {
+    fn name(&self) -> Option<&'static str> {
+        Some("equilibrium of the solid")
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.coupling.is_some()
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let (Some(plan), Some(part)) = (&run.job.coupling, &run.job.solid) else { return Ok(()) };
+        let model = state.grain_model(run)?;
+        let grains = state.grains.as_mut().expect("a coupled run has grains");
+        let ground = grains.ground.take().expect("a coupled run has a ground");
+        let transfer_kind = plan.transfer_kind(&ground);
+        let (classes, substeps) = plan.classes(&grains.part, &model, part, &ground);
+        let bases = std::mem::take(&mut grains.bases);
+        let whole = part.sleepers.as_ref().map(|s| s.set_down(&part.model, &bases));
+        let (solid, surface) = match whole {
+            Some(whole) => {
+                let solid: &'a fem::Model = run.set_down.get_or_init(|| whole);
+                (solid, plan.surface(solid, &grains.part))
+            }
+            None => (&part.model, ground),
+        };
+        let load = run.job.grains.as_ref().and_then(|g| g.load.as_ref());
+        let (loaded, summary) = (state.loaded.as_mut(), &mut state.summary);
+        let body = Body { part, model: solid };
+        let system = couple(run, body, bases, model, plan, substeps, surface, load, loaded, summary)?;
+        let substeps = system.model.substeps;
+        let remarks = exchange::remarks(&classes, plan.scheme, substeps);
+        if !run.quiet {
+            // Before anything can blow up.
+            remarks.iter().for_each(|r| eprintln!("note: {r}"));
+        }
+        summary.warnings.extend(remarks);
+        let lowest = system.work.surface.lowest();
+        summary.coupling = Some(CouplingRecord {
+            transfer: Default::default(),
+            scheme: plan.scheme,
+            substeps,
+            stability: exchange::stability(&classes),
+            classes,
+            passes: Default::default(),
+            interface_work_error: 0.0,
+            transfer_kind,
+        });
+        state.coupled = Some(CoupledRun { system, solid, lowest });
+        Ok(())
+    }
+}
+
+/// Joins grains and solid. The solid starts in static equilibrium with its weight and the grains that rest on
+/// it; the mesh file describes that loaded shape, as a survey would.
+fn couple<'b>(
+    run: &Run<'b>,
+    body: Body<'b>,
+    bases: Vec<f64>,
+    grains: dem::Model,
+    plan: &CouplingPart,
+    substeps: u32,
+    mut surface: SolidSurface,
+    load: Option<&'b CyclicLoad>,
+    resumed: Option<&mut Loaded>,
+    summary: &mut Summary,
+) -> Result<CoupledSystem<'b>, Failure> {
+    let progress = Progress::start("equilibrium", 1.0, run.quiet);
+    let solid = body.part;
+    let dead_load = solid.dead_load(body.model);
+    let (reference, memory, state, seat_work) = match resumed {
+        Some(loaded) => loaded.take()?,
+        None => {
+            let (state, resting, contacts) = equilibrium(body, &grains, &mut surface, &dead_load)?;
+            let reference = state.u.clone();
+            let start = coupling::step::State::new(state, resting);
+            // Only the lagged scheme goes on with the load of before.
+            let lagged = plan.scheme == Scheme::Lagged;
+            (reference, None, if lagged { start.carrying(contacts) } else { start }, 0.0)
+        }
+    };
+    let model = coupling::step::Model {
+        solid: body.model,
+        dead_load,
+        reference,
+        substeps,
+        scheme: plan.scheme,
+        theta: plan.theta,
+        newton: solid.newton,
+        grains,
+    };
+    let mut work = coupling::step::Work::new(&model, &state, surface)
+        .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
+        .map_err(|e| solid.failure(&e))?;
+    if let Some(reduction) = solid.reduction {
+        let reduced =
+            fem::reduction::Reduced::new(body.model, work.surface.faces(), reduction).map_err(|e| {
+                Failure::from(run.document.error("solid.reduction", e.to_string(), "another choice"))
+            })?;
+        work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
+        summary.model.reduction = work.reduction();
+    }
+    summary.model.solid_step = Some(model.window());
+    progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
+    let seats = solid.sleepers.as_ref().map(|bodies| Meshed {
+        bodies,
+        bases,
+        load,
+        first_face: plan.ground_faces,
+        work: seat_work,
+    });
+    Ok(CoupledSystem { model, state, work, loads: &solid.loads, ground_faces: plan.ground_faces, seats })
+}
+
+/// The solid of a coupled run: its model has the meshed sleepers where they are set down.
+#[derive(Clone, Copy)]
+struct Body<'a> {
+    part: &'a SolidPart,
+    model: &'a fem::Model,
+}
+
+/// The solid in equilibrium with its weight, its loads and the grains that lie on it, the grains with their contacts, and
+/// the load of these [N].
+fn equilibrium(
+    body: Body<'_>,
+    grains: &dem::Model,
+    surface: &mut SolidSurface,
+    dead_load: &[f64],
+) -> Result<(fem::State, dem::State, Vec<f64>), Failure> {
+    let Body { part: solid, model, .. } = body;
+    let mut load = dead_load.to_vec();
+    solid.add_loads(0.0, &mut load);
+    let (contacts, resting) = coupling::step::resting_load(grains, surface, model.mesh())
+        .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+    for (l, c) in load.iter_mut().zip(&contacts) {
+        *l += c;
+    }
+    // Sleepers fall onto the grains only now: what stands is the ground.
+    let ground = solid.ground().map_err(|e| Failure::Other(e.to_string()))?;
+    let standing = ground.as_ref().unwrap_or(model);
+    let (load, dead_load) = (&load[..standing.dof_count()], &dead_load[..standing.dof_count()]);
+    let rest = if solid.is_linear() {
+        let rest = fem::statics::solve(standing, load).map_err(|e| solid.failure(&e))?;
+        let mut state = fem::state::State::new(standing);
+        state.u.copy_from_slice(&rest.u);
+        state
+    } else {
+        initial::under_load(solid, standing, dead_load, load)?
+    };
+    if ground.is_none() {
+        return Ok((rest, resting, contacts));
+    }
+    let mut state = fem::state::State::new(model);
+    for (all, own) in [(&mut state.u, &rest.u), (&mut state.v, &rest.v), (&mut state.a, &rest.a)] {
+        all[..own.len()].copy_from_slice(own);
+    }
+    state.points = rest.points;
+    if !state.points.is_empty() {
+        state.points.resize(model.point_count(), model.value_count());
+    }
+    Ok((state, resting, contacts))
+}

@@ -1,0 +1,39 @@
+//! The finished bed: its checkpoint, and what the summary has of it.
+
+use super::stage::{Packed, RunState, SETTLED, Stage, is_packed, planes};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::run::checkpoint::Moment;
+use crate::run::context::Run;
+
+/// The end of the packing: the bed is kept, with the walls where compaction has left them.
+pub struct FinishedBed;
+
+impl Stage for FinishedBed {
+    fn name(&self) -> Option<&'static str> {
+        None
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        is_packed(job)
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let grains = state.grains.as_mut().expect("a bed of grains");
+        if grains.done < Packed::Finished {
+            grains.bed.planes = planes(&grains.part);
+            let step = grains.bed.stages.iter().map(|s| s.grain_steps).sum();
+            let moment = Moment { stage: SETTLED.into(), step, time: grains.bed.time };
+            run.checkpoints.save(moment, |body| body.put(&grains.bed))?;
+            grains.done = Packed::Finished;
+        }
+        let (bed, summary) = (&grains.bed, &mut state.summary);
+        summary.warnings.extend(bed.warnings.iter().cloned());
+        summary.stages.extend(bed.stages.iter().cloned());
+        summary.growth.clone_from(&bed.growth);
+        summary.compaction.clone_from(&bed.compaction);
+        grains.bodies.clone_from(&bed.bodies);
+        bed.planes.iter().enumerate().for_each(|(k, point)| grains.part.place_plane(k, *point));
+        Ok(())
+    }
+}

@@ -1,0 +1,63 @@
+//! Growth: groups grow to their size in containers.
+
+use super::stage::{Packed, RunState, Settled, Stage};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::grains::{GrainsPart, refused};
+use crate::progress::Progress;
+use crate::run::context::Run;
+use crate::run::packing::GrowthRecord;
+use crate::run::summary::StageRecord;
+use trackbed_dem::insert::grow::{GrowError, grow};
+
+/// The groups that are to grow do so, one after the other.
+pub struct Growth;
+
+impl Stage for Growth {
+    fn name(&self) -> Option<&'static str> {
+        Some("growth")
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.grains.as_ref().is_some_and(|g| !g.growths.is_empty())
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Grown) else { return Ok(()) };
+        grow_groups(run, &mut grains.part, &mut grains.bed)?;
+        if grains.part.deposition.is_none() {
+            grains.bed.bodies.clone_from(&grains.part.bodies);
+        }
+        Ok(())
+    }
+}
+
+/// Grows the groups that are to grow.
+fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Result<(), Failure> {
+    for plan in grains.growths.clone() {
+        let progress = Progress::start("growing", 1.0, run.quiet);
+        let bodies = &grains.bodies[plan.bodies.clone()];
+        let material = grains.material(&bodies[0]);
+        let grown = grow(&plan.container, grains.shapes(), bodies, material, &plan.how);
+        let grown = grown.map_err(|e| match e {
+            GrowError::Model(e) => Failure::from(refused(run.document, &e)),
+            other => Failure::Numerical(format!("group {}: {other}", plan.group)),
+        })?;
+        let text = format!("{} grains of {}: porosity {:.4}", bodies.len(), plan.group, grown.porosity);
+        let seconds = progress.finish(&text);
+        bed.stages.push(StageRecord {
+            name: format!("growing {}", plan.group),
+            seconds,
+            grain_steps: grown.steps,
+            solid_steps: 0,
+        });
+        bed.growth.push(GrowthRecord {
+            group: plan.group,
+            porosity: grown.porosity,
+            largest_overlap: grown.overlap,
+            unbalanced_ratio: grown.unbalanced,
+        });
+        grains.bodies.splice(plan.bodies, grown.bodies);
+    }
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! Grains that are dropped in layers.
+
+use super::stage::Settled;
+use crate::failure::Failure;
+use crate::model::grains::{DepositionPlan, GrainsPart, refused};
+use crate::progress::Progress;
+use crate::run::bed::{Bed, rms_speed};
+use crate::run::context::Run;
+use crate::run::summary::StageRecord;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::BodyInput;
+
+/// Gap between a layer of grains and the bed that it falls on, as a share of the largest grain's radius.
+const GAP: f64 = 1e-3;
+
+/// Drops all layers but the last, each just above the settled ones, and puts the last one there: it is left for the
+/// settling proper.
+///
+/// # Errors
+/// A numerical failure, an interrupt.
+pub fn drop_layers(
+    run: &Run<'_>,
+    grains: &mut GrainsPart,
+    plan: &DepositionPlan,
+    surface: Option<&SolidSurface>,
+    bed: &mut Settled,
+) -> Result<(), Failure> {
+    // Grains that wait for their inlet do not fall.
+    let mut order: Vec<usize> = (0..grains.bodies.len()).filter(|&b| !grains.bodies[b].absent).collect();
+    let height = |b: &usize| grains.bodies[*b].position.z;
+    order.sort_by(|a, b| height(a).total_cmp(&height(b)));
+    if order.is_empty() {
+        return Ok(());
+    }
+    let layers: Vec<&[usize]> = order.chunks(order.len().div_ceil(plan.layers as usize)).collect();
+    let progress = Progress::start("layers", layers.len() as f64, run.quiet);
+    let mut steps = 0;
+    let mut below: Vec<usize> = Vec::new();
+    for (k, layer) in layers.iter().enumerate() {
+        lower(grains, &below, layer);
+        below.extend_from_slice(layer);
+        if k + 1 == layers.len() {
+            break;
+        }
+        let inputs: Vec<BodyInput> = below.iter().map(|&b| grains.bodies[b].clone()).collect();
+        let mut input = grains.deposition_input(plan);
+        input.bodies.clone_from(&inputs);
+        let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+        let mut falling = Bed::new(model, surface, &run.checkpoints, "settling in layers");
+        if !falling.rest(plan)? {
+            let speed = rms_speed(&falling.model, &falling.state);
+            bed.warnings.push(format!(
+                "layer {} of the grains was still moving at {speed:.2e} m/s (root mean square) after {} s",
+                k + 1,
+                plan.max_time
+            ));
+        }
+        for (&b, now) in below.iter().zip(falling.at_rest(&inputs)) {
+            grains.bodies[b] = now;
+        }
+        steps += falling.state.steps;
+        progress.at(k as f64 + 1.0);
+    }
+    let seconds = progress.finish(&format!("{} layers at rest", layers.len() - 1));
+    bed.stages.push(StageRecord { name: "layers".into(), seconds, grain_steps: steps, solid_steps: 0 });
+    Ok(())
+}
+/// Brings a layer down (or up) to just above the bodies `below`; the first one stays where it is.
+fn lower(grains: &mut GrainsPart, below: &[usize], layer: &[usize]) {
+    let top = below.iter().map(|&b| grains.bodies[b].position.z + grains.reach(&grains.bodies[b]));
+    let top = top.fold(f64::NEG_INFINITY, f64::max);
+    let reach = |b: &usize| grains.reach(&grains.bodies[*b]);
+    let largest = layer.iter().map(reach).fold(0.0, f64::max);
+    let bottom = layer.iter().map(|b| grains.bodies[*b].position.z - reach(b)).fold(f64::INFINITY, f64::min);
+    let shift = top + GAP * largest - bottom;
+    if shift.is_finite() {
+        layer.iter().for_each(|&b| grains.bodies[b].position.z += shift);
+    }
+}

@@ -1,0 +1,107 @@
+//! The main loop of a run: grains, a solid, or both through time, under their loads.
+
+use super::coupling_remarks::{fallen, late, unconverged};
+use super::solid_loop::solid_alone;
+use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage};
+use super::{statics, time_loop};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::solid::Analysis;
+use crate::run::context::Run;
+use crate::run::packing;
+use crate::run::summary::NewtonRecord;
+use crate::run::system::{GrainsSystem, System};
+use trackbed_coupling::track::TrackSystem;
+use trackbed_fem as fem;
+
+/// All that moves advances to the end of the run; with load cycles, inlets and outlets, and a push at the end where the scene
+/// has them.
+pub struct MainLoop;
+
+impl Stage for MainLoop {
+    fn name(&self) -> Option<&'static str> {
+        Some(RUN)
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.grains.is_some()
+            || job
+                .solid
+                .as_ref()
+                .is_some_and(|s| matches!(s.analysis, Analysis::Dynamic(_) | Analysis::QuasiStatic(_)))
+    }
+
+    fn report(&self, job: &Job, dt: f64) -> Vec<String> {
+        if let Some(grains) = &job.grains {
+            let mut lines = vec![format!("run: {} s, {:.0} steps", job.end, job.end / dt)];
+            let waiting = |part| grains.bodies.iter().filter(|b| b.absent && b.part == part).count();
+            lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.parts, waiting)));
+            return lines;
+        }
+        let kind = match job.solid.as_ref().map(|s| &s.analysis) {
+            Some(Analysis::QuasiStatic(_)) => "quasi-static",
+            _ => "dynamics",
+        };
+        let steps = |step: f64| format!("{kind}: {} s in {:.0} steps of {step} s", job.end, job.end / step);
+        job.solid_step.map(steps).into_iter().collect()
+    }
+
+    fn grain_time(&self, job: &Job) -> Option<GrainTime> {
+        job.grains.as_ref().map(|_| GrainTime::Exactly(job.end))
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        match (state.coupled.take(), &run.job.solid) {
+            (Some(coupled), _) => coupled_loop(run, state, coupled),
+            (None, Some(solid)) => solid_alone(run, solid, state),
+            (None, None) => grains_alone(run, state),
+        }
+    }
+}
+
+fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> {
+    let model = state.grain_model(run)?;
+    let mut resumed = state.loaded.take();
+    let mut system = match &mut resumed {
+        Some(loaded) => GrainsSystem::resume(model, loaded)?,
+        None => GrainsSystem::new(model)?,
+    };
+    run.prepare()?;
+    let grains = state.grains.as_ref().expect("a run with grains");
+    time_loop::with_grains(run, &mut system, grains, resumed, &mut state.summary)?;
+    state.summary.packing = record_packing(run, &system, grains)?;
+    Ok(())
+}
+
+fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>) -> Result<(), Failure> {
+    let CoupledRun { mut system, solid, lowest } = coupled;
+    run.prepare()?;
+    let grains = state.grains.as_ref().expect("a run with grains");
+    let (resumed, summary) = (state.loaded.take(), &mut state.summary);
+    let outcome = time_loop::with_grains(run, &mut system, grains, resumed, summary);
+    if let Some(record) = &mut summary.coupling {
+        record.transfer = system.state.audit;
+        record.passes = system.state.passes;
+        record.interface_work_error = system.spent().interface();
+    }
+    summary.warnings.extend(unconverged(&system.state.passes));
+    summary.warnings.extend(late(&system.spent()));
+    summary.warnings.extend(fallen(&system, lowest));
+    outcome?;
+    summary.packing = record_packing(run, &system, grains)?;
+    if run.job.output.tables {
+        let moved = &system.state.solid;
+        let reactions = fem::energy::reactions(solid, moved, system.work.load());
+        statics::write_tables(solid, moved, &reactions, run.dir)?;
+    }
+    summary.newton = system.work.newton().map(|s| NewtonRecord::of(&s));
+    Ok(())
+}
+
+fn record_packing(
+    run: &Run<'_>,
+    system: &impl TrackSystem,
+    grains: &GrainsState,
+) -> Result<Option<packing::PackingRecord>, Failure> {
+    system.grains().map(|view| packing::record(run.job, run.dir, view, &grains.part)).transpose()
+}

@@ -1,0 +1,40 @@
+//! Sleepers are set down on the bed.
+
+use super::stage::{RunState, Stage};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::grains::refused;
+use crate::run::bed;
+use crate::run::context::Run;
+use trackbed_dem as dem;
+
+/// Each sleeper is put just above the highest grain below it; meshed ones are no bodies, and only get their heights.
+pub struct SetDown;
+
+impl Stage for SetDown {
+    fn name(&self) -> Option<&'static str> {
+        Some("sleeper set down")
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.grains.as_ref().is_some_and(|g| g.sleeper.is_some())
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let Some(grains) = &mut state.grains else { return Ok(()) };
+        let Some(plan) = &grains.part.sleeper else { return Ok(()) };
+        let input = grains.part.input(grains.bodies.clone());
+        let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+        let resting = dem::State::new(&model);
+        let base = |&centre: &[f64; 2]| {
+            bed::top_below(&model, &resting, centre, &plan.row.half, grains.ground.as_ref())
+        };
+        grains.bases = plan.row.centres.iter().map(base).collect();
+        if !plan.row.meshed {
+            for (&centre, base) in plan.row.centres.iter().zip(&grains.bases) {
+                grains.bodies.push(grains.part.sleeper_body(plan, centre, base + plan.row.half[2]));
+            }
+        }
+        Ok(())
+    }
+}

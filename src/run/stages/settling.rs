@@ -1,0 +1,155 @@
+//! Settling: filled grains come to rest under gravity, and the bed is levelled.
+
+use super::layers::drop_layers;
+use super::stage::{GrainTime, Packed, RunState, SETTLING, Settled, Stage};
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::grains::{DepositionPlan, GrainsPart, refused};
+use crate::progress::Progress;
+use crate::run::bed;
+use crate::run::checkpoint::{Loaded, Moment};
+use crate::run::context::Run;
+use crate::run::summary::StageRecord;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::BodyInput;
+
+/// Time that bodies need to get going before slowness counts as rest [s].
+const START_OF_SETTLING: f64 = 0.05;
+
+/// Grains fall, in layers or at once, until they are at rest; those above the level are removed.
+pub struct Settling;
+
+impl Stage for Settling {
+    fn name(&self) -> Option<&'static str> {
+        Some(SETTLING)
+    }
+
+    fn applies(&self, job: &Job) -> bool {
+        job.grains.as_ref().is_some_and(|g| g.deposition.is_some())
+    }
+
+    fn report(&self, job: &Job, dt: f64) -> Vec<String> {
+        let plan = job.grains.as_ref().and_then(|g| g.deposition.as_ref());
+        let line =
+            |d: &DepositionPlan| format!("settling: at most {} s, {:.0} steps", d.max_time, d.max_time / dt);
+        plan.map(line).into_iter().collect()
+    }
+
+    fn grain_time(&self, job: &Job) -> Option<GrainTime> {
+        let plan = job.grains.as_ref()?.deposition.as_ref()?;
+        Some(GrainTime::AtMost(f64::from(plan.layers.max(1)) * plan.max_time))
+    }
+
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
+        let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Settled) else { return Ok(()) };
+        let Some(plan) = grains.part.deposition.clone() else { return Ok(()) };
+        if grains.done < Packed::Layered && plan.layers > 1 {
+            grains.keep(run, Packed::Grown)?;
+            run.checkpoints.begin();
+            drop_layers(run, &mut grains.part, &plan, grains.ground.as_ref(), &mut grains.bed)?;
+            run.checkpoints.end();
+            grains.keep(run, Packed::Layered)?;
+        }
+        let resumed = state.loaded.take_if(|loaded| loaded.moment.stage == SETTLING);
+        settle(run, &grains.part, &plan, grains.ground.as_ref(), &mut grains.bed, resumed)
+    }
+}
+
+/// The settling itself, from the start or from within a checkpoint; adds to what was done before.
+fn settle(
+    run: &Run<'_>,
+    grains: &GrainsPart,
+    plan: &DepositionPlan,
+    surface: Option<&SolidSurface>,
+    bed: &mut Settled,
+    resumed: Option<Loaded>,
+) -> Result<(), Failure> {
+    let input = grains.deposition_input(plan);
+    let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+    let (mut state, seconds) = match resumed {
+        Some(mut loaded) => loaded.take()?,
+        None => (dem::State::new(&model), 0.0),
+    };
+    let mut work = dem::Work::new(&model, &state);
+    let progress = Progress::start(SETTLING, plan.max_time, run.quiet).resumed(state.time, seconds);
+    // Look at the speed about every millisecond.
+    let stride = ((1e-3 / model.dt()) as u64).max(1);
+    let mut settled = false;
+    let mut going = true;
+    run.checkpoints.begin();
+    while going {
+        match surface {
+            Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
+            None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
+        }
+        .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+        if state.steps.is_multiple_of(stride) {
+            let speed = bed::rms_speed(&model, &state);
+            // Everything starts at rest: free fall has to be under way before slowness means anything.
+            settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
+            going = !settled && state.time < plan.max_time;
+            progress.at(state.time);
+            progress.message(format!("rms speed {speed:.2e} m/s"));
+        }
+        if going {
+            run.checkpoints.step(
+                || Moment { stage: SETTLING.into(), step: state.steps, time: state.time },
+                |body| {
+                    body.put(&(Packed::Layered, &grains.bodies, &*bed))?;
+                    body.put(&(&state, progress.seconds()))
+                },
+            )?;
+        }
+    }
+    run.checkpoints.end();
+    if !settled {
+        let speed = bed::rms_speed(&model, &state);
+        bed.warnings.push(format!(
+            "the grains were still moving at {speed:.2e} m/s (root mean square) after {} s of settling",
+            plan.max_time
+        ));
+    }
+    let (bodies, removed) = at_rest(&grains.bodies, &model, &state, plan);
+    let seconds = progress.finish(&format!(
+        "{} grains at rest after {:.2} s, {removed} above the level taken away",
+        bodies.iter().filter(|b| !b.absent).count(),
+        state.time
+    ));
+    if bodies.is_empty() {
+        return Err(run.document.error("deposition.level", "no grain below it", "at least one").into());
+    }
+    bed.stages.push(StageRecord { name: SETTLING.into(), seconds, grain_steps: state.steps, solid_steps: 0 });
+    bed.bodies = bodies;
+    bed.time = state.time;
+    Ok(())
+}
+
+/// Bodies where they have come to lie, at rest, without those above the level.
+fn at_rest(
+    inputs: &[BodyInput],
+    model: &dem::Model,
+    state: &dem::State,
+    plan: &DepositionPlan,
+) -> (Vec<BodyInput>, usize) {
+    let mut bodies = Vec::with_capacity(inputs.len());
+    for (b, input) in inputs.iter().enumerate() {
+        if input.absent {
+            bodies.push(input.clone());
+            continue;
+        }
+        let position = model.wrap(&state.position(b));
+        if plan.level.is_some_and(|level| position.z > level) {
+            continue;
+        }
+        bodies.push(BodyInput {
+            position,
+            orientation: state.orientation(model, b),
+            velocity: dem::Vec3::zeros(),
+            spin: dem::Vec3::zeros(),
+            ..input.clone()
+        });
+    }
+    let removed = inputs.len() - bodies.len();
+    (bodies, removed)
+}

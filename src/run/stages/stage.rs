@@ -1,0 +1,230 @@
+//! What a stage is, and what stages hand on to each other.
+
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::grains::{GrainsPart, check_joined, refused};
+use crate::run::checkpoint::{Loaded, Moment};
+use crate::run::context::Run;
+use crate::run::packing::{CompactionRecord, GrowthRecord};
+use crate::run::sources;
+use crate::run::summary::{StageRecord, Summary};
+use crate::run::system::CoupledSystem;
+use serde::{Deserialize, Serialize};
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::BodyInput;
+use trackbed_fem as fem;
+
+/// Stage of a checkpoint from within the main loop.
+pub const RUN: &str = "run";
+/// Stage of a checkpoint from within the settling.
+pub const SETTLING: &str = "settling";
+/// Stage of a checkpoint between two stages of packing.
+pub const PACKING: &str = "packing";
+/// Stage of the checkpoint between the finished bed and the main loop.
+pub const SETTLED: &str = "settled";
+
+/// Simulated time of the grains in a stage [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GrainTime {
+    /// Known beforehand.
+    Exactly(f64),
+    /// Until the grains are at rest, or at most this.
+    AtMost(f64),
+}
+
+/// One stage of a run. What a run carries out is what `check` and `explain` report of it.
+pub trait Stage: Sync {
+    /// Name for users; none where the stage is the end of the one before.
+    fn name(&self) -> Option<&'static str>;
+
+    /// Whether a run of the scene has it.
+    fn applies(&self, job: &Job) -> bool;
+
+    /// What `check` reports of it, line by line; `dt` is the step of the grains [s], where there are grains.
+    fn report(&self, _job: &Job, _dt: f64) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What determines the time that it takes, where grains move.
+    fn grain_time(&self, _job: &Job) -> Option<GrainTime> {
+        None
+    }
+
+    /// Carries it out, or what a checkpoint has left of it.
+    ///
+    /// # Errors
+    /// Bad input, a numerical failure, an interrupt, what the disk refuses.
+    fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure>;
+}
+
+/// How far the packing has come; compaction counts its own stages.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+pub enum Packed {
+    /// No stage is over.
+    Nothing,
+    /// Grains have grown.
+    Grown,
+    /// All layers but the last lie.
+    Layered,
+    /// The bed has settled.
+    Settled,
+    /// The bed is finished.
+    Finished,
+}
+
+/// A bed that has settled, or is about to.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Settled {
+    /// The grains at rest.
+    pub bodies: Vec<BodyInput>,
+    /// Points of the planes, which compaction may have moved [m].
+    pub planes: Vec<dem::Vec3>,
+    /// Time that the settling took [s].
+    pub time: f64,
+    /// The stages so far.
+    pub stages: Vec<StageRecord>,
+    /// What was remarkable about them.
+    pub warnings: Vec<String>,
+    /// Results of growth.
+    pub growth: Vec<GrowthRecord>,
+    /// Results of compaction.
+    pub compaction: Vec<CompactionRecord>,
+}
+
+/// The head of a checkpoint from within the packing.
+#[derive(Deserialize)]
+struct Packing {
+    done: Packed,
+    /// The grains that are to settle.
+    bodies: Vec<BodyInput>,
+    bed: Settled,
+}
+
+/// The grains on their way to the main loop.
+pub struct GrainsState {
+    /// The grains, with walls where compaction has left them.
+    pub part: GrainsPart,
+    /// Which stages of packing are over.
+    pub done: Packed,
+    /// The bed.
+    pub bed: Settled,
+    /// The surface of the solid below, which does not move before the main loop.
+    pub ground: Option<SolidSurface>,
+    /// The bodies of the main loop.
+    pub bodies: Vec<BodyInput>,
+    /// Heights of the bases of the sleepers when they were set down [m].
+    pub bases: Vec<f64>,
+}
+
+impl GrainsState {
+    /// Writes the checkpoint between two stages of packing.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn keep(&mut self, run: &Run<'_>, done: Packed) -> Result<(), Failure> {
+        self.bed.planes = planes(&self.part);
+        let step = self.bed.stages.iter().map(|s| s.grain_steps).sum();
+        let moment = Moment { stage: PACKING.into(), step, time: self.bed.time };
+        run.checkpoints.save(moment, |body| body.put(&(done, &self.part.bodies, &self.bed)))
+    }
+}
+
+/// Grains and solid joined, ready for the main loop.
+pub struct CoupledRun<'a> {
+    /// Both.
+    pub system: CoupledSystem<'a>,
+    /// The solid, with meshed sleepers where they are set down.
+    pub solid: &'a fem::Model,
+    /// Height of the lowest point of the solid's surface [m].
+    pub lowest: f64,
+}
+
+/// What stages hand on to each other.
+pub struct RunState<'a> {
+    /// The checkpoint that the run is continued from, until its stage has read it.
+    pub loaded: Option<Loaded>,
+    /// The grains, if there are any.
+    pub grains: Option<GrainsState>,
+    /// Grains and solid, once they are joined.
+    pub coupled: Option<CoupledRun<'a>>,
+    /// Results so far.
+    pub summary: Summary,
+}
+
+/// Whether grains are packed before the main loop.
+pub fn is_packed(job: &Job) -> bool {
+    job.grains
+        .as_ref()
+        .is_some_and(|g| g.deposition.is_some() || !g.growths.is_empty() || !g.compaction.is_empty())
+}
+
+/// Points of the planes [m].
+pub fn planes(grains: &GrainsPart) -> Vec<dem::Vec3> {
+    grains.planes().iter().map(|p| p.point).collect()
+}
+
+impl RunState<'_> {
+    /// Nothing done yet.
+    pub fn new<'a>(loaded: Option<Loaded>, summary: Summary) -> RunState<'a> {
+        RunState { loaded, grains: None, coupled: None, summary }
+    }
+
+    /// Takes up the grains of the scene, or what a checkpoint has of them.
+    ///
+    /// # Errors
+    /// A checkpoint of something else.
+    pub fn begin(&mut self, job: &Job) -> Result<(), Failure> {
+        let Some(part) = job.grains.clone() else { return Ok(()) };
+        let ground = match (&job.coupling, &job.solid) {
+            (Some(plan), Some(solid)) => Some(plan.ground(solid, &part)),
+            _ => None,
+        };
+        let (bed, bodies) = (Settled::default(), Vec::new());
+        let mut grains = GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases: Vec::new() };
+        if !is_packed(job) {
+            grains.bodies.clone_from(&grains.part.bodies);
+        } else if let Some(loaded) = &mut self.loaded {
+            match loaded.moment.stage.as_str() {
+                RUN | SETTLED => (grains.bed, grains.done) = (loaded.take()?, Packed::Finished),
+                _ => {
+                    let Packing { done, bodies, bed } = loaded.take()?;
+                    grains.part.bodies = bodies;
+                    bed.planes.iter().enumerate().for_each(|(k, x)| grains.part.place_plane(k, *x));
+                    (grains.bed, grains.done) = (bed, done);
+                }
+            }
+            self.loaded.take_if(|l| ![RUN, SETTLING].contains(&l.moment.stage.as_str()));
+        } else if grains.part.deposition.is_none() {
+            grains.bed.bodies.clone_from(&grains.part.bodies);
+        }
+        self.grains = Some(grains);
+        Ok(())
+    }
+
+    /// The model of the grains in the main loop; the summary gets its figures.
+    ///
+    /// # Errors
+    /// Bad input.
+    pub fn grain_model(&mut self, run: &Run<'_>) -> Result<dem::Model, Failure> {
+        let grains = self.grains.as_mut().expect("a run with grains");
+        let (part, summary) = (&grains.part, &mut self.summary);
+        let input = part.input(std::mem::take(&mut grains.bodies));
+        check_joined(run.document, &part.bonds, &input.bonds)?;
+        if !part.bonds.is_empty() {
+            summary.sources.extend(sources::BONDS);
+        }
+        let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+        part.check_ram(run.document, model.dt())?;
+        part.check_pads(run.document, model.dt())?;
+        if part.rail.is_some() {
+            summary.sources.extend(sources::RAIL);
+        }
+        summary.model.bodies = model.body_count();
+        summary.model.spheres = model.sphere_count();
+        summary.model.grain_step = Some(model.dt());
+        summary.model.grain_step_limit = Some(model.dt_limit().dt);
+        summary.model.grain_step_set_by = Some(model.dt_limit().to_string());
+        Ok(model)
+    }
+}

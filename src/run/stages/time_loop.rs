@@ -1,0 +1,339 @@
+//! The loop over the windows of a run: steps, records, accounts.
+
+use super::stage::{GrainsState, Packed, RUN, Settled};
+use crate::failure::Failure;
+use crate::model::grains::GrainsPart;
+use crate::progress::Progress;
+use crate::run::bond_output;
+use crate::run::checkpoint::{Loaded, Moment};
+use crate::run::context::Run;
+use crate::run::flow::Flow;
+use crate::run::record::Results;
+use crate::run::summary::{
+    BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary,
+};
+use crate::run::system::System;
+use crate::run::track_output;
+use serde::{Deserialize, Serialize};
+use trackbed_coupling::track::cycles::Cycle;
+use trackbed_coupling::track::{Track, TrackInput};
+use trackbed_dem as dem;
+
+/// How the grains of a run were when it began.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Start {
+    coordination: f64,
+    linear: dem::Vec3,
+    angular: dem::Vec3,
+}
+
+/// Where a run is.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Place {
+    /// Windows done.
+    done: u64,
+    /// Next frame, not counting the one of the start.
+    next_frame: u64,
+    /// Seconds by the clock.
+    seconds: f64,
+    /// Windows of the whole run, which are fewer where cycles are jumped over.
+    windows: u64,
+}
+
+/// When something is written, in windows.
+struct Cadence {
+    /// Length of a window [s].
+    window: f64,
+    /// Frames over the run.
+    frames: u64,
+    /// Windows between two rows of the history.
+    every: u64,
+    /// Windows after the last cycle, whenever that ends.
+    tail: u64,
+    /// Whether cycles are jumped over: then neither time nor steps show how far a run is.
+    jumps: bool,
+}
+
+/// The parts of a running loop beside the system.
+struct TimeLoop<'a> {
+    run: &'a Run<'a>,
+    grains: Option<(&'a GrainsPart, Start)>,
+    settled: Option<&'a Settled>,
+    cadence: Cadence,
+    track: Track<'a>,
+    flow: Option<Flow<'a>>,
+    recorder: Results<'a>,
+    place: Place,
+    progress: Progress,
+}
+
+/// The main loop of a scene with grains, with its accounts.
+///
+/// # Errors
+/// As [`advance`].
+pub fn with_grains<S: System>(
+    run: &Run<'_>,
+    system: &mut S,
+    grains: &GrainsState,
+    mut resumed: Option<Loaded>,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
+    let momentum = |s: &S| {
+        let g = s.grains().expect("a system with grains");
+        dem::measure::momentum(g.model, g.state)
+    };
+    let start = match &mut resumed {
+        Some(loaded) => loaded.take()?,
+        None => {
+            let view = system.grains().expect("a system with grains");
+            let coordination = dem::measure::coordination(view.model, view.state);
+            let dem::ledger::Impulse { linear, angular } = momentum(system);
+            Start { coordination, linear, angular }
+        }
+    };
+    summary.model.coordination = Some(start.coordination);
+    let settled = (grains.done == Packed::Finished).then_some(&grains.bed);
+    advance(run, system, Some((&grains.part, start)), resumed, settled, summary)?;
+    let after = momentum(system);
+    let ledger = &system.grains().expect("a system with grains").state.ledger;
+    let impulse = ledger.impulse();
+    let (mut linear, mut angular) = (0.0, 0.0);
+    let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied];
+    for part in outside.into_iter().chain([&ledger.constraints, &ledger.flow]) {
+        linear += part.linear.norm();
+        angular += part.angular.norm();
+    }
+    let relative = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { error };
+    summary.momentum = Some(MomentumRecord {
+        linear: relative((after.linear - start.linear - impulse.linear).norm(), linear),
+        angular: relative((after.angular - start.angular - impulse.angular).norm(), angular),
+    });
+    Ok(())
+}
+
+/// Advances a system to the end of the run, recording; from where the checkpoint `resumed` has it, if there is one. `settled`
+/// is the bed that the run began with, for its checkpoints.
+///
+/// # Errors
+/// A numerical failure, an interrupt, what the disk refuses.
+pub fn advance<S: System>(
+    run: &Run<'_>,
+    system: &mut S,
+    grains: Option<(&GrainsPart, Start)>,
+    resumed: Option<Loaded>,
+    settled: Option<&Settled>,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
+    let mut looped = TimeLoop::begin(run, system, grains, resumed, settled)?;
+    run.checkpoints.begin();
+    let mut outcome = Ok(());
+    while outcome.is_ok() && looped.place.done < looped.place.windows {
+        outcome = looped.window(system);
+    }
+    run.checkpoints.end();
+    looped.finish(system, matches!(outcome, Err(Failure::Numerical(_))), summary)?;
+    outcome
+}
+
+impl<'a> TimeLoop<'a> {
+    fn begin<S: System>(
+        run: &'a Run<'a>,
+        system: &S,
+        grains: Option<(&'a GrainsPart, Start)>,
+        resumed: Option<Loaded>,
+        settled: Option<&'a Settled>,
+    ) -> Result<TimeLoop<'a>, Failure> {
+        let job = run.job;
+        let window = system.window();
+        let windows = ((job.end / window).ceil() as u64).max(1);
+        let part = grains.map(|(part, _)| part);
+        let load = part.and_then(|g| g.load.as_ref());
+        let cadence = Cadence {
+            window,
+            frames: u64::from(job.output.frames).min(windows),
+            every: ((job.output.history_interval / window).round() as u64).max(1),
+            tail: load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows)),
+            jumps: part.is_some_and(|g| g.after.jump.is_some()),
+        };
+        let input = part.map_or_else(TrackInput::default, GrainsPart::track);
+        let mut track = Track::new(input, system.grains());
+        let mut flow = Flow::new(part, system.grains(), window, job.end);
+        let (recorder, place) = match resumed {
+            Some(mut loaded) => {
+                let place: Place = loaded.take()?;
+                track = track.resume(loaded.take()?);
+                flow = flow.map(|f| f.resume(&mut loaded)).transpose()?;
+                (Results::resume(job, run.dir, system, &track, flow.as_ref(), &mut loaded)?, place)
+            }
+            None => {
+                let mut recorder = Results::start(job, run.dir, system, &track, flow.as_ref())?;
+                recorder.row(0.0, system, &track, flow.as_ref())?;
+                recorder.frame(0.0, system, &track)?;
+                (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
+            }
+        };
+        let (begun, whole) = share(&cadence, &recorder, &place);
+        let progress =
+            Progress::start("running", whole as f64, run.quiet).resumed(begun as f64, place.seconds);
+        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress })
+    }
+
+    /// One window: a step of the system, and what is recorded and written at its end.
+    fn window<S: System>(&mut self, system: &mut S) -> Result<(), Failure> {
+        let (k, track) = (self.place.done + 1, &mut self.track);
+        let time = k as f64 * self.cadence.window;
+        track.begin_window();
+        system.advance(&mut |t, model, state, out| track.apply(t, model, state, out))?;
+        track.follow(time, system);
+        if let Some(flow) = &mut self.flow {
+            flow.follow(k, time, system).map_err(|e| e.at(time))?;
+        }
+        if let Some(cycle) = self.recorder.follow(time, system, &self.track)? {
+            self.after_cycle(&cycle, k, time);
+        }
+        if k % self.cadence.every == 0 || k == self.place.windows {
+            self.row(time, system).map_err(|e| e.at(time))?;
+        }
+        self.place.done = k;
+        let (reached, whole) = share(&self.cadence, &self.recorder, &self.place);
+        let (frames, next) = (self.cadence.frames, self.place.next_frame);
+        if frames > 0 && reached * frames >= next * whole && next <= frames {
+            self.recorder.frame(time, system, &self.track).map_err(|e| e.at(time))?;
+            self.place.next_frame = reached * frames / whole + 1;
+        }
+        self.progress.at(reached as f64);
+        if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
+    }
+
+    /// After a load cycle that ended with window `k`.
+    fn after_cycle(&mut self, cycle: &Cycle, k: u64, time: f64) {
+        let settlement = 1e3 * cycle.settlement;
+        self.progress.message(format!("cycle {}: settlement {settlement:.3} mm", cycle.number));
+        if self.recorder.progress().is_some_and(|(number, total)| number >= total) {
+            self.track.end_cycles(time);
+            if self.cadence.jumps {
+                self.place.windows = (k + self.cadence.tail).min(self.place.windows);
+            }
+        }
+    }
+
+    fn row<S: System>(&mut self, time: f64, system: &S) -> Result<(), Failure> {
+        self.recorder.row(time, system, &self.track, self.flow.as_ref())
+    }
+
+    /// Writes a checkpoint if one is due.
+    fn keep<S: System>(&self, time: f64, system: &S) -> Result<(), Failure> {
+        let place = Place { seconds: self.progress.seconds(), ..self.place };
+        self.run.checkpoints.step(
+            || Moment { stage: RUN.into(), step: place.done, time },
+            |body| {
+                // In the order in which a resumed run needs them.
+                if let Some(settled) = self.settled {
+                    body.put(settled)?;
+                }
+                system.save(body)?;
+                if let Some((_, start)) = &self.grains {
+                    body.put(start)?;
+                }
+                body.put(&place)?;
+                body.put(self.track.state())?;
+                if let Some(flow) = &self.flow {
+                    flow.save(body)?;
+                }
+                self.recorder.save(body)
+            },
+        )
+    }
+
+    /// Results of the loop; `failed` is whether a step had no solution.
+    fn finish<S: System>(mut self, system: &S, failed: bool, summary: &mut Summary) -> Result<(), Failure> {
+        // A step that found no equilibrium leaves the last one: it is what the user wants to see.
+        if failed
+            && system.keeps_its_state()
+            && let Some(time) = system.solid().map(|s| s.state.time)
+        {
+            self.row(time, system)?;
+            self.recorder.frame(time, system, &self.track)?;
+        }
+        let (part, dir) = (self.grains.map(|(part, _)| part), self.run.dir);
+        if let (Some(part), Some(view)) = (part, system.grains())
+            && !part.bonds.is_empty()
+        {
+            bond_output::write_breaks(dir, view.state)?;
+            summary.bonds = Some(bond_output::summary(view));
+        }
+        let (grain_steps, solid_steps) = system.steps_per_window();
+        let done = self.place.done;
+        let end = done as f64 * self.cadence.window;
+        let seconds = self.progress.finish(&format!("{end:.3} s simulated"));
+        summary.stages.push(StageRecord {
+            name: "run".into(),
+            seconds,
+            grain_steps: done * grain_steps,
+            solid_steps: done * solid_steps,
+        });
+        summary.push = track_output::push(&self.track, dir)?;
+        if let (Some(flow), Some(view)) = (&self.flow, system.grains()) {
+            let (record, warnings) = flow.finish(end, view);
+            summary.warnings.extend(warnings);
+            summary.flow = Some(record);
+        }
+        summary.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
+        summary.track = self.track.record();
+        summary.warnings.extend(summary.track.iter().flat_map(|t| t.remarks()));
+        summary.energy = Some(energy(&self.recorder));
+        self.recorder.end()?;
+        self.recorder.plot_settlement()
+    }
+}
+
+/// How far a run is, and its whole: cycles where some are jumped over, windows otherwise.
+fn share(cadence: &Cadence, recorder: &Results<'_>, place: &Place) -> (u64, u64) {
+    match recorder.progress() {
+        Some((number, total)) if cadence.jumps => (u64::from(number), u64::from(total)),
+        _ => (place.done, place.windows),
+    }
+}
+
+/// The account of energy at the end.
+fn energy(recorder: &Results<'_>) -> EnergyRecord {
+    let balance = recorder.balance();
+    let work = balance.spent.work();
+    let turnover = work.abs().max(balance.spent.dissipated());
+    EnergyRecord {
+        start: balance.start,
+        end: balance.now,
+        spent: balance.spent,
+        error: balance.error(),
+        work,
+        relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
+        largest_error: recorder.largest_error(),
+    }
+}
+
+fn settlement(
+    cycles: &[Cycle],
+    grains: Option<&GrainsPart>,
+    recorder: &Results<'_>,
+) -> Option<SettlementRecord> {
+    if cycles.is_empty() {
+        return None;
+    }
+    let per_cycle: Vec<f64> = cycles.iter().map(|c| c.settlement).collect();
+    let increments: Vec<f64> =
+        per_cycle.iter().enumerate().map(|(i, s)| if i == 0 { *s } else { s - per_cycle[i - 1] }).collect();
+    let half = increments.len() / 2;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let slowing =
+        (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
+    let last: Vec<f64> = cycles[cycles.len().saturating_sub(10)..].iter().map(|c| c.bed_stiffness).collect();
+    // Cycles that never rise from the one load to the other tell none.
+    let between = grains.and_then(|g| g.after.between).filter(|_| last.iter().any(|k| *k > 0.0));
+    let bed_stiffness = between.map(|between| BedStiffness {
+        between,
+        last: last[last.len() - 1],
+        mean_of_last_ten: mean(&last),
+    });
+    let (fits, jump) = (recorder.fits(), recorder.jumps());
+    Some(SettlementRecord { per_cycle, increments, slowing, fits, bed_stiffness, jump })
+}
