@@ -93,7 +93,9 @@ fn inputs() -> Vec<PathBuf> {
                 let text = fs::read_to_string(&path).unwrap();
                 let is_scene =
                     text.lines().any(|l| ["[solid]", "[[grains]]"].iter().any(|head| l.starts_with(head)));
-                found.extend(is_scene.then_some(path));
+                // A free body has modes, but no run.
+                let runs = is_scene && !text.contains("trackbed modal");
+                found.extend(runs.then_some(path));
             }
         }
     }

@@ -67,7 +67,7 @@ fn coupled(name: &str) -> Folder {
 }
 
 #[test]
-fn files_of_a_coupled_run_hold_every_field() {
+fn frames_of_the_solid_hold_every_field() {
     let folder = coupled("fields");
     let out = folder.join("out");
     let frames = series(&out);
@@ -99,7 +99,13 @@ fn files_of_a_coupled_run_hold_every_field() {
         assert_eq!(point["velocity"].1[3 * probe + d], last("middle_v"));
     }
     assert_eq!(frames.last().unwrap().0, *history.column("time").last().unwrap());
+}
 
+#[test]
+fn frames_of_a_coupled_run_hold_grains_chains_and_walls() {
+    let folder = coupled("frames");
+    let out = folder.join("out");
+    let history = Table::read(&out.join("history.csv"));
     let (points, point, _) = vtk(&out.join("frames/grains_00002.vtp"));
     let grains = [
         ("radius", 1),
@@ -132,7 +138,13 @@ fn files_of_a_coupled_run_hold_every_field() {
     expect_arrays(&cell, 6, &[("id", 1)]);
     let height: f64 = (0..8).map(|c| points[3 * c + 2] / 8.0).sum();
     assert!((height - history.column("sleeper_z").last().unwrap()).abs() < 1e-12);
+}
 
+#[test]
+fn tables_of_a_coupled_run_have_their_columns() {
+    let folder = coupled("tables");
+    let out = folder.join("out");
+    let history = Table::read(&out.join("history.csv"));
     let expected = [
         "time",
         "load",

@@ -92,12 +92,8 @@ fn strength_of_a_frictional_cube() {
     }
 }
 
-/// Level ground of two densities under K₀: the stress is γ z and K₀ γ z at every Gauss point and nothing moves (taking the
-/// weight off and on again would make ground of so little cohesion yield); gravity turned on
-/// gives ν/(1 − ν) in place of K₀.
-#[test]
-fn initial_stress_of_level_ground() {
-    const GROUND: &str = r#"title = "ground"
+/// Two layers, each with a K₀ of its own.
+const GROUND: &str = r#"title = "ground"
 
 [solid]
 integration = "full"
@@ -161,6 +157,12 @@ vtk = false
 tecplot = false
 tables = true
 "#;
+
+/// Level ground of two densities under K₀: the stress is γ z and K₀ γ z at every Gauss point and nothing moves (taking the
+/// weight off and on again would make ground of so little cohesion yield); gravity turned on
+/// gives ν/(1 − ν) in place of K₀.
+#[test]
+fn initial_stress_of_level_ground() {
     let gravity = GROUND
         .replace("method = \"k0\"\nk0 = 1.5\nlayers = [[4.0, 1000], [2.0, 2000]]", "method = \"gravity\"")
         .replace("k0 = 0.7\n", "");

@@ -83,7 +83,6 @@ fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
     let folder = Folder::new("stone_bad");
     folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("cut.stl", "solid x\nfacet normal 0 0 0\nouter loop\nvertex 0 0\n");
-    folder.write("nothing.toml", "name = \"a\"\nsource = \"b\"\nstones = []\n");
     let stone = surface("stone.stl");
     let out = ["--out", "x.toml"];
     for (arguments, error) in [
@@ -149,6 +148,13 @@ fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
         assert!(outcome.stderr.contains(error), "{arguments:?}: {}", outcome.stderr);
         assert!(!folder.join("x.toml").exists(), "{arguments:?}");
     }
+}
+
+#[test]
+fn a_file_that_cannot_be_written_or_read_is_refused() {
+    let folder = Folder::new("stone_files");
+    folder.write("nothing.toml", "name = \"a\"\nsource = \"b\"\nstones = []\n");
+    let stone = surface("stone.stl");
     for (arguments, error) in [
         (
             ["make", stone.as_str(), "--spheres", "3", "--out", "no/x.toml"],

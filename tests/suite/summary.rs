@@ -20,7 +20,7 @@ fn expect_keys(value: &Value, keys: &[&str]) {
 }
 
 #[test]
-fn a_coupled_run_tells_everything_and_its_accounts_close() {
+fn the_summary_of_a_coupled_run_has_every_part() {
     let folder = scene_folder("summary", COUPLED);
     run(&folder.join("scene.toml"), &folder.join("out"), &SETTLED).good();
     let summary = json(&folder.join("out/summary.json"));
@@ -88,6 +88,14 @@ fn a_coupled_run_tells_everything_and_its_accounts_close() {
     println!("interface: force {:.1e}, moment {:.1e}", audit[0], audit[1]);
     assert!(audit.iter().all(|e| *e <= 1e-12), "{audit:?}");
     assert!(coupling["transfer"]["exchanges"].as_u64().unwrap() > 0);
+}
+
+/// The account of energy closes, adds up from its own entries, and agrees with the tables.
+#[test]
+fn the_energy_of_a_coupled_run_adds_up() {
+    let folder = scene_folder("summary_energy", COUPLED);
+    run(&folder.join("scene.toml"), &folder.join("out"), &SETTLED).good();
+    let summary = json(&folder.join("out/summary.json"));
     let energy = &summary["energy"];
     expect_keys(energy, &["start", "end", "spent", "error", "work", "relative_error", "largest_error"]);
     let relative = energy["relative_error"].as_f64().unwrap();
