@@ -13,7 +13,7 @@
 //! their dynamics: overlaps are removed by projection.
 
 use nalgebra::Vector3;
-use trackbed_dem::insert::random::Random;
+use trackbed_dem::random::Random;
 use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
 
 use super::fill::Ball;
