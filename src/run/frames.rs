@@ -79,7 +79,7 @@ pub fn write(
     let Some(Shown { view, part, strong_only, draw }) = grains else { return Ok(writers.frame(&frame)?) };
     // Computed once for all that is shown of them.
     let any = writers.show(Part::Grains) || writers.show(Part::Chains);
-    let contacts = any.then(|| dem::measure::contacts(view.model, view.state)).unwrap_or_default();
+    let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
     let spheres = writers.show(Part::Grains).then(|| spheres(view, &contacts));
     let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {

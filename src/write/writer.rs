@@ -22,6 +22,9 @@ pub enum Part {
     Walls,
 }
 
+/// Begins a format in a folder, or goes on from a mark.
+pub type Begin = fn(&Path, Option<&Mark>) -> Result<Box<dyn Writer>, WriteError>;
+
 /// A format of result files.
 #[derive(Debug)]
 pub struct Format {
@@ -39,7 +42,7 @@ pub struct Format {
     /// Its files in the folder of the results itself.
     pub files: &'static [&'static str],
     /// Begins to write into the folder of the results, or goes on after a [`Writer::mark`].
-    pub begin: fn(&Path, Option<&Mark>) -> Result<Box<dyn Writer>, WriteError>,
+    pub begin: Begin,
 }
 
 impl Format {

@@ -95,7 +95,7 @@ struct Onset<R> {
 
 /// `weighted`: whether a force jumps.
 #[inline(always)]
-fn onset<R: Real, N: NormalLaw>(
+fn onset<R: Real>(
     approach: R,
     remembered: R,
     overlap: R,
@@ -157,7 +157,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let step = R::splat(dt);
         let fresh = memory.rate.equals(R::splat(FRESH));
         let Onset { now, time, weight } =
-            onset::<R, N>(approach, memory.rate, overlap, fresh, on, dt, N::JUMPS || ROLL);
+            onset::<R>(approach, memory.rate, overlap, fresh, on, dt, N::JUMPS || ROLL);
 
         let own = N::respond(&law.normal, touch.mass, touch.radius, overlap, memory.rate, fresh);
         let (elastic, c) = (own.elastic, own.damping);
