@@ -13,9 +13,8 @@
 //! their dynamics: overlaps are removed by projection.
 
 use nalgebra::Vector3;
-use trackbed_dem::distance::SurfaceDistance;
-use trackbed_dem::random::Random;
-use trackbed_dem::shape::polyhedron::Polyhedron;
+use trackbed_dem::insert::random::Random;
+use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
 
 use super::fill::Ball;
 

@@ -1,10 +1,9 @@
-//! What every layer uses: vectors, errors, the ledger, random numbers.
+//! What every layer uses: vectors, errors, the ledger.
 
 pub mod error;
 pub(crate) mod failure;
 pub(crate) mod held;
 pub mod ledger;
-pub mod random;
 mod vector;
 
 pub use vector::Vec3;

@@ -12,6 +12,7 @@ pub mod grow;
 pub mod lattice;
 pub mod library;
 pub mod place;
+pub mod random;
 pub mod room;
 pub mod scatter;
 pub mod sizes;

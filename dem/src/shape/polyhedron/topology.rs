@@ -1,7 +1,6 @@
 //! Edges of a surface, and a winding that all its triangles share.
 
-use super::moments;
-use super::surface::{Surface, SurfaceError};
+use super::{Surface, SurfaceError, moments};
 use std::collections::HashMap;
 
 /// How the triangles of a surface hang together.
