@@ -157,7 +157,8 @@ fn another_form_is_refused() {
     bytes[MAGIC.len()] = b'7';
     fs::write(&file, bytes).unwrap();
     let error = Slots::new(&dir, origin(SCENE, "5")).load(&document(SCENE)).err().unwrap();
-    assert!(error.to_string().ends_with("found form 7 of a checkpoint, expected 1"), "{error}");
+    let message = format!("found form 7 of a checkpoint, expected {FORM}");
+    assert!(error.to_string().ends_with(&message), "{error}");
     fs::remove_dir_all(&dir).unwrap();
 }
 

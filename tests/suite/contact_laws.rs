@@ -78,6 +78,10 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
             let set = [
                 format!("grains.0.velocity=[0, 0, -{speed}]"),
                 format!("material.0.restitution={e}"),
+                // The pair takes the smaller of the two.
+                format!("material.1.restitution={e}"),
+                // Where loading turns into unloading lies within a step: the error falls with the step.
+                "time.grain_step_fraction=0.01".to_string(),
                 format!("time.end={}", 0.04 / speed / e + 0.01),
                 "output.vtk=false".to_string(),
             ];
@@ -89,8 +93,8 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
             let found = (last / first).sqrt();
             let plastic = history.column("dissipated_dashpot").last().unwrap() / first;
             println!("e {e}, {speed} m/s: found {found:.5}, plastic work {plastic:.5} of {:.5}", 1.0 - e * e);
-            assert!((found / e - 1.0).abs() < 5e-3, "wanted {e}, found {found} at {speed} m/s");
-            assert!((plastic / (1.0 - e * e) - 1.0).abs() < 5e-3, "{plastic} at {speed} m/s");
+            assert!((found / e - 1.0).abs() < 1e-4, "wanted {e}, found {found} at {speed} m/s");
+            assert!((plastic / (1.0 - e * e) - 1.0).abs() < 1e-4, "{plastic} at {speed} m/s");
             assert_eq!(*history.column("contact_springs").last().unwrap(), 0.0);
             assert!(sources(&json(&folder.join("out/summary.json"))).iter().any(|s| s.contains("Walton")));
         }

@@ -32,9 +32,9 @@ fn unknown_table() {
 
 #[test]
 fn missing_key() {
-    solid()
-        .scene("young = \"20 MPa\"\n", "")
-        .refused("scene.toml:8: solid.material.0.young: found nothing, expected a value for this key");
+    solid().scene("young = \"20 MPa\"\n", "").refused(
+        "scene.toml:8: solid.material.0.young: found nothing, expected a value for the model `elastic`",
+    );
 }
 
 #[test]
