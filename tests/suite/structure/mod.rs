@@ -22,9 +22,9 @@ const TABLES: &[(&str, &str)] = &[];
 mod not_yet {
     /// Files and folders in circles, by root file of the crate.
     pub const IN_CIRCLES: &[(&str, usize)] =
-        &[("dem/src/lib.rs", 37), ("fem/src/lib.rs", 25), ("coupling/src/lib.rs", 0), ("src/lib.rs", 13)];
+        &[("dem/src/lib.rs", 14), ("fem/src/lib.rs", 0), ("coupling/src/lib.rs", 0), ("src/lib.rs", 13)];
     /// Functions above the limit.
-    pub const LONG_FUNCTIONS: usize = 25;
+    pub const LONG_FUNCTIONS: usize = 2;
     /// Uses of replaced words.
     pub const REPLACED_WORDS: usize = 604;
 }
