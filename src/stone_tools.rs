@@ -11,10 +11,11 @@ pub mod measure;
 pub mod random;
 
 use rayon::prelude::*;
+use trackbed_dem::distance::SurfaceDistance;
 use trackbed_dem::insert::library::Stone;
 use trackbed_dem::shape::clump::{Clump, ShapeError};
 use trackbed_dem::shape::cluster::{Cluster, ClusterError};
-use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
+use trackbed_dem::shape::polyhedron::Polyhedron;
 
 pub use measure::StoneReport;
 

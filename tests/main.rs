@@ -10,6 +10,7 @@ mod suite {
     mod cli;
     mod contact_laws;
     mod determinism;
+    mod examples;
     mod exchange;
     mod fem_cases;
     mod flow;

@@ -25,13 +25,13 @@ mod spatial;
 mod testing;
 pub mod wall;
 
-pub use base::{Vec3, error, ledger};
+pub use base::{Vec3, error, ledger, random};
 pub use bodies::input::BodyInput;
 pub use engine::{input, model, state, step, timestep, work};
 pub use insert::flow;
 pub use law::material;
 pub use shape::plane::{Plane, PlaneMotion};
-pub use spatial::{bvh, detect, surface};
+pub use spatial::{bvh, detect, distance, surface};
 
 pub use error::{ModelError, Partner, StepError};
 pub use input::{AppliedForce, LocalDamping, ModelInput, TimeStep};

@@ -23,7 +23,8 @@
 //! Limits: features smaller than the lattice (a 26th of the longest side) are not seen by step 1.
 
 use nalgebra::{Matrix4, Vector3, Vector4};
-use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
+use trackbed_dem::distance::SurfaceDistance;
+use trackbed_dem::shape::polyhedron::Polyhedron;
 
 /// A sphere: centre and radius.
 pub type Ball = ([f64; 3], f64);

@@ -13,8 +13,9 @@
 //! their dynamics: overlaps are removed by projection.
 
 use nalgebra::Vector3;
-use trackbed_dem::insert::random::Random;
-use trackbed_dem::shape::polyhedron::{Polyhedron, SurfaceDistance};
+use trackbed_dem::distance::SurfaceDistance;
+use trackbed_dem::random::Random;
+use trackbed_dem::shape::polyhedron::Polyhedron;
 
 use super::fill::Ball;
 

@@ -7,9 +7,10 @@
 use std::fmt;
 
 use nalgebra::Vector3;
+use trackbed_dem::distance::SurfaceDistance;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::shape::cluster::Cluster;
-use trackbed_dem::shape::polyhedron::{BodyMoments, Polyhedron, SurfaceDistance, sphericity};
+use trackbed_dem::shape::polyhedron::{BodyMoments, Polyhedron, sphericity};
 
 use super::fill::Ball;
 

@@ -7,7 +7,7 @@
 //! Ratios as T. Zingg (1935): elongation b/a and flatness c/b of the extents a ≥ b ≥ c.
 
 use nalgebra::{Matrix3, Vector3};
-use trackbed_dem::insert::random::Random;
+use trackbed_dem::random::Random;
 use trackbed_dem::shape::polyhedron::{Polyhedron, convex_hull};
 
 const PURPOSE: u64 = 11;

@@ -1,9 +1,10 @@
-//! What every layer uses: vectors, errors, the ledger.
+//! What every layer uses: vectors, errors, the ledger, random numbers.
 
 pub mod error;
 pub(crate) mod failure;
 pub(crate) mod held;
 pub mod ledger;
+pub mod random;
 mod vector;
 
 pub use vector::Vec3;

@@ -3,7 +3,7 @@
 //!
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond, a glue of no size).
 
-use super::{BondDamping, Problem, Springs, not_negative, positive, strength};
+use super::springs::{BondDamping, Problem, Springs, not_negative, positive, strength};
 
 /// A contact-point bond.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@
 //! Source: Wang, Acta Geotechnica 4, 2009 (four springs, criterion by sum). With small rotations the springs are those
 //! of the bonded-particle models that keep a quaternion per bond.
 
-use super::{BondDamping, Criterion, Problem, Springs, not_negative, positive, strength};
+use super::springs::{BondDamping, Criterion, Problem, Springs, not_negative, positive, strength};
 
 /// A bond by stiffness and strength.
 #[derive(Clone, Copy, Debug, PartialEq)]

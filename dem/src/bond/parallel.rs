@@ -11,7 +11,7 @@
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; the moment factor β is that of Potyondy
 //! (Proc. 45th US Rock Mech. Symp., 2011).
 
-use super::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
+use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
 use std::f64::consts::PI;
 
 /// Stiffness of the cement.

@@ -6,7 +6,7 @@
 //!
 //! Source: Weibull, J. Appl. Mech. 18, 1951; Box & Muller, Ann. Math. Statist. 29, 1958.
 
-use crate::insert::random::Random;
+use crate::base::random::Random;
 use std::f64::consts::TAU;
 
 /// How strengths spread about that of their kind.

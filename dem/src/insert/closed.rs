@@ -11,7 +11,8 @@
 //! Limits: the surface must not cut itself; points on it count as either side.
 
 use crate::base::Vec3;
-use crate::shape::polyhedron::{Nearest, Surface};
+use crate::shape::polyhedron::Surface;
+use crate::spatial::distance::Nearest;
 use std::collections::BTreeMap;
 
 /// Why triangles do not bound a body.

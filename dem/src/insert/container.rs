@@ -80,7 +80,7 @@ impl Container {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::insert::random::Random;
+    use crate::base::random::Random;
 
     /// Volume by random points, and a sphere that just fits a funnel: its largest radius at height h above the tip is
     /// h sin α for half the opening angle α.

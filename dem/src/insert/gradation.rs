@@ -14,7 +14,7 @@
 //! Limits: the size of a stone is its sieve size; the mass per size³ must not depend on the size, so shapes are to
 //! be dealt out independently of the sizes.
 
-use super::random::Random;
+use crate::base::random::Random;
 use serde::{Deserialize, Serialize};
 
 const PURPOSE: u64 = 1;

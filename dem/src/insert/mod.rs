@@ -12,7 +12,6 @@ pub mod grow;
 pub mod lattice;
 pub mod library;
 pub mod place;
-pub mod random;
 pub mod room;
 pub mod scatter;
 pub mod sizes;

@@ -12,7 +12,7 @@
 //!
 //! Orientations are uniform over all rotations. Positions and orientations depend on the seed alone.
 
-use super::random::Random;
+use crate::base::random::Random;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const PURPOSE: u64 = 2;

@@ -3,9 +3,9 @@
 //! A clump on its way in stands for its bounding sphere; what is there counts with its own spheres, boxes, planes, walls
 //! and the external surface. Across periodic borders images count.
 
-use super::random::Random;
 use super::scatter::Grid;
 use crate::base::Vec3;
+use crate::base::random::Random;
 use crate::bodies::table::Kind;
 use crate::engine::model::Model;
 use crate::engine::state::State;

@@ -5,8 +5,8 @@
 //! packings: growth (`grow.rs`), or settling.
 
 use super::container::Container;
-use super::random::Random;
 use crate::base::Vec3;
+use crate::base::random::Random;
 use nalgebra::UnitQuaternion;
 
 const PURPOSE: u64 = 4;

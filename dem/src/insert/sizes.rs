@@ -7,7 +7,7 @@
 //! by Newton's iteration on the distribution function; Φ(x) = ½ + φ(x) (x + x³/3 + x⁵/15 + …) (Abramowitz & Stegun
 //! 1964, 26.2.11) near 0, and 1 − Φ(x) = φ(x) / (x + 1/(x + 2/(x + …))) (26.2.14) beyond 3.
 
-use super::random::Random;
+use crate::base::random::Random;
 use std::f64::consts::TAU;
 
 const PURPOSE: u64 = 3;

@@ -3,5 +3,6 @@
 pub mod bvh;
 pub(crate) mod cells;
 pub mod detect;
+pub mod distance;
 pub(crate) mod periodic;
 pub mod surface;

@@ -16,7 +16,7 @@ macro_rules! kernel {
     ($(#[$doc:meta])* $name:ident = $body:ident($($argument:ident: $type:ty),*)) => {
         $(#[$doc])*
         pub(super) fn $name<const K: usize>($($argument: $type),*) {
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
             {
                 #[target_feature(enable = "avx512f,avx2,fma")]
                 fn wide<const K: usize>($($argument: $type),*) {

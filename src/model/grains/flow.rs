@@ -7,9 +7,9 @@ use crate::scene::flow::{Inlet, Outlet};
 use crate::scene::grains::Grains;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
-use trackbed_dem::insert::random::Random;
 use trackbed_dem::insert::room::GAP;
 use trackbed_dem::measure::BoxRegion;
+use trackbed_dem::random::Random;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// Time between two looks at inlets and outlets, unless the scene says otherwise [s].

@@ -22,11 +22,11 @@ const TABLES: &[(&str, &str)] = &[];
 mod not_yet {
     /// Files and folders in circles, by root file of the crate.
     pub const IN_CIRCLES: &[(&str, usize)] =
-        &[("dem/src/lib.rs", 14), ("fem/src/lib.rs", 0), ("coupling/src/lib.rs", 0), ("src/lib.rs", 13)];
+        &[("dem/src/lib.rs", 0), ("fem/src/lib.rs", 0), ("coupling/src/lib.rs", 0), ("src/lib.rs", 13)];
     /// Functions above the limit.
     pub const LONG_FUNCTIONS: usize = 2;
     /// Uses of replaced words.
-    pub const REPLACED_WORDS: usize = 604;
+    pub const REPLACED_WORDS: usize = 79;
 }
 
 fn repository() -> &'static Path {

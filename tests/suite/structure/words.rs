@@ -1,6 +1,6 @@
 //! Words that the glossary replaces, in names and in text.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Where a word may not stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +72,7 @@ pub fn uses(file: &str, text: &str, replaced: &BTreeMap<String, Ban>) -> BTreeMa
     for (line, name) in &code {
         words_of(name).into_iter().for_each(|w| add(*line, w, name));
     }
+    let counted: BTreeSet<(usize, &str)> = code.iter().map(|(line, name)| (*line, name.as_str())).collect();
     for (number, line) in text.lines().enumerate() {
         for piece in line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|p| !p.is_empty()) {
             let counted = code.iter().any(|(l, n)| *l == number + 1 && n == piece);

@@ -7,7 +7,7 @@
 //!
 //! Limits: the cost grows with points times faces; meant for thousands of points.
 
-use super::Surface;
+use super::surface::Surface;
 use nalgebra::Vector3;
 use std::collections::HashSet;
 

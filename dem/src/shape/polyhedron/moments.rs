@@ -10,7 +10,7 @@
 //! Source: the moments of a tetrahedron, as in B. Mirtich, J. Graphics Tools 1 (2), 1996, and F. Tonon, J. Math.
 //! Statistics 1, 2005. The origin is the middle of the bounding box, so that nothing cancels far from zero.
 
-use super::Surface;
+use super::surface::Surface;
 use nalgebra::{Matrix3, Vector3};
 
 /// Volume, centroid and inertia of a body of density 1.

@@ -1,7 +1,8 @@
 //! Closed forms of simple bodies, windings and faults of surfaces, distances, hulls.
 
 use super::*;
-use crate::insert::random::Random;
+use crate::base::random::Random;
+use crate::spatial::distance::SurfaceDistance;
 use approx::assert_relative_eq;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;

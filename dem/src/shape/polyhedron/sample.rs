@@ -4,7 +4,7 @@
 //! when the triangles are laid end to end, its place there is that of a plane low-discrepancy sequence (M. Roberts' R2:
 //! the fractional parts of i/g and i/g² with g³ = g + 1), folded onto the triangle.
 
-use super::Surface;
+use super::surface::Surface;
 
 /// 1/g and 1/g² with g³ = g + 1.
 const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];

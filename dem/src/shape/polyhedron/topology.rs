@@ -1,6 +1,7 @@
 //! Edges of a surface, and a winding that all its triangles share.
 
-use super::{Surface, SurfaceError, moments};
+use super::moments;
+use super::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 
 /// How the triangles of a surface hang together.

@@ -5,9 +5,9 @@
 //! Graphics 11, 2005: exact for every closed manifold). Where the point stands nearly at a right angle to that normal,
 //! as on a very flat triangle, the winding number decides.
 
-use super::{Polyhedron, Surface};
+use super::bvh::{Aabb, Bvh};
+use crate::shape::polyhedron::{Polyhedron, Surface};
 use crate::shape::triangle::{Region, closest_point};
-use crate::spatial::bvh::{Aabb, Bvh};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 

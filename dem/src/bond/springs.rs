@@ -1,0 +1,75 @@
+//! What every kind of bond makes: springs with their limits, damping, and the check of its numbers.
+
+/// Viscous damping of a bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BondDamping {
+    /// None.
+    None,
+    /// This fraction of critical damping of the two spheres on each spring: c = 2 ζ √(k m*), with the reduced mass for
+    /// tension and shear and the reduced moment of inertia for bending and twisting.
+    Fraction(f64),
+    /// Coefficients of tension and shear [N s/m], bending and twisting [N m s].
+    Coefficients([f64; 4]),
+}
+
+/// When a bond breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// When the tensile or the shear stress reaches its strength.
+    Stress,
+    /// When the shares of strength that tension, bending, shear and twisting use up add up to 1.
+    Sum,
+}
+
+/// Two spheres about to be joined.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joint {
+    /// Radii [m].
+    pub radii: [f64; 2],
+    /// Distance of the centres [m].
+    pub length: f64,
+    /// Reduced mass [kg] and moment of inertia [kg m²]; zero between two fixed bodies.
+    pub mass: f64,
+    pub inertia: f64,
+}
+
+/// Four springs and what breaks them, as a kind of bond makes them for a joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Springs {
+    /// Tension and shear [N/m], bending and twisting [N m/rad].
+    pub stiffness: [f64; 4],
+    /// 1/strength in tension [1/N], bending [1/(N m)], shear [1/N], twisting [1/(N m)]; and the share of tension in the
+    /// shear criterion [1/N].
+    pub limit: [f64; 5],
+    /// Whether forces act in the middle of the line of centres instead of the middle of the gap.
+    pub middle: bool,
+}
+
+/// A quantity out of range: its name, value and what it must be.
+pub(super) type Problem = Option<(&'static str, f64, &'static str)>;
+
+const POSITIVE: &str = "be positive and finite";
+const NOT_NEGATIVE: &str = "be zero or positive, and finite";
+const STRENGTH: &str = "be positive (infinite for an unbreakable bond)";
+
+pub(super) fn positive(name: &'static str, x: f64) -> Problem {
+    (!(x > 0.0 && x.is_finite())).then_some((name, x, POSITIVE))
+}
+
+pub(super) fn not_negative(name: &'static str, x: f64) -> Problem {
+    (!(x >= 0.0 && x.is_finite())).then_some((name, x, NOT_NEGATIVE))
+}
+
+pub(super) fn strength(name: &'static str, x: f64) -> Problem {
+    (x.is_nan() || x <= 0.0).then_some((name, x, STRENGTH))
+}
+
+impl BondDamping {
+    pub(super) fn problem(&self) -> Problem {
+        match self {
+            BondDamping::None => None,
+            BondDamping::Fraction(f) => not_negative("fraction of critical damping", *f),
+            BondDamping::Coefficients(c) => c.iter().find_map(|c| not_negative("damping coefficient", *c)),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Runs one scene with several values of a key and compares a number of the summary: the friction of spheres that settle in a
+//! box, and the contacts that each then has.
+//!
+//! ```sh
+//! cargo run --release --example parameter_study
+//! ```
+
+use std::path::Path;
+use trackbed::run::{Options, Outcome, run};
+
+/// Contacts per sphere of the bed that settles with each friction.
+pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/grains/box.toml");
+    let out = std::env::temp_dir().join(format!("trackbed_parameter_study_{}", std::process::id()));
+    let mut found = Vec::new();
+    for friction in frictions {
+        // As `--set` on the command line; one frame, for only the summary counts here.
+        let set = vec![format!("contact.0.friction={friction}"), "output.frames=1".into()];
+        let options = Options { out: Some(out.clone()), set, quiet: true, ..Options::default() };
+        if let Outcome::Done(summary) = run(&scene, &options)? {
+            found.push(summary.packing.ok_or("a run without grains")?.coordination);
+        }
+    }
+    std::fs::remove_dir_all(&out)?;
+    Ok(found)
+}
+
+/// The rougher the spheres, the fewer contacts hold them.
+pub fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let frictions = [0.1, 0.3, 0.5];
+    for (friction, contacts) in frictions.iter().zip(study(&frictions)?) {
+        println!("friction {friction}: {contacts:.2} contacts per sphere");
+    }
+    Ok(())
+}
