@@ -55,29 +55,35 @@ impl Block {
 
     /// Motion of a body as a contact at `point` needs it.
     #[inline(always)]
-    pub fn motion(&self, body: usize, point: &Vec3) -> PointMotion<'_> {
+    pub fn motion(&self, body: usize, point: &Vec3) -> PointMotion {
         let arm = point - xyz(&self.centre[body]);
-        PointMotion { velocity: &self.velocity[body], spin: &self.spin[body], arm }
+        PointMotion { velocity: self.velocity[body], spin: self.spin[body], arm }
     }
 }
 
 /// Motion of one body as a contact needs it.
-pub(crate) struct PointMotion<'a> {
-    pub velocity: &'a Record,
-    spin: &'a Record,
+pub(crate) struct PointMotion {
+    pub velocity: Record,
+    spin: Record,
     /// From the body's centre to the contact point.
     pub arm: Vec3,
 }
 
-impl PointMotion<'_> {
+impl PointMotion {
+    /// Motion of a plane, which no force changes.
+    #[inline(always)]
+    pub fn of_plane(velocity: &Vec3) -> PointMotion {
+        PointMotion { velocity: Record::of(velocity, 0.0), spin: Record::default(), arm: Vec3::zeros() }
+    }
+
     #[inline(always)]
     pub fn spin(&self) -> Vec3 {
-        xyz(self.spin)
+        xyz(&self.spin)
     }
 
     #[inline(always)]
     pub fn at_point(&self) -> Vec3 {
-        xyz(self.velocity) + xyz(self.spin).cross(&self.arm)
+        xyz(&self.velocity) + xyz(&self.spin).cross(&self.arm)
     }
 
     /// One over the body's mass [1/kg].

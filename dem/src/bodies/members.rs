@@ -11,9 +11,9 @@ use nalgebra::UnitQuaternion;
 /// Constants of a block's bodies, and its spheres where they are. A block of single spheres keeps next to nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Members {
-    /// Whether any body is a clump or a box: spheres and bodies then have numbers of their own.
+    /// Whether any body is no single sphere: spheres and bodies then have numbers of their own.
     pub rigid: bool,
-    /// Whether no body is a box.
+    /// Whether all bodies are made of spheres.
     pub round: bool,
     pub mass_sum: f64,
     /// The material of all bodies, where there is only one.
@@ -25,7 +25,9 @@ pub(crate) struct Members {
     pub reach: Vec<f64>,
     /// Bits 0–2 translation, 3–5 rotation; empty where all motions are free.
     pub fixed: Vec<u8>,
-    /// Half sides of boxes.
+    /// Shape (index) and scale of each body, and half sides of a box about its centre that holds it; only in blocks of
+    /// bodies that are not made of spheres.
+    pub solids: Vec<(u32, f64)>,
     pub half: Vec<Vec3>,
     /// First sphere of each body, and one past the last.
     pub first: Vec<u32>,
@@ -49,7 +51,7 @@ impl Members {
         *self = Members::default();
         let bodies = &block.bodies;
         self.rigid = bodies.iter().any(|&b| table.kind(b as usize) != Kind::Sphere);
-        self.round = bodies.iter().all(|&b| table.kind(b as usize) != Kind::Box);
+        self.round = bodies.iter().all(|&b| table.kind(b as usize) != Kind::Solid);
         self.fixed.reserve_exact(bodies.len());
         self.material = common(bodies.iter().map(|&b| table.get(b as usize).material));
         for (k, &body) in bodies.iter().enumerate() {
@@ -61,7 +63,10 @@ impl Members {
                 self.kind.push(b.kind);
                 self.inertia.push(b.inertia);
                 self.reach.push(if b.kind == Kind::Sphere { 0.0 } else { b.radius });
-                self.half.push(shapes[b.shape].half_sides(b.scale));
+                if !self.round {
+                    self.solids.push((b.shape as u32, b.scale));
+                    self.half.push(shapes[b.shape].bounding_half(b.scale));
+                }
                 for_members(&shapes[b.shape], b.scale, |c, r| {
                     self.owner.push(k as u32);
                     self.local.push(Record([c.x, c.y, c.z, r]));
@@ -81,17 +86,17 @@ impl Members {
         }
     }
 
-    /// Whether the block is one of boxes.
-    pub fn boxes(&self) -> bool {
-        self.kind.first() == Some(&Kind::Box)
+    /// Whether the block is one of bodies that are not made of spheres.
+    pub fn solid(&self) -> bool {
+        self.kind.first() == Some(&Kind::Solid)
     }
 
-    /// Whether no body is a box or has a fixed motion.
+    /// Whether all bodies are made of spheres and none has a fixed motion.
     pub fn plain(&self) -> bool {
         self.round && self.fixed.is_empty()
     }
 
-    /// Whether the bodies k to k + 3 are no boxes and have no fixed motion.
+    /// Whether the bodies k to k + 3 are made of spheres and have no fixed motion.
     #[inline(always)]
     pub fn all_free(&self, k: usize) -> bool {
         self.round && (self.fixed.is_empty() || self.fixed[k..k + 4] == [0; 4])
@@ -139,6 +144,6 @@ impl Members {
     pub fn bytes(&self) -> usize {
         let spheres = held(&self.owner) + held(&self.local) + held(&self.spheres) + held(&self.first);
         let bodies = held(&self.inertia) + held(&self.reach) + held(&self.kind);
-        spheres + bodies + held(&self.fixed) + held(&self.half)
+        spheres + bodies + held(&self.fixed) + held(&self.solids) + held(&self.half)
     }
 }

@@ -13,7 +13,8 @@ use std::collections::HashMap;
 pub(crate) enum Kind {
     Sphere,
     Clump,
-    Box,
+    /// Not made of spheres.
+    Solid,
 }
 
 /// Constants of one body, worked out from its class and scale.
@@ -185,7 +186,7 @@ fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
         Shape::Box { half } => {
             let half = Vec3::from(*half);
             radius = half.norm();
-            (Kind::Box, cuboid::inertia(&half))
+            (Kind::Solid, cuboid::inertia(&half))
         }
     };
     Class {

@@ -89,7 +89,7 @@ pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, d
     }
     let (ma, mb) = (a.motion(i, &g.point), b.motion(j, &g.point));
     // In this order: the last bits of broken stones hang on it.
-    let relative = ma.at_point() - xyz(mb.velocity) - mb.spin().cross(&mb.arm);
+    let relative = ma.at_point() - xyz(&mb.velocity) - mb.spin().cross(&mb.arm);
     let mass = 1.0 / (ma.inverse_mass() + mb.inverse_mass());
     let spin = ma.spin() - mb.spin();
     let f = single::evaluate(laws, materials, mass, &g, &relative, &spin, &mut r.history, dt);

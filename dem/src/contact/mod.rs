@@ -1,13 +1,13 @@
 //! The loops over contacts: detection, the law, and the sums of forces on bodies.
 
 pub(crate) mod between;
-pub(crate) mod boxes;
 pub(crate) mod dispatch;
 pub(crate) mod ends;
 pub(crate) mod gather;
 pub(crate) mod group_memory;
 pub(crate) mod images;
 pub(crate) mod interior;
+pub(crate) mod kind;
 pub(crate) mod patch_forces;
 pub(crate) mod patches;
 pub(crate) mod planes;

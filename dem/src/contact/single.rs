@@ -22,6 +22,8 @@ pub(crate) struct PairForce {
     /// Torques about the centres [N m].
     pub torque_a: Vec3,
     pub torque_b: Vec3,
+    /// Moment of rolling and twisting resistance on a, part of its torque [N m].
+    pub moment: Vec3,
     /// Energy that dashpots, and that sliding, rolling and twisting took [J].
     pub dashpot: f64,
     pub friction: f64,
@@ -32,7 +34,7 @@ pub(crate) fn between(
     laws: &Laws,
     materials: [u32; 2],
     geometry: &ContactGeometry,
-    (a, b): (&PointMotion<'_>, &PointMotion<'_>),
+    (a, b): (&PointMotion, &PointMotion),
     history: &mut History,
     dt: f64,
 ) -> PairForce {
@@ -43,6 +45,7 @@ pub(crate) fn between(
         force: f.force,
         torque_a: a.arm.cross(&f.force) + f.moment,
         torque_b: -(b.arm.cross(&f.force) + f.moment),
+        moment: f.moment,
         dashpot: f.dashpot,
         friction: f.friction,
     }

@@ -1,13 +1,14 @@
 //! Scratch laid out for a state: constants of the bodies in their present order, slots and shares.
 
-use super::bonds;
 use super::model::Model;
 use super::place;
 use super::state::State;
 use super::work::{Searched, Work};
+use super::{bonds, candidates};
 use crate::bodies::members::{Members, common};
 use crate::bond::Held;
 use crate::bond::pass::BondWork;
+use crate::contact::kind::KINDS;
 use crate::lanes::Simd;
 use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::{CrossForces, Gather, ImagePair};
@@ -68,15 +69,18 @@ impl Work {
 /// Gives each contact between blocks its slot and each body the list of slots it gathers, in one fixed order.
 pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
     let mut counts = vec![0; state.blocks.len()];
+    let Work { members, blocks: works, cross: forces, .. } = work;
+    let now = candidates::now(model, state, members);
     for (b, cross) in state.cross.iter().enumerate() {
-        for list in [&cross.spheres, &cross.boxes] {
-            counts[b] += list.len();
-            (0..list.len()).for_each(|k| counts[list.name(k)[1] as usize] += 1);
+        counts[b] += cross.spheres.len();
+        (0..cross.spheres.len()).for_each(|k| counts[cross.spheres.name(k)[1] as usize] += 1);
+        for (kind, list) in KINDS.iter().zip(&cross.kinds) {
+            kind.shares(&now, b, list, &mut |_, [block, _], _| counts[block as usize] += 1);
         }
         counts[b] += cross.images.len();
         cross.images.iter().for_each(|p| counts[p.name.block as usize] += 1);
     }
-    for (w, &count) in work.blocks.iter_mut().zip(&counts) {
+    for (w, &count) in works.iter_mut().zip(&counts) {
         w.shares.list.clear();
         w.shares.wide = false;
         if w.shares.list.capacity() < count {
@@ -85,21 +89,22 @@ pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
     }
     for b in 0..state.blocks.len() {
         let cross = &state.cross[b];
-        let Work { members, blocks, cross: forces, .. } = &mut *work;
         forces[b].lay_out(cross, model.clumps);
-        let (width, boxes_at, images_at) = (forces[b].width, forces[b].boxes_at, forces[b].images_at);
+        let (width, images_at) = (forces[b].width, forces[b].images_at);
         let mut share = |place: u32, of: usize, slot: (usize, usize), first: bool| {
-            blocks[of].shares.push(Gather::new(place, b as u32, slot, first));
+            works[of].shares.push(Gather::new(place, b as u32, slot, first));
         };
         for k in 0..cross.spheres.len() {
             let ([i, to, j], slot) = (cross.spheres.name(k), (k * width, width));
             share(members[b].body(i), b, slot, true);
             share(members[to as usize].body(j), to as usize, slot, false);
         }
-        for k in 0..cross.boxes.len() {
-            let ([i, to, j], slot) = (cross.boxes.name(k), (boxes_at + 3 * k, 3));
-            share(members[b].body(i), b, slot, true);
-            share(j, to as usize, slot, false);
+        let mut at = forces[b].kinds_at;
+        for (kind, list) in KINDS.iter().zip(&cross.kinds) {
+            kind.shares(&now, b, list, &mut |k, [block, place], first| {
+                share(place, block as usize, (at + 3 * k, 3), first);
+            });
+            at += 3 * list.len();
         }
         for (k, ImagePair { name, .. }) in cross.images.iter().enumerate() {
             let (to, slot) = (name.block as usize, (images_at + k * width, width));

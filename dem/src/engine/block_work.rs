@@ -5,6 +5,7 @@ use crate::bodies::sums::Tally;
 use crate::bond::pass::ListWork;
 use crate::contact::patches::PatchWork;
 use crate::pairs::cross::{ImageName, Shares};
+use crate::pairs::list::PairName;
 use crate::pairs::patch_search::Candidate;
 use crate::pairs::patches::PatchPair;
 use crate::pairs::reference::Reference;
@@ -15,7 +16,8 @@ pub(crate) struct Candidates {
     pub reference: Reference,
     pub pairs: Vec<[u16; 2]>,
     pub cross: Vec<[u32; 3]>,
-    pub boxed: Vec<[u32; 3]>,
+    /// Of each kind of pair; empty where a model has no bodies but those made of spheres.
+    pub kinds: Vec<Vec<PairName>>,
     pub images: Vec<ImageName>,
     pub planes: Vec<[u32; 2]>,
     pub walls: Vec<Candidate>,
@@ -40,7 +42,11 @@ impl BlockWork {
     /// Bytes held between steps.
     pub fn bytes(&self) -> usize {
         let c = &self.candidates;
-        let spheres = held(&c.pairs) + held(&c.cross) + held(&c.boxed) + held(&c.images) + held(&c.planes);
+        let spheres = held(&c.pairs)
+            + held(&c.cross)
+            + c.kinds.iter().map(held).sum::<usize>()
+            + held(&c.images)
+            + held(&c.planes);
         // Where the spheres were at the last search.
         let reference = c.reference.len() * size_of::<[f32; 3]>();
         let patches = held(&c.walls) + held(&c.surface);

@@ -5,10 +5,10 @@ use super::block_work::{BlockWork, Candidates};
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
-use crate::base::Vec3;
 use crate::bodies::members::Members;
-use crate::bodies::table::Kind;
+use crate::bodies::part::Part;
 use crate::bond::Held;
+use crate::contact::kind::{KINDS, Now, Search};
 use crate::lanes::record::{Record, xyz};
 use crate::pairs::cross::ImageName;
 use crate::pairs::patch_search as patches;
@@ -23,11 +23,17 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     super::bonds::hold(model, state, &mut work.held);
     let Work { members, blocks: works, parallel, held, .. } = &mut *work;
     let all = All::new(model, state, members, held);
+    let kinds = model.solids.then(|| Search::new(now(model, state, members)));
     let walls = model.walls.placed(&state.walls);
     let one = |(b, w): (usize, &mut BlockWork)| {
         let c = &mut w.candidates;
         all.spheres(b, c);
-        all.corners(b, c);
+        if let Some(kinds) = &kinds {
+            c.kinds.resize_with(KINDS.len(), Vec::new);
+            for (kind, list) in KINDS.iter().zip(&mut c.kinds) {
+                kind.candidates(kinds, b, model.skin, &mut c.row, list);
+            }
+        }
         c.pairs.shrink_to_fit();
         c.cross.shrink_to_fit();
         c.planes.shrink_to_fit();
@@ -42,11 +48,11 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         works.iter_mut().enumerate().for_each(one);
     }
 
-    // Corners of boxes count as points that move.
-    for bx in &all.boxes {
-        let c = &mut works[bx.block as usize].candidates;
-        for k in 0..8 {
-            c.reference.push(&(bx.centre + bx.orientation * cuboid::corner(&bx.half, k)));
+    // Corners of the boxes that hold bodies count as points that move.
+    for (own, (block, w)) in members.iter().zip(state.blocks.iter().zip(works)) {
+        for (k, half) in own.half.iter().enumerate() {
+            let (x, q) = (xyz(&block.centre[k]), &block.rotation[k].orientation);
+            (0..8).for_each(|c| w.candidates.reference.push(&(x + q * cuboid::corner(half, c))));
         }
     }
     let searched = &mut work.searched;
@@ -72,7 +78,6 @@ struct All<'a> {
     first: Vec<u32>,
     cells: Cells,
     space: Option<Space>,
-    boxes: Vec<BoxBody>,
 }
 
 impl<'a> All<'a> {
@@ -86,8 +91,7 @@ impl<'a> All<'a> {
         }
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
         cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
-        let boxes = boxes(model, state);
-        All { model, state, members, held, points, names, first, cells, space, boxes }
+        All { model, state, members, held, points, names, first, cells, space }
     }
 
     /// The spheres of a block.
@@ -111,12 +115,11 @@ impl<'a> All<'a> {
         self.state.blocks[block as usize].velocity[place as usize][3] == 0.0
     }
 
-    /// Partners of the spheres of a block: spheres, boxes and planes.
+    /// Partners of the spheres of a block: spheres and planes.
     fn spheres(&self, b: usize, c: &mut Candidates) {
         let (model, skin) = (self.model, self.model.skin);
         c.pairs.clear();
         c.cross.clear();
-        c.boxed.clear();
         c.images.clear();
         c.planes.clear();
         let own = self.of_block(b);
@@ -133,13 +136,6 @@ impl<'a> All<'a> {
                     c.pairs.push([i as u16, j as u16]);
                 } else {
                     c.cross.push([i, block_j, j]);
-                }
-            }
-            for bx in &self.boxes {
-                let local = bx.orientation.inverse_transform_vector(&(xyz(p) - bx.centre));
-                let distance = cuboid::closest_point(&bx.half, &local).2;
-                if distance < p[3] + skin && !(fixed && bx.still) {
-                    c.boxed.push([i, bx.block, bx.place]);
                 }
             }
             if !fixed {
@@ -187,46 +183,14 @@ impl<'a> All<'a> {
         }
         row.sort_unstable();
     }
-
-    /// Boxes touch planes with their corners: few enough to try them all.
-    fn corners(&self, b: usize, c: &mut Candidates) {
-        if !self.members[b].boxes() {
-            return;
-        }
-        let planes = self.model.planes.len() as u32;
-        for (k, velocity) in self.state.blocks[b].velocity.iter().enumerate() {
-            if velocity[3] > 0.0 {
-                let corners = 8 * k as u32..8 * (k as u32 + 1);
-                c.planes.extend(corners.flat_map(|c| (0..planes).map(move |p| [c, p])));
-            }
-        }
-    }
 }
 
-struct BoxBody {
-    block: u32,
-    place: u32,
-    centre: Vec3,
-    orientation: nalgebra::UnitQuaternion<f64>,
-    half: Vec3,
-    still: bool,
-}
-
-fn boxes(model: &Model, state: &State) -> Vec<BoxBody> {
-    let mut out = Vec::new();
-    for (b, block) in state.blocks.iter().enumerate() {
-        for (k, &body) in block.bodies.iter().enumerate() {
-            if model.bodies.kind(body as usize) == Kind::Box {
-                out.push(BoxBody {
-                    block: b as u32,
-                    place: k as u32,
-                    centre: xyz(&block.centre[k]),
-                    orientation: block.rotation[k].orientation,
-                    half: model.half(body as usize),
-                    still: block.velocity[k][3] == 0.0,
-                });
-            }
-        }
+/// Bodies and planes as they are.
+pub(crate) fn now<'a>(model: &'a Model, state: &'a State, members: &'a [Members]) -> Now<'a> {
+    Now {
+        blocks: Part { first: 0, list: &state.blocks },
+        members: Part { first: 0, list: members },
+        shapes: &model.shapes,
+        planes: (&model.planes, &state.planes),
     }
-    out
 }

@@ -225,8 +225,8 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
         for &j in &rigid[n + 1..] {
             let b = &bodies.get(j);
             let still = a.inverse_mass == 0.0 && b.inverse_mass == 0.0;
-            let boxes = a.kind == Kind::Box && b.kind == Kind::Box;
-            if !still && !boxes && endless(a.material, b.material as usize) {
+            let apart = a.kind == Kind::Solid && b.kind == Kind::Solid;
+            if !still && !apart && endless(a.material, b.material as usize) {
                 return error(format!("body {j}"));
             }
         }
@@ -236,7 +236,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
         if let Some(p) = input.planes.iter().position(|p| endless(a.material, p.material)) {
             return error(format!("plane {p}"));
         }
-        if a.kind != Kind::Box {
+        if a.kind != Kind::Solid {
             if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
                 return error(format!("triangle surface {t}"));
             }

@@ -33,8 +33,9 @@ pub struct Model {
     pub(crate) skin: f64,
     /// Smallest and largest sphere radius [m].
     pub(crate) radii: (f64, f64),
-    /// Whether any body is a clump.
+    /// Whether any body is a clump, and whether any is not made of spheres.
     pub(crate) clumps: bool,
+    pub(crate) solids: bool,
     /// Materials of bodies, of planes excepted, and of walls and the external surface (indices, ascending).
     pub(crate) body_materials: Vec<u32>,
     pub(crate) patch_materials: Vec<u32>,
@@ -77,7 +78,7 @@ impl Model {
         let largest = input.shapes.iter().map(|s| if let Shape::Clump(c) = s { c.spheres.len() } else { 1 });
         let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
-        let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Box).count();
+        let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Solid).count();
         let skin = input.skin.unwrap_or(0.2 * mean);
         check::adhesion(&input)?;
         super::check_periodic::check(&input, &bodies, skin)?;
@@ -97,6 +98,7 @@ impl Model {
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let surface = check::surfaces(&input).map(|m| m as u32);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
+        let solids = round < bodies.len();
         let body_materials = sorted(bodies.iter().map(|b| b.material));
         let patch_materials = sorted(walls_and_surface.chain(surface));
         let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
@@ -107,6 +109,7 @@ impl Model {
                 .min(65_535 / largest)
                 .max(1),
             clumps,
+            solids,
             body_materials,
             patch_materials,
             bodies,

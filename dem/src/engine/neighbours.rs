@@ -12,6 +12,8 @@ use super::model::Model;
 use super::state::{BlockLists, State};
 use super::walls;
 use super::work::Work;
+use crate::bodies::part::Part;
+use crate::contact::kind::{KINDS, Now};
 use crate::lanes::record::xyz;
 use crate::pairs::cross::{self, Cross, ImageName};
 use crate::pairs::patch_search as patches;
@@ -56,11 +58,10 @@ fn approach(model: &Model, state: &State, work: &Work) -> f64 {
         let own = members.spheres(block);
         let moved = own[..members.count].iter().enumerate().map(|(k, p)| reference.moved2(k, &xyz(p)));
         let mut most = moved.fold(0.0, f64::max);
-        let boxes = (reference.len() - members.count) / 8;
-        for k in 0..boxes {
+        for (k, half) in members.half.iter().enumerate() {
             let (x, q) = (xyz(&block.centre[k]), &block.rotation[k].orientation);
             for c in 0..8 {
-                let now = x + q * cuboid::corner(&members.half[k], c);
+                let now = x + q * cuboid::corner(half, c);
                 most = most.max(reference.moved2(members.count + 8 * k + c, &now));
             }
         }
@@ -80,6 +81,12 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     let Work { members, blocks: works, merging: pool, parallel, .. } = &mut *work;
     let (members, pool) = (&*members, &*pool);
     let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
+    let now = Now {
+        blocks: Part { first: 0, list: blocks },
+        members: Part { first: 0, list: members },
+        shapes: &model.shapes,
+        planes: (&model.planes, planes),
+    };
 
     let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {
         let mut merging = pool.take();
@@ -90,15 +97,10 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
             (xyz(p) - xyz(q)).norm_squared() < reach * reach
         };
         merging.three.merge(&mut cross.spheres, c.cross.iter().copied(), close);
-        let close = |c: &[u32; 3]| {
-            let p = &own[c[0] as usize];
-            let (block, k) = (&blocks[c[1] as usize], c[2] as usize);
-            let local =
-                block.rotation[k].orientation.inverse_transform_vector(&(xyz(p) - xyz(&block.centre[k])));
-            cuboid::closest_point(&members[c[1] as usize].half[k], &local).2 < p[3] + near
-        };
-        merging.three.merge(&mut cross.boxes, c.boxed.iter().copied(), close);
         pool.give_back(merging);
+        for (kind, (list, candidates)) in KINDS.iter().zip(cross.kinds.iter_mut().zip(&c.kinds)) {
+            kind.refresh(&now, b, near, candidates, list);
+        }
         if let Some(periodic) = &model.periodic {
             let close = |c: &&ImageName| {
                 let (p, q) = (&own[c.i as usize], &spheres(c.block)[c.j as usize]);
@@ -120,11 +122,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         merging.two.merge(pairs, c.pairs.iter().map(|c| c.map(u32::from)), close);
         let close = |c: &[u32; 2]| {
             let plane = &model.planes[c[1] as usize];
-            // Corners of boxes have no sphere here and are kept always.
-            !planes[c[1] as usize].open
-                && own.get(c[0] as usize).is_none_or(|p| {
-                    (xyz(p) - plane.point - planes[c[1] as usize].offset).dot(&plane.normal) < p[3] + near
-                })
+            let (p, offset) = (&own[c[0] as usize], planes[c[1] as usize].offset);
+            !planes[c[1] as usize].open && (xyz(p) - plane.point - offset).dot(&plane.normal) < p[3] + near
         };
         merging.two.merge(plane_pairs, c.planes.iter().copied(), close);
         pool.give_back(merging);

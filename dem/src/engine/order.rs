@@ -6,9 +6,11 @@ use super::place::{self, Row};
 use super::state::{BlockLists, State};
 use crate::base::Vec3;
 use crate::bodies::block::{Block, Rotation};
+use crate::contact::kind::{KINDS, Renamed};
 use crate::lanes::record::xyz;
 use crate::law::History;
 use crate::pairs::cross::{Cross, ImageName, ImagePair};
+use crate::pairs::list::PairList;
 use crate::pairs::patches::{PatchContact, PatchList, PatchPair};
 use std::collections::BTreeMap;
 
@@ -71,7 +73,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     let names = Names::new(state, model, &old, stays);
     old.pairs(&names, state);
     old.images(&names, state);
-    old.boxes(&names, state);
+    old.kinds(&names, state);
     old.walls(&names, state);
     for lists in &mut state.lists {
         lists.pairs.sort();
@@ -83,7 +85,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     }
     for cross in &mut state.cross {
         cross.spheres.sort();
-        cross.boxes.sort();
+        cross.kinds.iter_mut().for_each(PairList::sort);
         cross.images.sort_unstable_by_key(|p| p.name);
     }
     state.stale = true;
@@ -128,6 +130,23 @@ impl<'a> Names<'a> {
     fn sphere(&self, block: usize, sphere: u32) -> Option<(u32, u32)> {
         let [body, member] = self.old[block][sphere as usize].map(|n| n as usize);
         self.stays[body].then(|| (self.places[body][0], self.first[body] + member as u32))
+    }
+}
+
+/// [`Names`] for pairs of kinds.
+struct Moved<'a> {
+    names: &'a Names<'a>,
+    old: &'a [Block],
+}
+
+impl Renamed for Moved<'_> {
+    fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]> {
+        self.names.sphere(block, sphere).map(|(block, sphere)| [block, sphere])
+    }
+
+    fn body(&self, block: usize, place: u32) -> Option<[u32; 2]> {
+        let body = self.old[block].bodies[place as usize] as usize;
+        self.names.stays[body].then(|| self.names.places[body])
     }
 }
 
@@ -183,25 +202,21 @@ impl Old {
         }
     }
 
-    fn boxes(&self, names: &Names<'_>, state: &mut State) {
+    fn kinds(&self, names: &Names<'_>, state: &mut State) {
+        let names = Moved { names, old: &self.blocks };
         for (b, cross) in self.cross.iter().enumerate() {
-            for ([i, from, j], history) in cross.boxes.iter() {
-                let Some((block, i)) = names.sphere(b, i) else { continue };
-                let body = self.blocks[from as usize].bodies[j as usize];
-                let [box_block, j] = names.places[body as usize];
-                state.cross[block as usize].boxes.push([i, box_block, j], &history);
+            for (k, (kind, list)) in KINDS.iter().zip(&cross.kinds).enumerate() {
+                kind.carry(&names, b, list, &mut |block, name, points| {
+                    state.cross[block].kinds[k].push(name, points.iter().copied());
+                });
             }
         }
     }
 
     fn walls(&self, names: &Names<'_>, state: &mut State) {
-        let last = state.blocks.len() as u32 - 1;
         for (b, lists) in self.lists.iter().enumerate() {
             for ([i, plane], history) in lists.planes.iter() {
-                // A block of boxes keeps its corners: boxes never change places among themselves.
-                let corner = names.old[b].len() <= i as usize;
-                let place = if corner { Some((last, i)) } else { names.sphere(b, i) };
-                let Some((block, i)) = place else { continue };
+                let Some((block, i)) = names.sphere(b, i) else { continue };
                 state.lists[block as usize].planes.push([i, plane], &history);
             }
             let mut carry = |from: &PatchList, pick: fn(&mut BlockLists) -> &mut PatchList| {

@@ -3,7 +3,7 @@
 //! The bodies are halved again and again across the longest side of their bounds, at multiples of the block size,
 //! so that every block but the last holds equally many and is about as long as wide. Within a block they lie in
 //! the order of cells (z, then y, then x), which the processor's prefetcher likes better than space-filling
-//! curves. Boxes come last, in a block of their own. The order sets the order of sums, hence the last bits of a
+//! curves. Bodies that are not made of spheres come last, in blocks of their own. The order sets the order of sums, hence the last bits of a
 //! run; it depends on the positions alone.
 
 use super::model::Model;
@@ -11,28 +11,41 @@ use super::state::BlockLists;
 use crate::base::Vec3;
 use crate::bodies::block::{Block, Rotation};
 use crate::bodies::table::Kind;
+use crate::contact::kind::KINDS;
 use crate::lanes::record::Record;
 use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
+use crate::pairs::list::PairList;
+
+/// Bodies that are not made of spheres in a block, about.
+const SOLIDS: usize = 256;
 
 /// Numbers of the bodies of each block, of those that are `present`; the positions of others do not matter.
 pub(crate) fn blocks(model: &Model, positions: &[Vec3], present: impl Fn(usize) -> bool) -> Vec<Vec<u32>> {
-    let of_kind = |boxes: bool| -> Vec<u32> {
+    let of_kind = |solids: bool| -> Vec<u32> {
         (0..positions.len() as u32)
-            .filter(|&b| present(b as usize) && (model.bodies.kind(b as usize) == Kind::Box) == boxes)
+            .filter(|&b| present(b as usize) && (model.bodies.kind(b as usize) == Kind::Solid) == solids)
             .collect()
     };
     let mut round = of_kind(false);
     let mut out = Vec::new();
     if !round.is_empty() {
-        let size = round.iter().map(|&b| model.body(b as usize).radius).sum::<f64>() / round.len() as f64;
-        halve(&mut round, positions, model.block, 2.0 * size, &mut out);
+        sort(&mut round, model, positions, model.block, &mut out);
     }
-    let boxes = of_kind(true);
-    if !boxes.is_empty() {
-        out.push(boxes);
+    let mut solids = of_kind(true);
+    if solids.len() > SOLIDS {
+        sort(&mut solids, model, positions, SOLIDS, &mut out);
+    } else if !solids.is_empty() {
+        // In the order of the input: few bodies, such as sleepers, stay where they are.
+        out.push(solids);
     }
     out
+}
+
+/// Halves bodies into blocks of `size` bodies each.
+fn sort(bodies: &mut [u32], model: &Model, positions: &[Vec3], size: usize, out: &mut Vec<Vec<u32>>) {
+    let radius = bodies.iter().map(|&b| model.body(b as usize).radius).sum::<f64>() / bodies.len() as f64;
+    halve(bodies, positions, size, 2.0 * radius, out);
 }
 
 fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &mut Vec<Vec<u32>>) {
@@ -115,5 +128,6 @@ pub(crate) fn lists(model: &Model, block: &Block) -> (BlockLists, Cross) {
         ..BlockLists::default()
     };
     let rolls = model.laws.rolls_among(&own, &model.body_materials);
-    (within, Cross::new(rolls))
+    let kinds = KINDS.iter().filter(|_| model.solids).map(|kind| PairList::new(kind.points())).collect();
+    (within, Cross::new(rolls, kinds))
 }

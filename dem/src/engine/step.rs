@@ -7,21 +7,20 @@ use super::state::State;
 use super::threads::{self, Bodies, Lists, One};
 use super::work::Work;
 use super::{applied, neighbours, order, walls};
-use crate::base::Vec3;
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
 use crate::bodies::sums::Sums;
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
+use crate::contact::kind::{self, Now};
 use crate::contact::patches::{self, Against, WallSum};
 use crate::contact::planes::PlaneNow;
 use crate::contact::prefetch::Prefetch;
 use crate::contact::single::Setting;
-use crate::contact::{boxes, dispatch, images, planes};
+use crate::contact::{dispatch, images, planes};
 use crate::integrate::leapfrog::{self, Drive};
 use crate::pairs::cross::{Cross, CrossForces, Slots};
-use crate::shape::plane::PlaneMotion;
 use crate::spatial::surface::Surface;
 use crate::wall::set::PlacedWalls;
 
@@ -73,25 +72,26 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let (dt, parallel) = (model.dt(), work.parallel);
     let setting = Setting { laws: &model.laws, simd: work.simd, dt };
     let material = work.material;
+    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, .. } = state;
+    let motions = &planes[..];
     // Contacts between blocks: they read their own block and later ones, and write slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
-        (out.dashpot, out.friction, out.failure) = (0.0, 0.0, None);
+        out.clear_books();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
-        if !pairs.boxes.is_empty() {
-            boxes::boxes(setting.laws, blocks, members, b, pairs, out, dt);
+        if !pairs.kinds.is_empty() {
+            let planes = (&model.planes[..], motions);
+            kind::forces(&setting, &Now { blocks, members, shapes: &model.shapes, planes }, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
-            out.couple = Vec3::zeros();
             images::images(periodic, setting.laws, blocks, members, b, pairs, out, dt);
         }
     };
-    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, .. } = state;
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let shared = Shared {
         model,
         setting,
         surface,
-        planes: (&work.planes, work.plane_material, planes),
+        planes: (&work.planes, work.plane_material),
         walls: model.walls.placed(walls),
         bonds: (bonded, bonds::parts(model, bonds.fresh)),
         drive: Drive {
@@ -124,8 +124,8 @@ struct Shared<'a, S> {
     model: &'a Model,
     setting: Setting<'a>,
     surface: &'a S,
-    /// The planes where they are, their material where they have only one, and their motion.
-    planes: (&'a [PlaneNow], Option<u32>, &'a [PlaneMotion]),
+    /// The planes where they are, and their material where they have only one.
+    planes: (&'a [PlaneNow], Option<u32>),
     walls: PlacedWalls<'a>,
     bonds: (&'a BondWork, Parts<'a>),
     drive: Drive<'a>,
@@ -154,11 +154,8 @@ impl<S: Surface> Shared<'_, S> {
         if !lists.pairs.is_empty() {
             dispatch::interior(setting, (block, members), &mut lists.pairs, tally, next);
         }
-        let (planes, material, motions) = self.planes;
-        if members.boxes() {
-            let planes = (&model.planes[..], motions);
-            boxes::corners(setting.laws, planes, block, members, &mut lists.planes, tally, setting.dt);
-        } else if !lists.planes.is_empty() {
+        let (planes, material) = self.planes;
+        if !lists.planes.is_empty() {
             dispatch::planes(setting, planes, material, (block, members), &mut lists.planes, tally);
         }
         if !lists.walls.is_empty() {
@@ -202,6 +199,8 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum += &tally.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
+        sum.work_walls += cross.work_walls;
+        sum.walls += &cross.walls;
         sum.periodic.angular += cross.couple;
         fastest = fastest.max(tally.fastest);
         failure = failure.or(cross.failure).or(tally.failure);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::base::Vec3;
 use crate::bodies::input::BodyInput;
 use crate::engine::input::ModelInput;
 use crate::lanes::Simd;

@@ -98,7 +98,7 @@ pub(crate) fn limit(
     let partners = partners(bodies, input);
     let r_min = bodies
         .iter()
-        .filter(|b| b.kind != Kind::Box)
+        .filter(|b| b.kind != Kind::Solid)
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);

@@ -56,7 +56,7 @@ impl<'a> Room<'a> {
                     continue;
                 }
                 let (centre, reach) = (xyz(&block.centre[k]), block.centre[k][3]);
-                if model.bodies.kind(body) == Kind::Box {
+                if model.bodies.kind(body) == Kind::Solid {
                     boxes.push((centre, block.rotation[k].orientation, model.half(body)));
                     continue;
                 }

@@ -3,7 +3,7 @@
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::Block;
-use crate::bodies::table::Kind;
+use crate::contact::kind::{KINDS, Placed, PlaneView, Scene, Visited};
 use crate::contact::single;
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -11,7 +11,7 @@ use crate::lanes::record::{Record, xyz};
 use crate::law::{ContactForce, ContactGeometry, History};
 use crate::pairs::cross::{Cross, ImagePair};
 use crate::pairs::patches::PatchContact;
-use crate::shape::cuboid;
+use crate::shape::plane::PlaneMotion;
 use crate::spatial::detect;
 use std::borrow::Cow;
 
@@ -39,26 +39,10 @@ pub struct ContactRecord {
     pub shift: Vec3,
 }
 
-/// One contact as [`visit`] sees it.
-pub(crate) struct Visited<'a> {
-    pub body: u32,
-    pub partner: Partner,
-    pub geometry: ContactGeometry,
-    /// Velocity of the body relative to the partner at the contact point [m/s].
-    pub velocity: Vec3,
-    /// Effective mass [kg].
-    pub mass: f64,
-    pub history: &'a History,
-    /// Spin of the body less that of its partner [rad/s].
-    pub spin: Vec3,
-    /// Materials of the two.
-    pub materials: [u32; 2],
-    /// From the partner to its touched image [m].
-    pub shift: Vec3,
-}
-
 /// Bodies as they are, or moved back in time by `back` seconds: only then are they copied.
 struct Snapshot<'a> {
+    model: &'a Model,
+    planes: &'a [PlaneMotion],
     blocks: Cow<'a, [Block]>,
     /// Spheres of each block, and the places of their bodies; of blocks of single spheres, none.
     spheres: Vec<Vec<Record>>,
@@ -67,23 +51,49 @@ struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    fn new(model: &Model, state: &'a State, back: f64) -> Snapshot<'a> {
+    fn new(model: &'a Model, state: &'a State, back: f64) -> Snapshot<'a> {
         let mut blocks = Cow::Borrowed(&state.blocks[..]);
         if back != 0.0 {
             blocks.to_mut().iter_mut().for_each(|block| move_back(block, back));
         }
         let (spheres, owners) = blocks.iter().map(|block| members(model, block)).unzip();
-        Snapshot { blocks, spheres, owners, back }
+        Snapshot { model, planes: &state.planes, blocks, spheres, owners, back }
+    }
+}
+
+impl Scene for Snapshot<'_> {
+    fn block(&self, b: usize) -> &Block {
+        &self.blocks[b]
     }
 
-    /// A sphere of a block: centre and radius.
     fn sphere(&self, b: usize, i: u32) -> &Record {
         self.spheres[b].get(i as usize).unwrap_or_else(|| &self.blocks[b].centre[i as usize])
     }
 
-    /// The place of its body.
     fn owner(&self, b: usize, i: u32) -> usize {
         self.owners[b].get(i as usize).map_or(i as usize, |k| *k as usize)
+    }
+
+    fn placed(&self, b: usize, k: usize) -> Placed<'_> {
+        let block = &self.blocks[b];
+        let body = self.model.body(block.bodies[k] as usize);
+        Placed {
+            centre: xyz(&block.centre[k]),
+            orientation: block.rotation[k].orientation,
+            shape: &self.model.shapes[body.shape],
+            scale: body.scale,
+        }
+    }
+
+    fn plane(&self, k: usize) -> PlaneView {
+        let (plane, motion) = (&self.model.planes[k], &self.planes[k]);
+        PlaneView {
+            origin: plane.point + motion.offset - motion.velocity * self.back,
+            normal: plane.normal,
+            velocity: motion.velocity,
+            material: plane.material as u32,
+            open: motion.open,
+        }
     }
 }
 
@@ -116,24 +126,18 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
     debonded(state, &now, &mut f);
     for b in 0..now.blocks.len() {
         let (block, lists) = (&now.blocks[b], &state.lists[b]);
-        let mut pair = |i: u32, other: u32, j: u32, boxed: bool, history: &History, shift: Vec3| {
+        let mut pair = |i: u32, other: u32, j: u32, history: &History, shift: Vec3| {
             let second = &now.blocks[other as usize];
             let (p, a) = (now.sphere(b, i), now.owner(b, i));
-            let (c, touch) = if boxed {
-                let (x, q) = (xyz(&second.centre[j as usize]), &second.rotation[j as usize].orientation);
-                let half = model.half(second.bodies[j as usize] as usize);
-                (j as usize, detect::sphere_box(&xyz(p), p[3], &x, q, &half))
-            } else {
-                let (q, c) = (now.sphere(other as usize, j), now.owner(other as usize, j));
-                (c, detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + shift), q[3]))
-            };
-            if let Some(geometry) = touch {
+            let (q, c) = (now.sphere(other as usize, j), now.owner(other as usize, j));
+            if let Some(geometry) = detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + shift), q[3]) {
                 let (ma, mb) =
                     (block.motion(a, &geometry.point), second.motion(c, &(geometry.point - shift)));
                 f(&Visited {
                     body: block.bodies[a],
                     partner: Partner::Body(second.bodies[c] as usize),
                     geometry,
+                    weight: 1.0,
                     velocity: ma.at_point() - mb.at_point(),
                     mass: 1.0 / (block.velocity[a][3] + second.velocity[c][3]),
                     history,
@@ -144,15 +148,15 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             }
         };
         let here = Vec3::zeros();
-        lists.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, false, &history, here));
-        let Cross { spheres, boxes, images } = &state.cross[b];
-        spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, false, &history, here));
-        boxes.iter().for_each(|([i, other, j], history)| pair(i, other, j, true, &history, here));
+        lists.pairs.iter().for_each(|([i, j], history)| pair(i, b as u32, j, &history, here));
+        let Cross { spheres, kinds, images } = &state.cross[b];
+        spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, &history, here));
         for ImagePair { name, history } in images {
             let shift = model.periodic.map_or(here, |p| p.way(&name.shift));
-            pair(name.i, name.block, name.j, false, history, shift);
+            pair(name.i, name.block, name.j, history, shift);
         }
-        planes(model, state, &now, b, &mut f);
+        KINDS.iter().zip(kinds).for_each(|(kind, list)| kind.visit(&now, b, list, &mut f));
+        planes(state, &now, b, &mut f);
         for contact in &lists.walls.live {
             let k = model.walls.wall_of(contact.patch);
             let wall = &model.walls.walls[k];
@@ -199,6 +203,7 @@ fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>))
             body: p.bodies[i],
             partner: Partner::Body(q.bodies[j] as usize),
             geometry: *geometry,
+            weight: 1.0,
             velocity: ma.at_point() - mb.at_point(),
             mass: 1.0 / (p.velocity[i][3] + q.velocity[j][3]),
             history: &r.history,
@@ -209,33 +214,22 @@ fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>))
     });
 }
 
-fn planes(model: &Model, state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
+fn planes(state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visited<'_>)) {
     let block = &now.blocks[b];
     for (name, history) in state.lists[b].planes.iter() {
-        let [i, k] = name.map(|n| n as usize);
-        let (plane, wall) = (&model.planes[k], &state.planes[k]);
-        let boxes = model.bodies.kind(block.bodies[0] as usize) == Kind::Box;
-        let (a, x, r, radius) = if boxes {
-            let a = i / 8;
-            let half = model.half(block.bodies[a] as usize);
-            let corner = block.rotation[a].orientation * cuboid::corner(&half, i % 8);
-            (a, xyz(&block.centre[a]) + corner, 0.0, half.min())
-        } else {
-            let p = now.sphere(b, i as u32);
-            (now.owner(b, i as u32), xyz(p), p[3], p[3])
-        };
-        let origin = plane.point + wall.offset - wall.velocity * now.back;
-        if let Some(geometry) = detect::sphere_plane(&x, r, &origin, &plane.normal) {
-            let geometry = ContactGeometry { radius, ..geometry };
+        let [i, k] = name;
+        let (p, a, plane) = (now.sphere(b, i), now.owner(b, i), now.plane(k as usize));
+        if let Some(geometry) = detect::sphere_plane(&xyz(p), p[3], &plane.origin, &plane.normal) {
             f(&Visited {
                 body: block.bodies[a],
-                partner: Partner::Plane(k),
+                partner: Partner::Plane(k as usize),
                 geometry,
-                velocity: block.motion(a, &geometry.point).at_point() - wall.velocity,
+                weight: 1.0,
+                velocity: block.motion(a, &geometry.point).at_point() - plane.velocity,
                 mass: 1.0 / block.velocity[a][3],
                 history: &history,
                 spin: xyz(&block.spin[a]),
-                materials: [block.spin[a][3] as u32, plane.material as u32],
+                materials: [block.spin[a][3] as u32, plane.material],
                 shift: Vec3::zeros(),
             });
         }
@@ -264,6 +258,7 @@ fn patch(
             body: block.bodies[a],
             partner: partner.partner,
             geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
+            weight: 1.0,
             velocity,
             mass: 1.0 / (block.velocity[a][3] + partner.inverse_mass),
             history: &pair.history,
@@ -296,8 +291,8 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             normal: c.geometry.normal,
             overlap: c.geometry.overlap,
             radius: c.geometry.radius,
-            normal_force: normal,
-            force,
+            normal_force: normal * c.weight,
+            force: force * c.weight,
             shift: c.shift,
         });
     });

@@ -1,9 +1,10 @@
 //! Energies and momentum at the last half step.
 
-use super::contacts::{Visited, visit};
+use super::contacts::visit;
 use crate::base::error::Partner;
 use crate::base::ledger::Impulse;
 use crate::bodies::table::Kind;
+use crate::contact::kind::Visited;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::record::xyz;
@@ -114,8 +115,8 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
         }
         let [a, b] = c.materials;
         let (normal, tangential) = model.laws.stored(a, b, c.geometry.overlap, c.geometry.radius, &history);
-        e.elastic_normal += normal;
-        e.elastic_tangential += tangential;
+        e.elastic_normal += normal * c.weight;
+        e.elastic_tangential += tangential * c.weight;
     });
 }
 

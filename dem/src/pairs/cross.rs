@@ -1,9 +1,11 @@
 //! Contacts between blocks: lists, the slots that their forces go to, and who gathers them.
 
 use super::groups::Groups;
+use super::list::PairList;
 use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::held::held;
+use crate::base::ledger::Impulse;
 use crate::bodies::part::Part;
 use crate::lanes::record::Record;
 use crate::law::History;
@@ -14,8 +16,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Cross {
     /// Sphere of this block, other block, sphere there.
     pub spheres: Groups<3>,
-    /// Sphere of this block, block of the box, its place there.
-    pub boxes: Groups<3>,
+    /// Pairs of bodies that are not made of spheres, by kind; empty where a model has none.
+    pub kinds: Vec<PairList>,
     /// Sphere of this block and the image of one of any block across a periodic border.
     #[serde(default)]
     pub images: Vec<ImagePair>,
@@ -45,15 +47,16 @@ impl ImagePair {
 }
 
 impl Cross {
-    /// No contacts; `turning`: they remember rolling and twisting.
-    pub fn new(turning: bool) -> Cross {
-        Cross { spheres: Groups::new(turning), boxes: Groups::new(turning), images: Vec::new() }
+    /// No contacts; `turning`: those of spheres remember rolling and twisting. `kinds`: empty lists of other pairs.
+    pub fn new(turning: bool, kinds: Vec<PairList>) -> Cross {
+        Cross { spheres: Groups::new(turning), kinds, images: Vec::new() }
     }
 
     /// No partner lies in a later block than this.
     pub fn last_block(&self) -> usize {
         let images = self.images.iter().map(|p| p.name.block).max().unwrap_or(0);
-        self.spheres.most()[1].max(self.boxes.most()[1]).max(images) as usize
+        let kinds = self.kinds.iter().map(|list| list.last_block()).max().unwrap_or(0);
+        self.spheres.most()[1].max(kinds).max(images) as usize
     }
 }
 
@@ -62,25 +65,34 @@ impl Cross {
 pub(crate) struct CrossForces {
     /// Records of all contacts. Of spheres and images `width` each: three (the force on the first partner and the torques
     /// on both), or of single spheres two (the force and its lever on the first, the moment per lever and that on the
-    /// second). Of boxes three each.
+    /// second). Of pairs of kinds three each.
     pub slots: Vec<Record>,
     pub width: usize,
-    /// Where the records of boxes and of images begin.
-    pub boxes_at: usize,
+    /// Where the records of the kinds and of images begin.
+    pub kinds_at: usize,
     pub images_at: usize,
     pub dashpot: f64,
     pub friction: f64,
+    /// Work that planes do on bodies that are not made of spheres, and their impulse.
+    pub work_walls: f64,
+    pub walls: Impulse,
     /// Angular impulse about the origin that contacts across periodic borders give in this step.
     pub couple: Vec3,
     pub failure: Option<Failure>,
 }
 
 impl CrossForces {
+    /// Begins a step: nothing is dissipated yet.
+    pub fn clear_books(&mut self) {
+        (self.dashpot, self.friction, self.work_walls) = (0.0, 0.0, 0.0);
+        (self.walls, self.couple, self.failure) = (Impulse::default(), Vec3::zeros(), None);
+    }
+
     /// Makes room for the contacts of a list; `clumps`: partners may be clumps, whose torques differ from a lever's.
     pub fn lay_out(&mut self, lists: &Cross, clumps: bool) {
         self.width = if clumps || lists.spheres.turning { 3 } else { 2 };
-        self.boxes_at = lists.spheres.len() * self.width;
-        self.images_at = self.boxes_at + 3 * lists.boxes.len();
+        self.kinds_at = lists.spheres.len() * self.width;
+        self.images_at = self.kinds_at + 3 * lists.kinds.iter().map(PairList::len).sum::<usize>();
         let count = self.images_at + lists.images.len() * self.width;
         self.slots.clear();
         self.slots.reserve_exact(count);
@@ -168,6 +180,7 @@ pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = Image
 impl Cross {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.spheres.bytes() + self.boxes.bytes() + held(&self.images)
+        let kinds: usize = self.kinds.iter().map(PairList::bytes).sum();
+        self.spheres.bytes() + kinds + held(&self.images)
     }
 }

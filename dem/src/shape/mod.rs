@@ -29,6 +29,26 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// Half sides of a box about the centre of mass, along the axes of the shape, that holds a shape which is not made of
+    /// spheres [m].
+    pub(crate) fn bounding_half(&self, scale: f64) -> Vec3 {
+        self.half_sides(scale)
+    }
+
+    /// Number of corners of a shape with flat faces.
+    pub(crate) fn corners(&self) -> u32 {
+        match self {
+            Shape::Sphere { .. } | Shape::Clump(_) => 0,
+            Shape::Box { .. } => 8,
+        }
+    }
+
+    /// A corner of a shape with flat faces, in its own frame, and the size of the body that laws take for a radius [m].
+    pub(crate) fn corner(&self, k: usize, scale: f64) -> (Vec3, f64) {
+        let half = self.half_sides(scale);
+        (cuboid::corner(&half, k), half.min())
+    }
+
     /// Half sides of a box, scaled [m]; zero for others.
     pub(crate) fn half_sides(&self, scale: f64) -> Vec3 {
         match self {

@@ -1,0 +1,26 @@
+//! The corners of a body and a plane: with flat faces and straight edges nothing else touches first.
+
+use super::scene::PlaneView;
+use super::side::{Corner, Corners, Planes};
+use super::{PairKind, Touch, Touches};
+use crate::law::ContactGeometry;
+use crate::spatial::detect;
+
+pub(crate) struct CornerPlane;
+
+impl PairKind for CornerPlane {
+    type First = Corners;
+    type Second = Planes;
+    const POINTS: usize = 1;
+
+    fn near(&self, corner: &Corner, plane: &PlaneView, reach: f64) -> bool {
+        !plane.open && (corner.point - plane.origin).dot(&plane.normal) < reach
+    }
+
+    fn touches(&self, corner: &Corner, plane: &PlaneView, found: &mut Touches) {
+        let touch = detect::sphere_plane(&corner.point, 0.0, &plane.origin, &plane.normal);
+        // A corner has no radius of its own: laws that need one take the body's size.
+        let touch = touch.map(|g| ContactGeometry { radius: corner.size, ..g });
+        found.extend(touch.map(|g| Touch::only(g, corner.size)));
+    }
+}

@@ -1,0 +1,276 @@
+//! What is done with the pairs of a kind, written once for all of them.
+
+use super::scene::{Now, Scene, Search};
+use super::side::{First, Second, Side, within_reach};
+use super::{PairKind, Touch, Touches, Visited};
+use crate::base::Vec3;
+use crate::base::failure::Failure;
+use crate::base::ledger::Impulse;
+use crate::contact::single::{self, Setting};
+use crate::lanes::record::Record;
+use crate::pairs::list::{NO_FEATURE, PairList, PairName, PointMemory};
+
+/// Where bodies are after a new order; `None` where they do not stay.
+pub(crate) trait Renamed {
+    /// Block and number of what was a sphere of an old block.
+    fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]>;
+
+    /// Block and place of what was a body of an old block.
+    fn body(&self, block: usize, place: u32) -> Option<[u32; 2]>;
+}
+
+/// What the contacts of a block do besides the forces that go to slots.
+pub(crate) struct Books<'a> {
+    /// Three records a pair: the force on the first partner and the torques on both.
+    pub slots: &'a mut [Record],
+    /// Energy that went into dashpots and into sliding [J].
+    pub dashpot: &'a mut f64,
+    pub friction: &'a mut f64,
+    /// Work that planes do [J], and their impulse.
+    pub work_walls: &'a mut f64,
+    pub walls: &'a mut Impulse,
+    pub failure: &'a mut Option<Failure>,
+}
+
+/// A kind of pair, as search and step see it.
+pub(crate) trait Kind: Sync {
+    /// Contact points that a pair can have.
+    fn points(&self) -> usize;
+
+    /// Pairs with first partners in a block that may come within `reach` [m] of each other; ascending.
+    fn candidates(
+        &self,
+        search: &Search<'_>,
+        b: usize,
+        reach: f64,
+        row: &mut Vec<u32>,
+        out: &mut Vec<PairName>,
+    );
+
+    /// Makes a block's list of those candidates that are within `reach` [m].
+    fn refresh(&self, now: &Now<'_>, b: usize, reach: f64, candidates: &[PairName], list: &mut PairList);
+
+    /// Forces of a block's pairs.
+    fn forces(
+        &self,
+        setting: &Setting<'_>,
+        now: &Now<'_>,
+        b: usize,
+        list: &mut PairList,
+        books: &mut Books<'_>,
+    );
+
+    /// Calls `f` for each contact of a block's list.
+    fn visit(&self, scene: &dyn Scene, b: usize, list: &PairList, f: &mut dyn FnMut(&Visited<'_>));
+
+    /// Calls `share` with number of the pair, block and place of each body that takes part in it, and whether it comes
+    /// first.
+    fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool));
+
+    /// Calls `put` with block, name and points of each pair of an old list after a new order.
+    fn carry(
+        &self,
+        names: &dyn Renamed,
+        b: usize,
+        list: &PairList,
+        put: &mut dyn FnMut(usize, PairName, &[PointMemory]),
+    );
+}
+
+/// A kind of pair as a [`Kind`].
+pub(crate) struct Of<K>(pub K);
+
+impl<K: PairKind> Of<K> {
+    fn near(&self, scene: &Now<'_>, b: usize, [i, other, j]: PairName, reach: f64) -> bool {
+        let first = K::First::view(scene, b, i);
+        self.0.near(&first, &K::Second::view(scene, other as usize, j), reach)
+    }
+
+    /// Where a pair touches.
+    fn touches(&self, scene: &(impl Scene + ?Sized), b: usize, [i, other, j]: PairName, found: &mut Touches) {
+        found.clear();
+        let first = K::First::view(scene, b, i);
+        self.0.touches(&first, &K::Second::view(scene, other as usize, j), found);
+        debug_assert!(found.len() <= K::POINTS);
+    }
+}
+
+impl<K: PairKind> Kind for Of<K> {
+    fn points(&self) -> usize {
+        K::POINTS
+    }
+
+    fn candidates(
+        &self,
+        search: &Search<'_>,
+        b: usize,
+        reach: f64,
+        row: &mut Vec<u32>,
+        out: &mut Vec<PairName>,
+    ) {
+        out.clear();
+        let now = &search.now;
+        K::First::own(search, b, |i| {
+            let first = K::First::view(now, b, i);
+            let still = K::First::still(now, b, i);
+            let bounds = within_reach(K::First::bounds(&first), reach);
+            K::Second::around(search, b, bounds, row, |other, j| {
+                // Of two partners that could both come first the earlier one does.
+                let turned = K::Second::body(now, other as usize, j).is_some() && [other, j] <= [b as u32, i];
+                if turned || still && K::Second::still(now, other as usize, j) {
+                    return;
+                }
+                if self.0.near(&first, &K::Second::view(now, other as usize, j), reach) {
+                    out.push([i, other, j]);
+                }
+            });
+        });
+    }
+
+    fn refresh(&self, now: &Now<'_>, b: usize, reach: f64, candidates: &[PairName], list: &mut PairList) {
+        let near = candidates.iter().copied().filter(|name| self.near(now, b, *name, reach));
+        list.replace(near);
+    }
+
+    fn forces(
+        &self,
+        setting: &Setting<'_>,
+        now: &Now<'_>,
+        b: usize,
+        list: &mut PairList,
+        books: &mut Books<'_>,
+    ) {
+        let mut found = Touches::with_capacity(K::POINTS);
+        for k in 0..list.len() {
+            let name = list.name(k);
+            self.touches(now, b, name, &mut found);
+            let materials =
+                [K::First::material(now, b, name[0]), K::Second::material(now, name[1] as usize, name[2])];
+            let points = list.points_mut(k);
+            for p in points.iter_mut().filter(|p| p.feature != NO_FEATURE) {
+                if !found.iter().any(|t| t.feature == p.feature) {
+                    *books.friction += single::end(setting.laws, materials, &mut p.history);
+                    *p = PointMemory::NONE;
+                }
+            }
+            let slot = &mut books.slots[3 * k..][..3];
+            slot.fill(Record::default());
+            let mut sums = [Vec3::zeros(); 3];
+            for touch in &found {
+                self.force(setting, now, (b, name), materials, touch, points, &mut sums, books);
+            }
+            if !found.is_empty() {
+                for (record, sum) in books.slots[3 * k..][..3].iter_mut().zip(&sums) {
+                    *record = Record::of(sum, 0.0);
+                }
+            }
+        }
+    }
+
+    fn visit(&self, scene: &dyn Scene, b: usize, list: &PairList, f: &mut dyn FnMut(&Visited<'_>)) {
+        let mut found = Touches::new();
+        for k in 0..list.len() {
+            let name @ [i, other, j] = list.name(k);
+            let other = other as usize;
+            self.touches(scene, b, name, &mut found);
+            let Some(body) = K::First::body(scene, b, i) else { continue };
+            for touch in &found {
+                let point = &touch.geometry.point;
+                let (own, its) =
+                    (K::First::motion(scene, b, i, point), K::Second::motion(scene, other, j, point));
+                let memory = list.points(k).iter().find(|p| p.feature == touch.feature);
+                f(&Visited {
+                    body: scene.block(b).bodies[body],
+                    partner: K::Second::partner(scene, other, j),
+                    geometry: touch.geometry,
+                    weight: touch.weight,
+                    velocity: own.at_point() - its.at_point(),
+                    mass: 1.0 / (own.inverse_mass() + its.inverse_mass()),
+                    history: &memory.copied().unwrap_or(PointMemory::NONE).history,
+                    spin: own.spin() - its.spin(),
+                    materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],
+                    shift: Vec3::zeros(),
+                });
+            }
+        }
+    }
+
+    fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool)) {
+        for k in 0..list.len() {
+            let [i, other, j] = list.name(k);
+            if let Some(place) = K::First::body(now, b, i) {
+                share(k, [b as u32, place as u32], true);
+            }
+            if let Some(place) = K::Second::body(now, other as usize, j) {
+                share(k, [other, place as u32], false);
+            }
+        }
+    }
+
+    fn carry(
+        &self,
+        names: &dyn Renamed,
+        b: usize,
+        list: &PairList,
+        put: &mut dyn FnMut(usize, PairName, &[PointMemory]),
+    ) {
+        for k in 0..list.len() {
+            let [i, other, j] = list.name(k);
+            let Some(first) = K::First::renamed(names, b, i) else { continue };
+            if !K::Second::BODY {
+                put(first[0] as usize, [first[1], first[0], j], list.points(k));
+                continue;
+            }
+            let Some(second) = K::Second::renamed(names, other as usize, j) else { continue };
+            if first < second {
+                put(first[0] as usize, [first[1], second[0], second[1]], list.points(k));
+            } else {
+                let turned: Vec<PointMemory> = list.points(k).iter().map(PointMemory::turned).collect();
+                put(second[0] as usize, [second[1], first[0], first[1]], &turned);
+            }
+        }
+    }
+}
+
+impl<K: PairKind> Of<K> {
+    /// Force of one contact point, added to the sums of its pair.
+    fn force(
+        &self,
+        setting: &Setting<'_>,
+        now: &Now<'_>,
+        (b, [i, other, j]): (usize, PairName),
+        materials: [u32; 2],
+        touch: &Touch,
+        points: &mut [PointMemory],
+        sums: &mut [Vec3; 3],
+        books: &mut Books<'_>,
+    ) {
+        let (g, other, weight) = (&touch.geometry, other as usize, touch.weight);
+        let known = points.iter().position(|p| p.feature == touch.feature);
+        let Some(at) = known.or_else(|| points.iter().position(|p| p.feature == NO_FEATURE)) else { return };
+        let (own, its) = (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &g.point));
+        let memory = &mut points[at];
+        memory.feature = touch.feature;
+        let f = single::between(setting.laws, materials, g, (&own, &its), &mut memory.history, setting.dt);
+        let force = f.force * weight;
+        sums[0] += force;
+        sums[1] += f.torque_a * weight;
+        sums[2] += f.torque_b * weight;
+        *books.dashpot += f.dashpot * weight;
+        *books.friction += f.friction * weight;
+        if !K::Second::BODY {
+            let impulse = force * setting.dt;
+            *books.work_walls += force.dot(&its.at_point()) * setting.dt;
+            books.walls.add(&g.point, &impulse);
+            books.walls.angular += f.moment * (weight * setting.dt);
+        }
+        if g.overlap > touch.bound && books.failure.is_none() {
+            *books.failure = Some(Failure::Overlap {
+                body: now.block(b).bodies[K::First::body(now, b, i).unwrap_or_default()],
+                partner: K::Second::partner(now, other, j),
+                overlap: g.overlap,
+                bound: touch.bound,
+            });
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Where partners of contacts are: as the step has them, or as measures look at them.
+
+use crate::base::Vec3;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::bodies::part::Part;
+use crate::lanes::record::{Record, xyz};
+use crate::shape::Shape;
+use crate::shape::plane::{Plane, PlaneMotion};
+use crate::spatial::bvh::{Aabb, Bvh};
+use nalgebra::UnitQuaternion;
+
+/// A body that is not made of spheres, where it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed<'a> {
+    pub centre: Vec3,
+    /// Body frame to world.
+    pub orientation: UnitQuaternion<f64>,
+    pub shape: &'a Shape,
+    /// Factor on the lengths of the shape.
+    pub scale: f64,
+}
+
+impl Placed<'_> {
+    /// Half sides of a box [m]; `None` for other shapes.
+    #[inline(always)]
+    pub fn half(&self) -> Option<Vec3> {
+        match self.shape {
+            Shape::Box { .. } => Some(self.shape.half_sides(self.scale)),
+            _ => None,
+        }
+    }
+
+    /// Bounds along the axes of the world [m].
+    pub fn bounds(&self) -> Aabb {
+        let turn = self.orientation.to_rotation_matrix();
+        let reach = turn.matrix().abs() * self.shape.bounding_half(self.scale);
+        ((self.centre - reach).into(), (self.centre + reach).into())
+    }
+}
+
+/// A plane where it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlaneView {
+    /// A point of it [m].
+    pub origin: Vec3,
+    pub normal: Vec3,
+    /// Velocity [m/s].
+    pub velocity: Vec3,
+    pub material: u32,
+    /// Whether bodies pass through.
+    pub open: bool,
+}
+
+/// Bodies and planes at one moment.
+pub(crate) trait Scene {
+    fn block(&self, b: usize) -> &Block;
+
+    /// Centre and radius of a sphere of a block.
+    fn sphere(&self, b: usize, i: u32) -> &Record;
+
+    /// The place of a sphere's body.
+    fn owner(&self, b: usize, i: u32) -> usize;
+
+    /// A body of a block that is not made of spheres.
+    fn placed(&self, b: usize, k: usize) -> Placed<'_>;
+
+    fn plane(&self, k: usize) -> PlaneView;
+}
+
+/// Bodies as the step has them.
+#[derive(Clone, Copy)]
+pub(crate) struct Now<'a> {
+    pub blocks: Part<'a, Block>,
+    pub members: Part<'a, Members>,
+    pub shapes: &'a [Shape],
+    pub planes: (&'a [Plane], &'a [PlaneMotion]),
+}
+
+impl Scene for Now<'_> {
+    #[inline(always)]
+    fn block(&self, b: usize) -> &Block {
+        &self.blocks[b]
+    }
+
+    #[inline(always)]
+    fn sphere(&self, b: usize, i: u32) -> &Record {
+        &self.members[b].spheres(&self.blocks[b])[i as usize]
+    }
+
+    #[inline(always)]
+    fn owner(&self, b: usize, i: u32) -> usize {
+        self.members[b].body(i) as usize
+    }
+
+    #[inline(always)]
+    fn placed(&self, b: usize, k: usize) -> Placed<'_> {
+        let (block, (shape, scale)) = (&self.blocks[b], self.members[b].solids[k]);
+        Placed {
+            centre: xyz(&block.centre[k]),
+            orientation: block.rotation[k].orientation,
+            shape: &self.shapes[shape as usize],
+            scale,
+        }
+    }
+
+    #[inline(always)]
+    fn plane(&self, k: usize) -> PlaneView {
+        let (plane, motion) = (&self.planes.0[k], &self.planes.1[k]);
+        PlaneView {
+            origin: plane.point + motion.offset,
+            normal: plane.normal,
+            velocity: motion.velocity,
+            material: plane.material as u32,
+            open: motion.open,
+        }
+    }
+}
+
+/// What the search for pairs needs: bodies as they are, and those that are not made of spheres in a tree.
+pub(crate) struct Search<'a> {
+    pub now: Now<'a>,
+    pub planes: usize,
+    /// Block and place of each, ascending.
+    pub solids: Vec<[u32; 2]>,
+    tree: Bvh,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(now: Now<'a>) -> Search<'a> {
+        let mut solids = Vec::new();
+        for (b, (block, members)) in now.blocks.list.iter().zip(now.members.list).enumerate() {
+            if members.solid() {
+                solids.extend((0..block.bodies.len() as u32).map(|k| [b as u32, k]));
+            }
+        }
+        let bounds: Vec<Aabb> =
+            solids.iter().map(|&[b, k]| now.placed(b as usize, k as usize).bounds()).collect();
+        Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds) }
+    }
+
+    /// Calls `f` with block and place of each body, not made of spheres, that may come within bounds; ascending.
+    pub fn solids_near(&self, (low, high): Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
+        row.clear();
+        self.tree.query(low, high, row);
+        for &k in row.iter() {
+            let [b, place] = self.solids[k as usize];
+            f(b, place);
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! What the partners of a pair can be.
+
+use super::pass::Renamed;
+use super::scene::{Placed, PlaneView, Scene, Search};
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::bodies::block::PointMotion;
+use crate::lanes::record::Record;
+use crate::spatial::bvh::Aabb;
+
+/// One partner of a pair. A partner has a number within its block: that of a sphere, of a body, of a corner; planes have
+/// numbers of their own.
+pub(crate) trait Side {
+    /// A partner where it is.
+    type View<'a>;
+
+    /// Whether it is a body, which takes forces.
+    const BODY: bool;
+
+    /// The body, by its place in the block; `None` where it is none.
+    fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize>;
+
+    fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> Self::View<'a>;
+
+    /// Block and number after a new order of the bodies; `None` where the body does not stay.
+    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]>;
+
+    /// Motion at a point.
+    #[inline(always)]
+    fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
+        match Self::body(scene, block, number) {
+            Some(k) => scene.block(block).motion(k, point),
+            None => PointMotion::of_plane(&scene.plane(number as usize).velocity),
+        }
+    }
+
+    #[inline(always)]
+    fn material(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> u32 {
+        match Self::body(scene, block, number) {
+            Some(k) => scene.block(block).material(k),
+            None => scene.plane(number as usize).material,
+        }
+    }
+
+    fn partner(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Partner {
+        match Self::body(scene, block, number) {
+            Some(k) => Partner::Body(scene.block(block).bodies[k] as usize),
+            None => Partner::Plane(number as usize),
+        }
+    }
+
+    /// Whether it keeps its velocity whatever the forces.
+    fn still(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> bool {
+        Self::body(scene, block, number).is_none_or(|k| scene.block(block).velocity[k][3] == 0.0)
+    }
+}
+
+/// A side that can come first: its partners are looked for.
+pub(crate) trait First: Side {
+    /// Its numbers within a block, in order.
+    fn own(search: &Search<'_>, block: usize, f: impl FnMut(u32));
+
+    /// Bounds [m].
+    fn bounds(view: &Self::View<'_>) -> Aabb;
+}
+
+/// A side that can come second: it is looked for.
+pub(crate) trait Second: Side {
+    /// Calls `f` with block and number of all that may come within bounds of one in `block`; ascending.
+    fn around(search: &Search<'_>, block: usize, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32, u32));
+}
+
+fn grown((low, high): Aabb, by: f64) -> Aabb {
+    (low.map(|x| x - by), high.map(|x| x + by))
+}
+
+/// Bounds grown by the reach of a search [m].
+pub(crate) fn within_reach(bounds: Aabb, reach: f64) -> Aabb {
+    grown(bounds, reach)
+}
+
+/// Spheres: single ones and members of clumps.
+pub(crate) struct Spheres;
+
+impl Side for Spheres {
+    type View<'a> = &'a Record;
+    const BODY: bool = true;
+
+    #[inline(always)]
+    fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize> {
+        Some(scene.owner(block, number))
+    }
+
+    #[inline(always)]
+    fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> &'a Record {
+        scene.sphere(block, number)
+    }
+
+    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+        names.sphere(block, number)
+    }
+}
+
+impl First for Spheres {
+    fn own(search: &Search<'_>, block: usize, f: impl FnMut(u32)) {
+        (0..search.now.members[block].count as u32).for_each(f);
+    }
+
+    fn bounds(view: &&Record) -> Aabb {
+        let x = [view[0], view[1], view[2]];
+        grown((x, x), view[3])
+    }
+}
+
+/// Bodies that are not made of spheres.
+pub(crate) struct Solids;
+
+impl Side for Solids {
+    type View<'a> = Placed<'a>;
+    const BODY: bool = true;
+
+    #[inline(always)]
+    fn body(_: &(impl Scene + ?Sized), _: usize, number: u32) -> Option<usize> {
+        Some(number as usize)
+    }
+
+    #[inline(always)]
+    fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> Placed<'a> {
+        scene.placed(block, number as usize)
+    }
+
+    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+        names.body(block, number)
+    }
+}
+
+impl Second for Solids {
+    fn around(search: &Search<'_>, _: usize, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32, u32)) {
+        search.solids_near(bounds, row, f);
+    }
+}
+
+impl First for Solids {
+    fn own(search: &Search<'_>, block: usize, f: impl FnMut(u32)) {
+        if search.now.members[block].solid() {
+            (0..search.now.blocks[block].bodies.len() as u32).for_each(f);
+        }
+    }
+
+    fn bounds(view: &Placed<'_>) -> Aabb {
+        view.bounds()
+    }
+}
+
+/// Corners that a body can have at most.
+const CORNERS: u32 = 1024;
+
+/// Corners of bodies that are not made of spheres: their number is 1024 times the place of the body, plus that of the
+/// corner.
+pub(crate) struct Corners;
+
+/// A corner where it is.
+pub(crate) struct Corner {
+    pub point: Vec3,
+    /// What laws take for a radius [m]; also the overlap above which a contact has lost its meaning.
+    pub size: f64,
+}
+
+impl Side for Corners {
+    type View<'a> = Corner;
+    const BODY: bool = true;
+
+    #[inline(always)]
+    fn body(_: &(impl Scene + ?Sized), _: usize, number: u32) -> Option<usize> {
+        Some((number / CORNERS) as usize)
+    }
+
+    #[inline(always)]
+    fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Corner {
+        let body = scene.placed(block, (number / CORNERS) as usize);
+        let (point, size) = body.shape.corner((number % CORNERS) as usize, body.scale);
+        Corner { point: body.centre + body.orientation * point, size }
+    }
+
+    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+        let [block, k] = names.body(block, number / CORNERS)?;
+        Some([block, k * CORNERS + number % CORNERS])
+    }
+}
+
+impl First for Corners {
+    fn own(search: &Search<'_>, block: usize, mut f: impl FnMut(u32)) {
+        Solids::own(search, block, |k| {
+            let corners = search.now.placed(block, k as usize).shape.corners();
+            debug_assert!(corners <= CORNERS);
+            (0..corners).for_each(|c| f(k * CORNERS + c));
+        });
+    }
+
+    fn bounds(view: &Corner) -> Aabb {
+        (view.point.into(), view.point.into())
+    }
+}
+
+/// Infinite planes. They count with the block of their partner.
+pub(crate) struct Planes;
+
+impl Side for Planes {
+    type View<'a> = PlaneView;
+    const BODY: bool = false;
+
+    #[inline(always)]
+    fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
+        None
+    }
+
+    #[inline(always)]
+    fn view(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> PlaneView {
+        scene.plane(number as usize)
+    }
+
+    fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+        Some([block as u32, number])
+    }
+}
+
+impl Second for Planes {
+    fn around(search: &Search<'_>, block: usize, _: Aabb, _: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
+        (0..search.planes as u32).for_each(|k| f(block as u32, k));
+    }
+}

@@ -1,0 +1,30 @@
+//! A sphere and a box: the closest point of the box's surface.
+
+use super::scene::Placed;
+use super::side::{Solids, Spheres};
+use super::{PairKind, Touch, Touches};
+use crate::lanes::record::{Record, xyz};
+use crate::shape::cuboid;
+use crate::spatial::detect;
+
+pub(crate) struct SphereBox;
+
+impl PairKind for SphereBox {
+    type First = Spheres;
+    type Second = Solids;
+    const POINTS: usize = 1;
+
+    fn near(&self, sphere: &&Record, solid: &Placed<'_>, reach: f64) -> bool {
+        solid.half().is_some_and(|half| {
+            let local = solid.orientation.inverse_transform_vector(&(xyz(sphere) - solid.centre));
+            cuboid::closest_point(&half, &local).2 < sphere[3] + reach
+        })
+    }
+
+    fn touches(&self, sphere: &&Record, solid: &Placed<'_>, found: &mut Touches) {
+        let Some(half) = solid.half() else { return };
+        let touch = detect::sphere_box(&xyz(sphere), sphere[3], &solid.centre, &solid.orientation, &half);
+        // The nearest face resolves a centre inside the box, up to one more radius.
+        found.extend(touch.map(|g| Touch::only(g, 2.0 * sphere[3])));
+    }
+}
