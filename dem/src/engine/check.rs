@@ -225,8 +225,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
         for &j in &rigid[n + 1..] {
             let b = &bodies.get(j);
             let still = a.inverse_mass == 0.0 && b.inverse_mass == 0.0;
-            let apart = a.kind == Kind::Solid && b.kind == Kind::Solid;
-            if !still && !apart && endless(a.material, b.material as usize) {
+            if !still && endless(a.material, b.material as usize) {
                 return error(format!("body {j}"));
             }
         }

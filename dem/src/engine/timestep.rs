@@ -13,8 +13,8 @@
 //! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
 //! it with more than one member) or twice as many as touch a plane at once where that is more (needles and plates
 //! made of many), and for a box twice as many as neighbours of the smallest bounding radius find
-//! room on its largest side, two contacts each. Contacts on a clump may all lie far out, so its r² is the largest;
-//! those on the side of a box are spread over it, so its r² is the mean over the side.
+//! room on its largest side, two contacts each (16 at least where other boxes are there). Contacts on a clump may all lie
+//! far out, so its r² is the largest; those on the side of a box are spread over it, so its r² is the mean over the side.
 //! A rolling or twisting spring turns the body as the tangential spring does, with a lever no longer than the sphere's
 //! radius: it counts as a second tangential spring.
 //!
@@ -96,6 +96,7 @@ pub(crate) fn limit(
     // A rolling spring counts as one more tangential spring on a lever.
     let levers = if laws.rolls() { 2.0 } else { 1.0 };
     let partners = partners(bodies, input);
+    let several = bodies.iter().filter(|b| b.kind == Kind::Solid).count() > 1;
     let r_min = bodies
         .iter()
         .filter(|b| b.kind != Kind::Solid)
@@ -116,7 +117,9 @@ pub(crate) fn limit(
             Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
             Shape::Box { half } => {
                 let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
-                4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0])
+                let grains = 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0]);
+                // Boxes on two opposite sides touch in four points each.
+                if several { grains.max(16.0) } else { grains }
             }
         };
         for &partner in &partners {

@@ -20,8 +20,8 @@ pub enum Shape {
     },
     /// A rigid union of spheres.
     Clump(Clump),
-    /// A rigid block, such as a sleeper. It touches spheres (of clumps too) and planes (with its corners), but not
-    /// other blocks, triangles or external surfaces.
+    /// A rigid block, such as a sleeper. It touches spheres (of clumps too), planes (with its corners) and other blocks,
+    /// but not triangles or external surfaces.
     Box {
         /// Half of each side [m].
         half: [f64; 3],

@@ -5,6 +5,7 @@ mod balance;
 mod bonds;
 mod bonds_block;
 mod bonds_many;
+mod boxes;
 mod determinism;
 mod extremes;
 mod friction;

@@ -6,6 +6,7 @@
 //! (`sphere_pair.rs`, its images in `images.rs`) and sphere with plane (`planes.rs`). Patches of surfaces are joined over
 //! seams (`patches.rs`).
 
+mod box_box;
 mod corner_plane;
 mod pass;
 mod scene;
@@ -23,7 +24,8 @@ use pass::Of;
 use side::{First, Second, Side};
 
 /// All kinds. The order is that of their forces in sums, hence part of a scene's numbers.
-pub(crate) const KINDS: [&dyn Kind; 2] = [&Of(sphere_box::SphereBox), &Of(corner_plane::CornerPlane)];
+pub(crate) const KINDS: [&dyn Kind; 3] =
+    [&Of(sphere_box::SphereBox), &Of(corner_plane::CornerPlane), &Of(box_box::BoxBox)];
 
 /// Forces of all pairs of kinds of block `b`; their slots follow those of the spheres.
 pub(crate) fn forces(
