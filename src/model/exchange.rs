@@ -129,7 +129,7 @@ impl CouplingPart {
         match self.transfer {
             Transfer::Point => surface,
             Transfer::Disc(radius) => surface.spread_over(radius),
-            Transfer::Part(part) => surface.spread_over(part * grains.mean_reach()),
+            Transfer::Part(part) => surface.spread_over(part * grains.groups.mean_reach()),
         }
     }
 
@@ -233,7 +233,7 @@ impl CouplingPart {
         places: &[(u32, PointMasses)],
     ) -> Vec<ContactClass> {
         let mut classes = Vec::new();
-        for (material, name) in grains.touching_materials() {
+        for (material, name) in grains.materials.touching() {
             let masses = grains.masses_of(model, material);
             let Some(stones) = masses else { continue };
             let (stiffness, damping_ratio) = model.contact_stiffness(material, own);

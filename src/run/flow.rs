@@ -114,7 +114,7 @@ impl<'a> Flow<'a> {
         };
         let mut flow = Flow {
             plan,
-            groups: part.first_shape.len() as u32,
+            groups: part.groups.first_shape.len() as u32,
             every: ((plan.interval / window).round() as u64).max(1),
             window,
             end,

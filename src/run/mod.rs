@@ -30,7 +30,6 @@ pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::GrainsPart;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
@@ -170,7 +169,7 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.model.predicted_memory = Some(prediction.total());
         summary.sources.extend(sources::solid(solid, run.job.grains.is_some()));
     }
-    summary.sources.extend(run.job.grains.iter().flat_map(GrainsPart::sources));
+    summary.sources.extend(run.job.grains.iter().flat_map(|part| part.materials.sources()));
     Ok(())
 }
 

@@ -133,7 +133,7 @@ pub fn record(
     grains: &GrainsPart,
 ) -> Result<PackingRecord, Failure> {
     let GrainsView { model, state } = view;
-    let sleeper = grains.rigid_sleeper().map(|_| grains.parts.len() as u32 - 1);
+    let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);
     // Those that are not there at the end do not count.
     let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
     let contacts = measure::contacts(model, state);
@@ -155,9 +155,9 @@ pub fn record(
             stress: measure::region_stress(model, state, &stress, region),
         }
     });
-    let gradations = grains.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
+    let gradations = grains.groups.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
     if !gradations.is_empty() {
-        write_gradations(dir, &job.title, view, &grains.graded)?;
+        write_gradations(dir, &job.title, view, &grains.groups.graded)?;
     }
     if grains.measures.iter().any(|m| m.radial.is_some()) {
         write_radial(dir, view, &grains.measures, is_grain)?;
@@ -187,11 +187,11 @@ fn fouling(
     grains: &GrainsPart,
     is_grain: impl Fn(usize) -> bool,
 ) -> Option<FoulingRecord> {
-    if grains.fouling.is_empty() {
+    if grains.groups.fouling.is_empty() {
         return None;
     }
     let model = view.model;
-    let fine = |b: usize| grains.fouling.contains(&model.part(b));
+    let fine = |b: usize| grains.groups.fouling.contains(&model.part(b));
     let sum = |of: fn(&dem::Model, usize) -> f64, fines: bool| -> f64 {
         (0..model.body_count()).filter(|&b| is_grain(b) && fine(b) == fines).map(|b| of(model, b)).sum()
     };
@@ -325,11 +325,11 @@ fn write_gradations(
 
 /// `packing.csv`, or one file for each of several groups: what `[[grains]] packing` reads.
 fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPart) -> Result<(), Failure> {
-    let groups = grains.first_shape.len();
+    let groups = grains.groups.first_shape.len();
     for group in 0..groups {
         let name = if groups == 1 { "packing.csv".to_string() } else { format!("packing_{group}.csv") };
         let file = dir.join(name);
-        let text = packing(view, group as u32, grains.first_shape[group]);
+        let text = packing(view, group as u32, grains.groups.first_shape[group]);
         atomic::write(&file, |out| {
             out.write_all(text.as_bytes()).map_err(|source| WriteError::Io { file: file.clone(), source })
         })?;

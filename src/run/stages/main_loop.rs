@@ -34,8 +34,8 @@ impl Stage for MainLoop {
     fn report(&self, job: &Job, dt: f64) -> Vec<String> {
         if let Some(grains) = &job.grains {
             let mut lines = vec![format!("run: {} s, {:.0} steps", job.end, job.end / dt)];
-            let waiting = |part| grains.bodies.iter().filter(|b| b.absent && b.part == part).count();
-            lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.parts, waiting)));
+            let waiting = |part| grains.groups.bodies.iter().filter(|b| b.absent && b.part == part).count();
+            lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.groups.names, waiting)));
             return lines;
         }
         let kind = match job.solid.as_ref().map(|s| &s.analysis) {
