@@ -75,7 +75,7 @@ pub fn uses(file: &str, text: &str, replaced: &BTreeMap<String, Ban>) -> BTreeMa
     let counted: BTreeSet<(usize, &str)> = code.iter().map(|(line, name)| (*line, name.as_str())).collect();
     for (number, line) in text.lines().enumerate() {
         for piece in line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|p| !p.is_empty()) {
-            let counted = code.iter().any(|(l, n)| *l == number + 1 && n == piece);
+            let counted = counted.contains(&(number + 1, piece));
             for word in
                 words_of(piece).into_iter().filter(|w| !counted && replaced.get(w) == Some(&Ban::Anywhere))
             {
