@@ -31,7 +31,7 @@ pub struct CouplingPart {
     /// Order of the exchange.
     pub scheme: Scheme,
     /// How contact forces reach the solid.
-    pub transfer: Transfer,
+    pub transfer: TransferPlan,
     /// Implicitness of the solid's step.
     pub theta: f64,
     /// Faces that grains may touch: those of the ground, then those of the meshed sleepers, one after the other.
@@ -42,7 +42,7 @@ pub struct CouplingPart {
 
 /// How contact forces reach the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Transfer {
+pub enum TransferPlan {
     /// At the contact point.
     Point,
     /// Over discs of this radius [m].
@@ -127,9 +127,9 @@ impl CouplingPart {
 
     fn spread(&self, surface: SolidSurface, grains: &GrainsPart) -> SolidSurface {
         match self.transfer {
-            Transfer::Point => surface,
-            Transfer::Disc(radius) => surface.spread_over(radius),
-            Transfer::Part(part) => surface.spread_over(part * grains.groups.mean_reach()),
+            TransferPlan::Point => surface,
+            TransferPlan::Disc(radius) => surface.spread_over(radius),
+            TransferPlan::Part(part) => surface.spread_over(part * grains.groups.mean_reach()),
         }
     }
 
@@ -389,14 +389,14 @@ fn scheme(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Scheme
     })
 }
 
-fn transfer(document: &Document, c: &Coupling) -> Result<Transfer, SceneError> {
-    let TransferTable::Spread(table) = c.transfer else { return Ok(Transfer::Point) };
+fn transfer(document: &Document, c: &Coupling) -> Result<TransferPlan, SceneError> {
+    let TransferTable::Spread(table) = c.transfer else { return Ok(TransferPlan::Point) };
     match (table.spread, table.spread_factor) {
-        (Some(radius), None) if radius.si > 0.0 => Ok(Transfer::Disc(radius.si)),
+        (Some(radius), None) if radius.si > 0.0 => Ok(TransferPlan::Disc(radius.si)),
         (Some(radius), None) => {
             Err(document.error("coupling.transfer.spread", format!("{} m", radius.si), "a radius above 0"))
         }
-        (None, Some(factor)) if factor > 0.0 && factor <= 100.0 => Ok(Transfer::Part(factor)),
+        (None, Some(factor)) if factor > 0.0 && factor <= 100.0 => Ok(TransferPlan::Part(factor)),
         (None, Some(factor)) => {
             Err(document.error("coupling.transfer.spread_factor", factor.to_string(), "above 0, at most 100"))
         }

@@ -4,7 +4,7 @@
 use super::system::GrainsView;
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GradedGroup, GrainsPart, Measure, Radial};
+use crate::model::grains::{GradedGroup, GrainsPart, MeasurePlan, RadialPlan};
 use crate::write::csv::{Field, write_table};
 use crate::write::svg::{LinePlot, Series};
 use crate::write::{WriteError, atomic};
@@ -142,7 +142,7 @@ pub fn record(
     let strong = measure::strong_network(&contacts);
     let ratio = measure::unbalanced_ratio(model, state, &contacts);
     let between = |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
-    let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
+    let measures = grains.measures.iter().map(|MeasurePlan { name, region, .. }| {
         let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
         let own = measure::coordination_of(model, state, &contacts, inside);
         MeasureRecord {
@@ -196,7 +196,7 @@ fn fouling(
         (0..model.body_count()).filter(|&b| is_grain(b) && fine(b) == fines).map(|b| of(model, b)).sum()
     };
     let [stones, fines] = [false, true].map(|f| sum(dem::Model::mass, f));
-    let boxes = grains.measures.iter().map(|Measure { name, region, .. }| {
+    let boxes = grains.measures.iter().map(|MeasurePlan { name, region, .. }| {
         let skeleton = porosity(view, region, |b| is_grain(b) && !fine(b));
         let both = porosity(view, region, &is_grain);
         let share = if skeleton > 0.0 { (skeleton - both) / skeleton } else { 0.0 };
@@ -253,13 +253,13 @@ fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
 fn write_radial(
     dir: &Path,
     view: GrainsView<'_>,
-    measures: &[Measure],
+    measures: &[MeasurePlan],
     is_grain: impl Fn(usize) -> bool,
 ) -> Result<(), Failure> {
     let columns: [Field<[f64; 3]>; 3] =
         [("measure", "", |r| r[0]), ("distance", "m", |r| r[1]), ("g", "", |r| r[2])];
     let rows = measures.iter().enumerate().flat_map(|(i, m)| {
-        let g = m.radial.and_then(|Radial { reach, bins }| {
+        let g = m.radial.and_then(|RadialPlan { reach, bins }| {
             let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins)?;
             let row = |(k, g): (usize, f64)| [i as f64, (k as f64 + 0.5) * reach / bins as f64, g];
             Some(g.into_iter().enumerate().map(row).collect::<Vec<_>>())

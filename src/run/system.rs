@@ -137,7 +137,7 @@ impl System for SolidSystem<'_> {
         self.next_load.copy_from_slice(&self.gravity);
         part.add_loads(end, &mut self.next_load);
         let before = self.state.u.clone();
-        let prescribed = (!part.moving.is_empty()).then(|| {
+        let prescribed = (!part.supports.moving.is_empty()).then(|| {
             let fixed = part.model.supports().fixed();
             let mut values: Vec<f64> = fixed.iter().map(|(_, value)| *value).collect();
             part.prescribe(end, &mut values);

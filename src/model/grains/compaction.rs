@@ -3,7 +3,7 @@
 use super::check::{check, find, region};
 use super::deposition::{DepositionPlan, SETTLED_SPEED};
 use super::groups::GroupsPart;
-use super::walls::Walls;
+use super::walls::WallsPart;
 use crate::scene::compaction::{Compaction, CompactionKind};
 use crate::scene::units::vector;
 use crate::scene::walls::WallKind;
@@ -84,7 +84,7 @@ pub(super) fn build(
     document: &Document,
     scene: &Scene,
     settled: Option<&DepositionPlan>,
-    walls: &Walls,
+    walls: &WallsPart,
     groups: &mut GroupsPart,
 ) -> Result<Vec<CompactionPlan>, SceneError> {
     let mut plans = Vec::new();
@@ -225,7 +225,7 @@ fn squeeze(
     scene: &Scene,
     index: usize,
     c: &Compaction,
-    walls: &Walls,
+    walls: &WallsPart,
 ) -> Result<Press, SceneError> {
     let key = |k: &str| format!("compaction.{index}.{k}");
     let wall = needed(document, index, "wall", c.wall, "the number of the plane that moves")?;

@@ -12,7 +12,7 @@ use trackbed_dem::{Material, PairOverride};
 
 /// Materials of a scene.
 #[derive(Clone)]
-pub struct Materials {
+pub struct MaterialsPart {
     /// All of them, in the order of the scene.
     pub all: Vec<Material>,
     /// What single pairs of them have of their own.
@@ -23,7 +23,7 @@ pub struct Materials {
     names: Vec<String>,
 }
 
-impl Materials {
+impl MaterialsPart {
     /// Materials of grains that may touch a solid, with their names. A rigid sleeper touches grains only.
     pub fn touching(&self) -> impl Iterator<Item = (usize, String)> {
         self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
@@ -53,12 +53,12 @@ impl Materials {
 }
 
 /// Resolves `[[material]]` and `[[contact]]`; no material is one of grains yet.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<Materials, SceneError> {
+pub(super) fn build(document: &Document, scene: &Scene) -> Result<MaterialsPart, SceneError> {
     let all = materials(document, scene)?;
     let pairs = pairs(document, scene)?;
     laws::check_laws(document, scene, &all, &pairs)?;
     let names = scene.material.iter().map(|m| m.name.clone()).collect();
-    Ok(Materials { all, pairs, of_grains: Vec::new(), names })
+    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names })
 }
 
 /// Checks the materials, in the order of the scene.

@@ -7,18 +7,18 @@ use trackbed_dem::measure::BoxRegion;
 
 /// A box in which the packing is measured.
 #[derive(Clone, Debug)]
-pub struct Measure {
+pub struct MeasurePlan {
     /// Name in the summary.
     pub name: String,
     /// The box.
     pub region: BoxRegion,
     /// Radial distribution function, where it is asked for.
-    pub radial: Option<Radial>,
+    pub radial: Option<RadialPlan>,
 }
 
 /// Shells of a radial distribution function.
 #[derive(Clone, Copy, Debug)]
-pub struct Radial {
+pub struct RadialPlan {
     /// Largest distance [m].
     pub reach: f64,
     /// Number of shells.
@@ -26,7 +26,7 @@ pub struct Radial {
 }
 
 /// The boxes of a scene.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<Vec<Measure>, SceneError> {
+pub(super) fn build(document: &Document, scene: &Scene) -> Result<Vec<MeasurePlan>, SceneError> {
     let mut measures = Vec::new();
     for (i, m) in scene.measure.iter().enumerate() {
         if scene.measure[..i].iter().any(|other| other.name == m.name) {
@@ -35,7 +35,7 @@ pub(super) fn build(document: &Document, scene: &Scene) -> Result<Vec<Measure>, 
         }
         let region = region(document, &format!("measure.{i}.box"), &m.region)?;
         let radial = radial(document, i, m, &region)?;
-        measures.push(Measure { name: m.name.clone(), region, radial });
+        measures.push(MeasurePlan { name: m.name.clone(), region, radial });
     }
     Ok(measures)
 }
@@ -46,7 +46,7 @@ fn radial(
     i: usize,
     measure: &scene::Measure,
     region: &BoxRegion,
-) -> Result<Option<Radial>, SceneError> {
+) -> Result<Option<RadialPlan>, SceneError> {
     let Some(r) = &measure.radial else { return Ok(None) };
     let least = (region.high - region.low).min();
     let reach = r.reach.si;
@@ -57,5 +57,5 @@ fn radial(
     if !(1..=100_000).contains(&r.bins) {
         return Err(document.error(&format!("measure.{i}.radial.bins"), r.bins.to_string(), "1 to 100000"));
     }
-    Ok(Some(Radial { reach, bins: r.bins }))
+    Ok(Some(RadialPlan { reach, bins: r.bins }))
 }

@@ -28,7 +28,7 @@ pub use compaction::{CompactionPlan, Press};
 pub use deposition::DepositionPlan;
 pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
 pub use groups::{GradedGroup, GroupsPart};
-pub use measure::{Measure, Radial};
+pub use measure::{MeasurePlan, RadialPlan};
 pub use part::{GrainsPart, PackingPlan, SurfaceMaterials};
 pub use refused::refused;
 

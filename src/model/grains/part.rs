@@ -5,25 +5,25 @@ use super::compaction::CompactionPlan;
 use super::deposition::DepositionPlan;
 use super::flow::FlowPlan;
 use super::groups::GroupsPart;
-use super::materials::Materials;
-use super::measure::Measure;
+use super::materials::MaterialsPart;
+use super::measure::MeasurePlan;
 use super::periodic::Borders;
 use super::steps::StepPlan;
 use super::track::{SleeperPlan, TrackPart};
-use super::walls::Walls;
+use super::walls::WallsPart;
 use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, Vec3};
 
 /// The grains, ready to build models of.
 #[derive(Clone)]
 pub struct GrainsPart {
     /// Materials, and what pairs of them have of their own.
-    pub materials: Materials,
+    pub materials: MaterialsPart,
     /// Groups of grains, and all grains where they start.
     pub groups: GroupsPart,
     /// Bonds between grains.
     pub bonds: BondPart,
     /// Walls.
-    pub walls: Walls,
+    pub walls: WallsPart,
     /// Materials of the solid's surface.
     pub surface: SurfaceMaterials,
     /// Acceleration of gravity [m/s²].
@@ -35,7 +35,7 @@ pub struct GrainsPart {
     /// What is done before the run proper.
     pub packing: PackingPlan,
     /// Boxes that are measured.
-    pub measures: Vec<Measure>,
+    pub measures: Vec<MeasurePlan>,
     /// Sleepers, rail and load.
     pub track: TrackPart,
     /// Inlets and outlets.

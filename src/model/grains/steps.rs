@@ -2,7 +2,7 @@
 
 use super::check::check;
 use super::laws;
-use super::materials::Materials;
+use super::materials::MaterialsPart;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 use trackbed_dem::TimeStep;
 
@@ -19,7 +19,7 @@ pub struct StepPlan {
 pub(super) fn impact_speed(
     document: &Document,
     scene: &Scene,
-    materials: &Materials,
+    materials: &MaterialsPart,
 ) -> Result<Option<f64>, SceneError> {
     let impact_speed = scene.time.impact_speed.map(|v| v.si);
     check(document, "time.impact_speed", impact_speed, |v| v >= 0.0, "0 or more")?;

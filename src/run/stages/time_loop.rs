@@ -272,15 +272,15 @@ impl<'a> TimeLoop<'a> {
             grain_steps: done * grain_steps,
             solid_steps: done * solid_steps,
         });
-        summary.push = track_output::push(&self.track, dir)?;
+        summary.track.push = track_output::push(&self.track, dir)?;
         if let (Some(flow), Some(view)) = (&self.flow, system.grains()) {
             let (record, warnings) = flow.finish(end, view);
             summary.warnings.extend(warnings);
-            summary.flow = Some(record);
+            summary.bed.flow = Some(record);
         }
-        summary.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
-        summary.track = self.track.record();
-        summary.warnings.extend(summary.track.iter().flat_map(|t| t.remarks()));
+        summary.track.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
+        summary.track.sleepers = self.track.record();
+        summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.remarks()));
         summary.energy = Some(energy(&self.recorder));
         self.recorder.end()?;
         self.recorder.plot_settlement()

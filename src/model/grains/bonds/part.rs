@@ -22,7 +22,7 @@ pub struct Rule {
     /// Groups of both bodies; none for any.
     pub between: Option<[u32; 2]>,
     /// Pairs.
-    pub source: Source,
+    pub source: PairSource,
     /// How strengths vary from bond to bond.
     pub spread: Spread,
     /// Seed of the variation.
@@ -30,12 +30,12 @@ pub struct Rule {
     /// Whether tension and shear vary together.
     pub together: bool,
     /// Boxes in which bonds are weaker or stronger.
-    pub regions: Vec<Region>,
+    pub regions: Vec<BondRegion>,
 }
 
 /// Where the pairs of a rule come from.
 #[derive(Clone, Debug)]
-pub enum Source {
+pub enum PairSource {
     /// Bodies whose gap is at most this [m].
     Gap(f64),
     /// Given pairs.
@@ -46,7 +46,7 @@ pub enum Source {
 
 /// A box in which bonds are weaker or stronger.
 #[derive(Clone, Debug)]
-pub struct Region {
+pub struct BondRegion {
     /// Lower corner [m].
     pub low: Vec3,
     /// Upper corner [m].
@@ -122,13 +122,13 @@ impl BondPart {
                 sphere(a) && sphere(b) && match_groups
             };
             let pairs: Vec<[usize; 2]> = match &rule.source {
-                Source::Gap(gap) => {
+                PairSource::Gap(gap) => {
                     let spheres: Vec<_> =
                         bodies.iter().map(|b| (b.position, radius(b).max(f64::MIN_POSITIVE))).collect();
                     within_gap(&spheres, *gap, accept)
                 }
-                Source::Pairs(pairs) => pairs.clone(),
-                Source::Stones => {
+                PairSource::Pairs(pairs) => pairs.clone(),
+                PairSource::Stones => {
                     self.stones.iter().filter(|(_, k)| *k == kind).map(|(pair, _)| *pair).collect()
                 }
             };

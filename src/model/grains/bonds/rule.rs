@@ -1,6 +1,6 @@
 //! Rules that find the pairs to be joined in the bodies that a run starts with.
 
-use super::part::{BondPart, Region, Rule, Source};
+use super::part::{BondPart, BondRegion, PairSource, Rule};
 use crate::failure::Failure;
 use crate::model::grains::check::check;
 use crate::model::tables;
@@ -51,13 +51,13 @@ fn source(
     table: &BondTable,
     between: bool,
     bodies: &Joinable<'_>,
-) -> Result<Source, Failure> {
+) -> Result<PairSource, Failure> {
     let key = |k: &str| format!("bond.{i}.{k}");
     let named = bodies.bonds.in_stones(i);
     let source = match (&table.gap, &table.pairs) {
         (Some(gap), None) => {
             check(document, &key("gap"), Some(gap.si), |g| g >= 0.0, "0 or more")?;
-            Source::Gap(gap.si)
+            PairSource::Gap(gap.si)
         }
         (None, Some(file)) => {
             if bodies.levelled {
@@ -69,21 +69,21 @@ fn source(
                     .error(&key("between"), "two groups", "no such key beside `pairs`")
                     .into());
             }
-            Source::Pairs(tables::pairs(&document.resolve(file), bodies.count)?)
+            PairSource::Pairs(tables::pairs(&document.resolve(file), bodies.count)?)
         }
         (None, None) if named => {
             if between {
                 let expected = "a `gap` beside it, or no such key for the bonds of stones";
                 return Err(document.error(&key("between"), "two groups", expected).into());
             }
-            Source::Stones
+            PairSource::Stones
         }
         _ => {
             let expected = "one of `gap` and `pairs`, or a [[grains]] that names this bond";
             return Err(document.error(&key("gap"), "both or none of `gap` and `pairs`", expected).into());
         }
     };
-    if named && !matches!(source, Source::Stones) {
+    if named && !matches!(source, PairSource::Stones) {
         let expected = "no such key for a bond that stones are made with";
         return Err(document.error(&key("gap"), "a rule", expected).into());
     }
@@ -113,7 +113,7 @@ fn spread(document: &Document, i: usize, table: &BondTable) -> Result<Spread, Sc
 }
 
 /// Boxes in which bonds are weaker or stronger.
-fn regions(document: &Document, i: usize, table: &BondTable) -> Result<Vec<Region>, SceneError> {
+fn regions(document: &Document, i: usize, table: &BondTable) -> Result<Vec<BondRegion>, SceneError> {
     let mut regions = Vec::new();
     for (k, r) in table.region.iter().enumerate() {
         let key = |name: &str| format!("bond.{i}.region.{k}.{name}");
@@ -124,7 +124,7 @@ fn regions(document: &Document, i: usize, table: &BondTable) -> Result<Vec<Regio
         check(document, &key("strength"), r.strength, |f| f > 0.0, "above 0")?;
         check(document, &key("stiffness"), r.stiffness, |f| f > 0.0, "above 0")?;
         let (strength, stiffness) = (r.strength.unwrap_or(1.0), r.stiffness.unwrap_or(1.0));
-        regions.push(Region { low, high, strength, stiffness });
+        regions.push(BondRegion { low, high, strength, stiffness });
     }
     Ok(regions)
 }

@@ -16,7 +16,7 @@ pub use waiting::waits;
 
 use super::bonds::BondPart;
 use super::check::find;
-use super::materials::Materials;
+use super::materials::MaterialsPart;
 use crate::failure::Failure;
 use crate::scene::grains::{GrainShape, Grains};
 use crate::scene::units::vector;
@@ -28,7 +28,7 @@ use trackbed_dem::{BodyInput, Vec3};
 pub(super) fn build(
     document: &Document,
     scene: &Scene,
-    materials: &mut Materials,
+    materials: &mut MaterialsPart,
     bonds: &mut BondPart,
 ) -> Result<GroupsPart, Failure> {
     let mut part = GroupsPart::default();

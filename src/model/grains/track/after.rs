@@ -3,7 +3,7 @@
 use super::part::{AfterPlan, TrackPart};
 use crate::model::grains::check::check;
 use crate::scene::after::{CycleJump, JumpMethod, Push};
-use crate::scene::track::Track;
+use crate::scene::track::TrackTable;
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::jump::JumpPlan;
@@ -16,7 +16,7 @@ use trackbed_dem::Vec3;
 /// Bad input.
 pub(super) fn build(
     document: &Document,
-    track: &Track,
+    track: &TrackTable,
     part: &TrackPart,
     fixed: Option<&str>,
 ) -> Result<AfterPlan, SceneError> {

@@ -13,7 +13,7 @@ use trackbed_dem::{Plane, Vec3, WallInput, WallShape};
 
 /// The walls of a scene.
 #[derive(Clone, Default)]
-pub struct Walls {
+pub struct WallsPart {
     /// Plain planes.
     pub planes: Vec<Plane>,
     /// All others.
@@ -48,8 +48,8 @@ const SPECIAL: [(&str, &[WallKind]); 12] = [
 ];
 
 /// `[[walls]]` resolved.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<Walls, Failure> {
-    let mut part = Walls::default();
+pub(super) fn build(document: &Document, scene: &Scene) -> Result<WallsPart, Failure> {
+    let mut part = WallsPart::default();
     for (i, wall) in scene.walls.iter().enumerate() {
         let material = find(document, scene, &format!("walls.{i}.material"), &wall.material)?;
         let before = part.others.len();
@@ -70,7 +70,7 @@ fn add(
     index: usize,
     wall: &Wall,
     material: usize,
-    part: &mut Walls,
+    part: &mut WallsPart,
 ) -> Result<(), Failure> {
     let key = |k: &str| format!("walls.{index}.{k}");
     let present = |k: &str| match k {

@@ -2,7 +2,7 @@
 
 use super::shape::direction;
 use crate::model::grains::check::check;
-use crate::scene::track::Motion as Held;
+use crate::scene::track::HeldMotion;
 use crate::scene::units::vector;
 use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{Document, SceneError};
@@ -123,12 +123,12 @@ pub(super) fn body(document: &Document, index: usize, wall: &Wall) -> Result<Opt
     let mut fixed = [false; 6];
     for motion in &b.hold {
         let k = match motion {
-            Held::X => 0,
-            Held::Y => 1,
-            Held::Z => 2,
-            Held::Rx => 3,
-            Held::Ry => 4,
-            Held::Rz => 5,
+            HeldMotion::X => 0,
+            HeldMotion::Y => 1,
+            HeldMotion::Z => 2,
+            HeldMotion::Rx => 3,
+            HeldMotion::Ry => 4,
+            HeldMotion::Rz => 5,
         };
         fixed[k] = true;
     }
