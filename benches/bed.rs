@@ -186,7 +186,7 @@ fn main() {
     let before_run = work.rebuilds();
     let mut watch = Watch::default();
     watch.time(|| advance(&mut state, &mut work, a.steps));
-    let taken = resident() - before;
+    let used = resident() - before;
     let after = work.rebuilds();
     let count = model.body_count() as f64;
     let done = count * f64::from(a.steps);
@@ -207,6 +207,6 @@ fn main() {
         energies.kinetic_rotation,
         after.0 - before_run.0,
         after.1 - before_run.1,
-        taken / model.sphere_count() as f64,
+        used / model.sphere_count() as f64,
     );
 }

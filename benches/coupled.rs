@@ -207,11 +207,11 @@ fn run(
 fn window(model: &Model<'_>, state: &mut State, work: &mut Work, split: &mut Split) {
     let (first, last) = (Cell::new(None), Cell::new(None));
     let start = Instant::now();
-    let asked = |_: f64, _: &trackbed_dem::State, _: &mut Vec<trackbed_dem::AppliedForce>| {
+    let forces = |_: f64, _: &trackbed_dem::State, _: &mut Vec<trackbed_dem::AppliedForce>| {
         last.set(Some(Instant::now()));
         first.set(first.get().or(last.get()));
     };
-    step::step(model, state, work, asked, |_, _| {}).expect("the step is stable");
+    step::step(model, state, work, forces, |_, _| {}).expect("the step is stable");
     let end = Instant::now();
     let (first, last) = (first.get().expect("grains were stepped"), last.get().expect("more than once"));
     let steps = f64::from(SUBSTEPS);

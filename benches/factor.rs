@@ -1,5 +1,5 @@
 //! The direct solver, in seconds: ordering with symbolic analysis, L L^T (first and again) and L U on one and two threads,
-//! solves for 1, 2, 4, 8 right-hand sides, memory foretold and taken; and faer's own L L^T with the same ordering in
+//! solves for 1, 2, 4, 8 right-hand sides, memory predicted and used; and faer's own L L^T with the same ordering in
 //! the same run.
 //!
 //! Bricks of 10^3 and 16^3 elements (13,860 and 53,856 equations), base clamped, K dt²/4 + M for dt = 1 ms; and that of 24^3
@@ -147,7 +147,7 @@ impl Case {
             });
         }
         println!(
-            "  memory, L L^T: foretold {:.1} MB, taken {:.1} MB",
+            "  memory, L L^T: predicted {:.1} MB, used {:.1} MB",
             analysis.memory(true) as f64 / 1e6,
             peak / 1e6
         );
@@ -167,7 +167,7 @@ impl Case {
             });
         }
         println!(
-            "  memory, L U: foretold {:.1} MB, taken {:.1} MB",
+            "  memory, L U: predicted {:.1} MB, used {:.1} MB",
             analysis.memory(false) as f64 / 1e6,
             peak / 1e6
         );

@@ -169,7 +169,7 @@ def stones_actor(files):
     body = vtk_to_numpy(grains.GetPointData().GetArray("id"))
     centre = np.bincount(body, weights=x[:, 0]) / np.maximum(np.bincount(body), 1)
     keep = centre[body] < SPLIT
-    # Each stone its own shade, so that stones can be told apart.
+    # Each stone its own shade, so that stones can be distinguished.
     shade = np.random.default_rng(1).random(body.max() + 1)[body[keep]]
     data = vtk.vtkPolyData()
     points = vtk.vtkPoints()

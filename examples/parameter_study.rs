@@ -18,7 +18,7 @@ pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> 
         let set = vec![format!("contact.0.friction={friction}"), "output.frames=1".into()];
         let options = Options { out: Some(out.clone()), set, quiet: true, ..Options::default() };
         if let Outcome::Done(summary) = run(&scene, &options)? {
-            found.push(summary.packing.ok_or("a run without grains")?.coordination);
+            found.push(summary.bed.packing.ok_or("a run without grains")?.coordination);
         }
     }
     std::fs::remove_dir_all(&out)?;

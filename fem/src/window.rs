@@ -25,7 +25,7 @@ use crate::equations::cholesky::Cholesky;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
-use crate::newmark::{check_dynamics, factor};
+use crate::newmark::{check_dynamics, check_theta, factor};
 use crate::solver::LinearSolver;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
@@ -49,9 +49,7 @@ impl WindowSolver {
     /// # Errors
     /// theta out of range, a length that is not above 0, a material without density or with plasticity.
     pub fn new(model: &Model, theta: f64, dt: f64) -> Result<WindowSolver, SolveError> {
-        if !(0.5..=1.0).contains(&theta) {
-            return Err(SolveError::Theta { theta });
-        }
+        check_theta(theta)?;
         check_linear(model)?;
         check_dynamics(model, dt)?;
         let c = model.rayleigh();

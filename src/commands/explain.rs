@@ -31,8 +31,8 @@ pub fn explain(scene: &Path, set: &[String], memory: Option<u64>) -> Result<Stri
     let names: Vec<_> = stages::of(&job).filter_map(Stage::name).collect();
     line(format!("stages: {}", names.join(", ")));
     if let Some(grains) = &job.grains {
-        let model =
-            dem::Model::new(grains.input(grains.bodies.clone())).map_err(|e| refused(&document, &e))?;
+        let model = dem::Model::new(grains.input(grains.groups.bodies.clone()))
+            .map_err(|e| refused(&document, &e))?;
         line(format!("contact loop: {}", dem::measure::kernels(&model)));
         match Probe::run(grains, &model) {
             Ok(probe) => probe.report(&job, &model).into_iter().for_each(line),
@@ -93,9 +93,9 @@ impl Probe {
         let radii = (0..model.body_count()).flat_map(|b| model.members(b)).map(|m| m.1);
         let radius = radii.sum::<f64>() / model.sphere_count().max(1) as f64;
         let radius = if radius > 0.0 { radius } else { 0.01 };
-        let material = grains.bodies.first().map_or(0, |b| b.material);
+        let material = grains.groups.bodies.first().map_or(0, |b| b.material);
         // Without bonds: these join the bodies of the scene.
-        let (materials, contacts) = grains.contact_constants();
+        let (materials, contacts) = (grains.materials.all.clone(), grains.materials.pairs.clone());
         let sphere =
             |position| dem::BodyInput { material, position, scale: radius, ..dem::BodyInput::default() };
         let lattice = dem::insert::lattice::Lattice::Simple;

@@ -98,7 +98,7 @@ impl Job {
         if let (Some(c), Some(g)) = (&coupling, &mut grains) {
             g.set_sleeper_faces(c.ground_faces as u32);
         }
-        let jumps = grains.as_ref().and_then(|g| g.after.jump).is_some_and(|j| j.grains);
+        let jumps = grains.as_ref().and_then(|g| g.track.after.jump).is_some_and(|j| j.grains);
         if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
             let expected = "\"account\": the state of a plastic solid is not extrapolated";
             return Err(document.error("track.jump.method", "\"grains\"", expected).into());
@@ -158,9 +158,9 @@ fn end_time(
     scene: &Scene,
     grains: Option<&grains::GrainsPart>,
 ) -> Result<f64, SceneError> {
-    let counted = grains.and_then(|g| g.load.as_ref()).map(CyclicLoad::end);
+    let counted = grains.and_then(|g| g.track.load.as_ref()).map(CyclicLoad::end);
     // A push comes after the cycles, or stands for itself.
-    let push = grains.and_then(|g| g.after.push).map(|p| p.duration());
+    let push = grains.and_then(|g| g.track.after.push).map(|p| p.duration());
     let counted = match (counted, push) {
         (Some(cycles), Some(push)) => Some(cycles + push),
         (counted, push) => counted.or(push),

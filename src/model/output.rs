@@ -47,7 +47,7 @@ impl OutputPlan {
         let Some(checkpoint) = Duration::try_from_secs_f64(checkpoint).ok().filter(|c| !c.is_zero()) else {
             return Err(document.error("output.checkpoint", format!("{checkpoint} s"), "a time above 0"));
         };
-        let asked = |format: &&'static Format| {
+        let selected = |format: &&'static Format| {
             let shown = scene.solid.is_some() || !of_solid_alone(format);
             shown && o.formats.get(format.key).copied().unwrap_or(format.default)
         };
@@ -55,7 +55,7 @@ impl OutputPlan {
             frames,
             checkpoint,
             history_interval,
-            formats: FORMATS.into_iter().filter(asked).collect(),
+            formats: FORMATS.into_iter().filter(selected).collect(),
             tables: o.tables.unwrap_or(false),
             packing: o.packing.unwrap_or(false),
             strong_chains: o.chains == Some(Chains::Strong),

@@ -36,14 +36,14 @@ impl<S: System> Recorder<S> for Groups {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
         let GrainsView { model, state } = view;
-        for &group in &part.recorded_groups {
+        for &group in &part.groups.recorded {
             let of = |body: usize| state.present(body) && model.part(body) == group;
             let (mut sum, mut count) = (dem::Vec3::zeros(), 0.0_f64);
             for body in (0..model.body_count()).filter(|&b| of(b)) {
                 sum += state.position(body);
                 count += 1.0;
             }
-            let name = &part.parts[group as usize];
+            let name = &part.groups.names[group as usize];
             row.vector(name, "m", sum / count.max(1.0));
             row.vector(format_args!("{name}_force"), "N", dem::measure::force_on(model, state, of));
         }

@@ -209,7 +209,7 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
     let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
     let extent = extent(view);
     let mut id = 0;
-    for (i, plane) in part.planes().iter().enumerate() {
+    for (i, plane) in part.walls.planes.iter().enumerate() {
         let point = view.state.plane_point(view.model, i);
         let (points, polygons) = wall_output::square(&point, &plane.normal.normalize(), extent);
         add(id, &points, &polygons.iter().map(Vec::as_slice).collect::<Vec<_>>());

@@ -1,7 +1,7 @@
 //! The state that a plastic solid starts from.
 
 use crate::failure::Failure;
-use crate::model::solid::{InitialStress, InitialStressKind, SolidPart};
+use crate::model::solid::{InitialStressKind, InitialStressPlan, SolidPart};
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Model, State};
@@ -13,7 +13,9 @@ use trackbed_fem::{Model, State};
 /// The stress finds no equilibrium.
 pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State, f64), Failure> {
     let mut state = undeformed(model);
-    let Some(InitialStress { kind, steps, loads }) = &part.initial_stress else { return Ok((state, 0.0)) };
+    let Some(InitialStressPlan { kind, steps, loads }) = &part.initial_stress else {
+        return Ok((state, 0.0));
+    };
     let mut carried = gravity.to_vec();
     if *loads {
         part.add_loads(0.0, &mut carried);

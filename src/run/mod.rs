@@ -26,11 +26,11 @@ mod wall_output;
 pub use checkpoint_store::Interrupt;
 pub use memory::{Prediction, parse_size, size};
 pub(crate) use origin::default_folder;
+use summary::RunRecord;
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::GrainsPart;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
@@ -96,15 +96,16 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
-        let summary = Summary {
+        let record = RunRecord {
             status: "running".into(),
             title: job.title.clone(),
             version: env!("CARGO_PKG_VERSION").into(),
             scene_hash,
             overrides,
             threads: rayon::current_num_threads(),
-            ..Summary::default()
+            ..RunRecord::default()
         };
+        let summary = Summary { run: record, ..Summary::default() };
         let command = origin::resume_command(scene, &dir, &options.set);
         let (interrupt, interval) = (options.interrupt.clone(), job.output.checkpoint);
         let set_down = OnceCell::new();
@@ -130,13 +131,13 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
         .and_then(|()| state.begin(run.job))
         .and_then(|()| stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state)));
     let summary = &mut state.summary;
-    summary.peak_memory = peak_memory();
+    summary.run.peak_memory = peak_memory();
     match &result {
-        Ok(()) => summary.status = "done".into(),
+        Ok(()) => summary.run.status = "done".into(),
         // Bad input leaves nothing behind, not even a summary.
         Err(Failure::Input(_)) => {}
-        Err(Failure::Interrupted(_)) => summary.status = "interrupted".into(),
-        Err(failure) => summary.status = format!("failed: {failure}"),
+        Err(Failure::Interrupted(_)) => summary.run.status = "interrupted".into(),
+        Err(failure) => summary.run.status = format!("failed: {failure}"),
     }
     if let Err(failure @ Failure::Input(_)) = result {
         return Err(failure);
@@ -170,7 +171,7 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.model.predicted_memory = Some(prediction.total());
         summary.sources.extend(sources::solid(solid, run.job.grains.is_some()));
     }
-    summary.sources.extend(run.job.grains.iter().flat_map(GrainsPart::sources));
+    summary.sources.extend(run.job.grains.iter().flat_map(|part| part.materials.sources()));
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 use super::system::GrainsView;
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GradedGroup, GrainsPart, Measure, Radial};
+use crate::model::grains::{GradedGroup, GrainsPart, MeasurePlan, RadialPlan};
 use crate::write::csv::{Field, write_table};
 use crate::write::svg::{LinePlot, Series};
 use crate::write::{WriteError, atomic};
@@ -133,7 +133,7 @@ pub fn record(
     grains: &GrainsPart,
 ) -> Result<PackingRecord, Failure> {
     let GrainsView { model, state } = view;
-    let sleeper = grains.rigid_sleeper().map(|_| grains.parts.len() as u32 - 1);
+    let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);
     // Those that are not there at the end do not count.
     let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
     let contacts = measure::contacts(model, state);
@@ -142,7 +142,7 @@ pub fn record(
     let strong = measure::strong_network(&contacts);
     let ratio = measure::unbalanced_ratio(model, state, &contacts);
     let between = |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
-    let measures = grains.measures.iter().map(|Measure { name, region, .. }| {
+    let measures = grains.measures.iter().map(|MeasurePlan { name, region, .. }| {
         let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
         let own = measure::coordination_of(model, state, &contacts, inside);
         MeasureRecord {
@@ -155,9 +155,9 @@ pub fn record(
             stress: measure::region_stress(model, state, &stress, region),
         }
     });
-    let gradations = grains.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
+    let gradations = grains.groups.graded.iter().map(|g| graded(view, g)).collect::<Vec<_>>();
     if !gradations.is_empty() {
-        write_gradations(dir, &job.title, view, &grains.graded)?;
+        write_gradations(dir, &job.title, view, &grains.groups.graded)?;
     }
     if grains.measures.iter().any(|m| m.radial.is_some()) {
         write_radial(dir, view, &grains.measures, is_grain)?;
@@ -187,16 +187,16 @@ fn fouling(
     grains: &GrainsPart,
     is_grain: impl Fn(usize) -> bool,
 ) -> Option<FoulingRecord> {
-    if grains.fouling.is_empty() {
+    if grains.groups.fouling.is_empty() {
         return None;
     }
     let model = view.model;
-    let fine = |b: usize| grains.fouling.contains(&model.part(b));
+    let fine = |b: usize| grains.groups.fouling.contains(&model.part(b));
     let sum = |of: fn(&dem::Model, usize) -> f64, fines: bool| -> f64 {
         (0..model.body_count()).filter(|&b| is_grain(b) && fine(b) == fines).map(|b| of(model, b)).sum()
     };
     let [stones, fines] = [false, true].map(|f| sum(dem::Model::mass, f));
-    let boxes = grains.measures.iter().map(|Measure { name, region, .. }| {
+    let boxes = grains.measures.iter().map(|MeasurePlan { name, region, .. }| {
         let skeleton = porosity(view, region, |b| is_grain(b) && !fine(b));
         let both = porosity(view, region, &is_grain);
         let share = if skeleton > 0.0 { (skeleton - both) / skeleton } else { 0.0 };
@@ -253,13 +253,13 @@ fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
 fn write_radial(
     dir: &Path,
     view: GrainsView<'_>,
-    measures: &[Measure],
+    measures: &[MeasurePlan],
     is_grain: impl Fn(usize) -> bool,
 ) -> Result<(), Failure> {
     let columns: [Field<[f64; 3]>; 3] =
         [("measure", "", |r| r[0]), ("distance", "m", |r| r[1]), ("g", "", |r| r[2])];
     let rows = measures.iter().enumerate().flat_map(|(i, m)| {
-        let g = m.radial.and_then(|Radial { reach, bins }| {
+        let g = m.radial.and_then(|RadialPlan { reach, bins }| {
             let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins)?;
             let row = |(k, g): (usize, f64)| [i as f64, (k as f64 + 0.5) * reach / bins as f64, g];
             Some(g.into_iter().enumerate().map(row).collect::<Vec<_>>())
@@ -325,11 +325,11 @@ fn write_gradations(
 
 /// `packing.csv`, or one file for each of several groups: what `[[grains]] packing` reads.
 fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPart) -> Result<(), Failure> {
-    let groups = grains.first_shape.len();
+    let groups = grains.groups.first_shape.len();
     for group in 0..groups {
         let name = if groups == 1 { "packing.csv".to_string() } else { format!("packing_{group}.csv") };
         let file = dir.join(name);
-        let text = packing(view, group as u32, grains.first_shape[group]);
+        let text = packing(view, group as u32, grains.groups.first_shape[group]);
         atomic::write(&file, |out| {
             out.write_all(text.as_bytes()).map_err(|source| WriteError::Io { file: file.clone(), source })
         })?;

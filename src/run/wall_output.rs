@@ -16,7 +16,7 @@ pub struct Walls;
 impl<S: System> Recorder<S> for Walls {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
-        for wall in part.recorded() {
+        for wall in &part.walls.recorded {
             let (name, wall) = (&wall.name, wall.wall);
             let (force, moment) = view.state.wall_force(wall);
             row.vector(format_args!("{name}_force"), "N", force);
@@ -35,7 +35,7 @@ pub fn polygons(
     mut id: u32,
     frame: &mut WallFrame,
 ) -> u32 {
-    for (k, wall) in part.walls().iter().enumerate() {
+    for (k, wall) in part.walls.others.iter().enumerate() {
         let first = frame.points.len() as u32;
         let (points, polygons) = picture(&wall.shape, |x| view.state.wall_point(view.model, k, &x), extent);
         frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));

@@ -30,7 +30,7 @@ pub struct BondTable {
     #[serde(default)]
     pub contact: bool,
     /// Spread of the strengths; default none.
-    pub spread: Option<SpreadTable>,
+    pub spread: Option<StrengthSpreadTable>,
     /// Boxes in which strength or stiffness are others.
     #[serde(default)]
     pub region: Vec<StrengthRegion>,
@@ -103,8 +103,8 @@ pub enum CriterionName {
 
 /// Spread of the strengths.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpreadTable {
+#[serde(rename = "SpreadTable", deny_unknown_fields)]
+pub struct StrengthSpreadTable {
     /// Distribution.
     pub kind: SpreadKind,
     /// Standard deviation over the mean, of `normal`.

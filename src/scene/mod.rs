@@ -70,7 +70,7 @@ pub struct Scene {
     #[serde(default)]
     pub measure: Vec<compaction::Measure>,
     /// Sleeper and its load.
-    pub track: Option<track::Track>,
+    pub track: Option<track::TrackTable>,
     /// Exchange between grains and solid; needed when a scene has both.
     pub coupling: Option<coupling::Coupling>,
     /// Time steps and duration.

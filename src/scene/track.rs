@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 /// `[track]`: what stands on the ballast.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Track {
+#[serde(rename = "Track", deny_unknown_fields)]
+pub struct TrackTable {
     /// The sleepers.
     pub sleeper: Sleeper,
     /// The load on their seats, or the wheels on the rail; without it the sleepers only rest.
@@ -49,7 +49,7 @@ pub struct Sleeper {
     pub along: Along,
     /// Motions that are held: any of "x", "y", "z", "rx", "ry", "rz"; default none.
     #[serde(default)]
-    pub hold: Vec<Motion>,
+    pub hold: Vec<HeldMotion>,
     /// Elements that make it an elastic body of the solid; default a rigid body.
     pub mesh: Option<SleeperMesh>,
 }
@@ -98,8 +98,8 @@ impl Along {
 
 /// One rigid-body motion in world axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Motion {
+#[serde(rename = "Motion", rename_all = "snake_case")]
+pub enum HeldMotion {
     /// Translation along x.
     X,
     /// Translation along y.

@@ -1,6 +1,6 @@
 //! Walls as written in a scene.
 
-use super::track::Motion;
+use super::track::HeldMotion;
 use super::units::{Angle, Force, Frequency, Length, Mass, Quantity, Spin, Stress, Time, Velocity};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -126,5 +126,5 @@ pub struct Body {
     pub spin: Option<[Quantity<Spin>; 3]>,
     /// Motions that keep their starting velocity.
     #[serde(default)]
-    pub hold: Vec<Motion>,
+    pub hold: Vec<HeldMotion>,
 }

@@ -126,7 +126,9 @@ pub(super) fn broken(scene: &Path, set: &[&str], shares: &[f64], expected: &[&st
         panic!("the whole run fails")
     };
     // A plastic solid must have something to remember.
-    assert!(summary.newton.is_none_or(|n| n.factorizations_symmetric + n.factorizations_unsymmetric > 2));
+    assert!(
+        summary.solid.newton.is_none_or(|n| n.factorizations_symmetric + n.factorizations_unsymmetric > 2)
+    );
     for name in expected {
         assert!(whole.join(name).exists(), "no {name}");
     }

@@ -212,7 +212,7 @@ mod tests {
 
     /// What is left keeps its order, its memory and its constants, and lanes without a bond have none.
     #[test]
-    fn bonds_move_up_when_others_are_taken_out() {
+    fn bonds_move_up_when_others_are_removed() {
         let memory = |k: f64| Memory { shear: V3::new(k, 2.0 * k, -k), turn: V3::new(-k, k, 0.5 * k) };
         let entry = |k: u32| Entry { number: k, i: k + 1, block: 7, j: k + 2, memory: memory(f64::from(k)) };
         for gone in

@@ -128,8 +128,8 @@ fn touches<S: Surface>(
         let straight = sharp && closest.feature == Feature::Face;
         let distance = if straight { along.abs() } else { offset.norm() };
         if distance >= r && !(behind && straight) {
-            // Found as far only now. Beyond a sharp edge the bound told less, and the next step looks again; a smooth
-            // patch has told its true distance.
+            // Found as far only now. Beyond a sharp edge the bound stated less, and the next step looks again; a smooth
+            // patch has stated its true distance.
             pair.spare = if sharp { gone } else { gone + distance - r };
             continue;
         }

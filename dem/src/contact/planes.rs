@@ -92,18 +92,13 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             if !R::any(on) {
                 continue;
             }
-            let [ux, uy, uz, softness] = R::columns(R::rows(|l| body.velocity(l)));
+            let [ux, uy, uz, inverse_mass] = R::columns(R::rows(|l| body.velocity(l)));
             let spin = V3::new(wx, wy, wz);
             let to_point = -(normal * height);
-            let arm = if RIGID {
-                let [cx, cy, cz, _] = R::columns(R::rows(|l| body.centre(l)));
-                position - V3::new(cx, cy, cz) + to_point
-            } else {
-                to_point
-            };
+            let arm = arm_to::<R, RIGID>(&body, position, to_point);
             let wall = V3::new(vx, vy, vz);
             let velocity = V3::new(ux, uy, uz) + spin.cross(arm) - wall;
-            let mass = R::splat(1.0) / softness;
+            let mass = R::splat(1.0) / inverse_mass;
             let touch = LawInput { mass, radius: r, overlap: r - height, normal, velocity, spin };
             let LawOutput { force, moment, dashpot, friction, .. } =
                 L::evaluate::<R, ROLL>(&law, &touch, &mut memory, on, dt);
@@ -112,14 +107,10 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             spent.friction = friction.only(on).add_to(spent.friction);
             let force = force.only(on);
             let mut torque = arm.cross(force);
-            let mut about_origin = (position + to_point).cross(force);
             if ROLL {
                 torque = torque + moment.only(on);
-                about_origin = about_origin + moment.only(on);
             }
-            done.work = force.dot(wall).add_to(done.work);
-            done.linear = add(force, done.linear);
-            done.angular = add(about_origin, done.angular);
+            done.add::<R, ROLL>(force, moment.only(on), position + to_point, wall);
             let records = records::<R>(force, torque);
             for l in 0..R::LANES {
                 R::give(records[l], &mut sums[body.body(l)].0);
@@ -132,15 +123,31 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
         }
         tally.sums = sums;
         if let (Some((k, overlap, bound)), None) = (failure, tally.failure) {
-            let [sphere, plane] = pairs.name(k);
-            let (body, partner) =
-                (block.bodies[members.body(sphere) as usize], Partner::Plane(plane as usize));
-            tally.failure = Some(Failure::Overlap { body, partner, overlap, bound });
+            tally.failure = Some(too_deep(block, members, pairs.name(k), overlap, bound));
         }
         tally.ledger.dissipated_dashpot += spent.dashpot.sum();
         tally.ledger.dissipated_friction += spent.friction.sum();
         done.book(&mut tally.ledger, dt);
     }
+}
+
+/// From the centres of the bodies to points that lie `to_point` from the centres of their spheres at `position`.
+#[inline(always)]
+fn arm_to<R: Pack, const RIGID: bool>(body: &Own<'_, RIGID>, position: V3<R>, to_point: V3<R>) -> V3<R> {
+    if RIGID {
+        let [cx, cy, cz, _] = R::columns(R::rows(|l| body.centre(l)));
+        position - V3::new(cx, cy, cz) + to_point
+    } else {
+        to_point
+    }
+}
+
+/// A sphere that lies deeper in a plane than its radius.
+#[cold]
+fn too_deep(block: &Block, members: &Members, name: [u32; 2], overlap: f64, bound: f64) -> Failure {
+    let [sphere, plane] = name;
+    let body = block.bodies[members.body(sphere) as usize];
+    Failure::Overlap { body, partner: Partner::Plane(plane as usize), overlap, bound }
 }
 
 /// What planes did to a block, by lane: power, and sums of forces and of moments about the origin.
@@ -154,6 +161,24 @@ impl<Q: Four> Done<Q> {
     #[inline(always)]
     fn new() -> Done<Q> {
         Done { work: Q::zero(), linear: V3::zero(), angular: V3::zero() }
+    }
+
+    /// Adds forces on bodies at points of planes that move with `velocity`, and moments where spheres roll.
+    #[inline(always)]
+    fn add<R: Pack<Quad = Q>, const ROLL: bool>(
+        &mut self,
+        force: V3<R>,
+        moment: V3<R>,
+        point: V3<R>,
+        velocity: V3<R>,
+    ) {
+        let mut about_origin = point.cross(force);
+        if ROLL {
+            about_origin = about_origin + moment;
+        }
+        self.work = force.dot(velocity).add_to(self.work);
+        self.linear = add(force, self.linear);
+        self.angular = add(about_origin, self.angular);
     }
 
     #[inline(always)]

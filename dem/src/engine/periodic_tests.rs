@@ -21,10 +21,8 @@ fn wraps_into_the_box() {
     assert_eq!(p.turns(&Vec3::new(-9.5, 7.0, 0.0)), [-5, 2, 0]);
 }
 
-/// Every contact keeps its force, and every spring its length, when bodies are put back into the box and sorted anew,
-/// whether it becomes one across a border or ceases to be one.
-#[test]
-fn contacts_survive_the_way_back_into_the_box() {
+/// Spheres and clumps that fall on a moving plane and drift across two periodic borders.
+fn drifting() -> ModelInput {
     let material = Material {
         density: 2600.0,
         stiffness: 1e5,
@@ -60,7 +58,14 @@ fn contacts_survive_the_way_back_into_the_box() {
         let (position, velocity) = (cell * (L / 11.0), push * 0.5);
         input.bodies.push(BodyInput { shape: k % 2, position, velocity, ..BodyInput::default() });
     }
-    let model = Model::new(input).unwrap();
+    input
+}
+
+/// Every contact keeps its force, and every spring its length, when bodies are put back into the box and sorted anew,
+/// whether it becomes one across a border or ceases to be one.
+#[test]
+fn contacts_survive_the_way_back_into_the_box() {
+    let model = Model::new(drifting()).unwrap();
     let mut state = State::new(&model);
     let mut work = Work::new(&model, &state);
     assert!(state.blocks.len() > 1);

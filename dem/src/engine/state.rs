@@ -227,7 +227,7 @@ impl State {
     }
 
     /// Allows for a way [m] that the external surface may have made between two steps, beyond what its
-    /// [`max_speed`](crate::spatial::surface::Surface::max_speed) told: neighbours stay known that much longer.
+    /// [`max_speed`](crate::spatial::surface::Surface::max_speed) stated: neighbours stay known that much longer.
     pub fn allow_for_jump(&mut self, way: f64) {
         self.wall_drift += way;
     }

@@ -147,23 +147,23 @@ fn images(model: &Model) -> Vec<Vec3> {
 }
 
 /// Streams of random numbers, a new one for every grain: what one is given depends on the seed and on how many have been
-/// asked for before, whether in this start of the program or in an earlier one.
+/// requested before, whether in this start of the program or in an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Places {
     seed: u64,
-    asked: u64,
+    requests: u64,
 }
 
 impl Places {
     /// The streams that a seed starts.
     pub fn new(seed: u64) -> Places {
-        Places { seed, asked: 0 }
+        Places { seed, requests: 0 }
     }
 
     fn next(&mut self) -> Random {
-        self.asked += 1;
+        self.requests += 1;
         // Odd multipliers keep grains and purposes apart.
-        Random::new(self.seed ^ self.asked.wrapping_mul(0xd134_2543_de82_ef95), PURPOSE)
+        Random::new(self.seed ^ self.requests.wrapping_mul(0xd134_2543_de82_ef95), PURPOSE)
     }
 }
 

@@ -119,8 +119,8 @@ impl Grid {
         for i in from[0]..=to[0] {
             for j in from[1]..=to[1] {
                 for k in from[2]..=to[2] {
-                    let hit = |(q, s): &(Vec3, f64)| (p - q).norm_squared() < (r + s) * (r + s);
-                    if self.cells[self.index([i, j, k])].iter().any(hit) {
+                    let overlaps = |(q, s): &(Vec3, f64)| (p - q).norm_squared() < (r + s) * (r + s);
+                    if self.cells[self.index([i, j, k])].iter().any(overlaps) {
                         return false;
                     }
                 }

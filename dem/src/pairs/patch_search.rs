@@ -20,8 +20,8 @@ impl Candidate {
     }
 }
 
-/// Patches near each free sphere of a block (or each sphere, where the patch itself is free to move); none at all is told
-/// from one query for the whole block.
+/// Patches near each free sphere of a block (or each sphere, where the patch itself is free to move); none at all is found
+/// by one query for the whole block.
 pub(crate) fn candidates<S: Surface>(
     surface: &S,
     spheres: &[Record],

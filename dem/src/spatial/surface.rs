@@ -88,12 +88,12 @@ pub trait Surface: Sync {
         false
     }
 
-    /// Whether two patches lie in one plane, told without a search.
+    /// Whether two patches lie in one plane, stated without a search.
     fn level(&self, _a: u32, _b: u32) -> bool {
         false
     }
 
-    /// Of a flat patch with two sides, told without a search: where `centre` stands above its inside, the normal, and the
+    /// Of a flat patch with two sides, stated without a search: where `centre` stands above its inside, the normal, and the
     /// velocity there. `None` tells nothing.
     fn foot(&self, _patch: u32, _centre: [f64; 3]) -> Option<[Vec3; 3]> {
         None

@@ -129,7 +129,7 @@ impl WallInput {
 }
 
 impl WallShape {
-    /// The point that a motion turns about unless told otherwise [m].
+    /// The point that a motion turns about unless stated otherwise [m].
     pub fn own_centre(&self) -> Vec3 {
         match self {
             WallShape::Triangles { vertices, triangles } => {

@@ -5,7 +5,7 @@
 //! among them, has the same height and the same normal everywhere, and a sphere that crosses its seams feels no change.
 //!
 //! Each triangle keeps its plane and its three edges as half planes, from which a lower bound of the distance costs a
-//! few products: most patches of a near list are told apart from those in touch by it.
+//! few products: most patches of a near list are distinguished from those in touch by it.
 
 use crate::base::Vec3;
 use crate::base::error::ModelError;
@@ -82,7 +82,7 @@ impl Triangle {
         }
     }
 
-    /// The closest point where that is not told inside by the edges.
+    /// The closest point where the edges do not state that it is inside.
     #[inline(never)]
     fn beside(&self, x: &Vec3) -> (Vec3, Region) {
         let [a, b, c] = &self.corners;

@@ -211,13 +211,13 @@ fn a_cloud_sticks_and_its_balances_close() {
                 run.work = Work::new(&run.model, &run.state);
             }
             run.steps(400);
-            let taken = run.state.ledger.dissipated();
+            let dissipated = run.state.ledger.dissipated();
             let open = (total(&run) - start).abs();
             let contacts = measure::contacts(&run.model, &run.state);
             let pulled = contacts.iter().filter(|c| c.normal_force < 0.0).count();
-            println!("{} contacts, {pulled} pulled; open {open:.1e} of {taken:.3} J", contacts.len());
+            println!("{} contacts, {pulled} pulled; open {open:.1e} of {dissipated:.3} J", contacts.len());
             assert!(contacts.len() > 1000 && pulled > 100);
-            assert!(open < 2e-3 * taken, "{open:e} of {taken}");
+            assert!(open < 2e-3 * dissipated, "{open:e} of {dissipated}");
             assert!((measure::momentum(&run.model, &run.state).linear - before).norm() < 1e-12);
             let bodies = (0..run.model.body_count()).flat_map(|b| [run.state.position(b), run.state.spin(b)]);
             bodies.flat_map(|v| [v.x, v.y, v.z].map(f64::to_bits)).collect::<Vec<_>>()

@@ -158,7 +158,7 @@ fn plate() -> TriangleSurface {
 /// the radius) throws the sphere back with e v; a soft one is stopped with its name. Neither lets it through.
 #[test]
 fn impact_at_a_thousand_metres_per_second() {
-    let hit = |stiffness: f64, thin: bool, offset: f64| {
+    let impact = |stiffness: f64, thin: bool, offset: f64| {
         let mut input = weightless(Material { stiffness, ..stone() });
         if thin {
             input.triangles.push(plate());
@@ -178,13 +178,13 @@ fn impact_at_a_thousand_metres_per_second() {
     for thin in [false, true] {
         // In a face, and on the seam of two.
         for offset in [0.3, 0.02] {
-            let (velocity, position) = hit(1.1e10, thin, offset).unwrap();
+            let (velocity, position) = impact(1.1e10, thin, offset).unwrap();
             assert!(
                 (velocity.z / 500.0 - 1.0).abs() < 0.01 && position.z > 0.01,
                 "{thin} {velocity} {position}"
             );
             for stiffness in [1e5, 1e7] {
-                match hit(stiffness, thin, offset) {
+                match impact(stiffness, thin, offset) {
                     Err(StepError::Overlap { body: 0, partner: Partner::Plane(0), .. }) => assert!(!thin),
                     Err(StepError::Overlap { body: 0, partner: Partner::Triangle(_), .. }) => assert!(thin),
                     Err(StepError::Speed { body: 0, .. }) => {}

@@ -50,13 +50,13 @@ fn pour(mu: f64, least: usize) -> (f64, f64) {
     // Solid part of the region, by points.
     let near: Vec<_> =
         centres.iter().filter(|c| (0..3).all(|k| c.0[k] > low[k] - D && c.0[k] < high[k] + D)).collect();
-    let mut hits = 0;
+    let mut inside_solid = 0;
     let points = 40_000;
     for _ in 0..points {
         let p = low + (high - low).component_mul(&Vec3::new(random.unit(), random.unit(), random.unit()));
-        hits += usize::from(near.iter().any(|(c, r)| (p - c).norm_squared() < r * r));
+        inside_solid += usize::from(near.iter().any(|(c, r)| (p - c).norm_squared() < r * r));
     }
-    let fraction = f64::from(hits as u32) / f64::from(points);
+    let fraction = f64::from(inside_solid as u32) / f64::from(points);
 
     // Contacts, until no rattler is left.
     let pairs: Vec<[usize; 2]> = measure::contacts(&run.model, &run.state)

@@ -155,9 +155,9 @@ fn collision_conserves_momentum() {
     assert_eq!(run.state.ledger.work(), 0.0);
 }
 
-/// A central hit gives the restitution asked for: the contact knows the masses of both.
+/// A central impact gives the restitution asked for: the contact knows the masses of both.
 #[test]
-fn central_hit_has_its_restitution() {
+fn central_impact_has_its_restitution() {
     for mass in [0.002, 0.02, 2.0] {
         let mut input = weightless(Material { restitution: 0.5, ..stone() });
         input.walls.push(cuboid(Vec3::new(0.1, 0.0, 0.0), Vec3::repeat(0.04), mass));

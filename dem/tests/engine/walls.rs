@@ -140,7 +140,7 @@ impl Surface for Lift {
 /// of the contact's instant, is what the ledger loses to them; and without dashpots there is none, sticking, sliding, sticky
 /// or not.
 #[test]
-fn the_force_of_dashpots_is_told_apart() {
+fn the_force_of_dashpots_is_distinguished() {
     let young =
         trackbed_dem::Material { young: Some(1e7), poisson: 0.3, stiffness: f64::INFINITY, ..stone() };
     for material in [stone(), young] {

@@ -20,6 +20,15 @@ impl Newmark {
         Newmark { alpha: 0.25 * (1.0 - a) * (1.0 - a), delta: 0.5 - a }
     }
 
+    /// [`Newmark::of_hht`], for a parameter that is checked.
+    pub(crate) fn of_hht_in_range(alpha: f64) -> Result<Newmark, NewmarkError> {
+        // A last digit lost in a scene file must not refuse -1/3.
+        if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
+            return Err(NewmarkError::Hht { alpha });
+        }
+        Ok(Newmark::of_hht(alpha))
+    }
+
     /// Checks that the method is stable for every step size.
     ///
     /// # Errors

@@ -36,6 +36,7 @@ use crate::state::State;
 pub use crate::state::StepAudit;
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 pub use method::Newmark;
+pub(crate) use start::accelerate;
 pub use start::{initial_acceleration, initial_acceleration_prescribed};
 
 /// What acts on the body during one step.
@@ -95,10 +96,7 @@ impl NewmarkSolver {
     /// # Errors
     /// A parameter out of range, a step that is not above 0, a material without density or with plasticity.
     pub fn hht(model: &Model, alpha: f64, dt: f64) -> Result<NewmarkSolver, SolveError> {
-        if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
-            return Err(NewmarkError::Hht { alpha }.into());
-        }
-        NewmarkSolver::build(model, Newmark::of_hht(alpha), alpha, dt)
+        NewmarkSolver::build(model, Newmark::of_hht_in_range(alpha)?, alpha, dt)
     }
 
     fn build(model: &Model, method: Newmark, hht: f64, dt: f64) -> Result<NewmarkSolver, SolveError> {
@@ -345,6 +343,11 @@ fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
 
 pub(crate) fn factor(model: &Model, combination: Combination) -> Result<Cholesky, SolveError> {
     Cholesky::factor(model.analysis()?, model.mesh(), model.matrices(), model.supports(), combination)
+}
+
+/// Refuses a weight of the end of a window that is not from 1/2 to 1.
+pub(crate) fn check_theta(theta: f64) -> Result<(), SolveError> {
+    if (0.5..=1.0).contains(&theta) { Ok(()) } else { Err(SolveError::Theta { theta }) }
 }
 
 pub(crate) fn check_dynamics(model: &Model, dt: f64) -> Result<(), SolveError> {

@@ -41,13 +41,18 @@ pub fn initial_acceleration_prescribed(
     let (mut force, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
     inner_force(model, [&state.u, &state.v, &state.a], &mut force, &mut scratch);
     force.iter_mut().zip(load).for_each(|(f, l)| *f = l - *f);
-    let mut free = vec![0.0; n];
+    accelerate(model, &force, state)
+}
+
+/// Accelerations of the free dofs under forces on them; those of the others stay.
+pub(crate) fn accelerate(model: &Model, force: &[f64], state: &mut State) -> Result<(), SolveError> {
+    let mut free = vec![0.0; force.len()];
     if let Some(masses) = model.matrices().lumped_mass() {
         for &d in model.supports().free() {
             free[d as usize] = force[d as usize] / masses[d as usize / 3];
         }
     } else {
-        solve_mass(model.matrices(), model.supports(), &force, &mut free)?;
+        solve_mass(model.matrices(), model.supports(), force, &mut free)?;
     }
     for &d in model.supports().free() {
         state.a[d as usize] = free[d as usize];

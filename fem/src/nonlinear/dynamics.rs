@@ -19,11 +19,10 @@ use super::newton::{Failure, Newton, Problem};
 use super::options::{NewtonOptions, Statistics};
 use super::step_control::{StepControl, StepLength};
 use crate::assembly::Combination;
-use crate::equations::mass::solve_mass;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator};
 use crate::model::Model;
-use crate::newmark::{Newmark, NewmarkError, check_dynamics};
+use crate::newmark::{Newmark, accelerate, check_dynamics};
 use crate::state::{State, StepAudit};
 use crate::statics::check_load;
 
@@ -70,10 +69,7 @@ impl Dynamics {
         options: NewtonOptions,
         control: StepControl,
     ) -> Result<Dynamics, SolveError> {
-        if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
-            return Err(NewmarkError::Hht { alpha }.into());
-        }
-        Dynamics::build(model, Newmark::of_hht(alpha), alpha, options, control)
+        Dynamics::build(model, Newmark::of_hht_in_range(alpha)?, alpha, options, control)
     }
 
     fn build(
@@ -300,16 +296,5 @@ pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> R
     let (mut force, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
     inner_force(model, &mut InternalForce::new(model), state, &mut force, &mut scratch);
     force.iter_mut().zip(load).for_each(|(f, l)| *f = l - *f);
-    if let Some(masses) = model.matrices().lumped_mass() {
-        for &d in model.supports().free() {
-            state.a[d as usize] = force[d as usize] / masses[d as usize / 3];
-        }
-        return Ok(());
-    }
-    let mut free = vec![0.0; n];
-    solve_mass(model.matrices(), model.supports(), &force, &mut free)?;
-    for &d in model.supports().free() {
-        state.a[d as usize] = free[d as usize];
-    }
-    Ok(())
+    accelerate(model, &force, state)
 }

@@ -19,7 +19,7 @@ use crate::assembly::Combination;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
-use crate::newmark::check_dynamics;
+use crate::newmark::{check_dynamics, check_theta};
 use crate::state::{State, StepAudit};
 use crate::statics::{check_load, check_prescribed};
 
@@ -51,9 +51,7 @@ impl PlasticWindowSolver {
         dt: f64,
         options: NewtonOptions,
     ) -> Result<PlasticWindowSolver, SolveError> {
-        if !(0.5..=1.0).contains(&theta) {
-            return Err(SolveError::Theta { theta });
-        }
+        check_theta(theta)?;
         check_dynamics(model, dt)?;
         let zeros = || vec![0.0; model.dof_count()];
         Ok(PlasticWindowSolver {

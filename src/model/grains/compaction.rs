@@ -1,8 +1,11 @@
-//! `[[compaction]]` and `[[measure]]` resolved.
+//! `[[compaction]]` resolved.
 
-use super::{DepositionPlan, GrainsPart, SETTLED_SPEED, check};
-use crate::scene::compaction::{self as scene, Compaction, CompactionKind};
-use crate::scene::units::{Length, Quantity, vector};
+use super::check::{check, find, region};
+use super::deposition::{DepositionPlan, SETTLED_SPEED};
+use super::groups::GroupsPart;
+use super::walls::WallsPart;
+use crate::scene::compaction::{Compaction, CompactionKind};
+use crate::scene::units::vector;
 use crate::scene::walls::WallKind;
 use crate::scene::{Document, Scene, SceneError};
 use trackbed_dem::measure::BoxRegion;
@@ -11,26 +14,6 @@ use trackbed_dem::{BodyInput, Vec3};
 
 /// Longest time of coming to rest, unless the scene says otherwise [s].
 const REST: f64 = 0.2;
-
-/// A box in which the packing is measured.
-#[derive(Clone, Debug)]
-pub struct Measure {
-    /// Name in the summary.
-    pub name: String,
-    /// The box.
-    pub region: BoxRegion,
-    /// Radial distribution function, where it is asked for.
-    pub radial: Option<Radial>,
-}
-
-/// Shells of a radial distribution function.
-#[derive(Clone, Copy, Debug)]
-pub struct Radial {
-    /// Largest distance [m].
-    pub reach: f64,
-    /// Number of shells.
-    pub bins: usize,
-}
 
 /// One stage of compaction.
 #[derive(Clone)]
@@ -96,13 +79,15 @@ impl Press {
     }
 }
 
-/// Adds stages and boxes.
-pub(super) fn add(
+/// The stages of a scene; the shape of a plate is added to those of the groups.
+pub(super) fn build(
     document: &Document,
     scene: &Scene,
-    find: &dyn Fn(&str, &str) -> Result<usize, SceneError>,
-    part: &mut GrainsPart,
-) -> Result<(), SceneError> {
+    settled: Option<&DepositionPlan>,
+    walls: &WallsPart,
+    groups: &mut GroupsPart,
+) -> Result<Vec<CompactionPlan>, SceneError> {
+    let mut plans = Vec::new();
     for (i, c) in scene.compaction.iter().enumerate() {
         let key = |k: &str| format!("compaction.{i}.{k}");
         refuse_idle_keys(document, i, c)?;
@@ -112,11 +97,10 @@ pub(super) fn add(
         check(document, &key("rest"), c.rest.map(|t| t.si), |t| t > 0.0, "a time above 0")?;
         let press = match c.kind {
             CompactionKind::Vibration => vibration(document, scene, i, c)?,
-            CompactionKind::Tamping => tamping(document, i, c, find, part)?,
-            CompactionKind::Squeeze => squeeze(document, scene, i, c, part)?,
+            CompactionKind::Tamping => tamping(document, scene, i, c, groups)?,
+            CompactionKind::Squeeze => squeeze(document, scene, i, c, walls)?,
         };
-        let settled = part.deposition.as_ref();
-        part.compaction.push(CompactionPlan {
+        plans.push(CompactionPlan {
             press,
             region: region(document, &key("region"), &c.region)?,
             rest: DepositionPlan {
@@ -130,49 +114,7 @@ pub(super) fn add(
             },
         });
     }
-    for (i, m) in scene.measure.iter().enumerate() {
-        if scene.measure[..i].iter().any(|other| other.name == m.name) {
-            let key = format!("measure.{i}.name");
-            return Err(document.error(&key, format!("\"{}\" again", m.name), "each name once"));
-        }
-        let region = region(document, &format!("measure.{i}.box"), &m.region)?;
-        let radial = radial(document, i, m, &region)?;
-        part.measures.push(Measure { name: m.name.clone(), region, radial });
-    }
-    Ok(())
-}
-
-/// Checks that the reach finds room about at least one point of the box.
-fn radial(
-    document: &Document,
-    i: usize,
-    measure: &scene::Measure,
-    region: &BoxRegion,
-) -> Result<Option<Radial>, SceneError> {
-    let Some(r) = &measure.radial else { return Ok(None) };
-    let least = (region.high - region.low).min();
-    let reach = r.reach.si;
-    if !(reach > 0.0 && 2.0 * reach <= least) {
-        let expected = format!("above 0, at most half the shortest side of the box, {}", 0.5 * least);
-        return Err(document.error(&format!("measure.{i}.radial.reach"), reach.to_string(), expected));
-    }
-    if !(1..=100_000).contains(&r.bins) {
-        return Err(document.error(&format!("measure.{i}.radial.bins"), r.bins.to_string(), "1 to 100000"));
-    }
-    Ok(Some(Radial { reach, bins: r.bins }))
-}
-
-/// A box with a volume.
-pub(super) fn region(
-    document: &Document,
-    key: &str,
-    corners: &[[Quantity<Length>; 3]; 2],
-) -> Result<BoxRegion, SceneError> {
-    let [low, high] = corners.map(|c| Vec3::from(vector(&c)));
-    if (0..3).all(|d| low[d] < high[d] && (high[d] - low[d]).is_finite()) {
-        return Ok(BoxRegion { low, high });
-    }
-    Err(document.error(key, "corners in another order", "the lower corner, then the upper"))
+    Ok(plans)
 }
 
 fn refuse_idle_keys(document: &Document, index: usize, c: &Compaction) -> Result<(), SceneError> {
@@ -247,10 +189,10 @@ fn vibration(document: &Document, scene: &Scene, index: usize, c: &Compaction) -
 
 fn tamping(
     document: &Document,
+    scene: &Scene,
     index: usize,
     c: &Compaction,
-    find: &dyn Fn(&str, &str) -> Result<usize, SceneError>,
-    part: &mut GrainsPart,
+    groups: &mut GroupsPart,
 ) -> Result<Press, SceneError> {
     let key = |k: &str| format!("compaction.{index}.{k}");
     let (frequency, cycles) = swing(document, index, c)?;
@@ -267,8 +209,8 @@ fn tamping(
         return Err(document.error(&key("at"), "none", "at least one place"));
     }
     let plate = BodyInput {
-        shape: part.add_shape(Shape::Box { half }),
-        material: find(&key("plate.material"), &plate.material)?,
+        shape: groups.add_shape(Shape::Box { half }),
+        material: find(document, scene, &key("plate.material"), &plate.material)?,
         part: u32::MAX,
         fixed: [true, true, false, true, true, true],
         mass: Some(plate.mass.si),
@@ -283,12 +225,12 @@ fn squeeze(
     scene: &Scene,
     index: usize,
     c: &Compaction,
-    part: &GrainsPart,
+    walls: &WallsPart,
 ) -> Result<Press, SceneError> {
     let key = |k: &str| format!("compaction.{index}.{k}");
     let wall = needed(document, index, "wall", c.wall, "the number of the plane that moves")?;
     let plane = plane(document, scene, &key("wall"), wall)?;
-    let normal = part.planes[plane].normal.normalize();
+    let normal = walls.planes[plane].normal.normalize();
     if normal.iter().filter(|n| n.abs() > 1e-12).count() != 1 {
         let expected = "a plane across an axis, for `region` is cut off at it";
         return Err(document.error(&key("wall"), "a plane that is inclined", expected));

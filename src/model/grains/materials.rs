@@ -1,15 +1,68 @@
 //! `[[material]]` and `[[contact]]` resolved.
 
-use super::check;
+use super::check::{check, find};
+use super::laws;
+use super::sources;
 use crate::scene::material::{DampingKind, GrainMaterial, PairContact, Resistance};
 use crate::scene::{Document, Scene, SceneError};
 use trackbed_dem::law::damping::Damping;
-use trackbed_dem::law::table::{self, Combination, combination};
-use trackbed_dem::material::{LawName, Pair};
+use trackbed_dem::law::table;
+use trackbed_dem::material::LawName;
 use trackbed_dem::{Material, PairOverride};
 
+/// Materials of a scene.
+#[derive(Clone)]
+pub struct MaterialsPart {
+    /// All of them, in the order of the scene.
+    pub all: Vec<Material>,
+    /// What single pairs of them have of their own.
+    pub pairs: Vec<PairOverride>,
+    /// Those that grains consist of.
+    pub of_grains: Vec<usize>,
+    /// Names.
+    names: Vec<String>,
+}
+
+impl MaterialsPart {
+    /// Materials of grains that may touch a solid, with their names. A rigid sleeper touches grains only.
+    pub fn touching(&self) -> impl Iterator<Item = (usize, String)> {
+        self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
+    }
+
+    /// Sources of the laws of contact in use and of the integration in time.
+    pub fn sources(&self) -> Vec<&'static str> {
+        sources::of(&self.all, &self.pairs)
+    }
+
+    /// The pairs, with the same friction coefficient between all grains where one is given.
+    pub fn pairs_with(&self, friction: Option<f64>) -> Vec<PairOverride> {
+        let mut pairs = self.pairs.clone();
+        let Some(friction) = friction else { return pairs };
+        for (i, &a) in self.of_grains.iter().enumerate() {
+            for &b in &self.of_grains[i..] {
+                let same = |c: &&mut PairOverride| (c.a.min(c.b), c.a.max(c.b)) == (a.min(b), a.max(b));
+                if let Some(c) = pairs.iter_mut().find(same) {
+                    c.friction = Some(friction);
+                } else {
+                    pairs.push(PairOverride { a, b, friction: Some(friction), ..PairOverride::default() });
+                }
+            }
+        }
+        pairs
+    }
+}
+
+/// Resolves `[[material]]` and `[[contact]]`; no material is one of grains yet.
+pub(super) fn build(document: &Document, scene: &Scene) -> Result<MaterialsPart, SceneError> {
+    let all = materials(document, scene)?;
+    let pairs = pairs(document, scene)?;
+    laws::check_laws(document, scene, &all, &pairs)?;
+    let names = scene.material.iter().map(|m| m.name.clone()).collect();
+    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names })
+}
+
 /// Checks the materials, in the order of the scene.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<Vec<Material>, SceneError> {
+fn materials(document: &Document, scene: &Scene) -> Result<Vec<Material>, SceneError> {
     let mut out = Vec::new();
     for (i, m) in scene.material.iter().enumerate() {
         let key = |k: &str| format!("material.{i}.{k}");
@@ -89,12 +142,8 @@ fn tangential(document: &Document, key: &str, name: Option<&str>) -> Result<Opti
         .ok_or_else(|| document.error(key, format!("\"{name}\""), expected()))
 }
 
-/// Checks the pairs, in the order of the scene; `find` gives the number of a material.
-pub(super) fn pairs(
-    document: &Document,
-    scene: &Scene,
-    find: impl Fn(&str, &str) -> Result<usize, SceneError>,
-) -> Result<Vec<PairOverride>, SceneError> {
+/// Checks the pairs, in the order of the scene.
+fn pairs(document: &Document, scene: &Scene) -> Result<Vec<PairOverride>, SceneError> {
     let mut out = Vec::new();
     for (i, c) in scene.contact.iter().enumerate() {
         let key = |k: &str| format!("contact.{i}.{k}");
@@ -114,8 +163,8 @@ pub(super) fn pairs(
             }
         };
         out.push(PairOverride {
-            a: find(&key("between"), &c.between[0])?,
-            b: find(&key("between"), &c.between[1])?,
+            a: find(document, scene, &key("between"), &c.between[0])?,
+            b: find(document, scene, &key("between"), &c.between[1])?,
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
@@ -150,97 +199,4 @@ fn damping(document: &Document, i: usize, c: &PairContact) -> Result<Option<Damp
         (Some(DampingKind::Restitution), None) => Ok(Some(Damping::Restitution)),
         (None, None) => Ok(None),
     }
-}
-
-/// Refuses pairs without a law, and constants that no law uses.
-pub(super) fn check_laws(
-    document: &Document,
-    scene: &Scene,
-    materials: &[Material],
-    contacts: &[PairOverride],
-) -> Result<(), SceneError> {
-    let name = |i: usize| scene.material[i].name.as_str();
-    let law = |i: usize, j: usize| combination(&Pair::of(materials, contacts, i, j));
-    let given =
-        |i: usize, j: usize| contacts.iter().rposition(|c| (c.a, c.b) == (i, j) || (c.a, c.b) == (j, i));
-    for i in 0..materials.len() {
-        let mut laws: Vec<&Combination> = Vec::new();
-        for j in 0..materials.len() {
-            match law(i, j) {
-                Ok(law) => laws.extend(law),
-                Err(problem) => {
-                    let entry = given(i, j).filter(|&c| contacts[c].normal.is_some());
-                    let key = entry.map_or(format!("material.{j}"), |c| format!("contact.{c}.normal"));
-                    let expected =
-                        "a law for each pair of materials, from both or from `normal` of their [[contact]]";
-                    let found = format!("for \"{}\" and \"{}\" {problem}", name(i), name(j));
-                    return Err(document.error(&key, found, expected));
-                }
-            }
-        }
-        check_constants(document, scene, i, &laws)?;
-        if let (Some(normal), Ok(Some(own))) = (materials[i].normal, law(i, i)) {
-            let m = &scene.material[i];
-            let there = [("stiffness", m.stiffness.is_some()), ("young", m.young.is_some())];
-            if let Some((key, _)) = there.iter().find(|(key, there)| own.normal_keys.contains(key) && !there)
-            {
-                let expected =
-                    format!("a value for this key, which `normal = \"{}\"` needs", normal.as_str());
-                return Err(document.error(&format!("material.{i}.{key}"), "nothing", expected));
-            }
-        }
-    }
-    for (i, c) in contacts.iter().enumerate() {
-        let Ok(Some(own)) = law(c.a, c.b) else { continue };
-        let key = |k: &str| format!("contact.{i}.{k}");
-        if c.stiffness.is_some() && !own.uses("stiffness") {
-            let expected = "no stiffness where materials have a Young's modulus";
-            return Err(document.error(&key("stiffness"), "a stiffness", expected));
-        }
-        if c.damping.is_some() && !own.dashpot {
-            let expected = format!("no such key, as normal law \"{}\" has no dashpot", own.normal);
-            return Err(document.error(&key("damping"), "a value", expected));
-        }
-    }
-    Ok(())
-}
-
-/// Refuses constants of material `i` that none of the laws of its contacts uses.
-fn check_constants(
-    document: &Document,
-    scene: &Scene,
-    i: usize,
-    laws: &[&Combination],
-) -> Result<(), SceneError> {
-    let m = &scene.material[i];
-    let unused = |key: &str| !laws.is_empty() && !laws.iter().any(|law| law.uses(key));
-    let key = |k: &str| format!("material.{i}.{k}");
-    if m.stiffness.is_some() && unused("stiffness") {
-        let young = scene.material.iter().find(|other| other.young.is_some());
-        let expected = match young {
-            Some(other) => format!("no stiffness, as \"{}\" has a Young's modulus", other.name),
-            None => "no stiffness, as no law of its contacts uses one".to_string(),
-        };
-        return Err(document.error(&key("stiffness"), "a stiffness", expected));
-    }
-    if m.young.is_some() && unused("young") {
-        let expected = "no modulus, as no law of its contacts uses one";
-        return Err(document.error(&key("young"), "a modulus", expected));
-    }
-    if m.tangential_damping_ratio > 0.0 && !laws.is_empty() && !laws.iter().any(|law| law.dashpot) {
-        let expected = "no such key, as no law of its contacts has a dashpot";
-        return Err(document.error(&key("tangential_damping_ratio"), "a value", expected));
-    }
-    if m.tangential_ratio.is_some() && unused("tangential_ratio") {
-        let expected = "no such key beside `young`: Poisson's ratio sets it";
-        return Err(document.error(&key("tangential_ratio"), "a value", expected));
-    }
-    Ok(())
-}
-
-/// Whether the stiffness of any contact grows with the overlap.
-pub(super) fn stiffens(materials: &[Material], contacts: &[PairOverride]) -> bool {
-    let count = materials.len();
-    let mut pairs = (0..count).flat_map(|i| (i..count).map(move |j| Pair::of(materials, contacts, i, j)));
-    pairs.any(|pair| combination(&pair).ok().flatten().is_some_and(|law| law.stiffens))
 }

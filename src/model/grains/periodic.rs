@@ -1,13 +1,17 @@
 //! `[periodic]` resolved: borders, and the grains that must lie between them.
 
-use super::GrainsPart;
+use super::groups::GroupsPart;
 use crate::scene::{Document, Scene, SceneError};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Adds the borders; grains that are placed by the program may not stick out, others must have their centre inside.
-pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> Result<(), SceneError> {
-    let Some(table) = &scene.periodic else { return Ok(()) };
+/// Lower and upper border along each periodic axis [m].
+pub type Borders = [Option<[f64; 2]>; 3];
+
+/// The borders; grains that are placed by the program may not stick out, others must have their centre inside.
+pub(super) fn build(document: &Document, scene: &Scene, groups: &GroupsPart) -> Result<Borders, SceneError> {
+    let mut borders = Borders::default();
+    let Some(table) = &scene.periodic else { return Ok(borders) };
     let sides = [&table.x, &table.y, &table.z];
     if sides.iter().all(|s| s.is_none()) {
         return Err(document.error("periodic", "no axis", "`x`, `y` or `z` with its two borders"));
@@ -22,12 +26,12 @@ pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> 
                 "two lengths, the second the larger",
             ));
         }
-        part.periodic[d] = Some([low, high]);
+        borders[d] = Some([low, high]);
         let slack = 1e-9 * (high - low);
-        for body in part.bodies.iter().filter(|b| !b.absent) {
+        for body in groups.bodies.iter().filter(|b| !b.absent) {
             let group = &scene.grains[body.part as usize];
             let by_hand = group.spheres.is_some() || group.packing.is_some();
-            let reach = if by_hand { 0.0 } else { part.reach(body) };
+            let reach = if by_hand { 0.0 } else { groups.reach(body) };
             let x = body.position[d];
             if x - reach < low - slack || x + reach > high + slack {
                 let found = format!("a grain from {} = {} to {}", AXES[d], x - reach, x + reach);
@@ -36,5 +40,5 @@ pub(super) fn add(document: &Document, scene: &Scene, part: &mut GrainsPart) -> 
             }
         }
     }
-    Ok(())
+    Ok(borders)
 }

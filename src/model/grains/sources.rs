@@ -1,18 +1,11 @@
 //! Sources of the models that grains use, for the summary and the log.
 
-use super::GrainsPart;
 use trackbed_dem::{Material, PairOverride, law};
 
 const INTEGRATION: &str = "integration: leapfrog (velocity Verlet), Verlet, Phys. Rev. 159, 1967";
 
-impl GrainsPart {
-    /// Sources of the laws of contact in use and of the integration in time.
-    pub fn sources(&self) -> Vec<&'static str> {
-        of(&self.materials, &self.contacts)
-    }
-}
-
-fn of(materials: &[Material], pairs: &[PairOverride]) -> Vec<&'static str> {
+/// Sources of the laws of contact in use and of the integration in time.
+pub(super) fn of(materials: &[Material], pairs: &[PairOverride]) -> Vec<&'static str> {
     let mut sources = law::sources(materials, pairs);
     sources.push(INTEGRATION);
     sources

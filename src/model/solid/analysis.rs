@@ -3,8 +3,8 @@
 use super::common::check;
 use super::material::Materials;
 use crate::scene::solid::{
-    Dynamics, InitialStress as SceneInitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant,
-    QuasiStatic, Solid, StrengthReduction,
+    Dynamics, InitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant, QuasiStatic, Solid,
+    StrengthReduction,
 };
 use crate::scene::{Document, SceneError};
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ pub type StrengthReductionPlan = ReductionOptions;
 
 /// Stress before the run.
 #[derive(Clone, Debug)]
-pub struct InitialStress {
+pub struct InitialStressPlan {
     /// How it is found.
     pub kind: InitialStressKind,
     /// Steps in which equilibrium is sought.
@@ -82,7 +82,7 @@ pub struct Plans {
     /// How it is solved.
     pub analysis: Analysis,
     /// Stress before the run.
-    pub initial_stress: Option<InitialStress>,
+    pub initial_stress: Option<InitialStressPlan>,
     /// Options of the iteration.
     pub newton: NewtonPlan,
 }
@@ -146,7 +146,7 @@ pub fn plans(
         return Err(document.error("solid.initial_stress.loads", "true", expected));
     }
     if let Some(&first) = materials.k0.keys().next()
-        && !matches!(initial_stress, Some(InitialStress { kind: InitialStressKind::K0 { .. }, .. }))
+        && !matches!(initial_stress, Some(InitialStressPlan { kind: InitialStressKind::K0 { .. }, .. }))
     {
         let position = solid.material.iter().position(|m| m.id == first).unwrap_or(0);
         let expected = "no such key without `method = \"k0\"` in [solid.initial_stress]";
@@ -215,9 +215,9 @@ fn strength_reduction(
 
 fn initial_stress(
     document: &Document,
-    i: &SceneInitialStress,
+    i: &InitialStress,
     materials: &Materials,
-) -> Result<InitialStress, SceneError> {
+) -> Result<InitialStressPlan, SceneError> {
     let key = |k: &str| format!("solid.initial_stress.{k}");
     let method = match i.method {
         InitialStressMethod::K0 => "k0",
@@ -258,10 +258,10 @@ fn initial_stress(
     };
     let steps = i.steps.unwrap_or(10);
     check(document, &key("steps"), f64::from(steps), (1..=10_000).contains(&steps), "1 to 10000")?;
-    Ok(InitialStress { kind, steps, loads: i.loads })
+    Ok(InitialStressPlan { kind, steps, loads: i.loads })
 }
 
-fn overburden(document: &Document, i: &SceneInitialStress) -> Result<Option<Overburden>, SceneError> {
+fn overburden(document: &Document, i: &InitialStress) -> Result<Option<Overburden>, SceneError> {
     match (&i.surface, &i.layers) {
         (None, None) => Ok(None),
         (Some(surface), None) => Ok(Some(Overburden::Level(surface.si))),

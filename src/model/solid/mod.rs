@@ -10,7 +10,7 @@ mod selection;
 mod sleepers;
 
 pub use analysis::{
-    Analysis, InitialStress, InitialStressKind, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan,
+    Analysis, InitialStressKind, InitialStressPlan, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan,
     TimeMethod,
 };
 pub use geometry::{Geometry, geometry};
@@ -37,16 +37,12 @@ pub struct SolidPart {
     pub model: fem::model::Model,
     /// Nodal loads other than gravity, each with its course in time.
     pub loads: Vec<NodalLoad>,
-    /// Supports that move, by position in the model's list of fixed dofs: displacement [m] and its course.
-    pub moving: Vec<(usize, f64, TimeFunction)>,
-    /// Named supports and their dofs, whose reactions are recorded.
-    pub named_supports: Vec<(String, Vec<u32>)>,
-    /// File of the constraints, for messages.
-    pub constraint_file: PathBuf,
+    /// Its supports beside what the model knows of them.
+    pub supports: SupportPlan,
     /// How it is solved when it runs alone.
     pub analysis: Analysis,
     /// Stress before the run.
-    pub initial_stress: Option<InitialStress>,
+    pub initial_stress: Option<InitialStressPlan>,
     /// How equilibrium of a plastic solid is found.
     pub newton: NewtonPlan,
     /// What it is reduced to under grains.
@@ -61,10 +57,20 @@ pub struct SolidPart {
     heavy_ground: bool,
 }
 
+/// Supports of a solid: which move, which are recorded.
+pub struct SupportPlan {
+    /// Supports that move, by position in the model's list of fixed dofs: displacement [m] and its course.
+    pub moving: Vec<(usize, f64, TimeFunction)>,
+    /// Named supports and their dofs, whose reactions are recorded.
+    pub named: Vec<(String, Vec<u32>)>,
+    /// File of the constraints, for messages.
+    pub file: PathBuf,
+}
+
 impl SolidPart {
     /// A failure of a solver: bad input when the model cannot be solved by anyone, else numerical.
     pub fn failure(&self, error: &SolveError) -> Failure {
-        let file = self.constraint_file.display();
+        let file = self.supports.file.display();
         match error {
             SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
                 "{file}: constraints: found too few ({error}), expected a body that is held"
@@ -124,14 +130,14 @@ impl SolidPart {
 
     /// Sets the displacements of moving supports at time `t` [m], in the model's order of fixed dofs.
     pub fn prescribe(&self, t: f64, values: &mut [f64]) {
-        for (position, value, function) in &self.moving {
+        for (position, value, function) in &self.supports.moving {
             values[*position] = value * function.factor(t);
         }
     }
 
     /// Names and sums of the reactions of named supports, those of one name together. Shape of `reactions` `[3·nodes]`.
     pub fn named_sums<'a>(&'a self, reactions: &'a [f64]) -> impl Iterator<Item = (&'a str, [f64; 3])> {
-        self.named_supports.iter().map(|(name, dofs)| {
+        self.supports.named.iter().map(|(name, dofs)| {
             let mut sum = [0.0; 3];
             for &dof in dofs {
                 sum[dof as usize % 3] += reactions.get(dof as usize).copied().unwrap_or(0.0);
@@ -213,9 +219,7 @@ pub fn build(
     Ok(SolidPart {
         model,
         loads,
-        moving,
-        named_supports: supports.named,
-        constraint_file,
+        supports: SupportPlan { moving, named: supports.named, file: constraint_file },
         analysis: plans.analysis,
         initial_stress: plans.initial_stress,
         newton: plans.newton,

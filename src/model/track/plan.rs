@@ -3,7 +3,7 @@
 use super::trains;
 use crate::failure::Failure;
 use crate::model::tables;
-use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, Track};
+use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, TrackTable};
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::track::influence::Winkler;
 use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Waveform};
@@ -233,7 +233,7 @@ impl RailPlan {
 ///
 /// # Errors
 /// Bad input.
-pub fn rail(document: &Document, track: &Track, r: &RailTable) -> Result<RailPlan, SceneError> {
+pub fn rail(document: &Document, track: &TrackTable, r: &RailTable) -> Result<RailPlan, SceneError> {
     let key = |name: &str| format!("track.rail.{name}");
     let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
     let least_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x >= 0.0, "0 or more");

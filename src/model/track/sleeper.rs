@@ -2,7 +2,7 @@
 
 use crate::scene::after::JumpMethod;
 use crate::scene::solid::Integration;
-use crate::scene::track::{Motion, RailKind, Sleeper, SleeperMesh, Track};
+use crate::scene::track::{HeldMotion, RailKind, Sleeper, SleeperMesh, TrackTable};
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
 use trackbed_fem::Elastic;
@@ -50,12 +50,12 @@ pub fn held(s: &Sleeper) -> [bool; 6] {
     let mut held = [false; 6];
     for motion in &s.hold {
         let k = match motion {
-            Motion::X => 0,
-            Motion::Y => 1,
-            Motion::Z => 2,
-            Motion::Rx => 3,
-            Motion::Ry => 4,
-            Motion::Rz => 5,
+            HeldMotion::X => 0,
+            HeldMotion::Y => 1,
+            HeldMotion::Z => 2,
+            HeldMotion::Rx => 3,
+            HeldMotion::Ry => 4,
+            HeldMotion::Rz => 5,
         };
         held[k] = true;
     }
@@ -66,7 +66,7 @@ pub fn held(s: &Sleeper) -> [bool; 6] {
 ///
 /// # Errors
 /// A seat beside the sleeper's top.
-pub fn seats(document: &Document, track: &Track, half: [f64; 3]) -> Result<Vec<[f64; 2]>, SceneError> {
+pub fn seats(document: &Document, track: &TrackTable, half: [f64; 3]) -> Result<Vec<[f64; 2]>, SceneError> {
     let Some(l) = track.load.as_ref().filter(|l| !l.seats.is_empty()) else { return Ok(vec![[0.0; 2]]) };
     let seats: Vec<[f64; 2]> = l.seats.iter().map(|p| [p[0].si, p[1].si]).collect();
     match seats.iter().find(|p| p[0].abs() > half[0] || p[1].abs() > half[1]) {
@@ -170,7 +170,7 @@ pub fn meshed(
 }
 
 /// Refuses what meshed sleepers cannot be combined with.
-fn refuse_company(document: &Document, scene: &Scene, track: &Track) -> Result<(), SceneError> {
+fn refuse_company(document: &Document, scene: &Scene, track: &TrackTable) -> Result<(), SceneError> {
     let Some(solid) = &scene.solid else {
         let expected = "[solid] beside it, whose equations it joins";
         return Err(document.error("track.sleeper.mesh", "a meshed sleeper", expected));

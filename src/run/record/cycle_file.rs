@@ -9,8 +9,8 @@ use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
 /// What follows the cycles of a load.
 pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {
     let part = job.grains.as_ref();
-    let between = part.and_then(|g| g.after.between).unwrap_or(load.range());
-    let column = match (part.and_then(|g| g.sleeper.as_ref()), system.grains()) {
+    let between = part.and_then(|g| g.track.after.between).unwrap_or(load.range());
+    let column = match (part.and_then(|g| g.track.sleeper.as_ref()), system.grains()) {
         (Some(sleeper), Some(g)) => {
             let spheres = (0..g.model.body_count())
                 .filter(|&b| g.state.present(b))
@@ -38,7 +38,7 @@ pub fn record(job: &Job, c: &Cycle, row: &mut Row) {
     if job.solid.is_none() {
         row.put("resilient_modulus", "Pa", c.resilient_modulus);
     }
-    if job.grains.as_ref().is_some_and(|g| g.after.jump.is_some()) {
+    if job.grains.as_ref().is_some_and(|g| g.track.after.jump.is_some()) {
         row.put("simulated", "", f64::from(c.simulated));
         row.put("jump_error", "m", c.jump_error);
     }

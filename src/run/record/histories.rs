@@ -86,7 +86,7 @@ pub struct Supports;
 
 impl<S: System> Recorder<S> for Supports {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
-        if let Some(part) = now.job.solid.as_ref().filter(|part| !part.named_supports.is_empty())
+        if let Some(part) = now.job.solid.as_ref().filter(|part| !part.supports.named.is_empty())
             && let Some(reactions) = now.system.reactions()
         {
             for (name, force) in part.named_sums(&reactions) {

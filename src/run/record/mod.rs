@@ -74,11 +74,11 @@ impl<'a> Results<'a> {
         track: &Track<'_>,
         flow: Option<&Flow<'_>>,
     ) -> Result<Self, Failure> {
-        let load = job.grains.as_ref().and_then(|g| g.load.as_ref());
+        let load = job.grains.as_ref().and_then(|g| g.track.load.as_ref());
         let stored = system.stored();
         let course = Course {
             cycles: load.map(|load| cycle_file::recorder(job, system, load)),
-            jumper: job.grains.as_ref().and_then(|g| g.after.jump.as_ref()).map(Jumper::new),
+            jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(Jumper::new),
             balance: Balance { start: stored, now: stored, spent: system.spent() },
             ..Course::default()
         };
@@ -178,7 +178,7 @@ impl<'a> Results<'a> {
         if let Some(file) = &mut self.cycles_file {
             file.row(&Row::values_of(|row| cycle_file::record(self.job, &cycle, row)))?;
         }
-        if let Some(plan) = self.job.grains.as_ref().and_then(|g| g.after.jump.as_ref()) {
+        if let Some(plan) = self.job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()) {
             let error = if plan.grains { self.energy_error(system) } else { 0.0 };
             let course = &mut self.course;
             if let (Some(jumper), Some(cycles)) = (&mut course.jumper, &mut course.cycles)
@@ -204,7 +204,7 @@ impl<'a> Results<'a> {
 
     /// Settlement laws fitted to the cycles.
     pub fn fits(&self) -> Vec<settlement::Fit> {
-        let load = self.job.grains.as_ref().and_then(|g| g.load.as_ref());
+        let load = self.job.grains.as_ref().and_then(|g| g.track.load.as_ref());
         match (&self.course.cycles, load) {
             (Some(cycles), Some(load)) => settlement::fits(&cycles.measured, load.range()[1]),
             _ => Vec::new(),
@@ -213,7 +213,7 @@ impl<'a> Results<'a> {
 
     /// What became of the cycle jumps.
     pub fn jumps(&self) -> Option<JumpSummary> {
-        let plan = self.job.grains.as_ref()?.after.jump.as_ref()?;
+        let plan = self.job.grains.as_ref()?.track.after.jump.as_ref()?;
         let course = &self.course;
         Some(course.jumper.as_ref()?.summary(plan, course.cycles.as_ref()?, course.jump_energy))
     }

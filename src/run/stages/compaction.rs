@@ -49,16 +49,16 @@ impl Stage for Compaction {
     }
 
     fn applies(&self, job: &Job) -> bool {
-        job.grains.as_ref().is_some_and(|g| !g.compaction.is_empty())
+        job.grains.as_ref().is_some_and(|g| !g.packing.compaction.is_empty())
     }
 
     fn grain_time(&self, job: &Job) -> Option<GrainTime> {
-        Some(GrainTime::AtMost(job.grains.as_ref()?.compaction.iter().map(longest).sum()))
+        Some(GrainTime::AtMost(job.grains.as_ref()?.packing.compaction.iter().map(longest).sum()))
     }
 
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
         let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Finished) else { return Ok(()) };
-        for index in grains.bed.compaction.len()..grains.part.compaction.len() {
+        for index in grains.bed.compaction.len()..grains.part.packing.compaction.len() {
             grains.keep(run, Packed::Settled)?;
             run.checkpoints.begin();
             compact(run, &mut grains.part, index, grains.ground.as_ref(), &mut grains.bed)?;
@@ -76,7 +76,7 @@ fn compact(
     surface: Option<&SolidSurface>,
     settled: &mut Settled,
 ) -> Result<(), Failure> {
-    let plan = grains.compaction[index].clone();
+    let plan = grains.packing.compaction[index].clone();
     let progress = Progress::start("compacting", 1.0, run.quiet);
     let mut bed = new_bed(run, grains, &plan, settled.bodies.clone(), surface)?;
     let before = porosity(&bed, settled.bodies.len(), &plan.region);

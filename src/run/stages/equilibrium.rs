@@ -47,7 +47,7 @@ impl Stage for Equilibrium {
             }
             None => (&part.model, ground),
         };
-        let load = run.job.grains.as_ref().and_then(|g| g.load.as_ref());
+        let load = run.job.grains.as_ref().and_then(|g| g.track.load.as_ref());
         let (loaded, summary) = (state.loaded.as_mut(), &mut state.summary);
         let body = Body { part, model: solid };
         let system = couple(run, body, bases, model, plan, substeps, surface, load, loaded, summary)?;

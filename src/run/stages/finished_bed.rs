@@ -30,8 +30,8 @@ impl Stage for FinishedBed {
         let (bed, summary) = (&grains.bed, &mut state.summary);
         summary.warnings.extend(bed.warnings.iter().cloned());
         summary.stages.extend(bed.stages.iter().cloned());
-        summary.growth.clone_from(&bed.growth);
-        summary.compaction.clone_from(&bed.compaction);
+        summary.bed.growth.clone_from(&bed.growth);
+        summary.bed.compaction.clone_from(&bed.compaction);
         grains.bodies.clone_from(&bed.bodies);
         bed.planes.iter().enumerate().for_each(|(k, point)| grains.part.place_plane(k, *point));
         Ok(())

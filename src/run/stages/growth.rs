@@ -19,14 +19,14 @@ impl Stage for Growth {
     }
 
     fn applies(&self, job: &Job) -> bool {
-        job.grains.as_ref().is_some_and(|g| !g.growths.is_empty())
+        job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty())
     }
 
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
         let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Grown) else { return Ok(()) };
         grow_groups(run, &mut grains.part, &mut grains.bed)?;
-        if grains.part.deposition.is_none() {
-            grains.bed.bodies.clone_from(&grains.part.bodies);
+        if grains.part.packing.deposition.is_none() {
+            grains.bed.bodies.clone_from(&grains.part.groups.bodies);
         }
         Ok(())
     }
@@ -34,11 +34,11 @@ impl Stage for Growth {
 
 /// Grows the groups that are to grow.
 fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Result<(), Failure> {
-    for plan in grains.growths.clone() {
+    for plan in grains.groups.growths.clone() {
         let progress = Progress::start("growing", 1.0, run.quiet);
-        let bodies = &grains.bodies[plan.bodies.clone()];
+        let bodies = &grains.groups.bodies[plan.bodies.clone()];
         let material = grains.material(&bodies[0]);
-        let grown = grow(&plan.container, grains.shapes(), bodies, material, &plan.how);
+        let grown = grow(&plan.container, &grains.groups.shapes, bodies, material, &plan.how);
         let grown = grown.map_err(|e| match e {
             GrowError::Model(e) => Failure::from(refused(run.document, &e)),
             other => Failure::Numerical(format!("group {}: {other}", plan.group)),
@@ -57,7 +57,7 @@ fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Res
             largest_overlap: grown.overlap,
             unbalanced_ratio: grown.unbalanced,
         });
-        grains.bodies.splice(plan.bodies, grown.bodies);
+        grains.groups.bodies.splice(plan.bodies, grown.bodies);
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::stage::Settled;
 use crate::failure::Failure;
-use crate::model::grains::{DepositionPlan, GrainsPart, refused};
+use crate::model::grains::{DepositionPlan, GrainsPart, GroupsPart, refused};
 use crate::progress::Progress;
 use crate::run::bed::{Bed, rms_speed};
 use crate::run::context::Run;
@@ -27,8 +27,9 @@ pub fn drop_layers(
     bed: &mut Settled,
 ) -> Result<(), Failure> {
     // Grains that wait for their inlet do not fall.
-    let mut order: Vec<usize> = (0..grains.bodies.len()).filter(|&b| !grains.bodies[b].absent).collect();
-    let height = |b: &usize| grains.bodies[*b].position.z;
+    let bodies = &grains.groups.bodies;
+    let mut order: Vec<usize> = (0..bodies.len()).filter(|&b| !bodies[b].absent).collect();
+    let height = |b: &usize| bodies[*b].position.z;
     order.sort_by(|a, b| height(a).total_cmp(&height(b)));
     if order.is_empty() {
         return Ok(());
@@ -38,12 +39,12 @@ pub fn drop_layers(
     let mut steps = 0;
     let mut below: Vec<usize> = Vec::new();
     for (k, layer) in layers.iter().enumerate() {
-        lower(grains, &below, layer);
+        lower(&mut grains.groups, &below, layer);
         below.extend_from_slice(layer);
         if k + 1 == layers.len() {
             break;
         }
-        let inputs: Vec<BodyInput> = below.iter().map(|&b| grains.bodies[b].clone()).collect();
+        let inputs: Vec<BodyInput> = below.iter().map(|&b| grains.groups.bodies[b].clone()).collect();
         let mut input = grains.deposition_input(plan);
         input.bodies.clone_from(&inputs);
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
@@ -57,7 +58,7 @@ pub fn drop_layers(
             ));
         }
         for (&b, now) in below.iter().zip(falling.at_rest(&inputs)) {
-            grains.bodies[b] = now;
+            grains.groups.bodies[b] = now;
         }
         steps += falling.state.steps;
         progress.at(k as f64 + 1.0);
@@ -66,15 +67,16 @@ pub fn drop_layers(
     bed.stages.push(StageRecord { name: "layers".into(), seconds, grain_steps: steps, solid_steps: 0 });
     Ok(())
 }
+
 /// Brings a layer down (or up) to just above the bodies `below`; the first one stays where it is.
-fn lower(grains: &mut GrainsPart, below: &[usize], layer: &[usize]) {
-    let top = below.iter().map(|&b| grains.bodies[b].position.z + grains.reach(&grains.bodies[b]));
+fn lower(groups: &mut GroupsPart, below: &[usize], layer: &[usize]) {
+    let top = below.iter().map(|&b| groups.bodies[b].position.z + groups.reach(&groups.bodies[b]));
     let top = top.fold(f64::NEG_INFINITY, f64::max);
-    let reach = |b: &usize| grains.reach(&grains.bodies[*b]);
+    let reach = |b: &usize| groups.reach(&groups.bodies[*b]);
     let largest = layer.iter().map(reach).fold(0.0, f64::max);
-    let bottom = layer.iter().map(|b| grains.bodies[*b].position.z - reach(b)).fold(f64::INFINITY, f64::min);
+    let bottom = layer.iter().map(|b| groups.bodies[*b].position.z - reach(b)).fold(f64::INFINITY, f64::min);
     let shift = top + GAP * largest - bottom;
     if shift.is_finite() {
-        layer.iter().for_each(|&b| grains.bodies[b].position.z += shift);
+        layer.iter().for_each(|&b| groups.bodies[b].position.z += shift);
     }
 }

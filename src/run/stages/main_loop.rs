@@ -34,8 +34,8 @@ impl Stage for MainLoop {
     fn report(&self, job: &Job, dt: f64) -> Vec<String> {
         if let Some(grains) = &job.grains {
             let mut lines = vec![format!("run: {} s, {:.0} steps", job.end, job.end / dt)];
-            let waiting = |part| grains.bodies.iter().filter(|b| b.absent && b.part == part).count();
-            lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.parts, waiting)));
+            let waiting = |part| grains.groups.bodies.iter().filter(|b| b.absent && b.part == part).count();
+            lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.groups.names, waiting)));
             return lines;
         }
         let kind = match job.solid.as_ref().map(|s| &s.analysis) {
@@ -69,7 +69,7 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     run.prepare()?;
     let grains = state.grains.as_ref().expect("a run with grains");
     time_loop::with_grains(run, &mut system, grains, resumed, &mut state.summary)?;
-    state.summary.packing = record_packing(run, &system, grains)?;
+    state.summary.bed.packing = record_packing(run, &system, grains)?;
     Ok(())
 }
 
@@ -88,13 +88,13 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
     summary.warnings.extend(late(&system.spent()));
     summary.warnings.extend(fallen(&system, lowest));
     outcome?;
-    summary.packing = record_packing(run, &system, grains)?;
+    summary.bed.packing = record_packing(run, &system, grains)?;
     if run.job.output.tables {
         let moved = &system.state.solid;
         let reactions = fem::energy::reactions(solid, moved, system.work.load());
         statics::write_tables(solid, moved, &reactions, run.dir)?;
     }
-    summary.newton = system.work.newton().map(|s| NewtonRecord::of(&s));
+    summary.solid.newton = system.work.newton().map(|s| NewtonRecord::of(&s));
     Ok(())
 }
 

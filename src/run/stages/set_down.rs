@@ -17,12 +17,12 @@ impl Stage for SetDown {
     }
 
     fn applies(&self, job: &Job) -> bool {
-        job.grains.as_ref().is_some_and(|g| g.sleeper.is_some())
+        job.grains.as_ref().is_some_and(|g| g.track.sleeper.is_some())
     }
 
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
         let Some(grains) = &mut state.grains else { return Ok(()) };
-        let Some(plan) = &grains.part.sleeper else { return Ok(()) };
+        let Some(plan) = &grains.part.track.sleeper else { return Ok(()) };
         let input = grains.part.input(grains.bodies.clone());
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
         let resting = dem::State::new(&model);

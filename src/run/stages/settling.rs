@@ -26,24 +26,24 @@ impl Stage for Settling {
     }
 
     fn applies(&self, job: &Job) -> bool {
-        job.grains.as_ref().is_some_and(|g| g.deposition.is_some())
+        job.grains.as_ref().is_some_and(|g| g.packing.deposition.is_some())
     }
 
     fn report(&self, job: &Job, dt: f64) -> Vec<String> {
-        let plan = job.grains.as_ref().and_then(|g| g.deposition.as_ref());
+        let plan = job.grains.as_ref().and_then(|g| g.packing.deposition.as_ref());
         let line =
             |d: &DepositionPlan| format!("settling: at most {} s, {:.0} steps", d.max_time, d.max_time / dt);
         plan.map(line).into_iter().collect()
     }
 
     fn grain_time(&self, job: &Job) -> Option<GrainTime> {
-        let plan = job.grains.as_ref()?.deposition.as_ref()?;
+        let plan = job.grains.as_ref()?.packing.deposition.as_ref()?;
         Some(GrainTime::AtMost(f64::from(plan.layers.max(1)) * plan.max_time))
     }
 
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
         let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Settled) else { return Ok(()) };
-        let Some(plan) = grains.part.deposition.clone() else { return Ok(()) };
+        let Some(plan) = grains.part.packing.deposition.clone() else { return Ok(()) };
         if grains.done < Packed::Layered && plan.layers > 1 {
             grains.keep(run, Packed::Grown)?;
             run.checkpoints.begin();
@@ -96,7 +96,7 @@ fn settle(
             run.checkpoints.step(
                 || Moment { stage: SETTLING.into(), step: state.steps, time: state.time },
                 |body| {
-                    body.put(&(Packed::Layered, &grains.bodies, &*bed))?;
+                    body.put(&(Packed::Layered, &grains.groups.bodies, &*bed))?;
                     body.put(&(&state, progress.seconds()))
                 },
             )?;
@@ -110,7 +110,7 @@ fn settle(
             plan.max_time
         ));
     }
-    let (bodies, removed) = at_rest(&grains.bodies, &model, &state, plan);
+    let (bodies, removed) = at_rest(&grains.groups.bodies, &model, &state, plan);
     let seconds = progress.finish(&format!(
         "{} grains at rest after {:.2} s, {removed} above the level taken away",
         bodies.iter().filter(|b| !b.absent).count(),

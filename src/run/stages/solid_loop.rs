@@ -32,7 +32,7 @@ pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -
                 None => QuasiStaticSystem::new(solid, plan, step)?,
             };
             let outcome = march(run, solid, &mut system, resumed, summary);
-            summary.newton = Some(NewtonRecord::of(&system.statistics()));
+            summary.solid.newton = Some(NewtonRecord::of(&system.statistics()));
             outcome
         }
         // Stages of their own.
@@ -44,7 +44,7 @@ pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -
                 None => PlasticDynamics::new(solid, *method, dt)?,
             };
             let outcome = march(run, solid, &mut system, resumed, summary);
-            summary.newton = Some(NewtonRecord::of(&system.statistics()));
+            summary.solid.newton = Some(NewtonRecord::of(&system.statistics()));
             outcome
         }
     }
@@ -68,7 +68,7 @@ fn march<S: System>(
         Err(_) => return outcome,
     }
     let reactions = system.reactions().unwrap_or_default();
-    summary.reactions = solid
+    summary.solid.reactions = solid
         .named_sums(&reactions)
         .map(|(name, force)| ReactionRecord { name: name.to_string(), force })
         .collect();

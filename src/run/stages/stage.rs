@@ -126,7 +126,7 @@ impl GrainsState {
         self.bed.planes = planes(&self.part);
         let step = self.bed.stages.iter().map(|s| s.grain_steps).sum();
         let moment = Moment { stage: PACKING.into(), step, time: self.bed.time };
-        run.checkpoints.save(moment, |body| body.put(&(done, &self.part.bodies, &self.bed)))
+        run.checkpoints.save(moment, |body| body.put(&(done, &self.part.groups.bodies, &self.bed)))
     }
 }
 
@@ -154,14 +154,14 @@ pub struct RunState<'a> {
 
 /// Whether grains are packed before the main loop.
 pub fn is_packed(job: &Job) -> bool {
-    job.grains
-        .as_ref()
-        .is_some_and(|g| g.deposition.is_some() || !g.growths.is_empty() || !g.compaction.is_empty())
+    job.grains.as_ref().is_some_and(|g| {
+        g.packing.deposition.is_some() || !g.groups.growths.is_empty() || !g.packing.compaction.is_empty()
+    })
 }
 
 /// Points of the planes [m].
 pub fn planes(grains: &GrainsPart) -> Vec<dem::Vec3> {
-    grains.planes().iter().map(|p| p.point).collect()
+    grains.walls.planes.iter().map(|p| p.point).collect()
 }
 
 impl RunState<'_> {
@@ -183,20 +183,20 @@ impl RunState<'_> {
         let (bed, bodies) = (Settled::default(), Vec::new());
         let mut grains = GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases: Vec::new() };
         if !is_packed(job) {
-            grains.bodies.clone_from(&grains.part.bodies);
+            grains.bodies.clone_from(&grains.part.groups.bodies);
         } else if let Some(loaded) = &mut self.loaded {
             match loaded.moment.stage.as_str() {
                 RUN | SETTLED => (grains.bed, grains.done) = (loaded.take()?, Packed::Finished),
                 _ => {
                     let Packing { done, bodies, bed } = loaded.take()?;
-                    grains.part.bodies = bodies;
+                    grains.part.groups.bodies = bodies;
                     bed.planes.iter().enumerate().for_each(|(k, x)| grains.part.place_plane(k, *x));
                     (grains.bed, grains.done) = (bed, done);
                 }
             }
             self.loaded.take_if(|l| ![RUN, SETTLING].contains(&l.moment.stage.as_str()));
-        } else if grains.part.deposition.is_none() {
-            grains.bed.bodies.clone_from(&grains.part.bodies);
+        } else if grains.part.packing.deposition.is_none() {
+            grains.bed.bodies.clone_from(&grains.part.groups.bodies);
         }
         self.grains = Some(grains);
         Ok(())
@@ -215,9 +215,9 @@ impl RunState<'_> {
             summary.sources.extend(sources::BONDS);
         }
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
-        part.check_ram(run.document, model.dt())?;
-        part.check_pads(run.document, model.dt())?;
-        if part.rail.is_some() {
+        part.track.check_ram(run.document, model.dt())?;
+        part.track.check_pads(run.document, model.dt())?;
+        if part.track.rail.is_some() {
             summary.sources.extend(sources::RAIL);
         }
         summary.model.bodies = model.body_count();

@@ -75,7 +75,7 @@ fn solve(
     let length = |n: usize| result.u[3 * n..3 * n + 3].iter().map(|u| u * u).sum::<f64>().sqrt();
     let farthest =
         (0..model.mesh().node_count()).max_by(|&a, &b| length(a).total_cmp(&length(b))).unwrap_or(0);
-    summary.statics = Some(StaticsRecord {
+    summary.solid.statics = Some(StaticsRecord {
         load: total,
         reaction,
         equilibrium_error: if scale > 0.0 { imbalance / scale } else { 0.0 },

@@ -84,7 +84,7 @@ fn bracket(
     write_table(&stage.dir.join("safety.csv"), &TRIALS, &found.trials)?;
     let view = SolidView { model: &weaker, state: &standing };
     frames::write_state(stage.dir, &stage.job.output.formats, view)?;
-    summary.safety = Some(SafetyRecord {
+    summary.solid.safety = Some(SafetyRecord {
         stands_at: found.converged,
         fails_at: found.failed,
         trials: found

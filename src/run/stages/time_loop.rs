@@ -147,15 +147,15 @@ impl<'a> TimeLoop<'a> {
         let window = system.window();
         let windows = ((job.end / window).ceil() as u64).max(1);
         let part = grains.map(|(part, _)| part);
-        let load = part.and_then(|g| g.load.as_ref());
+        let load = part.and_then(|g| g.track.load.as_ref());
         let cadence = Cadence {
             window,
             frames: u64::from(job.output.frames).min(windows),
             every: ((job.output.history_interval / window).round() as u64).max(1),
             tail: load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows)),
-            jumps: part.is_some_and(|g| g.after.jump.is_some()),
+            jumps: part.is_some_and(|g| g.track.after.jump.is_some()),
         };
-        let input = part.map_or_else(TrackInput::default, GrainsPart::track);
+        let input = part.map_or_else(TrackInput::default, |part| part.track.input());
         let mut track = Track::new(input, system.grains());
         let mut flow = Flow::new(part, system.grains(), window, job.end);
         let (recorder, place) = match resumed {
@@ -272,15 +272,15 @@ impl<'a> TimeLoop<'a> {
             grain_steps: done * grain_steps,
             solid_steps: done * solid_steps,
         });
-        summary.push = track_output::push(&self.track, dir)?;
+        summary.track.push = track_output::push(&self.track, dir)?;
         if let (Some(flow), Some(view)) = (&self.flow, system.grains()) {
             let (record, warnings) = flow.finish(end, view);
             summary.warnings.extend(warnings);
-            summary.flow = Some(record);
+            summary.bed.flow = Some(record);
         }
-        summary.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
-        summary.track = self.track.record();
-        summary.warnings.extend(summary.track.iter().flat_map(|t| t.remarks()));
+        summary.track.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
+        summary.track.sleepers = self.track.record();
+        summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.remarks()));
         summary.energy = Some(energy(&self.recorder));
         self.recorder.end()?;
         self.recorder.plot_settlement()
@@ -328,7 +328,7 @@ fn settlement(
         (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
     let last: Vec<f64> = cycles[cycles.len().saturating_sub(10)..].iter().map(|c| c.bed_stiffness).collect();
     // Cycles that never rise from the one load to the other tell none.
-    let between = grains.and_then(|g| g.after.between).filter(|_| last.iter().any(|k| *k > 0.0));
+    let between = grains.and_then(|g| g.track.after.between).filter(|_| last.iter().any(|k| *k > 0.0));
     let bed_stiffness = between.map(|between| BedStiffness {
         between,
         last: last[last.len() - 1],

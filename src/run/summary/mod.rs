@@ -14,23 +14,12 @@ use std::path::Path;
 use trackbed_coupling::track::extremes::TrackRecord;
 use trackbed_coupling::track::push::PushSummary;
 
-/// The content of `summary.json`.
+/// The content of `summary.json`. Parts that are flattened stand in it key by key, in this order.
 #[derive(Debug, Default, Serialize)]
 pub struct Summary {
-    /// `"done"`, or what stopped the run.
-    pub status: String,
-    /// Title of the scene.
-    pub title: String,
-    /// Version of the program.
-    pub version: String,
-    /// 64-bit FNV-1a hash of the scene file, its overrides and the files it names, in hexadecimal.
-    pub scene_hash: String,
-    /// Keys overridden on the command line.
-    pub overrides: Vec<String>,
-    /// Threads used; the results do not depend on it.
-    pub threads: usize,
-    /// Largest resident memory [bytes], where the system reports it.
-    pub peak_memory: Option<u64>,
+    /// The run itself.
+    #[serde(flatten)]
+    pub run: RunRecord,
     /// Stages in order, with seconds of wall time and steps.
     pub stages: Vec<StageRecord>,
     /// Sizes of the model.
@@ -47,6 +36,43 @@ pub struct Summary {
     /// Force and moment across the interface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingRecord>,
+    /// The solid.
+    #[serde(flatten)]
+    pub solid: SolidRecord,
+    /// Sleepers and their load.
+    #[serde(flatten)]
+    pub track: TrackSummary,
+    /// The bed of grains.
+    #[serde(flatten)]
+    pub bed: BedRecord,
+    /// Remarks that do not stop a run.
+    pub warnings: Vec<String>,
+    /// Sources of the models used.
+    pub sources: Vec<&'static str>,
+}
+
+/// What was run, and how it ended.
+#[derive(Debug, Default, Serialize)]
+pub struct RunRecord {
+    /// `"done"`, or what stopped the run.
+    pub status: String,
+    /// Title of the scene.
+    pub title: String,
+    /// Version of the program.
+    pub version: String,
+    /// 64-bit FNV-1a hash of the scene file, its overrides and the files it names, in hexadecimal.
+    pub scene_hash: String,
+    /// Keys overridden on the command line.
+    pub overrides: Vec<String>,
+    /// Threads used; the results do not depend on it.
+    pub threads: usize,
+    /// Largest resident memory [bytes], where the system reports it.
+    pub peak_memory: Option<u64>,
+}
+
+/// How a solid was solved, and what it ended with.
+#[derive(Debug, Default, Serialize)]
+pub struct SolidRecord {
     /// Static equilibrium of a solid that ran alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub statics: Option<StaticsRecord>,
@@ -59,6 +85,11 @@ pub struct Summary {
     /// Search for the factor of safety.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safety: Option<SafetyRecord>,
+}
+
+/// What became of sleepers under their load.
+#[derive(Debug, Default, Serialize)]
+pub struct TrackSummary {
     /// Lateral push of a sleeper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub push: Option<PushSummary>,
@@ -66,8 +97,13 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
     /// Sleepers under load.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub track: Option<TrackRecord>,
+    #[serde(rename = "track", skip_serializing_if = "Option::is_none")]
+    pub sleepers: Option<TrackRecord>,
+}
+
+/// Grains that came and went, and how the bed was made and ended.
+#[derive(Debug, Default, Serialize)]
+pub struct BedRecord {
     /// Grains that came in and went out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowRecord>,
@@ -80,10 +116,6 @@ pub struct Summary {
     /// The grains at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<PackingRecord>,
-    /// Remarks that do not stop a run.
-    pub warnings: Vec<String>,
-    /// Sources of the models used.
-    pub sources: Vec<&'static str>,
 }
 
 impl Summary {
@@ -108,7 +140,7 @@ impl Summary {
         let file = dir.join("log.txt");
         crate::write::atomic::write(&file, |out| {
             let sources: String = self.sources.iter().map(|s| format!("source: {s}\n")).collect();
-            write!(out, "{}\nstatus: {}\n{}{sources}", self.title, self.status, self.report())
+            write!(out, "{}\nstatus: {}\n{}{sources}", self.run.title, self.run.status, self.report())
                 .map_err(|source| WriteError::Io { file: file.clone(), source })
         })?;
         Ok(())

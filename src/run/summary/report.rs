@@ -15,8 +15,8 @@ impl Summary {
         self.report_coupling(&mut lines);
         self.report_settlement(&mut lines);
         self.report_track(&mut lines);
-        lines.extend(self.flow.iter().flat_map(FlowRecord::report));
-        lines.extend(packing::report(&self.growth, &self.compaction, self.packing.as_ref()));
+        lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
+        lines.extend(packing::report(&self.bed.growth, &self.bed.compaction, self.bed.packing.as_ref()));
         lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
         lines.join("\n") + "\n"
     }
@@ -36,12 +36,12 @@ impl Summary {
 
     /// Static equilibrium, Newton's method, supports, factor of safety.
     fn report_solid(&self, lines: &mut Vec<String>) {
-        if let Some(s) = &self.statics {
+        if let Some(s) = &self.solid.statics {
             let (u, node) = s.largest_displacement;
             lines.push(format!("largest displacement {u:.6e} m at node {node}"));
             lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
         }
-        if let Some(n) = &self.newton {
+        if let Some(n) = &self.solid.newton {
             lines.push(format!(
                 "Newton: {} steps ({} halved), {} iterations, {} symmetric and {} unsymmetric factorizations; seconds in \
                  assembly {:.1}, factorization {:.1}, solves {:.1}",
@@ -55,11 +55,11 @@ impl Summary {
                 n.solve_seconds
             ));
         }
-        for r in &self.reactions {
+        for r in &self.solid.reactions {
             let [x, y, z] = r.force;
             lines.push(format!("reaction of {}: ({x:.6e}, {y:.6e}, {z:.6e}) N", r.name));
         }
-        if let Some(s) = &self.safety {
+        if let Some(s) = &self.solid.safety {
             lines.push(format!(
                 "factor of safety: stands at {:.4}, fails at {:.4} ({} trials)",
                 s.stands_at,
@@ -126,7 +126,7 @@ impl Summary {
 
     /// Settlement under cycles, its laws, jumps.
     fn report_settlement(&self, lines: &mut Vec<String>) {
-        if let Some(s) = &self.settlement {
+        if let Some(s) = &self.track.settlement {
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
             if list.len() <= 20 {
                 lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));
@@ -163,7 +163,7 @@ impl Summary {
 
     /// Lateral push and sleepers.
     fn report_track(&self, lines: &mut Vec<String>) {
-        if let Some(p) = &self.push {
+        if let Some(p) = &self.track.push {
             let at_two =
                 p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
             lines.push(format!(
@@ -173,7 +173,7 @@ impl Summary {
                 1e-3 * p.vertical_force
             ));
         }
-        for (k, s) in self.track.iter().flat_map(|t| t.sleepers.iter().enumerate()) {
+        for (k, s) in self.track.sleepers.iter().flat_map(|t| t.sleepers.iter().enumerate()) {
             let share = s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of an axle)", 100.0 * p));
             let factor =
                 s.dynamic_amplification.map_or(String::new(), |f| format!(", {f:.3} times the static force"));

@@ -144,8 +144,8 @@ fn windings_are_made_alike_and_outwards() {
         }
         t.rotate_left(i % 3);
     }
-    let told = mixed.topology().unwrap();
-    assert!(told.is_closed_manifold() && told.turned_edges > 100 && told.pieces == 1, "{told:?}");
+    let found = mixed.topology().unwrap();
+    assert!(found.is_closed_manifold() && found.turned_edges > 100 && found.pieces == 1, "{found:?}");
     let body = Polyhedron::new(&mixed).unwrap();
     assert_relative_eq!(body.moments().volume, exact.volume, max_relative = 1e-13);
     assert_eq!(body.surface().topology().unwrap().turned_edges, 0);

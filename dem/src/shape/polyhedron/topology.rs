@@ -62,22 +62,22 @@ pub(super) fn check_indices(surface: &Surface) -> Result<(), SurfaceError> {
 pub(super) fn topology(surface: &Surface) -> Result<Topology, SurfaceError> {
     check_indices(surface)?;
     let found = edges(surface);
-    let mut told = Topology { edges: found.order.len(), ..Topology::default() };
+    let mut topology = Topology { edges: found.order.len(), ..Topology::default() };
     let mut parts: Vec<u32> = (0..surface.triangles.len() as u32).collect();
     for key in &found.order {
         let users = &found.users[key];
         match users.as_slice() {
-            [_] => told.open_edges += 1,
-            [(_, one), (_, two)] => told.turned_edges += usize::from(one == two),
-            _ => told.branching_edges += 1,
+            [_] => topology.open_edges += 1,
+            [(_, one), (_, two)] => topology.turned_edges += usize::from(one == two),
+            _ => topology.branching_edges += 1,
         }
         for pair in users.windows(2) {
             let (a, b) = (root(&mut parts, pair[0].0), root(&mut parts, pair[1].0));
             parts[a.max(b) as usize] = a.min(b);
         }
     }
-    told.pieces = (0..parts.len() as u32).filter(|t| parts[*t as usize] == *t).count();
-    Ok(told)
+    topology.pieces = (0..parts.len() as u32).filter(|t| parts[*t as usize] == *t).count();
+    Ok(topology)
 }
 
 fn root(parts: &mut [u32], mut t: u32) -> u32 {

@@ -1,7 +1,8 @@
 //! Stones that can break: each sphere of a bonded stone is a body, and the bonds of the library join them.
 
-use super::GrainsPart;
+use super::part::GroupsPart;
 use crate::failure::Failure;
+use crate::model::grains::bonds::BondPart;
 use crate::model::tables;
 use crate::scene::grains::Grains;
 use crate::scene::{Document, SceneError};
@@ -10,22 +11,25 @@ use trackbed_dem::shape::cluster::Cluster;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// Turns the stones that a group was filled with, one body each, into their spheres and bonds. `first` is the first of
-/// these bodies, the shapes from `first_shape` on are the stones of the library in their order.
+/// these bodies, `density` that of their material [kg/m³]; the shapes of the group are the stones of the library in their
+/// order.
 pub(super) fn expand(
     document: &Document,
     index: usize,
     group: &Grains,
     first: usize,
-    first_shape: usize,
-    part: &mut GrainsPart,
+    density: f64,
+    part: &mut GroupsPart,
+    bonds: &mut BondPart,
 ) -> Result<(), Failure> {
+    let first_shape = part.first_shape[index];
     let clusters = clusters(document, index, group)?;
     let key = format!("grains.{index}.bond");
     let name = group.bond.as_ref().ok_or_else(|| {
         document.error(&key, "nothing", "the name of the [[bond]] that holds the stones together")
     })?;
-    let kind = part.bonds.find(name).ok_or_else(|| {
-        let known = format!("the name of a [[bond]]: {}", part.bonds.names.join(", "));
+    let kind = bonds.find(name).ok_or_else(|| {
+        let known = format!("the name of a [[bond]]: {}", bonds.names.join(", "));
         document.error(&key, format!("\"{name}\""), known)
     })?;
     let stones = part.bodies.split_off(first);
@@ -45,12 +49,12 @@ pub(super) fn expand(
                 position: stone.position + arm,
                 orientation: nalgebra::UnitQuaternion::identity(),
                 velocity: stone.velocity + stone.spin.cross(&arm),
-                mass: Some(part.density(stone.material) * cluster.density_factor * volume),
+                mass: Some(density * cluster.density_factor * volume),
                 ..stone.clone()
             });
         }
         for bond in &cluster.bonds {
-            part.bonds.join_stone(bond.map(|s| start + s as usize), kind);
+            bonds.join_stone(bond.map(|s| start + s as usize), kind);
         }
     }
     Ok(())
@@ -75,7 +79,7 @@ pub(super) fn stand_ins(
     document: &Document,
     index: usize,
     group: &Grains,
-    part: &mut GrainsPart,
+    part: &mut GroupsPart,
 ) -> Result<Vec<f64>, SceneError> {
     let clusters = clusters(document, index, group)?;
     part.shapes.extend(clusters.iter().map(|c| Shape::Sphere { radius: c.bounding_radius() }));

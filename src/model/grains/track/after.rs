@@ -1,31 +1,26 @@
 //! `[track.jump]`, `[track.push]` and `track.bed_stiffness` resolved.
 
-use super::{GrainsPart, check};
+use super::part::{AfterPlan, TrackPart};
+use crate::model::grains::check::check;
 use crate::scene::after::{CycleJump, JumpMethod, Push};
-use crate::scene::track::Track;
+use crate::scene::track::TrackTable;
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::jump::JumpPlan;
 use trackbed_coupling::track::push::PushPlan;
 use trackbed_dem::Vec3;
 
-/// What goes on about the load cycles.
-#[derive(Clone, Debug, Default)]
-pub struct AfterPlan {
-    /// Jumps over cycles.
-    pub jump: Option<JumpPlan>,
-    /// Lateral push at the end.
-    pub push: Option<PushPlan>,
-    /// Loads between which the stiffness of the bed is taken [N]; none without a cyclic load.
-    pub between: Option<[f64; 2]>,
-}
-
-/// Resolves what a scene says.
+/// Resolves what a scene says. `fixed` is why grains cannot be moved by a jump, if they cannot.
 ///
 /// # Errors
 /// Bad input.
-pub fn build(document: &Document, track: &Track, part: &GrainsPart) -> Result<AfterPlan, SceneError> {
-    let jump = track.jump.as_ref().map(|j| jump(document, j, part)).transpose()?;
+pub(super) fn build(
+    document: &Document,
+    track: &TrackTable,
+    part: &TrackPart,
+    fixed: Option<&str>,
+) -> Result<AfterPlan, SceneError> {
+    let jump = track.jump.as_ref().map(|j| jump(document, j, part, fixed)).transpose()?;
     let push = track.push.as_ref().map(|p| push(document, p, part)).transpose()?;
     let range = part.load.as_ref().map(CyclicLoad::range);
     let between = match (track.bed_stiffness, range) {
@@ -46,7 +41,12 @@ pub fn build(document: &Document, track: &Track, part: &GrainsPart) -> Result<Af
     Ok(AfterPlan { jump, push, between })
 }
 
-fn jump(document: &Document, j: &CycleJump, part: &GrainsPart) -> Result<JumpPlan, SceneError> {
+fn jump(
+    document: &Document,
+    j: &CycleJump,
+    part: &TrackPart,
+    fixed: Option<&str>,
+) -> Result<JumpPlan, SceneError> {
     let key = |k: &str| format!("track.jump.{k}");
     let Some(load) = &part.load else {
         return Err(document.error("track.jump", "a jump", "a [track.load] with cycles beside it"));
@@ -57,12 +57,8 @@ fn jump(document: &Document, j: &CycleJump, part: &GrainsPart) -> Result<JumpPla
             return Err(document.error(&key(name), "a value", "no such key without method = \"grains\""));
         }
     }
-    if grains && !part.bonds.is_empty() {
-        let expected = "\"account\": grains that are bonded are not moved";
-        return Err(document.error(&key("method"), "\"grains\"", expected));
-    }
-    if grains && part.is_periodic() {
-        let expected = "\"account\": grains that cross a periodic border are not moved";
+    if let Some(why) = fixed.filter(|_| grains) {
+        let expected = format!("\"account\": grains that {why} are not moved");
         return Err(document.error(&key("method"), "\"grains\"", expected));
     }
     check(document, &key("measure"), Some(f64::from(j.measure)), |n| n >= 2.0, "2 or more")?;
@@ -92,7 +88,7 @@ fn jump(document: &Document, j: &CycleJump, part: &GrainsPart) -> Result<JumpPla
     })
 }
 
-fn push(document: &Document, p: &Push, part: &GrainsPart) -> Result<PushPlan, SceneError> {
+fn push(document: &Document, p: &Push, part: &TrackPart) -> Result<PushPlan, SceneError> {
     let key = |k: &str| format!("track.push.{k}");
     let direction = Vec3::new(p.direction[0], p.direction[1], 0.0);
     let found = format!("({}, {})", p.direction[0], p.direction[1]);

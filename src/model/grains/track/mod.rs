@@ -1,22 +1,33 @@
 //! `[track]` resolved.
 
-use super::{GrainsPart, SleeperPlan, check};
+mod after;
+mod part;
+
+pub use part::{SleeperPlan, TrackPart};
+
+use super::check::{check, find};
+use super::groups::GroupsPart;
 use crate::failure::Failure;
 use crate::model::track::plan::{self, RailPlan};
 use crate::model::track::sleeper;
-use crate::scene::Document;
-use crate::scene::track::Track;
+use crate::scene::{Document, Scene};
 use trackbed_coupling::track::SleeperRow;
 use trackbed_coupling::track::rail::RailInput;
+use trackbed_dem::Vec3;
 use trackbed_dem::shape::Shape;
 
-/// Adds the sleepers and their load.
-pub(super) fn add(
+/// Sleepers, their load, and what goes on about it. The shape of rigid sleepers is added to those of the groups, and so is
+/// their name; `fixed` is why grains cannot be moved by a jump, if they cannot.
+pub(super) fn build(
     document: &Document,
-    track: &Track,
-    material: usize,
-    part: &mut GrainsPart,
-) -> Result<(), Failure> {
+    scene: &Scene,
+    gravity: &Vec3,
+    fixed: Option<&str>,
+    groups: &mut GroupsPart,
+) -> Result<TrackPart, Failure> {
+    let mut part = TrackPart::default();
+    let Some(track) = &scene.track else { return Ok(part) };
+    let material = find(document, scene, "track.sleeper.material", &track.sleeper.material)?;
     let s = &track.sleeper;
     let half = sleeper::half(document, s)?;
     let meshed = s.mesh.is_some();
@@ -26,11 +37,11 @@ pub(super) fn add(
         None if meshed => 0.0,
         None => return Err(document.error("track.sleeper.mass", "nothing", "the mass of a sleeper").into()),
     };
-    let shape = part.shapes.len();
+    let shape = groups.shapes.len();
     if !meshed {
         check(document, "track.sleeper.mass", Some(mass), |m| m > 0.0, "a mass above 0")?;
-        part.shapes.push(Shape::Box { half });
-        part.parts.push("sleeper".into());
+        groups.add_shape(Shape::Box { half });
+        groups.names.push("sleeper".into());
     }
     let seats = sleeper::seats(document, track, half)?.iter().map(|s| [s[0], s[1], half[2]]).collect();
     let centres = sleeper::row(document, s)?;
@@ -41,10 +52,11 @@ pub(super) fn add(
         part.load = Some(plan::load(document, l, places, rail.as_ref())?);
     }
     if let Some(RailPlan::Beam(input)) = rail {
-        part.rail = Some(RailInput { gravity: -part.gravity.z, ..*input });
+        part.rail = Some(RailInput { gravity: -gravity.z, ..*input });
     }
     let (held, axis) = (sleeper::held(s), s.along.axis());
     let row = SleeperRow { meshed, mass, held, half, axis, centres, seats };
     part.sleeper = Some(SleeperPlan { shape, material, row });
-    Ok(())
+    part.after = after::build(document, track, &part, fixed)?;
+    Ok(part)
 }

@@ -1,6 +1,6 @@
 //! Sizes of filled grains: a sieve curve, a law, or a plain range.
 
-use super::check;
+use crate::model::grains::check::check;
 use crate::model::tables::{self, Grading};
 use crate::scene::grains::{Grains, Share, Sizes};
 use crate::scene::units::{Length, Quantity};

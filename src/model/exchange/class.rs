@@ -1,0 +1,118 @@
+//! Contacts by the materials of both sides, and whether their exchange is stable.
+
+use serde::{Deserialize, Serialize};
+use trackbed_coupling::scheme::Scheme;
+use trackbed_coupling::stability::{PointMasses, Stability, largest_d};
+
+/// Implicitness of the solid's step with meshed sleepers, unless the scene says otherwise: with 0.5 the oscillations of a stiff
+/// body that no window resolves go on for ever, and dashpots that see them a window late make them grow.
+pub(super) const WITH_SLEEPERS: f64 = 0.6;
+
+/// Contacts of the stones of one material with the solid of one material.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ContactClass {
+    /// Material of the stones.
+    pub grains: String,
+    /// Material of the solid.
+    pub solid: String,
+    /// Contact stiffness Kₙ [N/m].
+    pub stiffness: f64,
+    /// Damping ratio ζ of the contact, for the stone's own mass.
+    pub damping_ratio: f64,
+    /// Masses that points of the surface offer [kg].
+    pub masses: PointMasses,
+    /// Mass of the lightest and the heaviest stone [kg].
+    pub stones: [f64; 2],
+    /// Damping ratio ζ' of the lightest and the heaviest stone against the lightest point.
+    pub pair_damping: [f64; 2],
+    /// W at the lightest point.
+    pub w: f64,
+    /// Largest W of the scheme for this class.
+    pub w_limit: f64,
+    /// D of the heaviest stone at the lightest point.
+    pub d: f64,
+    /// Largest D of the scheme; absent where it has none.
+    pub d_limit: Option<f64>,
+}
+
+impl ContactClass {
+    /// How far a class is beyond its limits: above 1 it may be unstable.
+    pub fn excess(&self) -> f64 {
+        (self.w / self.w_limit).max(self.d_limit.map_or(0.0, |limit| self.d / limit))
+    }
+
+    /// The class in a line.
+    pub fn line(&self) -> String {
+        let limit = |v: f64| if v < 1e-12 { "0".into() } else { format!("{v:.2}") };
+        format!(
+            "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {:.3e} kg at a corner, {:.3e} at a side, {:.3e} in the \
+             middle, {:.3e} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}",
+            self.grains,
+            self.solid,
+            self.stiffness,
+            self.damping_ratio,
+            self.masses.corner,
+            self.masses.side,
+            self.masses.middle,
+            self.masses.border,
+            self.stones[0],
+            self.stones[1],
+            if self.stones[0] < 0.3 * self.masses.least() {
+                " (some lighter than 0.3 of the point)"
+            } else {
+                ""
+            },
+            self.w,
+            limit(self.w_limit),
+            self.d,
+            self.d_limit.map_or(String::new(), |l| format!(" (at most {l})")),
+        )
+    }
+}
+
+impl ContactClass {
+    /// The same for windows of `window` [s], given that for 1 s.
+    pub fn at(&self, window: f64) -> ContactClass {
+        ContactClass { w: window * self.w, d: window * self.d, ..self.clone() }
+    }
+}
+
+/// The largest W and D of all classes.
+pub fn stability(classes: &[ContactClass]) -> Stability {
+    Stability {
+        stiffness: classes.iter().map(|c| c.w).fold(0.0, f64::max),
+        damping: classes.iter().map(|c| c.d).fold(0.0, f64::max),
+    }
+}
+
+/// What to say about classes beyond their limits.
+pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<String> {
+    let beyond = classes.iter().filter(|c| c.excess() > 1.0);
+    beyond
+        .map(|c| {
+            let fitting = (f64::from(substeps) / c.excess()) as u32;
+            // Only a meshed sleeper's limit is lower than that of the scheme.
+            let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_d(scheme);
+            let fewer = match fitting {
+                _ if lax => {
+                    let theta = (20.0 * (0.5 + 0.25 * c.d)).ceil() / 20.0;
+                    format!("coupling.theta = {:.2} would do", theta.max(WITH_SLEEPERS))
+                }
+                0 => "not even coupling.substeps = 1 would do".into(),
+                1.. => format!("coupling.substeps = {fitting} would do (or \"auto\")"),
+            };
+            let other = match scheme {
+                Scheme::Lagged => ", and so may scheme = \"predicted\"",
+                Scheme::Predicted => ", and so may scheme = \"stiffened\" or \"iterated\", a wider transfer.spread",
+                Scheme::Stiffened => ", and so may scheme = \"iterated\"",
+                Scheme::Iterated { .. } => "",
+            };
+            let damping = c.d_limit.map_or(String::new(), |limit| format!(", D = {:.2} (at most {limit})", c.d));
+            format!(
+                "the exchange may be unstable for {} on {}: W = {:.2} (at most {:.2} here){damping}; {fewer}{other}, or \
+                 softer contacts",
+                c.grains, c.solid, c.w, c.w_limit
+            )
+        })
+        .collect()
+}

@@ -1,0 +1,193 @@
+//! `[coupling]` resolved: faces, scheme, transfer, and how long a window may be.
+
+mod class;
+mod table;
+
+pub use class::{ContactClass, remarks, stability};
+pub use table::build;
+
+use super::grains::GrainsPart;
+use super::solid::SolidPart;
+use trackbed_coupling::scheme::Scheme;
+use trackbed_coupling::stability::{PointMasses, largest_d, largest_w, point_masses, window_masses};
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_fem as fem;
+use trackbed_fem::mesh::Face;
+
+/// Most sub-steps that `"auto"` takes: beyond it the grains are nearly all of the cost.
+const MOST: u32 = 20;
+
+/// The exchange, resolved.
+pub struct CouplingPart {
+    substeps: Option<u32>,
+    /// Order of the exchange.
+    pub scheme: Scheme,
+    /// How contact forces reach the solid.
+    pub transfer: TransferPlan,
+    /// Implicitness of the solid's step.
+    pub theta: f64,
+    /// Faces that grains may touch: those of the ground, then those of the meshed sleepers, one after the other.
+    pub faces: Vec<Face>,
+    /// How many of them are the ground's.
+    pub ground_faces: usize,
+}
+
+/// How contact forces reach the solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TransferPlan {
+    /// At the contact point.
+    Point,
+    /// Over discs of this radius [m].
+    Disc(f64),
+    /// Over discs of this part of the stones' mean radius.
+    Part(f64),
+}
+
+impl CouplingPart {
+    /// The ground's surface that grains touch. `grains` tells the size of the discs where it goes with the stones.
+    pub fn ground(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
+        let faces = self.faces[..self.ground_faces].to_vec();
+        self.spread(SolidSurface::new(solid.model.mesh(), faces), grains)
+    }
+
+    /// The whole surface that grains touch, of `model`, where the sleepers are set down.
+    pub fn surface(&self, model: &fem::Model, grains: &GrainsPart) -> SolidSurface {
+        self.spread(SolidSurface::new(model.mesh(), self.faces.clone()), grains)
+    }
+
+    fn spread(&self, surface: SolidSurface, grains: &GrainsPart) -> SolidSurface {
+        match self.transfer {
+            TransferPlan::Point => surface,
+            TransferPlan::Disc(radius) => surface.spread_over(radius),
+            TransferPlan::Part(part) => surface.spread_over(part * grains.groups.mean_reach()),
+        }
+    }
+
+    /// The transfer in words.
+    pub fn transfer_kind(&self, surface: &SolidSurface) -> String {
+        match surface.spread() {
+            None => "point, through the shape functions of the touched face".into(),
+            Some(spread) => format!("spread over discs of {:.4e} m", spread.radius()),
+        }
+    }
+
+    /// The classes of contacts, and the steps of the grains per window: as the scene says, or as many as the limits of all
+    /// classes leave room for. `surface` is the ground's.
+    pub fn classes(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        surface: &SolidSurface,
+    ) -> (Vec<ContactClass>, u32) {
+        let ground = self.ground_classes(grains, model, solid, surface);
+        let dt = model.dt();
+        let mut substeps = self.substeps.unwrap_or_else(|| {
+            // W and D are proportional to the window.
+            let excess = ground.iter().map(|c| c.at(dt).excess()).fold(0.0, f64::max);
+            if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, MOST) } else { MOST }
+        });
+        loop {
+            let window = f64::from(substeps) * dt;
+            let sleepers = self.sleeper_classes(grains, model, solid, window);
+            if self.substeps.is_some() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {
+                return (ground.iter().map(|c| c.at(window)).chain(sleepers).collect(), substeps);
+            }
+            substeps -= 1;
+        }
+    }
+
+    /// Whether the scene leaves the number of steps to the program.
+    pub fn automatic(&self) -> bool {
+        self.substeps.is_none()
+    }
+
+    /// The classes of contacts with the ground for windows of 1 s; [`ContactClass::at`] gives them for others.
+    fn ground_classes(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        surface: &SolidSurface,
+    ) -> Vec<ContactClass> {
+        let Some(own) = model.surface_material() else { return Vec::new() };
+        let faces = &self.faces[..self.ground_faces];
+        let mut ids: Vec<u32> =
+            faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        // A solid that grains lie on without a mass is refused elsewhere.
+        let places = ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id)?)));
+        let places: Vec<_> = places.collect();
+        self.with_stones(grains, model, solid, own, &places)
+    }
+
+    /// The classes of contacts with meshed sleepers, whose masses depend on the window [s].
+    fn sleeper_classes(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        window: f64,
+    ) -> Vec<ContactClass> {
+        let (Some(sleepers), Some(first)) = (&solid.sleepers, self.faces.get(self.ground_faces)) else {
+            return Vec::new();
+        };
+        debug_assert!(first.element as usize >= sleepers.ground_elements());
+        // The whole solid was made of such bodies and steps with such matrices.
+        let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
+        let surface = self.spread(surface, grains);
+        let faces = sleepers.telling_faces(&surface);
+        let Ok(masses) = window_masses(&body, &surface, &faces, self.theta, window) else {
+            return Vec::new();
+        };
+        let own = model.patch_material(self.ground_faces as u32);
+        let mut classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
+        for class in &mut classes {
+            // Of a motion that a window does not resolve θ leaves −(1 − θ)/θ, and a dashpot that sees it a window late
+            // −D/2θ of it.
+            let own = (1e6 * (4.0 * self.theta - 2.0)).round() / 1e6;
+            class.d_limit = class.d_limit.map(|limit| limit.min(own));
+            *class = class.at(window);
+        }
+        classes
+    }
+
+    /// Classes of all stones on materials of the solid with their masses of points, for windows of 1 s.
+    fn with_stones(
+        &self,
+        grains: &GrainsPart,
+        model: &dem::Model,
+        solid: &SolidPart,
+        own: usize,
+        places: &[(u32, PointMasses)],
+    ) -> Vec<ContactClass> {
+        let mut classes = Vec::new();
+        for (material, name) in grains.materials.touching() {
+            let masses = grains.masses_of(model, material);
+            let Some(stones) = masses else { continue };
+            let (stiffness, damping_ratio) = model.contact_stiffness(material, own);
+            for (id, masses) in places {
+                let m = masses.least();
+                let pair = stones.map(|stone| damping_ratio * ((m + stone) / m).sqrt());
+                let limit = |k: usize| largest_w(self.scheme, pair[k], stones[k] / m);
+                let d_limit = largest_d(self.scheme);
+                classes.push(ContactClass {
+                    grains: name.clone(),
+                    solid: solid.material_names.get(id).cloned().unwrap_or_else(|| id.to_string()),
+                    stiffness,
+                    damping_ratio,
+                    masses: *masses,
+                    stones,
+                    pair_damping: pair,
+                    w: (stiffness / m).sqrt(),
+                    w_limit: limit(0).min(limit(1)),
+                    d: 2.0 * damping_ratio * (stones[1] * stiffness).sqrt() / m,
+                    d_limit: d_limit.is_finite().then_some(d_limit),
+                });
+            }
+        }
+        classes
+    }
+}

@@ -1,0 +1,65 @@
+//! `[[bond]]` resolved: kinds of bonds, and rules that find the pairs in the bodies that a run starts with.
+
+mod kind;
+mod part;
+mod rule;
+
+pub use part::BondPart;
+
+use super::deposition::DepositionPlan;
+use crate::failure::Failure;
+use crate::scene::{Document, Scene, SceneError};
+use rule::{Joinable, rule};
+use trackbed_dem::bond::BondInput;
+
+/// Resolves the kinds of bonds, so that grains can name them.
+pub(super) fn kinds(document: &Document, scene: &Scene) -> Result<BondPart, Failure> {
+    let mut part = BondPart::default();
+    for (i, table) in scene.bond.iter().enumerate() {
+        if part.find(&table.name).is_some() {
+            let key = format!("bond.{i}.name");
+            return Err(document.error(&key, format!("\"{}\" again", table.name), "another name").into());
+        }
+        part.add_kind(&table.name, kind::kind(document, i, table)?);
+    }
+    Ok(part)
+}
+
+/// Resolves which of `count` grains in these groups are joined, when all of them are there.
+pub(super) fn rules(
+    document: &Document,
+    scene: &Scene,
+    groups: &[String],
+    count: usize,
+    settling: Option<&DepositionPlan>,
+    bonds: &mut BondPart,
+) -> Result<(), Failure> {
+    if bonds.has_stones() {
+        for (key, present) in [
+            ("deposition.level", settling.is_some_and(|d| d.level.is_some())),
+            ("deposition.layers", settling.is_some_and(|d| d.layers > 1)),
+        ] {
+            if present {
+                return Err(document.error(key, "a value", "no such key beside bonded stones").into());
+            }
+        }
+    }
+    let levelled = settling.is_some_and(|d| d.level.is_some());
+    for (i, table) in scene.bond.iter().enumerate() {
+        let bodies = Joinable { bonds, groups, count, levelled };
+        let rule = rule(document, i, table, &bodies)?;
+        bonds.add_rule(rule);
+    }
+    Ok(())
+}
+
+/// Refuses rules that join nothing in the bodies that a run starts with.
+pub fn check_joined(document: &Document, part: &BondPart, bonds: &[BondInput]) -> Result<(), SceneError> {
+    for (kind, name) in part.names.iter().enumerate() {
+        if !bonds.iter().any(|b| b.kind == kind) {
+            let expected = "a bond that joins grains: a larger `gap`, or other groups";
+            return Err(document.error(&format!("bond.{kind}"), format!("no pair for \"{name}\""), expected));
+        }
+    }
+    Ok(())
+}

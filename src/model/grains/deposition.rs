@@ -1,0 +1,77 @@
+//! `[deposition]` resolved.
+
+use super::check::check;
+use crate::scene::deposition::Deposition;
+use crate::scene::{Document, SceneError};
+use trackbed_dem::Model;
+
+/// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
+pub(super) const SETTLED_SPEED: f64 = 5e-3;
+
+/// Settling before the run proper.
+#[derive(Clone, Debug)]
+pub struct DepositionPlan {
+    /// Longest time [s].
+    pub max_time: f64,
+    /// Root-mean-square speed below which the bed counts as settled [m/s].
+    pub settled_speed: f64,
+    /// Ratio of unbalanced to contact forces below which it does.
+    pub unbalanced_ratio: Option<f64>,
+    /// Parts that the grains are dropped in.
+    pub layers: u32,
+    /// Height above which grains are taken away afterwards [m].
+    pub level: Option<f64>,
+    /// Friction coefficient between grains meanwhile, where it is another.
+    pub(super) friction: Option<f64>,
+    /// Local damping meanwhile; 0 for none.
+    pub(super) local_damping: f64,
+}
+
+impl DepositionPlan {
+    /// Whether a bed of this root-mean-square speed [m/s] counts as settled.
+    pub fn settled(&self, speed: f64, model: &Model, state: &trackbed_dem::State) -> bool {
+        use trackbed_dem::measure::{contacts, unbalanced_ratio};
+        speed < self.settled_speed
+            && self
+                .unbalanced_ratio
+                .is_none_or(|most| unbalanced_ratio(model, state, &contacts(model, state)) < most)
+    }
+}
+
+/// `[deposition]` resolved.
+pub(super) fn build(document: &Document, d: &Deposition) -> Result<DepositionPlan, SceneError> {
+    check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
+    check(
+        document,
+        "deposition.settled_speed",
+        d.settled_speed.map(|v| v.si),
+        |v| v > 0.0,
+        "a speed above 0",
+    )?;
+    let ratio = d.unbalanced_ratio;
+    check(document, "deposition.unbalanced_ratio", ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
+    let layers = Some(f64::from(d.layers));
+    check(document, "deposition.layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
+    check(
+        document,
+        "deposition.local_damping",
+        Some(d.local_damping),
+        |a| (0.0..1.0).contains(&a),
+        "0 or more, below 1",
+    )?;
+    Ok(DepositionPlan {
+        max_time: d.max_time.si,
+        // With a ratio of forces alone, speed does not matter.
+        settled_speed: match (d.settled_speed, ratio) {
+            (Some(speed), _) => speed.si,
+            (None, Some(_)) => f64::INFINITY,
+            (None, None) => SETTLED_SPEED,
+        },
+        unbalanced_ratio: ratio,
+        layers: d.layers,
+        level: d.level.map(|l| l.si),
+        friction: d.friction,
+        local_damping: d.local_damping,
+    })
+}

@@ -1,0 +1,77 @@
+//! Grains whose places are given: by hand, or by a packing.
+
+use super::part::GroupsPart;
+use super::shapes::shapes;
+use crate::failure::Failure;
+use crate::model::grains::check::check;
+use crate::model::tables;
+use crate::scene::Document;
+use crate::scene::grains::{GrainShape, Grains};
+use nalgebra::UnitQuaternion;
+use trackbed_dem::shape::Shape;
+use trackbed_dem::{BodyInput, Vec3};
+
+/// Grains whose places are given.
+pub(super) fn given(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    model: &BodyInput,
+    part: &mut GroupsPart,
+) -> Result<(), Failure> {
+    let key = |k: &str| format!("grains.{index}.{k}");
+    if group.shape == GrainShape::Bonded {
+        let expected = "`fill`, which bonded stones need";
+        return Err(document.error(&key("shape"), "\"bonded\"", expected).into());
+    }
+    if group.shape == GrainShape::Clump {
+        let Some(file) = &group.packing else {
+            let expected = "`fill`, `region` or `packing`, which clumps need";
+            return Err(document.error(&key("shape"), "\"clump\"", expected).into());
+        };
+        let first = part.shapes.len();
+        let stones = shapes(document, index, group, part)?.len();
+        let placed = tables::clump_packing(&document.resolve(file), stones)?;
+        part.bodies.extend(placed.iter().map(|p| {
+            let [w, x, y, z] = p.orientation;
+            let q = nalgebra::Quaternion::new(w, x, y, z);
+            // A packing that a run has written comes back bit for bit; one by hand may be rounded.
+            let exact = (q.norm_squared() - 1.0).abs() < 1e-14;
+            BodyInput {
+                shape: first + p.stone,
+                scale: p.scale,
+                position: Vec3::from(p.position),
+                orientation: if exact {
+                    UnitQuaternion::new_unchecked(q)
+                } else {
+                    UnitQuaternion::new_normalize(q)
+                },
+                ..model.clone()
+            }
+        }));
+        return Ok(());
+    }
+    let spheres = match (&group.spheres, &group.packing) {
+        (Some(list), _) => {
+            for s in list {
+                check(document, &key("spheres"), Some(s[3].si), |r| r > 0.0, "a radius above 0")?;
+            }
+            list.iter().map(|s| ([s[0].si, s[1].si, s[2].si], s[3].si)).collect()
+        }
+        (_, Some(file)) => tables::packing(&document.resolve(file))?,
+        _ => Vec::new(),
+    };
+    if spheres.is_empty() {
+        return Err(document.error(&key("spheres"), "none", "at least one sphere").into());
+    }
+    let shape = part.shapes.len();
+    part.shapes.push(Shape::Sphere { radius: 1.0 });
+    part.bodies.extend(spheres.iter().map(|(c, r)| BodyInput {
+        shape,
+        scale: *r,
+        position: Vec3::from(*c),
+        orientation: UnitQuaternion::identity(),
+        ..model.clone()
+    }));
+    Ok(())
+}

@@ -1,0 +1,72 @@
+//! Equal spheres on lattices.
+
+use super::part::GroupsPart;
+use super::shapes::MOST;
+use crate::model::grains::check::check;
+use crate::scene::grains::{GrainShape, LatticeFill, LatticeKind};
+use crate::scene::units::vector;
+use crate::scene::{Document, SceneError};
+use trackbed_dem::insert::lattice::Lattice;
+use trackbed_dem::shape::Shape;
+use trackbed_dem::{BodyInput, Vec3};
+
+/// Equal spheres on a lattice.
+pub(super) fn lattice(
+    document: &Document,
+    index: usize,
+    fill: &LatticeFill,
+    model: &BodyInput,
+    part: &mut GroupsPart,
+) -> Result<(), SceneError> {
+    let key = |k: &str| format!("grains.{index}.lattice.{k}");
+    check(document, &key("size"), Some(fill.size.si), |d| d > 0.0, "a diameter above 0")?;
+    let (radius, low) = (0.5 * fill.size.si, Vec3::from(vector(&fill.low)));
+    let kind = match fill.kind {
+        LatticeKind::Loose => Lattice::Simple,
+        LatticeKind::Hexagonal => Lattice::Hexagonal,
+        LatticeKind::FaceCentred => Lattice::FaceCentred,
+    };
+    let few = |n: f64, k: &str| {
+        let expected = "1 to 10000000 spheres";
+        if (1.0..=MOST).contains(&n) {
+            Ok(())
+        } else {
+            Err(document.error(&key(k), format!("{n} spheres"), expected))
+        }
+    };
+    let sites = match (&fill.counts, &fill.high) {
+        (Some(counts), None) => {
+            few(counts.iter().map(|n| *n as f64).product(), "counts")?;
+            kind.block(low, radius, *counts)
+        }
+        (None, Some(high)) => {
+            let high = Vec3::from(vector(high));
+            // An estimate, so that a slip of a unit does not fill the memory.
+            let about: f64 = (high - low).iter().map(|l| (l / fill.size.si).max(0.0)).product();
+            if about > MOST {
+                few(about.round(), "high")?;
+            }
+            let sites = kind.fill(low, high, radius);
+            few(sites.len() as f64, "high")?;
+            sites
+        }
+        _ => {
+            let found = "both or none of `counts` and `high`";
+            return Err(document.error(&format!("grains.{index}.lattice"), found, "one of them"));
+        }
+    };
+    let shape = part.shapes.len();
+    part.shapes.push(Shape::Sphere { radius: 1.0 });
+    let body = |position| BodyInput { shape, scale: radius, position, ..model.clone() };
+    part.bodies.extend(sites.into_iter().map(body));
+    Ok(())
+}
+
+/// Whether a group of this shape can come from a lattice.
+pub(super) fn spheres_only(document: &Document, index: usize, shape: GrainShape) -> Result<(), SceneError> {
+    if shape == GrainShape::Sphere {
+        return Ok(());
+    }
+    let key = format!("grains.{index}.shape");
+    Err(document.error(&key, "another shape", "\"sphere\", which a lattice consists of"))
+}

@@ -1,0 +1,42 @@
+//! Grains that wait for their inlet.
+
+use super::part::GroupsPart;
+use super::shapes::{Sampled, sampled};
+use crate::failure::Failure;
+use crate::scene::Document;
+use crate::scene::grains::Grains;
+use trackbed_dem::BodyInput;
+use trackbed_dem::random::Random;
+
+/// Purpose of the stream that the order of coming in is drawn from.
+const ORDER: u64 = 8;
+
+/// Adds grains that wait for their inlet: `count` of them, in random order.
+pub(super) fn waiting(
+    document: &Document,
+    index: usize,
+    group: &Grains,
+    model: &BodyInput,
+    part: &mut GroupsPart,
+) -> Result<(), Failure> {
+    for (k, present) in [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())] {
+        if present {
+            let expected = "no such key for grains that wait for their inlet: see `inlet.velocity`";
+            return Err(document.error(&format!("grains.{index}.{k}"), "a value", expected).into());
+        }
+    }
+    let grains = sampled(document, index, group, part, "the number of grains that may come in")?;
+    // A range gives sizes in rising order: without this the small ones would come first.
+    let order = Random::new(group.seed, ORDER).permutation(grains.len());
+    part.bodies.extend(order.into_iter().map(|i| {
+        let Sampled { shape, scale } = grains[i];
+        BodyInput { shape, scale, absent: true, ..model.clone() }
+    }));
+    Ok(())
+}
+
+/// Whether all grains of a group wait for their inlet.
+pub fn waits(group: &Grains) -> bool {
+    let sources = [group.spheres.is_some(), group.packing.is_some(), group.fill.is_some()];
+    group.inlet.is_some() && !sources.contains(&true) && group.lattice.is_none() && group.region.is_none()
+}

@@ -1,0 +1,76 @@
+//! The grains of a scene: materials, shapes, bodies, walls, sleeper.
+
+mod bonds;
+mod check;
+mod compaction;
+mod deposition;
+mod flow;
+mod groups;
+mod laws;
+mod materials;
+mod measure;
+mod part;
+mod periodic;
+mod refused;
+mod sources;
+mod steps;
+mod track;
+mod walls;
+
+use crate::failure::Failure;
+use crate::scene::{Document, Scene};
+use check::find;
+use steps::StepPlan;
+use trackbed_dem::Vec3;
+
+pub use bonds::check_joined;
+pub use compaction::{CompactionPlan, Press};
+pub use deposition::DepositionPlan;
+pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
+pub use groups::{GradedGroup, GroupsPart};
+pub use measure::{MeasurePlan, RadialPlan};
+pub use part::{GrainsPart, PackingPlan, SurfaceMaterials};
+pub use refused::refused;
+
+/// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.
+///
+/// # Errors
+/// Bad input in the scene or in the tables it names.
+pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<GrainsPart, Failure> {
+    let gravity = Vec3::from(gravity);
+    let mut materials = materials::build(document, scene)?;
+    let impact_speed = steps::impact_speed(document, scene, &materials)?;
+    let of_coupling = scene.coupling.as_ref();
+    let ground = of_coupling.map(|c| find(document, scene, "coupling.material", &c.material)).transpose()?;
+    let steps = StepPlan { step: steps::time_step(document, &scene.time)?, impact_speed };
+    let mut bonds = bonds::kinds(document, scene)?;
+    let mut groups = groups::build(document, scene, &mut materials, &mut bonds)?;
+    let periodic = periodic::build(document, scene, &groups)?;
+    let flow = flow::build(document, scene, &groups, &periodic)?;
+    let walls = walls::build(document, scene)?;
+    let deposition = scene.deposition.as_ref().map(|d| deposition::build(document, d)).transpose()?;
+    let settling = deposition.as_ref();
+    let compaction = compaction::build(document, scene, settling, &walls, &mut groups)?;
+    let measures = measure::build(document, scene)?;
+    bonds::rules(document, scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
+    let fixed = match (bonds.is_empty(), periodic.iter().any(Option::is_some)) {
+        (false, _) => Some("are bonded"),
+        (true, true) => Some("cross a periodic border"),
+        (true, false) => None,
+    };
+    let track = track::build(document, scene, &gravity, fixed, &mut groups)?;
+    Ok(GrainsPart {
+        materials,
+        groups,
+        bonds,
+        walls,
+        surface: SurfaceMaterials { ground, sleepers: None },
+        gravity,
+        steps,
+        periodic,
+        packing: PackingPlan { deposition, compaction },
+        measures,
+        track,
+        flow,
+    })
+}

@@ -1,0 +1,151 @@
+//! The resolved grains of a scene, from which models are built.
+
+use super::bonds::BondPart;
+use super::compaction::CompactionPlan;
+use super::deposition::DepositionPlan;
+use super::flow::FlowPlan;
+use super::groups::GroupsPart;
+use super::materials::MaterialsPart;
+use super::measure::MeasurePlan;
+use super::periodic::Borders;
+use super::steps::StepPlan;
+use super::track::{SleeperPlan, TrackPart};
+use super::walls::WallsPart;
+use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, Vec3};
+
+/// The grains, ready to build models of.
+#[derive(Clone)]
+pub struct GrainsPart {
+    /// Materials, and what pairs of them have of their own.
+    pub materials: MaterialsPart,
+    /// Groups of grains, and all grains where they start.
+    pub groups: GroupsPart,
+    /// Bonds between grains.
+    pub bonds: BondPart,
+    /// Walls.
+    pub walls: WallsPart,
+    /// Materials of the solid's surface.
+    pub surface: SurfaceMaterials,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: Vec3,
+    /// Steps in time.
+    pub steps: StepPlan,
+    /// Periodic borders.
+    pub periodic: Borders,
+    /// What is done before the run proper.
+    pub packing: PackingPlan,
+    /// Boxes that are measured.
+    pub measures: Vec<MeasurePlan>,
+    /// Sleepers, rail and load.
+    pub track: TrackPart,
+    /// Inlets and outlets.
+    pub flow: Option<FlowPlan>,
+}
+
+/// Materials of the surface of a solid that grains touch.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceMaterials {
+    /// That of the ground; none without a solid.
+    pub ground: Option<usize>,
+    /// First face of meshed sleepers in the surface, and their material.
+    pub sleepers: Option<(u32, usize)>,
+}
+
+/// What is done with grains before the run proper.
+#[derive(Clone, Default)]
+pub struct PackingPlan {
+    /// Settling.
+    pub deposition: Option<DepositionPlan>,
+    /// Compaction of the settled bed.
+    pub compaction: Vec<CompactionPlan>,
+}
+
+impl GrainsPart {
+    /// The model in which filled grains settle: no sleeper, friction and damping of the deposition.
+    pub fn deposition_input(&self, plan: &DepositionPlan) -> ModelInput {
+        let contacts = self.materials.pairs_with(plan.friction);
+        let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
+        // Sleepers are not there yet.
+        let alone = ModelInput { other_surface: None, ..self.input(self.groups.bodies.clone()) };
+        let mut input = ModelInput { contacts, damping, ..alone };
+        // Walls wait for the run proper, which starts with them in their first place; driven walls and rigid bodies come
+        // in only then.
+        input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
+        input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
+        input.walls.iter_mut().for_each(|w| *w = w.at_rest());
+        for moving in &self.groups.moving {
+            let grip = input.bodies.iter_mut().filter(|b| b.part == moving.part);
+            grip.for_each(|b| b.velocity = Vec3::zeros());
+        }
+        self.bonds.add_stones_to(&mut input);
+        input
+    }
+
+    /// The model of the run proper with the given bodies.
+    pub fn input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
+        for moving in &self.groups.moving {
+            for body in bodies.iter_mut().filter(|b| b.part == moving.part) {
+                (body.velocity, body.fixed) = (moving.velocity, [true; 6]);
+            }
+        }
+        let mut input = ModelInput {
+            materials: self.materials.all.clone(),
+            contacts: self.materials.pairs.clone(),
+            shapes: self.groups.shapes.clone(),
+            bodies,
+            planes: self.walls.planes.clone(),
+            triangles: Vec::new(),
+            walls: self.walls.others.clone(),
+            surface_material: self.surface.ground,
+            other_surface: self.surface.sleepers,
+            gravity: self.gravity,
+            time_step: self.steps.step,
+            impact_speed: self.steps.impact_speed,
+            skin: None,
+            damping: None,
+            periodic: self.periodic,
+            ..ModelInput::default()
+        };
+        self.bonds.add_to(&mut input);
+        input
+    }
+
+    /// Stiffness, density and the like of the material of a body.
+    pub fn material(&self, body: &BodyInput) -> Material {
+        self.materials.all[body.material]
+    }
+
+    /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
+    pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
+        let grains = self.groups.names.len() as u32 - u32::from(self.track.rigid_sleeper().is_some());
+        let own = (0..model.body_count())
+            .filter(|&b| model.part(b) < grains && model.material(b) == material)
+            .map(|b| model.mass(b));
+        let ends = own.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], m| [low.min(m), high.max(m)]);
+        (ends[1] > 0.0).then_some(ends)
+    }
+
+    /// Puts a plane elsewhere [m].
+    pub fn place_plane(&mut self, plane: usize, point: Vec3) {
+        self.walls.planes[plane].point = point;
+    }
+
+    /// Tells from which face of the solid's surface on the faces are those of meshed sleepers.
+    pub fn set_sleeper_faces(&mut self, first: u32) {
+        let meshed = self.track.sleeper.as_ref().filter(|s| s.row.meshed);
+        self.surface.sleepers = meshed.map(|s| (first, s.material));
+    }
+
+    /// A sleeper as a body with its centre above `centre` at height `z` [m].
+    pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
+        BodyInput {
+            shape: plan.shape,
+            material: plan.material,
+            part: self.groups.names.len() as u32 - 1,
+            position: Vec3::new(centre[0], centre[1], z),
+            fixed: plan.row.held,
+            mass: Some(plan.row.mass),
+            ..BodyInput::default()
+        }
+    }
+}

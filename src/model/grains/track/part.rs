@@ -1,0 +1,105 @@
+//! Sleepers, rail, load, and what goes on about the load cycles.
+
+use crate::scene::{Document, SceneError};
+use trackbed_coupling::track::CyclicLoad;
+use trackbed_coupling::track::jump::JumpPlan;
+use trackbed_coupling::track::push::PushPlan;
+use trackbed_coupling::track::rail::RailInput;
+use trackbed_coupling::track::{SleeperRow, TrackInput};
+
+/// The track of a scene.
+#[derive(Clone, Default)]
+pub struct TrackPart {
+    /// The sleepers; rigid ones are the last bodies of the run proper.
+    pub sleeper: Option<SleeperPlan>,
+    /// The load on them.
+    pub load: Option<CyclicLoad>,
+    /// Jumps over cycles, push at the end.
+    pub after: AfterPlan,
+    /// The rail, where it is a beam; one on each seat.
+    pub rail: Option<RailInput>,
+}
+
+/// Sleepers among the grains.
+#[derive(Clone, Debug)]
+pub struct SleeperPlan {
+    /// Number of their shape, where they are rigid.
+    pub shape: usize,
+    /// Number of their material.
+    pub material: usize,
+    /// The sleepers.
+    pub row: SleeperRow,
+}
+
+/// What goes on about the load cycles.
+#[derive(Clone, Debug, Default)]
+pub struct AfterPlan {
+    /// Jumps over cycles.
+    pub jump: Option<JumpPlan>,
+    /// Lateral push at the end.
+    pub push: Option<PushPlan>,
+    /// Loads between which the stiffness of the bed is taken [N]; none without a cyclic load.
+    pub between: Option<[f64; 2]>,
+}
+
+impl TrackPart {
+    /// Refuses pads that are too stiff or too strongly damped for sleepers that move in steps of `dt` [s] under the pads'
+    /// force at the start of each step.
+    ///
+    /// # Errors
+    /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
+    /// damping.
+    pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
+        let (Some(rail), Some(sleeper)) = (&self.rail, self.sleeper.as_ref().map(|s| &s.row)) else {
+            return Ok(());
+        };
+        let [a, b, c] = sleeper.half;
+        // 1/m of a seat, turning about both level axes included: a bound for all modes.
+        let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
+        let lightness: f64 = sleeper
+            .seats
+            .iter()
+            .map(|s| 1.0 / sleeper.mass + s[0] * s[0] * third(a, c) + s[1] * s[1] * third(b, c))
+            .sum();
+        for (key, value, most) in [
+            ("pad_stiffness", rail.pad[0], 0.25 / (dt * dt * lightness)),
+            ("pad_damping", rail.pad[1], 0.5 / (dt * lightness)),
+        ] {
+            if value > most {
+                let expected = format!("at most {most:.4e} with grain steps of {dt:.4e} s");
+                return Err(document.error(&format!("track.rail.{key}"), value.to_string(), expected));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a ram that steps of `dt` [s] cannot follow.
+    ///
+    /// # Errors
+    /// Bad input.
+    pub fn check_ram(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
+        let (Some(push), Some(sleeper)) = (&self.after.push, &self.sleeper) else { return Ok(()) };
+        let most = PushPlan::largest_stiffness(sleeper.row.mass, dt);
+        if push.stiffness > most {
+            let expected = format!("at most {most:.3e} N/m, which the step of {dt:.3e} s can follow");
+            let found = format!("{:.3e} N/m", push.stiffness);
+            return Err(document.error("track.push.stiffness", found, expected));
+        }
+        Ok(())
+    }
+
+    /// Sleepers, load, rail and push for the run proper.
+    pub fn input(&self) -> TrackInput<'_> {
+        TrackInput {
+            sleepers: self.sleeper.as_ref().map(|s| &s.row),
+            load: self.load.as_ref(),
+            rail: self.rail,
+            push: self.after.push.as_ref(),
+        }
+    }
+
+    /// The sleepers that are bodies among the grains.
+    pub fn rigid_sleeper(&self) -> Option<&SleeperPlan> {
+        self.sleeper.as_ref().filter(|s| !s.row.meshed)
+    }
+}

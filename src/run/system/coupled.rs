@@ -1,0 +1,152 @@
+//! Grains on a solid.
+
+use super::{Applied, GrainsView, SolidView, System};
+use crate::failure::Failure;
+use crate::model::solid::SleeperBodies;
+use crate::run::checkpoint::Body;
+use std::io;
+use trackbed_coupling as coupling;
+use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
+use trackbed_dem as dem;
+
+/// Meshed sleepers of a running system.
+pub struct Meshed<'a> {
+    /// Their nodes.
+    pub bodies: &'a SleeperBodies,
+    /// Heights of their bases when they were set down [m].
+    pub bases: Vec<f64>,
+    /// The load on their seats.
+    pub load: Option<&'a CyclicLoad>,
+    /// Their first face in the surface.
+    pub first_face: usize,
+    /// Work of that load so far [J].
+    pub work: f64,
+}
+
+impl Meshed<'_> {
+    /// Adds the forces on the seats at time `t` [s] to nodal loads, shape `[3·nodes]`.
+    fn add_load(&self, t: f64, load: &mut [f64]) {
+        let Some(cycles) = self.load else { return };
+        (0..self.bodies.count()).for_each(|k| self.bodies.add_load(k, cycles.on(k, t), load));
+    }
+
+    /// Work of the forces at time `t` [s] on displacements that are added to `u`, less that on `u` itself [J].
+    fn work_at(&self, t: f64, u: &[f64]) -> f64 {
+        let on = |k: usize| self.load.map_or(0.0, |l| l.on(k, t));
+        (0..self.bodies.count()).map(|k| -on(k) * self.bodies.rise_of_seats(k, u)).sum()
+    }
+}
+
+/// Grains on a solid.
+pub struct CoupledSystem<'a> {
+    /// Both models and how they are joined.
+    pub model: coupling::step::Model<'a>,
+    /// Both states.
+    pub state: coupling::step::State,
+    /// Scratch and factors.
+    pub work: coupling::step::Work,
+    /// Loads on the solid.
+    pub loads: &'a [crate::model::solid::NodalLoad],
+    /// Faces of the surface that are the ground's.
+    pub ground_faces: usize,
+    /// Meshed sleepers.
+    pub seats: Option<Meshed<'a>>,
+}
+
+impl TrackSystem for CoupledSystem<'_> {
+    fn window(&self) -> f64 {
+        self.model.window()
+    }
+
+    fn grains(&self) -> Option<GrainsView<'_>> {
+        Some(GrainsView { model: &self.model.grains, state: &self.state.grains })
+    }
+
+    fn meshed_sleeper(&self, k: usize) -> Option<MeshedSleeper> {
+        let s = self.seats.as_ref()?;
+        let (moved, [x, y, z]) = (s.bodies.moved(k, &self.state.solid.u), s.bodies.centre(k, s.bases[k]));
+        let faces = s.bodies.face_count();
+        let first = s.first_face + k * faces;
+        Some(MeshedSleeper {
+            place: [x + moved.way[0], y + moved.way[1], z + moved.way[2]],
+            height: z + moved.seats,
+            moved,
+            contact: self.work.contact_force_on(first..first + faces, self.model.window()),
+        })
+    }
+
+    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
+        let grains = &mut self.state.grains;
+        moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
+        grains.forget_neighbours();
+    }
+}
+
+impl System for CoupledSystem<'_> {
+    fn steps_per_window(&self) -> (u64, u64) {
+        (u64::from(self.model.substeps), 1)
+    }
+
+    fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
+        let (loads, seats) = (self.loads, self.seats.as_ref());
+        let solid_load = |t: f64, load: &mut [f64]| {
+            loads.iter().for_each(|l| l.add(t, load));
+            seats.iter().for_each(|s| s.add_load(t, load));
+        };
+        // The middle of the window, at which the step takes its loads.
+        let middle = self.state.solid.time + 0.5 * self.model.window();
+        let before = seats.map_or(0.0, |s| s.work_at(middle, &self.state.solid.u));
+        let model = &self.model;
+        let apply = |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            applied(t, &model.grains, s, out);
+        };
+        coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
+            .map_err(|e| Failure::Numerical(e.to_string()))?;
+        if let Some(seats) = &mut self.seats {
+            seats.work += seats.work_at(middle, &self.state.solid.u) - before;
+        }
+        Ok(())
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        let seat_work = self.seats.as_ref().map_or(0.0, |s| s.work);
+        body.put(&(&self.model.reference, self.work.memory(), &self.state, seat_work))
+    }
+
+    fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
+        coupling::step::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+    }
+
+    fn surface(&self) -> &dyn dem::surface::Surface {
+        &self.work.surface
+    }
+
+    fn stored(&self) -> Stored {
+        coupling::step::stored(&self.model, &self.state)
+    }
+
+    fn spent(&self) -> Spent {
+        coupling::step::spent(&self.state)
+    }
+
+    fn solid(&self) -> Option<SolidView<'_>> {
+        Some(SolidView { model: self.model.solid, state: &self.state.solid })
+    }
+
+    fn contact_force(&self) -> [f64; 3] {
+        self.work.contact_force_on(0..self.ground_faces, self.model.window())
+    }
+
+    fn peak_pressure(&self) -> f64 {
+        self.work.peak_pressure_on(0..self.ground_faces, self.model.window())
+    }
+
+    fn seat_work(&self) -> f64 {
+        match &self.seats {
+            Some(seats) => seats.work,
+            None => self.state.grains.ledger.work_applied,
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Grains alone.
+
+use super::{Applied, GrainsView, System};
+use crate::failure::Failure;
+use crate::run::checkpoint::{Body, Loaded};
+use std::io;
+use trackbed_coupling as coupling;
+use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::track::TrackSystem;
+use trackbed_dem as dem;
+
+/// Grains alone.
+pub struct GrainsSystem {
+    /// Model.
+    pub model: dem::Model,
+    /// State.
+    pub state: dem::State,
+    /// Scratch.
+    pub work: dem::Work,
+    applied: Vec<dem::AppliedForce>,
+}
+
+impl GrainsSystem {
+    /// The grains at the start of their model.
+    ///
+    /// # Errors
+    /// They overlap so much that no step can be made.
+    pub fn new(model: dem::Model) -> Result<GrainsSystem, Failure> {
+        let mut state = dem::State::new(&model);
+        let mut work = dem::Work::new(&model, &state);
+        dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+        Ok(GrainsSystem { model, state, work, applied: Vec::new() })
+    }
+
+    /// The grains as a checkpoint has them.
+    ///
+    /// # Errors
+    /// A checkpoint of something else.
+    pub fn resume(model: dem::Model, loaded: &mut Loaded) -> Result<GrainsSystem, Failure> {
+        let state = loaded.take()?;
+        let work = dem::Work::new(&model, &state);
+        Ok(GrainsSystem { model, state, work, applied: Vec::new() })
+    }
+}
+
+impl TrackSystem for GrainsSystem {
+    fn window(&self) -> f64 {
+        self.model.dt()
+    }
+
+    fn grains(&self) -> Option<GrainsView<'_>> {
+        Some(GrainsView { model: &self.model, state: &self.state })
+    }
+
+    fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
+        moves.iter().for_each(|(body, shift, turn)| self.state.shift(&self.model, *body, shift, turn));
+        self.state.forget_neighbours();
+    }
+}
+
+impl System for GrainsSystem {
+    fn steps_per_window(&self) -> (u64, u64) {
+        (1, 0)
+    }
+
+    fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
+        self.applied.clear();
+        applied(self.state.time, &self.model, &self.state, &mut self.applied);
+        dem::step(&self.model, &mut self.state, &mut self.work, &dem::surface::NoSurface, &self.applied)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        body.put(&self.state)
+    }
+
+    fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
+        dem::flow::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
+            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+    }
+
+    fn stored(&self) -> Stored {
+        let e = dem::measure::energies(&self.model, &self.state);
+        Stored {
+            grains_kinetic: e.kinetic_translation + e.kinetic_rotation,
+            contact_springs: e.elastic_normal + e.elastic_tangential,
+            bonds: e.elastic_bonds,
+            grains_gravity: e.gravity,
+            ..Stored::default()
+        }
+    }
+
+    fn spent(&self) -> Spent {
+        coupling::step::spent_by_grains(&self.state)
+    }
+}
