@@ -52,22 +52,22 @@ pub(crate) fn start(model: &Model, state: &mut State) {
 }
 
 /// Takes all bonds and debonded pairs out of a state's lists.
-pub(crate) fn take(state: &mut State) -> Taken {
+pub(crate) fn take(state: &mut State) -> Unfiled {
     let mut all = Vec::new();
     let inner: Vec<BondList> = state.lists.iter_mut().map(|l| std::mem::take(&mut l.bonds)).collect();
     for list in inner.into_iter().chain(std::mem::take(&mut state.bonds.cross)) {
         all.extend(list.iter().map(|e| Filed::Bond(e.number, e.memory)));
         all.extend(list.debonded.iter().map(|r| Filed::Debonded(*r)));
     }
-    Taken(all)
+    Unfiled(all)
 }
 
 /// Bonds between [`take`] and [`put`].
-pub(crate) struct Taken(Vec<Filed>);
+pub(crate) struct Unfiled(Vec<Filed>);
 
 /// Puts bonds into the lists of the state's present blocks.
-pub(crate) fn put(model: &Model, state: &mut State, taken: Taken) {
-    file(model, state, taken.0);
+pub(crate) fn put(model: &Model, state: &mut State, unfiled: Unfiled) {
+    file(model, state, unfiled.0);
 }
 
 fn file(model: &Model, state: &mut State, all: Vec<Filed>) {
@@ -217,11 +217,11 @@ fn part(
         let then = ra + rb - (x - v * dt).norm();
         let radius = ra * rb / (ra + rb);
         let stored = |overlap: f64| model.laws.stored(one, two, overlap, radius, &History::NONE).0;
-        let taken = debonded::overlap_for(stored, radius, broken.pressure, broken.pressed);
-        let reference = if taken > 0.0 { then - taken } else { then.max(0.0) };
+        let overlap = debonded::overlap_for(stored, radius, broken.pressure, broken.pressed);
+        let reference = if overlap > 0.0 { then - overlap } else { then.max(0.0) };
         energy -= stored((half - reference).max(0.0));
         let rate = model.laws.begun(one, two, broken.approach);
-        let history = if taken > 0.0 { History { rate, ..History::NONE } } else { History::NONE };
+        let history = if overlap > 0.0 { History { rate, ..History::NONE } } else { History::NONE };
         pair = Some(DebondedPair { number: e.number, i: e.i, block: e.block, j: e.j, reference, history });
     }
     state.bonds.broken[usize::from(broken.mode == BreakMode::Shear)] += 1;

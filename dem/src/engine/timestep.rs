@@ -111,7 +111,7 @@ pub(crate) fn limit(
             continue;
         }
         let shape = &input.shapes[body.shape];
-        let softness = compliance(&body, shape);
+        let flexibility = compliance(&body, shape);
         let sides = match shape {
             Shape::Sphere { .. } => 12.0,
             Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
@@ -134,8 +134,8 @@ pub(crate) fn limit(
             let own = if body.kind == Kind::Sphere {
                 stiffness.max((1.0 + 2.5 * levers) * tangential) / body.mass
             } else {
-                stiffness.max(tangential) * softness
-                    + (levers - 1.0) * tangential * (softness - 1.0 / body.mass)
+                stiffness.max(tangential) * flexibility
+                    + (levers - 1.0) * tangential * (flexibility - 1.0 / body.mass)
             };
             let zeta = laws.damping_ratio(a, b) * f64::sqrt(0.5 * sides);
             let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
