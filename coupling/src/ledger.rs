@@ -35,6 +35,22 @@ pub struct Stored {
 }
 
 impl Stored {
+    /// The parts that springs and motion hold [J]; never below zero, but for gravity's.
+    fn held(&self) -> f64 {
+        let grains = self.grains_kinetic + self.contact_springs + self.bonds;
+        grains + self.solid_kinetic + self.solid_strain + self.rail
+    }
+
+    /// Sum of the sizes of the changes of all parts since `start` [J].
+    fn changes(&self, start: &Stored) -> f64 {
+        let parts = |s: &Stored| {
+            let grains = [s.grains_kinetic, s.contact_springs, s.bonds, s.grains_gravity];
+            let rest = [s.solid_kinetic, s.solid_strain, s.solid_gravity, s.rail];
+            grains.into_iter().chain(rest)
+        };
+        parts(self).zip(parts(start)).map(|(now, before)| (now - before).abs()).sum()
+    }
+
     /// Sum of all parts [J].
     pub fn total(&self) -> f64 {
         self.grains_kinetic
@@ -119,6 +135,29 @@ impl Spent {
         grains + track + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 
+    /// Dissipated energies with their names [J]: each is zero or above but for the error of the run.
+    pub fn losses(&self) -> [(&'static str, f64); 9] {
+        [
+            ("dashpots of contacts", self.dashpot - self.dashpot_lag.min(0.0)),
+            ("friction", self.friction),
+            ("dashpots of bonds", self.bonds),
+            ("local damping", self.local_damping),
+            ("Rayleigh damping", self.rayleigh),
+            ("absorbing boundaries", self.absorbed),
+            ("plastic flow", self.plastic),
+            ("dashpots under rails", self.pads),
+            ("track beyond the model", self.track_beyond),
+        ]
+    }
+
+    /// Sum of the sizes of all works and losses [J].
+    fn turned_over(&self) -> f64 {
+        let works = [self.applied_work - self.pads_on_sleepers, self.wheels, self.wall_work];
+        let rest = [self.solid_load_work, self.jumps, self.breaks, self.numerical];
+        let losses = self.losses().into_iter().map(|(_, loss)| loss);
+        works.into_iter().chain(rest).chain(losses).map(f64::abs).sum()
+    }
+
     /// Interface work of both sides, which should cancel [J].
     pub fn interface(&self) -> f64 {
         self.surface_on_grains + self.contacts_on_solid
@@ -140,5 +179,35 @@ impl Balance {
     /// Δ stored + dissipated − work [J]: zero in exact arithmetic with exact integration.
     pub fn error(&self) -> f64 {
         self.now.total() - self.start.total() + self.spent.dissipated() - self.spent.work()
+    }
+
+    /// Energy that has changed its form or come and gone since the start [J]: the larger of the sum of all works and losses
+    /// and of the sum of all changes of stored energies, each by its size.
+    pub fn turnover(&self) -> f64 {
+        self.spent.turned_over().max(self.now.changes(&self.start))
+    }
+
+    /// Below this an error means nothing [J]: a thousandth of what springs and motion hold, and what rounding leaves of
+    /// the potential of gravity, whose zero is anywhere.
+    pub fn floor(&self) -> f64 {
+        let gravity = |s: &Stored| s.grains_gravity.abs() + s.solid_gravity.abs();
+        1e-3 * self.start.held().max(self.now.held()) + 1e-9 * gravity(&self.start).max(gravity(&self.now))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Losses below zero with no work, and energies that only change places, count as turned over.
+    #[test]
+    fn nothing_hides_behind_a_sum() {
+        let spent = Spent { friction: -27e9, dashpot: 27e9, ..Spent::default() };
+        let balance = Balance { spent, ..Balance::default() };
+        assert_eq!((balance.error(), balance.turnover()), (0.0, 54e9));
+        let start = Stored { contact_springs: 2.0, ..Stored::default() };
+        let now = Stored { grains_kinetic: 3.0, ..Stored::default() };
+        let balance = Balance { start, now, spent: Spent::default() };
+        assert_eq!((balance.error(), balance.turnover(), balance.floor()), (1.0, 5.0, 3e-3));
     }
 }

@@ -1,7 +1,7 @@
 //! The checkpoint of a run: a file that a later start of the program goes on from, bit for bit.
 //!
 //! ```text
-//! trackbed checkpoint 2\n        the form of the file
+//! trackbed checkpoint 3\n        the form of the file
 //! { header }\n                   JSON: program, scene, stage, step, time
 //! body                           binary: every number with all its bits
 //! 8 bytes                        64-bit FNV-1a checksum of all before, low byte first
@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 /// First line of a checkpoint, with the number of its form.
 const MAGIC: &str = "trackbed checkpoint ";
 /// The form that this program writes and reads.
-const FORM: u32 = 2;
+const FORM: u32 = 3;
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 8;
 /// Bytes that are gathered before they are summed and written.

@@ -5,6 +5,7 @@ mod bond_output;
 mod checkpoint;
 mod checkpoint_store;
 mod context;
+mod energy_watch;
 mod flow;
 mod folder;
 mod frames;
@@ -26,7 +27,7 @@ mod wall_output;
 pub use checkpoint_store::Interrupt;
 pub use memory::{Prediction, parse_size, size};
 pub(crate) use origin::default_folder;
-use summary::RunRecord;
+use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
@@ -131,6 +132,8 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
         .and_then(|()| state.begin(run.job))
         .and_then(|()| stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state)));
     let summary = &mut state.summary;
+    summary.verdict = Verdict::of(summary);
+    let result = result.and_then(|()| summary.verdict.judge());
     summary.run.peak_memory = peak_memory();
     match &result {
         Ok(()) => summary.run.status = "done".into(),

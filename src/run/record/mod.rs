@@ -7,6 +7,7 @@ mod histories;
 mod plots;
 
 use super::checkpoint::{Body, Loaded};
+use super::energy_watch::EnergyWatch;
 use super::flow::Flow;
 use super::folder;
 use super::frames::{self, Shown};
@@ -47,8 +48,9 @@ struct Course {
     /// Energy error just before a jump whose energy is not known before the next window [J].
     before_jump: Option<f64>,
     balance: Balance,
-    /// Largest |energy error| at any row [J].
+    /// Largest |energy error| at any row [J], and how the account stands to what was turned over.
     largest_error: f64,
+    watch: EnergyWatch,
     /// Settlement of each sleeper since the run began against time, for the plot.
     settlement: Vec<Vec<[f64; 2]>>,
     first_heights: Vec<f64>,
@@ -135,7 +137,7 @@ impl<'a> Results<'a> {
     /// Adds a row to the history.
     ///
     /// # Errors
-    /// A value is not finite, or the disk refuses.
+    /// A value is not finite, the account of energy has failed, or the disk refuses.
     pub fn row<S: System>(
         &mut self,
         time: f64,
@@ -150,9 +152,10 @@ impl<'a> Results<'a> {
         course.balance.spent.jumps = course.jump_energy;
         track.account(&mut course.balance.now, &mut course.balance.spent);
         course.largest_error = course.largest_error.max(course.balance.error().abs());
+        let judged = course.watch.follow(&course.balance);
         let now = Now { time, system, job: self.job, track, flow, balance: &course.balance };
         self.history.row(&columns::values(&now))?;
-        Ok(())
+        judged
     }
 
     /// Follows the load cycles; call after every window.
@@ -251,6 +254,11 @@ impl<'a> Results<'a> {
     /// Largest |energy error| at any row [J].
     pub fn largest_error(&self) -> f64 {
         self.course.largest_error
+    }
+
+    /// How the energy account stands to what was turned over.
+    pub fn energy_watch(&self) -> &EnergyWatch {
+        &self.course.watch
     }
 
     /// Finished load cycles.

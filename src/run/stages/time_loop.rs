@@ -298,16 +298,17 @@ fn share(cadence: &Cadence, recorder: &Results<'_>, place: &Place) -> (u64, u64)
 /// The account of energy at the end.
 fn energy(recorder: &Results<'_>) -> EnergyRecord {
     let balance = recorder.balance();
-    let work = balance.spent.work();
-    let turnover = work.abs().max(balance.spent.dissipated());
+    let watch = recorder.energy_watch();
     EnergyRecord {
         start: balance.start,
         end: balance.now,
         spent: balance.spent,
         error: balance.error(),
-        work,
-        relative_error: (turnover > 0.0).then(|| balance.error().abs() / turnover),
+        work: balance.spent.work(),
+        turned_over: balance.turnover(),
+        relative_error: watch.now,
         largest_error: recorder.largest_error(),
+        largest_relative_error: watch.worst,
     }
 }
 

@@ -2,8 +2,10 @@
 
 mod records;
 mod report;
+mod verdict;
 
 pub use records::*;
+pub use verdict::Verdict;
 
 use super::flow::FlowRecord;
 use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
@@ -20,6 +22,8 @@ pub struct Summary {
     /// The run itself.
     #[serde(flatten)]
     pub run: RunRecord,
+    /// What the run was judged by.
+    pub verdict: Verdict,
     /// Stages in order, with seconds of wall time and steps.
     pub stages: Vec<StageRecord>,
     /// Sizes of the model.

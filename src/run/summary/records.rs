@@ -66,10 +66,15 @@ pub struct EnergyRecord {
     pub error: f64,
     /// Work of the load [J].
     pub work: f64,
-    /// |error| over the larger of |work of the load| and energy dissipated; absent when both are zero.
-    pub relative_error: Option<f64>,
+    /// The larger of the sum of all works and losses and the sum of all changes of stored energies, each by its size [J].
+    pub turned_over: f64,
+    /// |error| over the largest energy turned over so far, or over a floor where that is larger: a thousandth of what springs and
+    /// motion hold and 1e-9 of gravity's potential.
+    pub relative_error: f64,
     /// Largest |error| at any row of the history [J].
     pub largest_error: f64,
+    /// Largest relative error at any row of the history.
+    pub largest_relative_error: f64,
 }
 
 /// Momentum account: change of momentum against the impulses of all forces.

@@ -17,6 +17,7 @@ impl Summary {
         self.report_track(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
         lines.extend(packing::report(&self.bed.growth, &self.bed.compaction, self.bed.packing.as_ref()));
+        lines.extend(self.verdict.report());
         lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
         lines.join("\n") + "\n"
     }
@@ -72,10 +73,12 @@ impl Summary {
     /// Energy, momentum and bonds.
     fn report_accounts(&self, lines: &mut Vec<String>) {
         if let Some(e) = &self.energy {
-            let relative = e
-                .relative_error
-                .map_or(String::new(), |r| format!(" ({:.4} % of what was turned over)", 100.0 * r));
-            lines.push(format!("work {:.6} J, energy error {:.2e} J{relative}", e.work, e.error));
+            lines.push(format!(
+                "work {:.6} J, energy error {:.2e} J ({:.4} % of what was turned over)",
+                e.work,
+                e.error,
+                100.0 * e.relative_error
+            ));
         }
         if let Some(m) = &self.momentum {
             lines.push(format!(

@@ -1,0 +1,71 @@
+//! The energy account while a run goes on: it stops a run whose numbers mean nothing any more.
+
+use crate::failure::Failure;
+use serde::{Deserialize, Serialize};
+use trackbed_coupling::ledger::Balance;
+
+/// Energy error over the energy turned over: above this it is remarked, and above the second the run stops.
+pub const ENERGY: (f64, f64) = (0.01, 0.2);
+
+/// The energy account over a run: the largest error in proportion to what had been turned over by then.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct EnergyWatch {
+    /// Largest energy turned over so far [J].
+    turnover: f64,
+    /// Largest error over it, or over the floor where that is larger, at any row.
+    pub worst: f64,
+    /// The same now.
+    pub now: f64,
+}
+
+impl EnergyWatch {
+    /// Takes a row of the history into account.
+    ///
+    /// # Errors
+    /// The error is so large that nothing of the run means anything.
+    pub fn follow(&mut self, balance: &Balance) -> Result<(), Failure> {
+        self.turnover = self.turnover.max(balance.turnover());
+        let scale = self.turnover.max(balance.floor());
+        let error = balance.error().abs();
+        self.now = if error > 0.0 || error.is_nan() { error / scale } else { 0.0 };
+        self.worst = self.worst.max(self.now);
+        if self.now <= ENERGY.1 {
+            return Ok(());
+        }
+        Err(Failure::Numerical(format!(
+            "the energy account does not close: an error of {error:.3e} J is {:.0} % of the {scale:.3e} J that were turned \
+             over, and above {:.0} % nothing of a run can be relied on; expected shorter steps (time.grain_step, \
+             solid.dynamics, coupling), or a start without large overlaps",
+            100.0 * self.now,
+            100.0 * ENERGY.1
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trackbed_coupling::ledger::{Spent, Stored};
+
+    fn balance(kinetic: f64, friction: f64) -> Balance {
+        let start = Stored { grains_kinetic: 1.0, ..Stored::default() };
+        let now = Stored { grains_kinetic: kinetic, ..Stored::default() };
+        Balance { start, now, spent: Spent { friction, ..Spent::default() } }
+    }
+
+    #[test]
+    fn energy_is_judged_at_every_row_by_the_largest_turnover_so_far() {
+        let mut watch = EnergyWatch::default();
+        watch.follow(&balance(0.2, 0.81)).unwrap();
+        assert!((watch.now - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
+        // The same error with nothing turned over at the moment.
+        watch.follow(&balance(1.01, 0.0)).unwrap();
+        assert!((watch.now - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
+        let failure = watch.follow(&balance(1.5, 0.0)).unwrap_err();
+        assert_eq!(failure.code(), 3);
+        assert!(failure.to_string().contains("62 %"), "{failure}");
+        assert!(watch.follow(&balance(f64::NAN, 0.0)).is_err());
+        // At rest, rounding is no error.
+        EnergyWatch::default().follow(&balance(1.0 + 1e-14, 0.0)).unwrap();
+    }
+}

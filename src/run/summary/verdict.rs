@@ -1,0 +1,154 @@
+//! What a run is judged by: accounts that must close, each with the figure above which it is remarked and the one above
+//! which the run has no result.
+
+use super::Summary;
+use crate::failure::Failure;
+use crate::run::energy_watch::ENERGY;
+use serde::Serialize;
+
+/// Imbalance of loads and reactions of a static solid over the sum of their sizes: remarked, and refused.
+const EQUILIBRIUM: (f64, f64) = (1e-3, 0.05);
+
+/// Momentum of the grains against all impulses: they agree to rounding.
+const MOMENTUM: f64 = 1e-6;
+
+/// Force and moment across the interface: they agree to rounding.
+const TRANSFER: f64 = 1e-8;
+
+/// A loss below zero by this share of the energy turned over is remarked.
+const NEGATIVE: f64 = 0.01;
+
+/// How a judgement ended; the last is the worst.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Nothing to remark.
+    #[default]
+    Passed,
+    /// Results are to be looked at with care.
+    Warned,
+    /// There is no result.
+    Failed,
+}
+
+/// One account.
+#[derive(Clone, Debug, Serialize)]
+pub struct Judged {
+    /// What was judged.
+    pub what: String,
+    /// What was found, as a share or a number.
+    pub value: f64,
+    /// Above this it is remarked.
+    pub warn_above: f64,
+    /// Above this the run has failed; absent where it never does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop_above: Option<f64>,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl Judged {
+    fn new(what: impl Into<String>, value: f64, warn_above: f64, stop_above: Option<f64>) -> Judged {
+        // Also what is not a number has failed.
+        let above = |limit: f64| value.is_nan() || value > limit;
+        let outcome = match stop_above {
+            Some(limit) if above(limit) => Outcome::Failed,
+            _ if above(warn_above) => Outcome::Warned,
+            _ => Outcome::Passed,
+        };
+        Judged { what: what.into(), value, warn_above, stop_above, outcome }
+    }
+}
+
+/// What a run was judged by, and how that ended.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Verdict {
+    /// The worst outcome of all.
+    pub outcome: Outcome,
+    /// The accounts.
+    pub judged: Vec<Judged>,
+}
+
+impl Verdict {
+    /// Judges a run by its accounts.
+    pub fn of(summary: &Summary) -> Verdict {
+        let mut judged = Vec::new();
+        if let Some(e) = &summary.energy {
+            let (warn, stop) = ENERGY;
+            let what = "energy error over energy turned over, largest at any row";
+            judged.push(Judged::new(what, e.largest_relative_error, warn, Some(stop)));
+            for (name, loss) in e.spent.losses() {
+                let below = (-loss).max(0.0) / e.turned_over.max(f64::MIN_POSITIVE);
+                if below > NEGATIVE {
+                    let what = format!("energy gained from {name} over energy turned over");
+                    judged.push(Judged::new(what, below, NEGATIVE, None));
+                }
+            }
+        }
+        if let Some(m) = &summary.momentum {
+            judged.push(Judged::new("momentum error over impulses", m.linear, MOMENTUM, None));
+            judged.push(Judged::new("angular momentum error over impulses", m.angular, MOMENTUM, None));
+        }
+        if let Some(s) = &summary.solid.statics {
+            let (warn, stop) = EQUILIBRIUM;
+            let what = "sum of loads and reactions over their sizes";
+            judged.push(Judged::new(what, s.equilibrium_error, warn, Some(stop)));
+        }
+        if let Some(c) = &summary.coupling {
+            let transfer = c.transfer.force.max(c.transfer.moment);
+            judged.push(Judged::new("force and moment error across the interface", transfer, TRANSFER, None));
+            judged.push(Judged::new("windows without convergence", c.passes.unconverged as f64, 0.0, None));
+        }
+        let outcome = judged.iter().map(|j| j.outcome).max().unwrap_or_default();
+        Verdict { outcome, judged }
+    }
+
+    /// Lines for the end of a run.
+    pub fn report(&self) -> Vec<String> {
+        let word = |outcome: Outcome| match outcome {
+            Outcome::Passed => "passed",
+            Outcome::Warned => "warned",
+            Outcome::Failed => "failed",
+        };
+        let mut lines =
+            vec![format!("verdict: {}, {} accounts judged", word(self.outcome), self.judged.len())];
+        for j in self.judged.iter().filter(|j| j.outcome != Outcome::Passed) {
+            lines.push(format!(
+                "  {}: {} is {:.3e}, expected at most {:.0e}",
+                word(j.outcome),
+                j.what,
+                j.value,
+                j.warn_above
+            ));
+        }
+        lines
+    }
+
+    /// The run as a failure, where an account says that it has no result.
+    ///
+    /// # Errors
+    /// That failure.
+    pub fn judge(&self) -> Result<(), Failure> {
+        match self.judged.iter().find(|j| j.outcome == Outcome::Failed) {
+            None => Ok(()),
+            Some(j) => Err(Failure::Numerical(format!(
+                "{} is {:.3e}, and above {:.0e} there is no result",
+                j.what,
+                j.value,
+                j.stop_above.unwrap_or(j.warn_above)
+            ))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_a_number_has_failed() {
+        assert_eq!(Judged::new("x", f64::NAN, 1.0, Some(2.0)).outcome, Outcome::Failed);
+        assert_eq!(Judged::new("x", 1.5, 1.0, Some(2.0)).outcome, Outcome::Warned);
+        assert_eq!(Judged::new("x", 1.0, 1.0, Some(2.0)).outcome, Outcome::Passed);
+    }
+}
