@@ -3,8 +3,10 @@
 mod analysis;
 mod boundary;
 mod common;
+mod conditioning;
 mod geometry;
 mod load;
+mod locking;
 mod material;
 mod selection;
 mod sleepers;
@@ -66,6 +68,9 @@ impl SolidPart {
     pub fn failure(&self, error: &SolveError) -> Failure {
         let file = self.constraint_file.display();
         match error {
+            SolveError::NoStiffness { node, pivot, .. } if conditioning::is_poor(&self.model) => {
+                Failure::Input(format!("{file}: {}", conditioning::message(&self.model, *node, *pivot)))
+            }
             SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
                 "{file}: constraints: found too few ({error}), expected a body that is held"
             )),
@@ -108,6 +113,7 @@ impl SolidPart {
             mesh,
             materials,
             quadrature: self.model.quadrature(),
+            assumed: self.model.assumed(),
             constraints: self.model.constraints().iter().filter(of_ground).copied().collect(),
             gravity: if self.heavy_ground { self.model.gravity() } else { [0.0; 3] },
             rayleigh: self.model.rayleigh(),
@@ -170,6 +176,7 @@ pub fn build(
         Integration::Irons14 => fem::Quadrature::Irons14,
         Integration::Full => fem::Quadrature::Gauss3,
     };
+    let assumed = locking::assumed(document, solid, &geometry.mesh)?;
     let loads = solid
         .load
         .iter()
@@ -180,10 +187,13 @@ pub fn build(
     let boundaries = boundary::absorbing(document, solid, &geometry, &materials.constants)?;
     let linear = materials.constants.values().all(|m| m.is_linear());
     let plans = analysis::plans(document, solid, &materials, linear, coupled)?;
+    analysis::check_overburden(document, &plans, &geometry.mesh, &materials)?;
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
-    let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
+    let locking = locking::remarks(&mesh, &materials.constants, quadrature, assumed);
+    let warnings =
+        warnings.into_iter().chain(faults.iter().map(ToString::to_string)).chain(locking).collect();
     let weight = sleepers.as_ref().map_or(if solid.gravity { gravity } else { [0.0; 3] }, |s| s.gravity);
     let sleepers = sleepers
         .map(|plan| SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints));
@@ -194,6 +204,7 @@ pub fn build(
         mesh,
         materials: materials.constants,
         quadrature,
+        assumed,
         mass: match solid.mass {
             Mass::Consistent => fem::Mass::Consistent,
             Mass::Lumped => fem::Mass::Lumped,
