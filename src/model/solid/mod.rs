@@ -171,11 +171,7 @@ pub fn build(
             return Err(document.error("solid.material", found, "an entry with this id").into());
         }
     }
-    let quadrature = match solid.integration {
-        Integration::Reduced => fem::Quadrature::Gauss2,
-        Integration::Irons14 => fem::Quadrature::Irons14,
-        Integration::Full => fem::Quadrature::Gauss3,
-    };
+    let quadrature = quadrature(solid.integration);
     let assumed = locking::assumed(document, solid, &geometry.mesh)?;
     let loads = solid
         .load
@@ -236,6 +232,14 @@ pub fn build(
         sleepers,
         heavy_ground: solid.gravity,
     })
+}
+
+fn quadrature(integration: Integration) -> fem::Quadrature {
+    match integration {
+        Integration::Reduced => fem::Quadrature::Gauss2,
+        Integration::Irons14 => fem::Quadrature::Irons14,
+        Integration::Full => fem::Quadrature::Gauss3,
+    }
 }
 
 /// The reduction of a solid, refused where it would not be one, or would not be used.
