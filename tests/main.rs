@@ -22,6 +22,7 @@ mod suite {
     mod packings;
     mod rail;
     mod scenes;
+    mod solid_edges;
     mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
@@ -31,5 +32,6 @@ mod suite {
     pub mod support;
     mod track;
     mod train;
+    mod verdict;
     mod walls;
 }

@@ -9,6 +9,8 @@
 //! Determinism: element matrices of a chunk of fixed size are computed side by side, then added in element order by one
 //! thread, so the bits do not depend on the number of threads.
 
+use crate::assumed::modes::{self, HEX8_TERMS};
+use crate::assumed::{AssumedStrain, Dilatation, ElementStrains};
 use crate::boundary::{BoundaryLayer, FaceMatrix};
 use crate::element::quadrature::Quadrature;
 use crate::element::{ElementKind, mass_points, stiffness_points};
@@ -57,6 +59,17 @@ pub struct Combination {
     pub dashpots: f64,
 }
 
+/// What the elements have in common: how stiffness and mass are formed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Formulation {
+    /// Rule of the stiffness.
+    pub quadrature: Quadrature,
+    /// Strains that the elements assume.
+    pub assumed: AssumedStrain,
+    /// Consistent or lumped mass.
+    pub mass: Mass,
+}
+
 /// What one element adds.
 struct Contribution {
     /// 3×3 stiffness block and mass of each pair.
@@ -72,23 +85,25 @@ impl Matrices {
         rule: Quadrature,
         material_of: impl Fn(usize) -> &'m Elastic + Sync,
     ) -> Matrices {
-        Matrices::assemble_with(mesh, rule, Mass::Consistent, &[], material_of)
+        let formulation = Formulation { quadrature: rule, ..Formulation::default() };
+        Matrices::assemble_with(mesh, formulation, &[], |e| (material_of(e), false))
     }
 
     /// Assembles stiffness, mass, and the springs and dashpots of boundary layers, whose faces are faces of elements.
+    /// `material_of` gives the material of an element, and whether it yields.
     pub fn assemble_with<'m>(
         mesh: &Mesh,
-        rule: Quadrature,
-        mass: Mass,
+        formulation: Formulation,
         boundaries: &[BoundaryLayer],
-        material_of: impl Fn(usize) -> &'m Elastic + Sync,
+        material_of: impl Fn(usize) -> (&'m Elastic, bool) + Sync,
     ) -> Matrices {
+        let mass = formulation.mass;
         let mut matrices = Matrices::pattern(mesh);
         let mut shares = vec![0.0; if mass == Mass::Lumped { mesh.node_count() } else { 0 }];
         let elements: Vec<usize> = (0..mesh.element_count()).collect();
         for chunk in elements.chunks(CHUNK) {
             let contributions: Vec<Contribution> =
-                chunk.par_iter().map(|&e| contribution(mesh, e, rule, mass, material_of(e))).collect();
+                chunk.par_iter().map(|&e| contribution(mesh, e, formulation, material_of(e))).collect();
             for (&e, contribution) in chunk.iter().zip(&contributions) {
                 matrices.add(&mesh.connectivity[e], &contribution.pairs);
                 for (&node, share) in mesh.connectivity[e].iter().zip(&contribution.shares) {
@@ -370,19 +385,18 @@ fn add_scaled(sum: &mut [f64; 3], factor: f64, v: &[f64; 3]) {
 fn contribution(
     mesh: &Mesh,
     element: usize,
-    rule: Quadrature,
-    mass: Mass,
-    material: &Elastic,
+    formulation: Formulation,
+    material: (&Elastic, bool),
 ) -> Contribution {
     match mesh.connectivity.kind(element) {
-        ElementKind::Hex20 => contribution_of::<20>(mesh, element, rule, mass, material),
-        ElementKind::Wedge15 => contribution_of::<15>(mesh, element, rule, mass, material),
-        ElementKind::Pyramid13 => contribution_of::<13>(mesh, element, rule, mass, material),
-        ElementKind::Tet10 => contribution_of::<10>(mesh, element, rule, mass, material),
-        ElementKind::Hex8 => contribution_of::<8>(mesh, element, rule, mass, material),
-        ElementKind::Wedge6 => contribution_of::<6>(mesh, element, rule, mass, material),
-        ElementKind::Pyramid5 => contribution_of::<5>(mesh, element, rule, mass, material),
-        ElementKind::Tet4 => contribution_of::<4>(mesh, element, rule, mass, material),
+        ElementKind::Hex20 => contribution_of::<20>(mesh, element, formulation, material),
+        ElementKind::Wedge15 => contribution_of::<15>(mesh, element, formulation, material),
+        ElementKind::Pyramid13 => contribution_of::<13>(mesh, element, formulation, material),
+        ElementKind::Tet10 => contribution_of::<10>(mesh, element, formulation, material),
+        ElementKind::Hex8 => contribution_of::<8>(mesh, element, formulation, material),
+        ElementKind::Wedge6 => contribution_of::<6>(mesh, element, formulation, material),
+        ElementKind::Pyramid5 => contribution_of::<5>(mesh, element, formulation, material),
+        ElementKind::Tet4 => contribution_of::<4>(mesh, element, formulation, material),
     }
 }
 
@@ -390,14 +404,11 @@ fn contribution(
 fn contribution_of<const N: usize>(
     mesh: &Mesh,
     element: usize,
-    rule: Quadrature,
-    mass: Mass,
-    material: &Elastic,
+    formulation: Formulation,
+    (material, yields): (&Elastic, bool),
 ) -> Contribution {
+    let Formulation { quadrature, assumed, mass } = formulation;
     let (coordinates, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
-    let points = stiffness_points(kind, rule);
-    let (lambda, mu) = material.lame();
-    let products = gradient_products::<N>(&coordinates, points);
     let mut masses = mass_matrix::<N>(&coordinates, mass_points(kind), material.density);
     let mut shares = Vec::new();
     if mass == Mass::Lumped {
@@ -406,30 +417,60 @@ fn contribution_of<const N: usize>(
         masses = [[0.0; N]; N];
         (0..N).for_each(|a| masses[a][a] = diagonal[a]);
     }
-    let mut pairs = Vec::with_capacity(N * (N + 1) / 2);
-    if kind.is_linear() {
+    let points = stiffness_points(kind, quadrature);
+    let (lambda, mu) = material.lame();
+    let blocks = if kind == ElementKind::Hex8 && assumed.incompatible_modes {
+        let strains = ElementStrains::new(kind, coordinates, points, assumed, material.poisson, yields);
+        blocks_with_modes::<N>(&strains, lambda, mu)
+    } else if kind.is_linear() {
         // B-bar: the deviatoric part at the points, the volume strain as its mean.
+        let products = gradient_products::<N>(&coordinates, points);
         let (mean, volume) = mean_gradients(&coordinates, points);
         let bulk = (lambda + 2.0 / 3.0 * mu) * volume;
-        for a in 0..N {
-            for b in a..N {
-                let mut block = stiffness_block(&products, -2.0 / 3.0 * mu, mu, a, b);
-                for i in 0..3 {
-                    for j in 0..3 {
-                        block[3 * i + j] += bulk * mean[a][i] * mean[b][j];
+        upper_blocks::<N>(|a, b| {
+            let mut block = stiffness_block(&products, -2.0 / 3.0 * mu, mu, a, b);
+            for i in 0..3 {
+                for j in 0..3 {
+                    block[3 * i + j] += bulk * mean[a][i] * mean[b][j];
+                }
+            }
+            block
+        })
+    } else if assumed.dilatation == Dilatation::Mean {
+        let strains = ElementStrains::new(kind, coordinates, points, assumed, material.poisson, yields);
+        let products = strains.products::<N>();
+        upper_blocks::<N>(|a, b| strains.block(&products, lambda, mu, a, b))
+    } else {
+        let products = gradient_products::<N>(&coordinates, points);
+        upper_blocks::<N>(|a, b| stiffness_block(&products, lambda, mu, a, b))
+    };
+    let masses = (0..N).flat_map(|a| masses[a][a..].iter().copied());
+    Contribution { pairs: blocks.into_iter().zip(masses).collect(), shares }
+}
+
+/// The blocks of the pairs a <= b of N nodes, row by row.
+fn upper_blocks<const N: usize>(block: impl Fn(usize, usize) -> [f64; 9]) -> Vec<[f64; 9]> {
+    (0..N).flat_map(|a| (a..N).map(move |b| (a, b))).map(|(a, b)| block(a, b)).collect()
+}
+
+/// The same with the incompatible modes eliminated: `K_uu + K_uα A`.
+fn blocks_with_modes<const N: usize>(strains: &ElementStrains, lambda: f64, mu: f64) -> Vec<[f64; 9]> {
+    let products = strains.products::<HEX8_TERMS>();
+    upper_blocks::<N>(|a, b| {
+        let mut block = strains.block(&products, lambda, mu, a, b);
+        for m in 0..modes::COUNT {
+            let with = strains.block(&products, lambda, mu, a, N + m);
+            let Some(amplitudes) = strains.internal().map(|i| &i.amplitudes()[m][b]) else { continue };
+            for i in 0..3 {
+                for j in 0..3 {
+                    for k in 0..3 {
+                        block[3 * i + j] += with[3 * i + k] * amplitudes[3 * k + j];
                     }
                 }
-                pairs.push((block, masses[a][b]));
             }
         }
-    } else {
-        for a in 0..N {
-            for b in a..N {
-                pairs.push((stiffness_block(&products, lambda, mu, a, b), masses[a][b]));
-            }
-        }
-    }
-    Contribution { pairs, shares }
+        block
+    })
 }
 
 #[cfg(test)]

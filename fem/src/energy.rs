@@ -5,8 +5,9 @@
 //! taken with the undeformed positions: the linear theory conserves that one, because its stiffness resists no
 //! infinitesimal rotation of the undeformed body. Limits: small displacement, for moments too.
 
+use crate::assumed::modes::condense;
 use crate::element::stiffness_points;
-use crate::kinematics::{jacobian, mean_gradients, spatial_gradients};
+use crate::kinematics::{ElementCoordinates, jacobian};
 use crate::material::{PointState, Points};
 use crate::mesh::Mesh;
 use crate::model::Model;
@@ -42,28 +43,34 @@ pub fn of_points(model: &Model, points: &Points) -> f64 {
     total
 }
 
-/// Forces of the stresses at the Gauss points, `∫ B^T s dV` [N]; in linear elements with the mean dilatation. Shape
+/// Forces of the stresses at the Gauss points, `∫ B̄^T s dV` [N], with the strains that the elements assume. Shape
 /// `[3 * nodes]`.
 pub fn force_of_points(model: &Model, points: &[PointState]) -> Vec<f64> {
     let mesh = model.mesh();
     let mut force = vec![0.0; model.dof_count()];
     for e in 0..mesh.element_count() {
-        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
-        let rule = stiffness_points(kind, model.quadrature());
-        let mean = kind.is_linear().then(|| mean_gradients(&x, rule).0);
+        let strains = model.element_strains(e);
+        let rule = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
+        let mut on_nodes = ElementCoordinates::default();
         for (point, state) in rule.iter().zip(&points[model.point_start(e)..]) {
-            let (g, det) = spatial_gradients(&x, &point.gradients);
-            let s = state.stress.map(|s| point.weight * det * s);
+            let at = strains.at_point(point);
+            let s = state.stress.map(|s| point.weight * at.determinant * s);
             let pressure = (s[0] + s[1] + s[2]) / 3.0;
-            for (a, &node) in mesh.connectivity[e].iter().enumerate() {
-                let f = &mut force[3 * node as usize..][..3];
-                f[0] += s[0] * g[a][0] + s[3] * g[a][1] + s[5] * g[a][2];
-                f[1] += s[3] * g[a][0] + s[1] * g[a][1] + s[4] * g[a][2];
-                f[2] += s[5] * g[a][0] + s[4] * g[a][1] + s[2] * g[a][2];
-                if let Some(mean) = &mean {
-                    (0..3).for_each(|k| f[k] += pressure * (mean[a][k] - g[a][k]));
+            for (a, f) in on_nodes.iter_mut().enumerate().take(strains.terms()) {
+                let g = &at.gradients[a];
+                f[0] += s[0] * g[0] + s[3] * g[1] + s[5] * g[2];
+                f[1] += s[3] * g[0] + s[1] * g[1] + s[4] * g[2];
+                f[2] += s[5] * g[0] + s[4] * g[1] + s[2] * g[2];
+                if let Some(volume) = &at.dilatation {
+                    (0..3).for_each(|k| f[k] += pressure * (volume[a][k] - g[k]));
                 }
             }
+        }
+        if let Some(internal) = strains.internal() {
+            condense(internal.amplitudes(), &mut on_nodes);
+        }
+        for (f, &node) in on_nodes.iter().zip(&mesh.connectivity[e]) {
+            (0..3).for_each(|k| force[3 * node as usize + k] += f[k]);
         }
     }
     force

@@ -97,24 +97,33 @@ pub fn gradient_products<const N: usize>(
     let mut sum = [[[0.0; N]; N]; 6];
     for point in points {
         let (g, det) = spatial_gradients(coordinates, &point.gradients);
-        let volume = point.weight * det;
-        let (mut x, mut y, mut z) = ([0.0; N], [0.0; N], [0.0; N]);
-        for b in 0..N {
-            (x[b], y[b], z[b]) = (g[b][0], g[b][1], g[b][2]);
-        }
-        for a in 0..N {
-            let (wx, wy, wz) = (volume * x[a], volume * y[a], volume * z[a]);
-            for b in 0..N {
-                sum[0][a][b] += wx * x[b];
-                sum[1][a][b] += wy * y[b];
-                sum[2][a][b] += wz * z[b];
-                sum[3][a][b] += wx * y[b];
-                sum[4][a][b] += wy * z[b];
-                sum[5][a][b] += wx * z[b];
-            }
-        }
+        add_gradient_products(&mut sum, &g, point.weight * det);
     }
     sum
+}
+
+/// Adds the products of the gradients `g` [1/m] of a point with the volume `volume` [m³].
+#[inline]
+pub fn add_gradient_products<const N: usize>(
+    sum: &mut GradientProducts<N>,
+    g: &ElementCoordinates,
+    volume: f64,
+) {
+    let (mut x, mut y, mut z) = ([0.0; N], [0.0; N], [0.0; N]);
+    for b in 0..N {
+        (x[b], y[b], z[b]) = (g[b][0], g[b][1], g[b][2]);
+    }
+    for a in 0..N {
+        let (wx, wy, wz) = (volume * x[a], volume * y[a], volume * z[a]);
+        for b in 0..N {
+            sum[0][a][b] += wx * x[b];
+            sum[1][a][b] += wy * y[b];
+            sum[2][a][b] += wz * z[b];
+            sum[3][a][b] += wx * y[b];
+            sum[4][a][b] += wy * z[b];
+            sum[5][a][b] += wx * z[b];
+        }
+    }
 }
 
 /// Stiffness block of the node pair (a, b), row-major [N/m], from the gradient products.

@@ -33,6 +33,7 @@
 //! ```
 
 pub mod assembly;
+pub mod assumed;
 pub mod block;
 pub mod boundary;
 pub mod connectivity;
@@ -43,6 +44,7 @@ pub mod equations;
 pub mod error;
 pub mod integrator;
 pub mod kinematics;
+pub mod limits;
 pub mod loads;
 pub mod mass;
 pub mod material;
@@ -60,6 +62,7 @@ pub mod stress;
 pub mod supports;
 pub mod window;
 
+pub use assumed::{AssumedStrain, Dilatation};
 pub use boundary::BoundaryLayer;
 pub use connectivity::Connectivity;
 pub use damping::Rayleigh;

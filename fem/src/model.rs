@@ -2,10 +2,12 @@
 
 mod checks;
 
-use crate::assembly::Matrices;
+use crate::assembly::{Formulation, Matrices};
+use crate::assumed::{AssumedStrain, ElementStrains};
 use crate::boundary::{self, BoundaryLayer};
 use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
+use crate::element::stiffness_points;
 use crate::equations;
 pub use crate::error::ModelError;
 use crate::error::SolveError;
@@ -27,6 +29,8 @@ pub struct ModelInput {
     pub materials: BTreeMap<u32, Material>,
     /// Rule of the stiffness.
     pub quadrature: Quadrature,
+    /// Strains that the elements assume.
+    pub assumed: AssumedStrain,
     /// Supports and prescribed displacements, constant in time.
     pub constraints: Vec<Constraint>,
     /// Acceleration of gravity [m/s²].
@@ -56,6 +60,7 @@ pub struct Model {
     mesh: Mesh,
     materials: BTreeMap<u32, Material>,
     quadrature: Quadrature,
+    assumed: AssumedStrain,
     constraints: Vec<Constraint>,
     gravity: [f64; 3],
     rayleigh: Rayleigh,
@@ -78,8 +83,17 @@ impl Model {
     /// See [`ModelError`]: everything that can be known before solving. Whether the body is held is checked by
     /// [`crate::statics`] alone, because dynamics does not ask for it.
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
-        let ModelInput { mesh, materials, quadrature, constraints, gravity, rayleigh, mass, boundaries } =
-            input;
+        let ModelInput {
+            mesh,
+            materials,
+            quadrature,
+            assumed,
+            constraints,
+            gravity,
+            rayleigh,
+            mass,
+            boundaries,
+        } = input;
         checks::check_mesh(&mesh)?;
         checks::check_materials(&mesh, &materials)?;
         checks::check_shape(&mesh, quadrature)?;
@@ -93,14 +107,19 @@ impl Model {
         }
         let supports = Supports::new(&mesh, &constraints)?;
         boundary::check(&mesh, &boundaries)?;
-        let material = |e: usize| &materials[&mesh.materials[e]].elastic;
-        let matrices = Arc::new(Matrices::assemble_with(&mesh, quadrature, mass, &boundaries, material));
+        let material = |e: usize| {
+            let material = &materials[&mesh.materials[e]];
+            (&material.elastic, !material.is_linear())
+        };
+        let formulation = Formulation { quadrature, assumed, mass };
+        let matrices = Arc::new(Matrices::assemble_with(&mesh, formulation, &boundaries, material));
         let point_start = checks::point_start(&mesh, quadrature);
         let value_start = checks::value_start(&mesh, quadrature, &materials);
         Ok(Model {
             mesh,
             materials,
             quadrature,
+            assumed,
             constraints,
             gravity,
             rayleigh,
@@ -243,6 +262,20 @@ impl Model {
     /// The rule of the stiffness.
     pub fn quadrature(&self) -> Quadrature {
         self.quadrature
+    }
+
+    /// The strains that the elements assume.
+    pub fn assumed(&self) -> AssumedStrain {
+        self.assumed
+    }
+
+    /// The strains of element `element` (index).
+    pub fn element_strains(&self, element: usize) -> ElementStrains {
+        let kind = self.mesh.connectivity.kind(element);
+        let rule = stiffness_points(kind, self.quadrature);
+        let (coordinates, material) = (self.mesh.element_coordinates(element), self.material(element));
+        let (poisson, yields) = (material.elastic.poisson, !material.is_linear());
+        ElementStrains::new(kind, coordinates, rule, self.assumed, poisson, yields)
     }
 
     /// The constraints as given.

@@ -9,7 +9,7 @@
 
 use crate::element::quadrature::{GAUSS2, LINE2, PYRAMID8, Quadrature};
 use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
-use crate::kinematics::{jacobian, mean_gradients, spatial_gradients, strain};
+use crate::kinematics::jacobian;
 use crate::model::Model;
 use crate::state::State;
 use nalgebra::DMatrix;
@@ -20,27 +20,26 @@ use std::sync::OnceLock;
 /// Stress at the points of the model's rule in element `element` (index), in the order of the rule.
 pub fn gauss(model: &Model, u: &[f64], element: usize) -> Vec<[f64; 6]> {
     let points = stiffness_points(model.mesh().connectivity.kind(element), model.quadrature());
-    points.iter().map(|p| at_natural(model, u, element, p.xi)).collect()
+    at_points(model, u, element, points.iter().map(|p| p.xi))
 }
 
 /// Stress at the natural point `xi` of element `element` (index).
 pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f64; 6] {
-    let mesh = model.mesh();
-    let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
-    let moved = mesh.element_values(element, u);
-    let (gradients, _) = spatial_gradients(&x, &kind.gradients(xi));
-    let mut strain = strain(&gradients, &moved);
-    if kind.is_linear() {
-        let (mean, _) = mean_gradients(&x, stiffness_points(kind, model.quadrature()));
-        let mut correction = 0.0;
-        for a in 0..kind.node_count() {
-            for k in 0..3 {
-                correction += (mean[a][k] - gradients[a][k]) * moved[a][k] / 3.0;
-            }
-        }
-        strain[..3].iter_mut().for_each(|e| *e += correction);
-    }
+    let strains = model.element_strains(element);
+    let strain = strains.strain(&strains.at(xi), &model.mesh().element_values(element, u));
     model.elastic(element).stress(&strain)
+}
+
+/// Stresses at natural points of element `element` (index).
+fn at_points(
+    model: &Model,
+    u: &[f64],
+    element: usize,
+    points: impl Iterator<Item = [f64; 3]>,
+) -> Vec<[f64; 6]> {
+    let strains = model.element_strains(element);
+    let moved = model.mesh().element_values(element, u);
+    points.map(|xi| model.elastic(element).stress(&strains.strain(&strains.at(xi), &moved))).collect()
 }
 
 /// Natural points whose stresses are extrapolated to the nodes of a kind of element.
@@ -61,8 +60,7 @@ pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
 pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
     nodal_mean(model, |e| {
         let kind = model.mesh().connectivity.kind(e);
-        let stresses: Vec<_> =
-            sampling_points(kind).into_iter().map(|xi| at_natural(model, u, e, xi)).collect();
+        let stresses = at_points(model, u, e, sampling_points(kind).into_iter());
         extrapolate(kind, &stresses)
     })
 }

@@ -26,7 +26,7 @@ impl EnergyWatch {
     pub fn follow(&mut self, balance: &Balance) -> Result<(), Failure> {
         self.turnover = self.turnover.max(balance.turnover());
         let scale = self.turnover.max(balance.floor());
-        let error = balance.error().abs();
+        let error = balance.unexplained();
         self.now = if error > 0.0 || error.is_nan() { error / scale } else { 0.0 };
         self.worst = self.worst.max(self.now);
         if self.now <= ENERGY.1 {

@@ -165,6 +165,7 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
 fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
     if let Some(solid) = &run.job.solid {
         summary.warnings.extend(solid.warnings.iter().cloned());
+        summary.warnings.extend(stages::solid_remarks::missed(run.job));
         let mesh = solid.model.mesh();
         summary.model.nodes = mesh.node_count();
         summary.model.elements = mesh.element_count();

@@ -52,6 +52,39 @@ pub struct TimeFunction {
     points: Vec<(f64, f64)>,
 }
 
+/// Samples that a period needs at least.
+const SAMPLES: f64 = 8.0;
+/// Part of the largest factor by which a point of a table may stray from the line between two samples.
+const STRAY: f64 = 0.1;
+
+/// What samples miss of a history.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Missed {
+    /// A period has so many samples.
+    Period {
+        /// Samples in a period.
+        samples: f64,
+    },
+    /// A point of a table lies off the line between the samples about it.
+    Point {
+        /// Its time [s].
+        time: f64,
+        /// Its factor.
+        factor: f64,
+    },
+}
+
+impl std::fmt::Display for Missed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Missed::Period { samples } => {
+                write!(f, "{samples:.2} to a period, of which 8 or more are needed")
+            }
+            Missed::Point { time, factor } => write!(f, "which pass by the factor {factor} at {time} s"),
+        }
+    }
+}
+
 impl TimeFunction {
     /// The factor 1 at all times.
     pub const CONSTANT: TimeFunction = TimeFunction {
@@ -145,6 +178,29 @@ impl TimeFunction {
         }
     }
 
+    /// What samples every `step` [s] up to `end` [s] miss of the course, if anything: a period, or a point of a table.
+    pub fn missed(&self, step: f64, end: f64) -> Option<Missed> {
+        let (first, last) = (self.start.max(0.0), self.end.min(end));
+        match self.kind {
+            HistoryKind::Sine | HistoryKind::Haversine if first < last => {
+                let per_period = 1.0 / (self.frequency * step);
+                (per_period < SAMPLES).then_some(Missed::Period { samples: per_period })
+            }
+            HistoryKind::Table => {
+                let largest = self.points.iter().fold(0.0, |m: f64, p| m.max(p.1.abs()));
+                let strays = |&&(time, factor): &&(f64, f64)| {
+                    let (at, before) = (time + self.start, ((time + self.start) / step).floor() * step);
+                    let share = (at - before) / step;
+                    let seen = (1.0 - share) * self.factor(before) + share * self.factor(before + step);
+                    at > 0.0 && at < end && (factor - seen).abs() > STRAY * largest
+                };
+                let point = self.points.iter().find(strays);
+                point.map(|&(time, factor)| Missed::Point { time: time + self.start, factor })
+            }
+            _ => None,
+        }
+    }
+
     /// Straight between the points of a table, constant beyond them.
     fn between(&self, t: f64) -> f64 {
         let next = self.points.partition_point(|p| p.0 <= t);
@@ -197,6 +253,27 @@ mod tests {
         }
         assert_eq!(f.factor(0.01), 1.0);
         assert_eq!(f.factor(0.0201), 0.0);
+    }
+
+    /// A pulse of 1 ms between steps of 10 ms is missed, and so is a sine of four steps; a ramp and slow courses are not.
+    #[test]
+    fn samples_that_pass_by_a_pulse_are_known() {
+        let table = |points: &[(f64, f64)]| TimeFunction {
+            kind: HistoryKind::Table,
+            points: points.to_vec(),
+            ..TimeFunction::CONSTANT
+        };
+        let pulse = table(&[(0.0, 0.0), (0.0145, 0.0), (0.015, 1.0), (0.0155, 0.0)]);
+        assert_eq!(pulse.missed(0.01, 0.1), Some(Missed::Point { time: 0.015, factor: 1.0 }));
+        assert_eq!(pulse.missed(0.0005, 0.1), None);
+        assert_eq!(pulse.missed(0.01, 0.014), None);
+        assert_eq!(table(&[(0.0, 0.0), (0.05, 1.0)]).missed(0.01, 0.1), None);
+        let fast = history(HistoryKind::Haversine, 25.0, 1.0);
+        assert!(
+            matches!(fast.missed(0.01, 0.1), Some(Missed::Period { samples }) if (samples - 4.0).abs() < 1e-12)
+        );
+        assert_eq!(fast.missed(0.005, 0.1), None);
+        assert_eq!(TimeFunction::CONSTANT.missed(1.0, 2.0), None);
     }
 
     #[test]

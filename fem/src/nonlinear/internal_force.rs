@@ -1,7 +1,7 @@
 //! Internal force: strain increments at the Gauss points, return to the yield surface, and `f_a = ∫ sigma·g_a dV`.
 //!
-//! Linear kinds of elements take the strain with mean dilatation and the transposed of it for the force (B-bar, Hughes,
-//! Int. J. Numer. Methods Eng. 15 (1980) 1413-1418). Elements without plasticity skip the return. Elements are worked on in
+//! Elements take the strains that they assume ([`crate::assumed`]), and the transposed of it for the force. Elements without
+//! plasticity skip the return. Elements are worked on in
 //! fixed halves as tasks and their forces added in element order, so the bits do not depend on the number of threads.
 
 use super::points::{Moved, PointTable};
@@ -87,12 +87,14 @@ impl InternalForce {
 
     /// Forces of given stresses, without any return. Shape of `states` `[points]`.
     pub fn of_states(&mut self, model: &Model, states: &[PointState]) {
-        self.element_force.fill([0.0; 3]);
         for e in 0..model.mesh().element_count() {
-            let forces = &mut self.element_force[self.table.nodes(e)];
+            let mut forces = Moved::default();
             for (i, p) in self.table.points(e).enumerate() {
-                self.table.add_force(e, i, self.table.volume(p), &states[p].stress, forces);
+                self.table.add_force(e, i, self.table.volume(p), &states[p].stress, &mut forces);
             }
+            self.table.condense(e, &mut forces);
+            let of_nodes = &mut self.element_force[self.table.nodes(e)];
+            of_nodes.copy_from_slice(&forces[..of_nodes.len()]);
         }
         self.gather(model.mesh());
     }
@@ -158,10 +160,11 @@ impl Input<'_> {
         regions: &mut [Region],
         forces: &mut [[f64; 3]],
     ) -> Result<usize, PointFailure> {
-        let moved = element_increment(self.model.mesh(), e, self.increment);
+        let mut moved = element_increment(self.model.mesh(), e, self.increment);
+        self.table.extend(e, &mut moved);
         let (material, at) = (self.model.material(e), self.table.points(e).start);
         let (linear, first_value) = (material.is_linear(), self.model.values(e, 0).start);
-        forces.fill([0.0; 3]);
+        let mut sums = Moved::default();
         let mut plastic = 0;
         for i in 0..points.len() {
             let (old, strain) = (&self.old[at + i], self.table.strain(e, i, &moved));
@@ -179,8 +182,10 @@ impl Input<'_> {
                 (points[i], regions[i]) = (response.state, response.region);
                 plastic += usize::from(response.region != Region::Elastic);
             }
-            self.table.add_force(e, i, self.table.volume(at + i), &points[i].stress, forces);
+            self.table.add_force(e, i, self.table.volume(at + i), &points[i].stress, &mut sums);
         }
+        self.table.condense(e, &mut sums);
+        forces.copy_from_slice(&sums[..forces.len()]);
         if forces.iter().flatten().sum::<f64>().is_finite() {
             Ok(plastic)
         } else {

@@ -1,14 +1,26 @@
 //! Gradients and volumes of all Gauss points, worked out once.
 //!
-//! Memory: 24 bytes per node and 8 per point, so 3.9 kB per hex20 under the reduced rule and 13.2 kB under the full one: a few
-//! per cent of the factor of the same mesh. Reading them takes a fifth of the time of forming them anew.
+//! Memory: 24 bytes per node and point, and 8 per point, so 3.9 kB per hex20 under the reduced rule and 13.2 kB under the
+//! full one, twice that with mean dilatation; 4 kB per hex8 with incompatible modes: a few per cent of the factor of the same
+//! mesh. Reading them takes a fifth of the time of forming them anew.
 
+use crate::assumed::modes::{self, Amplitudes};
 use crate::element::{MAX_NODES, stiffness_points};
-use crate::kinematics::{mean_gradients, spatial_gradients};
 use crate::model::Model;
 
-/// Nodal triples of one element; only the first nodes of its kind are used.
+/// Nodal triples of one element, those of incompatible modes after them; only the first ones of its kind are used.
 pub(crate) type Moved = [[f64; 3]; MAX_NODES];
+
+/// Gradients of the volume strain of an element, if it is not taken at the points.
+#[derive(Clone, Copy, Debug)]
+enum Volume {
+    /// At the points.
+    Pointwise,
+    /// The same in all of the element, from this place on.
+    Mean(usize),
+    /// Of each point, from this place on.
+    Projected(usize),
+}
 
 /// Geometry of the Gauss points of a model.
 #[derive(Clone, Debug)]
@@ -17,17 +29,23 @@ pub(crate) struct PointTable {
     start: Vec<u32>,
     /// First gradient of each element. Shape `[elements + 1]`.
     gradient_start: Vec<usize>,
-    /// Gradients of the shape functions [1/m], node by node, point by point, element by element.
+    /// Gradients of the shape functions and modes [1/m], term by term, point by point, element by element.
     gradients: Vec<[f64; 3]>,
     /// Volume of each point [m³].
     volume: Vec<f64>,
     /// First node of each element in the list of all. Shape `[elements + 1]`.
     node_start: Vec<u32>,
-    /// First mean gradient of each element; the same as the next where there is none. Shape `[elements + 1]`.
-    mean_start: Vec<u32>,
-    /// Mean gradients [1/m] of the elements with mean dilatation.
+    /// Where the gradients of the volume strain are. Shape `[elements]`.
+    dilatation: Vec<Volume>,
+    /// Gradients of the volume strain [1/m].
     means: Vec<[f64; 3]>,
+    /// Place of the amplitudes of each element, [`NONE`] without modes. Shape `[elements]`.
+    modes: Vec<u32>,
+    amplitudes: Vec<Amplitudes>,
 }
+
+/// No amplitudes.
+const NONE: u32 = u32::MAX;
 
 impl PointTable {
     pub fn new(model: &Model) -> PointTable {
@@ -38,24 +56,34 @@ impl PointTable {
             gradients: Vec::new(),
             volume: Vec::with_capacity(model.point_count()),
             node_start: vec![0],
-            mean_start: vec![0],
+            dilatation: Vec::with_capacity(mesh.element_count()),
             means: Vec::new(),
+            modes: Vec::with_capacity(mesh.element_count()),
+            amplitudes: Vec::new(),
         };
         for e in 0..mesh.element_count() {
-            let (kind, x) = (mesh.connectivity.kind(e), mesh.element_coordinates(e));
-            let (points, nodes) = (stiffness_points(kind, model.quadrature()), kind.node_count());
-            for point in points {
-                let (g, det) = spatial_gradients(&x, &point.gradients);
-                table.gradients.extend_from_slice(&g[..nodes]);
-                table.volume.push(point.weight * det);
+            let kind = mesh.connectivity.kind(e);
+            let strains = model.element_strains(e);
+            let (terms, first_mean) = (strains.terms(), table.means.len());
+            let mut dilatation = Volume::Pointwise;
+            for (i, point) in stiffness_points(kind, model.quadrature()).iter().enumerate() {
+                let at = strains.at_point(point);
+                table.gradients.extend_from_slice(&at.gradients[..terms]);
+                table.volume.push(point.weight * at.determinant);
+                if let Some(volume) = at.dilatation {
+                    let mean = strains.has_mean_dilatation();
+                    dilatation = if mean { Volume::Mean(first_mean) } else { Volume::Projected(first_mean) };
+                    if i == 0 || !mean {
+                        table.means.extend_from_slice(&volume[..terms]);
+                    }
+                }
             }
-            if kind.is_linear() {
-                table.means.extend_from_slice(&mean_gradients(&x, points).0[..nodes]);
-            }
+            table.dilatation.push(dilatation);
+            table.modes.push(strains.internal().map_or(NONE, |_| table.amplitudes.len() as u32));
+            table.amplitudes.extend(strains.internal().map(|i| *i.amplitudes()));
             table.start.push(table.volume.len() as u32);
             table.gradient_start.push(table.gradients.len());
-            table.node_start.push(table.node_start[e] + nodes as u32);
-            table.mean_start.push(table.means.len() as u32);
+            table.node_start.push(table.node_start[e] + kind.node_count() as u32);
         }
         table
     }
@@ -72,17 +100,52 @@ impl PointTable {
         self.node_start[e] as usize..self.node_start[e + 1] as usize
     }
 
-    /// Gradients at point `i` of element `e`. Shape `[nodes]`.
+    /// Number of nodes and modes of element `e`.
     #[inline]
-    pub fn gradients(&self, e: usize, i: usize) -> &[[f64; 3]] {
-        let nodes = self.nodes(e).len();
-        &self.gradients[self.gradient_start[e] + i * nodes..][..nodes]
+    fn terms(&self, e: usize) -> usize {
+        self.nodes(e).len() + if self.modes[e] == NONE { 0 } else { modes::COUNT }
     }
 
-    /// Mean gradients of element `e`; empty where the volume strain is taken at the points. Shape `[nodes]`.
+    /// Blocks of the amplitudes of the incompatible modes of element `e`, if it has any.
     #[inline]
-    pub fn means(&self, e: usize) -> &[[f64; 3]] {
-        &self.means[self.mean_start[e] as usize..self.mean_start[e + 1] as usize]
+    pub fn amplitudes(&self, e: usize) -> Option<&Amplitudes> {
+        self.amplitudes.get(self.modes[e] as usize)
+    }
+
+    /// Puts the amplitudes of the modes of element `e` after the displacements of its nodes.
+    #[inline]
+    pub fn extend(&self, e: usize, u: &mut Moved) {
+        if let Some(amplitudes) = self.amplitudes(e) {
+            modes::extend(amplitudes, u);
+        }
+    }
+
+    /// Brings the forces on the modes of element `e` to its nodes.
+    #[inline]
+    pub fn condense(&self, e: usize, force: &mut Moved) {
+        if let Some(amplitudes) = self.amplitudes(e) {
+            modes::condense(amplitudes, force);
+        }
+    }
+
+    /// Gradients at point `i` of element `e`. Shape `[terms]`.
+    #[inline]
+    pub fn gradients(&self, e: usize, i: usize) -> &[[f64; 3]] {
+        let terms = self.terms(e);
+        &self.gradients[self.gradient_start[e] + i * terms..][..terms]
+    }
+
+    /// Gradients of the volume strain at point `i` of element `e`; empty where it is taken at the points. Shape `[terms]`.
+    #[inline]
+    pub fn means(&self, e: usize, i: usize) -> &[[f64; 3]] {
+        match self.dilatation[e] {
+            Volume::Pointwise => &[],
+            Volume::Mean(first) => &self.means[first..][..self.terms(e)],
+            Volume::Projected(first) => {
+                let terms = self.terms(e);
+                &self.means[first + i * terms..][..terms]
+            }
+        }
     }
 
     /// Volume of a point [m³].
@@ -91,8 +154,7 @@ impl PointTable {
         self.volume[point]
     }
 
-    /// Strain (engineering shear) at point `i` of element `e` under nodal displacements `u` [m]; in linear elements with the mean
-    /// dilatation.
+    /// Strain (engineering shear) at point `i` of element `e` under displacements `u` [m] of its nodes and modes.
     #[inline]
     pub fn strain(&self, e: usize, i: usize, u: &Moved) -> [f64; 6] {
         let mut s = [0.0; 6];
@@ -104,7 +166,7 @@ impl PointTable {
             s[4] += g[2] * u[1] + g[1] * u[2];
             s[5] += g[0] * u[2] + g[2] * u[0];
         }
-        let means = self.means(e);
+        let means = self.means(e, i);
         if !means.is_empty() {
             let mean: f64 = means.iter().zip(u).map(|(m, u)| m[0] * u[0] + m[1] * u[1] + m[2] * u[2]).sum();
             let correction = (mean - s[0] - s[1] - s[2]) / 3.0;
@@ -113,7 +175,7 @@ impl PointTable {
         s
     }
 
-    /// Adds `dV B^T sigma` of a point to the nodal forces [N] of its element: the transpose of [`PointTable::strain`].
+    /// Adds `dV B^T sigma` of a point to the forces [N] on the nodes and modes of its element: the transpose of [`PointTable::strain`].
     #[inline]
     pub fn add_force(&self, e: usize, i: usize, volume: f64, stress: &[f64; 6], force: &mut [[f64; 3]]) {
         let s = stress.map(|s| volume * s);
@@ -123,7 +185,7 @@ impl PointTable {
             f[1] += s[3] * g[0] + s[1] * g[1] + s[4] * g[2];
             f[2] += s[5] * g[0] + s[4] * g[1] + s[2] * g[2];
         }
-        let means = self.means(e);
+        let means = self.means(e, i);
         if !means.is_empty() {
             let mean_stress = (s[0] + s[1] + s[2]) / 3.0;
             for ((f, g), m) in force.iter_mut().zip(g).zip(means) {

@@ -13,6 +13,7 @@
 
 use super::internal_force::{InternalForce, element_increment};
 use crate::assembly::Combination;
+use crate::assumed::modes::{self, Amplitudes};
 use crate::element::MAX_NODES;
 use crate::material::{Points, REGULARISATION, Region};
 use crate::model::Model;
@@ -239,7 +240,8 @@ impl Input<'_> {
     /// Sum over the yielding points of `B^T (D_ep - D) B dV`; only the upper blocks when symmetric.
     fn element(&self, e: usize, matrix: &mut [f64]) {
         let (table, material) = (&self.force.table, self.model.material(e));
-        let moved = element_increment(self.model.mesh(), e, self.increment);
+        let mut moved = element_increment(self.model.mesh(), e, self.increment);
+        table.extend(e, &mut moved);
         let (elastic, constant) = (material.elastic.matrix(), material.law.has_constant_elasticity());
         let mut values = vec![0.0; self.model.values(e, 0).len()];
         matrix.fill(0.0);
@@ -256,7 +258,33 @@ impl Input<'_> {
             let d: [[f64; 6]; 6] = std::array::from_fn(|r| {
                 std::array::from_fn(|c| factor * (response.tangent[r][c] - elastic[r][c]))
             });
-            add_point(matrix, table.gradients(e, i), table.means(e), &d, self.symmetric);
+            add_point(matrix, table.gradients(e, i), table.means(e, i), &d, self.symmetric);
+        }
+        if let Some(amplitudes) = table.amplitudes(e) {
+            eliminate_modes(matrix, table.nodes(e).len(), amplitudes, self.symmetric);
+        }
+    }
+}
+
+/// Brings the rows and columns of the modes, which stand after those of the nodes, to the nodes: `T^T K T` with `T = [1; A]`.
+fn eliminate_modes(matrix: &mut [f64], nodes: usize, amplitudes: &Amplitudes, symmetric: bool) {
+    let (first, end) = (3 * nodes, 3 * (nodes + modes::COUNT));
+    if symmetric {
+        for r in 1..end {
+            (0..r).for_each(|c| matrix[r * ROWS + c] = matrix[c * ROWS + r]);
+        }
+    }
+    let value = |row: usize, column: usize| amplitudes[row / 3][column / 3][3 * (row % 3) + column % 3];
+    for r in 0..end {
+        for c in 0..first {
+            let sum: f64 = (0..end - first).map(|k| matrix[r * ROWS + first + k] * value(k, c)).sum();
+            matrix[r * ROWS + c] += sum;
+        }
+    }
+    for r in 0..first {
+        for c in 0..first {
+            let sum: f64 = (0..end - first).map(|k| value(k, r) * matrix[(first + k) * ROWS + c]).sum();
+            matrix[r * ROWS + c] += sum;
         }
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::assumed::{AssumedStrain, Dilatation};
 use crate::element::ElementKind;
 use crate::material::{Cone, DruckerPrager, Elastic, Material, MohrCoulomb};
 use crate::mesh::{Constraint, Mesh};
@@ -17,7 +18,7 @@ impl Random {
 }
 
 /// Two distorted elements of a kind, their nodes numbered backwards so that pairs p > q occur; the second is elastic.
-fn model(kind: ElementKind, material: Material) -> Model {
+fn model(kind: ElementKind, material: Material, assumed: AssumedStrain) -> Model {
     let mut random = Random(3);
     let mut mesh = Mesh::default();
     for (shift, number) in [(0.0, 1), (5.0, 2)] {
@@ -33,6 +34,7 @@ fn model(kind: ElementKind, material: Material) -> Model {
     Model::new(ModelInput {
         mesh,
         materials: [(1, material), (2, SOIL.into())].into(),
+        assumed,
         constraints,
         ..Default::default()
     })
@@ -57,8 +59,10 @@ fn materials() -> [Material; 4] {
 /// symmetric or not; and the entries for the solver are those of the same matrix.
 #[test]
 fn tangent_is_the_derivative_of_the_internal_force() {
-    for (kind, material) in ElementKind::ALL.into_iter().flat_map(|k| materials().map(|m| (k, m))) {
-        let model = model(kind, material.clone());
+    let assumed = AssumedStrain { dilatation: Dilatation::Mean, incompatible_modes: true };
+    let cases = ElementKind::ALL.into_iter().flat_map(|k| materials().map(|m| (k, m)));
+    for ((kind, material), assumed) in cases.flat_map(|c| [(c.clone(), assumed), (c, Default::default())]) {
+        let model = model(kind, material.clone(), assumed);
         let n = model.dof_count();
         let mut random = Random(11);
         // Compression with shear, beyond yield in every point.
@@ -122,7 +126,7 @@ fn tangent_is_the_derivative_of_the_internal_force() {
 #[test]
 fn force_is_the_transposed_of_the_strain() {
     for kind in ElementKind::ALL {
-        let model = model(kind, SOIL.into());
+        let model = model(kind, SOIL.into(), AssumedStrain::default());
         let mut random = Random(5);
         let w: Vec<f64> = (0..model.dof_count()).map(|_| 1e-3 * random.next()).collect();
         let old = model.new_points();

@@ -15,6 +15,17 @@ const DEPENDENT: f64 = 1e-7;
 /// Modes of the full solid that the estimate compares with at least.
 const COMPARED: usize = 10;
 
+/// Numbers that a step reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Shapes of the reduced solid.
+    pub shapes: usize,
+    /// Of the reduced solid.
+    pub reduced: f64,
+    /// Of the full one.
+    pub full: f64,
+}
+
 /// A reduced solid: the shapes, orthonormal to the mass, and what a step needs of them. Rows are dofs.
 #[derive(Clone, Debug)]
 pub struct Reduced {
@@ -33,6 +44,26 @@ pub struct Reduced {
 }
 
 impl Reduced {
+    /// Numbers that a step of the reduced solid and one of the full solid read: what their time goes with. Known without any solve.
+    ///
+    /// # Errors
+    /// The equations cannot be analysed.
+    pub fn cost(model: &Model, faces: &[Face], reduction: Reduction) -> Result<Cost, ReductionError> {
+        let shapes = match reduction {
+            Reduction::Surface { modes } => surface_dofs(model, faces).len() + modes,
+            Reduction::Modes { modes } => 3 + faces.len() + modes,
+        };
+        let demand = model.solver_demand(true)?;
+        let blocks = model.matrices().stiffness_blocks().len() as f64;
+        Ok(Cost {
+            shapes,
+            // Shapes twice, their forces and their momenta once.
+            reduced: 4.0 * (model.dof_count() * shapes) as f64,
+            // The factor forwards and back; stiffness and mass for the right-hand side and for the account.
+            full: 2.0 * demand.factor_len as f64 + 2.0 * 10.0 * blocks,
+        })
+    }
+
     /// Reduces a model whose contact surface consists of `faces`, and estimates the error.
     ///
     /// # Errors

@@ -28,7 +28,7 @@ mod estimate;
 mod tests;
 mod window;
 
-pub use basis::Reduced;
+pub use basis::{Cost, Reduced};
 pub use estimate::Estimate;
 pub use window::ReducedWindowSolver;
 

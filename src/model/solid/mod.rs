@@ -3,8 +3,10 @@
 mod analysis;
 mod boundary;
 mod common;
+mod conditioning;
 mod geometry;
 mod load;
+mod locking;
 mod material;
 mod selection;
 mod sleepers;
@@ -72,6 +74,9 @@ impl SolidPart {
     pub fn failure(&self, error: &SolveError) -> Failure {
         let file = self.supports.file.display();
         match error {
+            SolveError::NoStiffness { node, pivot, .. } if conditioning::is_poor(&self.model) => {
+                Failure::Input(format!("{file}: {}", conditioning::message(&self.model, *node, *pivot)))
+            }
             SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
                 "{file}: constraints: found too few ({error}), expected a body that is held"
             )),
@@ -114,6 +119,7 @@ impl SolidPart {
             mesh,
             materials,
             quadrature: self.model.quadrature(),
+            assumed: self.model.assumed(),
             constraints: self.model.constraints().iter().filter(of_ground).copied().collect(),
             gravity: if self.heavy_ground { self.model.gravity() } else { [0.0; 3] },
             rayleigh: self.model.rayleigh(),
@@ -171,11 +177,8 @@ pub fn build(
             return Err(document.error("solid.material", found, "an entry with this id").into());
         }
     }
-    let quadrature = match solid.integration {
-        Integration::Reduced => fem::Quadrature::Gauss2,
-        Integration::Irons14 => fem::Quadrature::Irons14,
-        Integration::Full => fem::Quadrature::Gauss3,
-    };
+    let quadrature = quadrature(solid.integration);
+    let assumed = locking::assumed(document, solid, &geometry.mesh)?;
     let loads = solid
         .load
         .iter()
@@ -186,10 +189,13 @@ pub fn build(
     let boundaries = boundary::absorbing(document, solid, &geometry, &materials.constants)?;
     let linear = materials.constants.values().all(|m| m.is_linear());
     let plans = analysis::plans(document, solid, &materials, linear, coupled)?;
+    analysis::check_overburden(document, &plans, &geometry.mesh, &materials)?;
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
-    let warnings = warnings.into_iter().chain(faults.iter().map(ToString::to_string)).collect();
+    let locking = locking::remarks(&mesh, &materials.constants, quadrature, assumed);
+    let warnings =
+        warnings.into_iter().chain(faults.iter().map(ToString::to_string)).chain(locking).collect();
     let weight = sleepers.as_ref().map_or(if solid.gravity { gravity } else { [0.0; 3] }, |s| s.gravity);
     let sleepers = sleepers
         .map(|plan| SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints));
@@ -200,6 +206,7 @@ pub fn build(
         mesh,
         materials: materials.constants,
         quadrature,
+        assumed,
         mass: match solid.mass {
             Mass::Consistent => fem::Mass::Consistent,
             Mass::Lumped => fem::Mass::Lumped,
@@ -229,6 +236,14 @@ pub fn build(
         sleepers,
         heavy_ground: solid.gravity,
     })
+}
+
+fn quadrature(integration: Integration) -> fem::Quadrature {
+    match integration {
+        Integration::Reduced => fem::Quadrature::Gauss2,
+        Integration::Irons14 => fem::Quadrature::Irons14,
+        Integration::Full => fem::Quadrature::Gauss3,
+    }
 }
 
 /// The reduction of a solid, refused where it would not be one, or would not be used.

@@ -116,6 +116,21 @@ fn couple<'b>(
         .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
         .map_err(|e| solid.failure(&e))?;
     if let Some(reduction) = solid.reduction {
+        let cost = fem::reduction::Reduced::cost(body.model, work.surface.faces(), reduction);
+        let slower = cost.ok().filter(|c| c.reduced > c.full).map(|c| {
+            format!(
+                "solid.reduction: {} shapes make a step of the solid about {:.1} times as dear as without ({:.1} million numbers \
+                 read for {:.1}): the run is faster without it, or with kind = \"modes\"",
+                c.shapes,
+                c.reduced / c.full,
+                1e-6 * c.reduced,
+                1e-6 * c.full
+            )
+        });
+        if !run.quiet {
+            slower.iter().for_each(|r| eprintln!("note: {r}"));
+        }
+        summary.warnings.extend(slower);
         let reduced =
             fem::reduction::Reduced::new(body.model, work.surface.faces(), reduction).map_err(|e| {
                 Failure::from(run.document.error("solid.reduction", e.to_string(), "another choice"))

@@ -3,7 +3,7 @@
 use super::coupling_remarks::{fallen, late, unconverged};
 use super::solid_loop::solid_alone;
 use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage};
-use super::{statics, time_loop};
+use super::{solid_remarks, statics, time_loop};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::Analysis;
@@ -87,6 +87,7 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
     summary.warnings.extend(unconverged(&system.state.passes));
     summary.warnings.extend(late(&system.spent()));
     summary.warnings.extend(fallen(&system, lowest));
+    summary.warnings.extend(solid_remarks::large(solid, &system.state.solid.u));
     outcome?;
     summary.bed.packing = record_packing(run, &system, grains)?;
     if run.job.output.tables {

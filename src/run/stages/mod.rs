@@ -11,6 +11,7 @@ mod main_loop;
 mod set_down;
 mod settling;
 mod solid_loop;
+pub mod solid_remarks;
 mod stage;
 mod statics;
 mod strength_reduction;

@@ -1,7 +1,7 @@
 //! A solid that runs alone through time: dynamic or quasi-static.
 
 use super::stage::RunState;
-use super::{statics, time_loop};
+use super::{solid_remarks, statics, time_loop};
 use crate::failure::Failure;
 use crate::model::solid::{Analysis, SolidPart};
 use crate::run::checkpoint::Loaded;
@@ -67,6 +67,8 @@ fn march<S: System>(
         Err(Failure::Numerical(_)) if system.keeps_its_state() => {}
         Err(_) => return outcome,
     }
+    let view = system.solid().expect("a system with a solid");
+    summary.warnings.extend(solid_remarks::large(view.model, &view.state.u));
     let reactions = system.reactions().unwrap_or_default();
     summary.solid.reactions = solid
         .named_sums(&reactions)

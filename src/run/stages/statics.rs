@@ -1,5 +1,6 @@
 //! A static solid: one solve, its reactions, its tables.
 
+use super::solid_remarks;
 use super::stage::{RunState, Stage};
 use crate::failure::Failure;
 use crate::model::Job;
@@ -58,6 +59,12 @@ fn solve(
     let mut state = fem::state::State::new(model);
     state.u.copy_from_slice(&result.u);
 
+    let energy = fem::energy::strain(model, &state);
+    if !energy.is_finite() {
+        let found = format!("its strain energy comes out as {energy} J under these loads");
+        return Err(Failure::Numerical(format!("solid: {found}, beyond what a number holds")));
+    }
+    summary.warnings.extend(solid_remarks::large(model, &state.u));
     prepare()?;
     let view = SolidView { model, state: &state };
     frames::write_state(dir, &job.output.formats, view)?;
@@ -80,7 +87,7 @@ fn solve(
         reaction,
         equilibrium_error: if scale > 0.0 { imbalance / scale } else { 0.0 },
         largest_displacement: (length(farthest), model.mesh().node_ids[farthest]),
-        strain_energy: fem::energy::strain(model, &state),
+        strain_energy: energy,
     });
     summary.stages.push(StageRecord {
         name: "static".into(),

@@ -115,7 +115,8 @@ pub struct Newton {
     pub variant: Option<NewtonVariant>,
     /// Whether steps of the iteration are shortened where the energy asks for it; default true.
     pub line_search: Option<bool>,
-    /// Residual force over the largest force at which equilibrium counts as found; default 1e-6.
+    /// Residual force over the largest force at which equilibrium counts as found; default 1e-4 (quasi-static), 1e-3 (strength reduction)
+    /// or 1e-6.
     pub tolerance: Option<f64>,
     /// Iterations at most; default 50 (full), 60 (modified) or 400 (initial stiffness).
     pub max_iterations: Option<u32>,

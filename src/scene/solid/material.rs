@@ -116,6 +116,10 @@ fn check(key: &'static str, value: f64, good: bool, expected: &str) -> Result<()
     if good { Ok(()) } else { fault(key, value, expected) }
 }
 
+/// Largest angle of friction [rad]: beyond it the forces that the strength allows are so large that no residual measured by them
+/// says anything of the loads.
+const STEEPEST: f64 = 80.0 * std::f64::consts::PI / 180.0 + 1e-12;
+
 impl SolidMaterial {
     /// The material of the solid.
     ///
@@ -245,6 +249,15 @@ impl SolidMaterial {
             }
             (friction, None) => Hardening::Constant(self.need("friction", friction.map(|f| f.si))?),
         };
+        let (key, steepest) = match &friction {
+            Hardening::Table(table) => ("friction_table", table.iter().map(|p| p.1).fold(0.0, f64::max)),
+            Hardening::Constant(angle) => ("friction", *angle),
+            Hardening::Linear { .. } => ("friction", 0.0),
+        };
+        if steepest > STEEPEST {
+            let degrees = (1e6 * steepest.to_degrees()).round() / 1e6;
+            return fault(key, format!("{degrees} deg"), "an angle of 80 degrees at most");
+        }
         let dilation = self.need("dilation", self.dilation.map(|d| d.si))?;
         let tension = self.tension.map(|t| t.si);
         if self.model == MaterialModel::MohrCoulomb {

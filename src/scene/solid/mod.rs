@@ -42,6 +42,10 @@ pub struct Solid {
     /// Integration rule of the stiffness; default `reduced`.
     #[serde(default)]
     pub integration: Integration,
+    /// Volume strain of quadratic elements; default `pointwise`.
+    pub dilatation: Option<Dilatation>,
+    /// Whether 8-node hexahedra have incompatible modes; default true.
+    pub incompatible_modes: Option<bool>,
     /// Mass matrix; default `consistent`.
     #[serde(default)]
     pub mass: Mass,
@@ -98,6 +102,17 @@ pub enum Integration {
     Irons14,
     /// 3 × 3 × 3 points.
     Full,
+}
+
+/// How quadratic elements take their volume strain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dilatation {
+    /// At the points of the rule.
+    #[default]
+    Pointwise,
+    /// Averaged over the element.
+    Mean,
 }
 
 /// A load on the solid.

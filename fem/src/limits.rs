@@ -1,0 +1,51 @@
+//! How far a displacement is from the small strains and rotations that the equations assume.
+
+use crate::element::stiffness_points;
+use crate::model::Model;
+
+/// The largest strain and the largest displacement of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extent {
+    /// Largest strain at a Gauss point, the square root of `ε:ε` [-].
+    pub strain: f64,
+    /// Element that has it, as the user's files number it.
+    pub strained: u32,
+    /// Displacement against the mean of the body [m] that is largest compared with the element.
+    pub displacement: f64,
+    /// Longest side of the element's bounds [m].
+    pub size: f64,
+    /// The element.
+    pub moved: u32,
+}
+
+/// Measures a displacement, shape `[3 * nodes]`. A translation of the whole body does not count.
+pub fn extent(model: &Model, u: &[f64]) -> Extent {
+    let mesh = model.mesh();
+    let nodes = mesh.node_count().max(1) as f64;
+    let mean: [f64; 3] = std::array::from_fn(|k| u.iter().skip(k).step_by(3).sum::<f64>() / nodes);
+    let (mut found, mut worst) = (Extent::default(), 0.0);
+    for (e, &id) in mesh.element_ids.iter().enumerate() {
+        let (strains, moved) = (model.element_strains(e), mesh.element_values(e, u));
+        for point in stiffness_points(mesh.connectivity.kind(e), model.quadrature()) {
+            let s = strains.strain(&strains.at_point(point), &moved);
+            let normal = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+            let size = (normal + 0.5 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt();
+            if size > found.strain {
+                (found.strain, found.strained) = (size, id);
+            }
+        }
+        let nodes = &mesh.connectivity[e];
+        let side = |k: usize| {
+            let along = || nodes.iter().map(|&n| mesh.coordinates[n as usize][k]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
+        let size = (0..3).map(side).fold(0.0, f64::max);
+        let way = |n: &u32| (0..3).map(|k| (u[3 * *n as usize + k] - mean[k]).powi(2)).sum::<f64>().sqrt();
+        let displacement = nodes.iter().map(way).fold(0.0, f64::max);
+        if displacement / size > worst {
+            worst = displacement / size;
+            (found.displacement, found.size, found.moved) = (displacement, size, id);
+        }
+    }
+    found
+}

@@ -1,0 +1,47 @@
+//! Solids that are held, but whose stiffnesses are too unlike to be solved together.
+
+use trackbed_fem::model::Model;
+
+/// Ratio of Young's moduli from which a lost pivot is put down to them.
+const UNLIKE: f64 = 1e6;
+/// Ratio of the edges of an element from which a lost pivot is put down to its shape.
+const FLAT: f64 = 500.0;
+
+/// Largest over smallest Young's modulus in use.
+fn contrast(model: &Model) -> f64 {
+    let moduli = || (0..model.mesh().element_count()).map(|e| model.elastic(e).young);
+    moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)
+}
+
+/// Largest ratio of the longest to the shortest edge of an element, and the element's number.
+fn flattest(model: &Model) -> (f64, u32) {
+    let mesh = model.mesh();
+    let ratio = |e: usize| {
+        let nodes = &mesh.connectivity[e];
+        let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
+        for &[a, b] in mesh.connectivity.kind(e).edges() {
+            let (x, y) = (mesh.coordinates[nodes[a] as usize], mesh.coordinates[nodes[b] as usize]);
+            let length = (0..3).map(|k| (x[k] - y[k]).powi(2)).sum::<f64>().sqrt();
+            (shortest, longest) = (shortest.min(length), longest.max(length));
+        }
+        longest / shortest
+    };
+    let ratios = (0..mesh.element_count()).map(|e| (ratio(e), mesh.element_ids[e]));
+    ratios.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, 0))
+}
+
+/// Whether a model has moduli or elements so unlike that a pivot may be lost in a body that is held.
+pub fn is_poor(model: &Model) -> bool {
+    contrast(model) >= UNLIKE || flattest(model).0 >= FLAT
+}
+
+/// What is wrong with it: at node `node` the part `pivot` of the stiffness is left.
+pub fn message(model: &Model, node: u32, pivot: f64) -> String {
+    let (flatness, element) = flattest(model);
+    format!(
+        "mesh: found stiffnesses too unlike to be solved together: at node {node} {pivot:.1e} of the diagonal is left, below \
+         1e-11; Young's moduli differ by a factor of {:.1e}, the edges of element {element} by one of {flatness:.1e}; expected \
+         moduli and edges less unlike, and a body that is held everywhere",
+        contrast(model)
+    )
+}

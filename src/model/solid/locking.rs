@@ -1,0 +1,74 @@
+//! What elements do against locking, and remarks on those that will lock.
+
+use crate::scene::solid::{Dilatation, Solid};
+use crate::scene::{Document, SceneError};
+use std::collections::BTreeMap;
+use trackbed_fem::{self as fem, AssumedStrain, ElementKind, Material, Mesh, Quadrature};
+
+/// Poisson's ratio from which elements that lock at constant volume are named.
+const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
+
+/// The strains that a scene's elements assume.
+///
+/// # Errors
+/// A key that no element of the mesh has a use for.
+pub fn assumed(document: &Document, solid: &Solid, mesh: &Mesh) -> Result<AssumedStrain, SceneError> {
+    let kinds = mesh.connectivity.kinds();
+    if solid.dilatation.is_some() && kinds.iter().all(|k| k.is_linear()) {
+        let expected = "no such key for linear elements, whose dilatation is always the mean";
+        return Err(document.error("solid.dilatation", "a value", expected));
+    }
+    if solid.incompatible_modes.is_some() && !kinds.contains(&ElementKind::Hex8) {
+        let expected = "no such key for a mesh without 8-node hexahedra";
+        return Err(document.error("solid.incompatible_modes", "a value", expected));
+    }
+    Ok(AssumedStrain {
+        dilatation: match solid.dilatation.unwrap_or_default() {
+            Dilatation::Pointwise => fem::Dilatation::Pointwise,
+            Dilatation::Mean => fem::Dilatation::Mean,
+        },
+        incompatible_modes: solid.incompatible_modes.unwrap_or(true),
+    })
+}
+
+/// Names the kinds of elements that lock where their material hardly changes its volume, and the key that helps.
+pub fn remarks(
+    mesh: &Mesh,
+    materials: &BTreeMap<u32, Material>,
+    rule: Quadrature,
+    assumed: AssumedStrain,
+) -> Vec<String> {
+    let mut found: BTreeMap<(ElementKind, u32), usize> = BTreeMap::new();
+    for (&kind, &number) in mesh.connectivity.kinds().iter().zip(&mesh.materials) {
+        let stiff = materials.get(&number).is_some_and(|m| m.elastic.poisson >= NEARLY_INCOMPRESSIBLE);
+        if stiff && remedy(kind, rule, assumed).is_some() {
+            *found.entry((kind, number)).or_default() += 1;
+        }
+    }
+    found
+        .into_iter()
+        .filter_map(|((kind, number), count)| {
+            let (poisson, remedy) = (materials[&number].elastic.poisson, remedy(kind, rule, assumed)?);
+            Some(format!(
+                "material {number} has Poisson's ratio {poisson}, at which its {count} {} elements lock: displacements come out \
+                 too small; {remedy}",
+                kind.name()
+            ))
+        })
+        .collect()
+}
+
+/// What to do where elements of a kind lock; none where they do not.
+fn remedy(kind: ElementKind, rule: Quadrature, assumed: AssumedStrain) -> Option<&'static str> {
+    let mean = assumed.dilatation == fem::Dilatation::Mean;
+    match kind {
+        ElementKind::Hex20 if mean || rule == Quadrature::Gauss2 => None,
+        ElementKind::Hex20 | ElementKind::Wedge15 | ElementKind::Pyramid13 | ElementKind::Tet10 if !mean => {
+            Some("set solid.dilatation = \"mean\"")
+        }
+        ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4 => {
+            Some("set solid.order = \"quadratic\" and solid.dilatation = \"mean\"")
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,222 @@
+//! The solid at its edges, through the program: what locks, what is beyond small strains, what a step passes by, and what no
+//! number holds is refused, stopped or remarked on.
+
+use super::support::{COUPLED, Folder, json, run, write_lists};
+use serde_json::Value;
+
+/// A column of 0.5 m × 0.5 m × 2 m on smooth walls, pressed from above.
+const COLUMN: &str = r#"title = "column"
+
+[solid]
+gravity = false
+
+[solid.block]
+x = { lines = [0.0, 0.5], counts = [2] }
+y = { lines = [0.0, 0.5], counts = [2] }
+z = { lines = [0.0, 1.0, 2.0], counts = [2, 2] }
+layer = [{ material = 1, top = 1.0 }, { material = 2 }]
+
+[[solid.material]]
+id = 1
+young = "20 MPa"
+poisson = 0.25
+density = 2000
+
+[[solid.material]]
+id = 2
+young = "20 MPa"
+poisson = 0.25
+density = 2000
+
+[[solid.support]]
+side = "z-"
+directions = ["x", "y", "z"]
+
+[[solid.load]]
+kind = "pressure"
+side = "z+"
+pressure = "10 kPa"
+
+[output]
+vtk = false
+"#;
+
+/// Exit code, standard error and warnings of a run of the column.
+fn column(change: &[(&str, &str)], set: &[&str]) -> (i32, String, Vec<String>) {
+    let folder = Folder::new("edges");
+    let mut text = COLUMN.to_string();
+    for (old, new) in change {
+        assert!(text.contains(old), "{old}");
+        text = text.replacen(old, new, 1);
+    }
+    let scene = folder.write("scene.toml", &text);
+    let outcome = run(&scene, &folder.join("out"), set);
+    let summary = folder.join("out/summary.json");
+    let warnings = if summary.exists() { json(&summary)["warnings"].clone() } else { Value::Null };
+    let warnings = warnings.as_array().cloned().unwrap_or_default();
+    (outcome.code, outcome.stderr, warnings.iter().map(|w| w.as_str().unwrap().to_string()).collect())
+}
+
+#[track_caller]
+fn remarked(warnings: &[String], part: &str) {
+    assert!(warnings.iter().any(|w| w.contains(part)), "{part:?} in {warnings:?}");
+}
+
+#[test]
+fn elements_that_lock_are_named_with_the_key_that_helps() {
+    let soft = [("poisson = 0.25", "poisson = 0.4999")];
+    for rule in ["full", "irons14"] {
+        let rule = format!("solid.integration={rule}");
+        let (code, _, warnings) = column(&soft, &[&rule]);
+        assert_eq!(code, 0);
+        remarked(
+            &warnings,
+            "hex20 elements lock: displacements come out too small; set solid.dilatation = \"mean\"",
+        );
+        let (code, _, warnings) = column(&soft, &[&rule, "solid.dilatation=mean"]);
+        assert_eq!((code, warnings), (0, Vec::new()));
+    }
+    assert_eq!(column(&soft, &[]).2, Vec::<String>::new());
+    assert_eq!(column(&soft, &["solid.order=linear"]).2, Vec::<String>::new());
+}
+
+#[test]
+fn keys_against_locking_without_an_element_to_act_on_are_refused() {
+    let (code, error, _) = column(&[], &["solid.order=linear", "solid.dilatation=mean"]);
+    assert_eq!(code, 2);
+    assert!(
+        error.contains("solid.dilatation: found a value, expected no such key for linear elements"),
+        "{error}"
+    );
+    let (code, error, _) = column(&[], &["solid.incompatible_modes=false"]);
+    assert_eq!(code, 2);
+    assert!(error.contains("solid.incompatible_modes: found a value, expected no such key"), "{error}");
+}
+
+/// A slender cantilever of 4 linear elements over its height: modes on by default, off by the key, and the full rule's dilatation.
+#[test]
+fn incompatible_modes_act_unless_they_are_turned_off() {
+    let tip = |set: &[&str]| {
+        let folder = Folder::new("beam");
+        let beam = COLUMN
+            .replace("lines = [0.0, 1.0, 2.0], counts = [2, 2]", "lines = [0.0, 5.0], counts = [10]")
+            .replace("layer = [{ material = 1, top = 1.0 }, { material = 2 }]\n", "")
+            .replace("x = { lines = [0.0, 0.5], counts = [2] }", "x = { lines = [0.0, 0.5], counts = [4] }")
+            .replace("kind = \"pressure\"", "kind = \"traction\"")
+            .replace("pressure = \"10 kPa\"", "traction = [1000, 0, 0]");
+        let scene = folder.write("scene.toml", &beam);
+        run(&scene, &folder.join("out"), set).good();
+        json(&folder.join("out/summary.json"))["statics"]["largest_displacement"][0].as_f64().unwrap()
+    };
+    // F l³/(3 E I) + 1.2 F l/(G A), clamped end: a little less.
+    let (force, area, inertia) = (1000.0 * 0.25, 0.25, 0.5_f64.powi(4) / 12.0);
+    let beam = force * 125.0 / (3.0 * 20e6 * inertia) + 1.2 * force * 5.0 / (8e6 * area);
+    let (with, without) = (
+        tip(&["solid.order=linear"]) / beam,
+        tip(&["solid.order=linear", "solid.incompatible_modes=false"]) / beam,
+    );
+    println!("beam: {with:.4} with modes, {without:.4} without");
+    assert!((with - 1.0).abs() < 0.02 && without < 0.8, "{with} {without}");
+}
+
+#[test]
+fn strains_and_displacements_that_are_not_small_are_remarked_on() {
+    let (code, _, warnings) = column(&[("10 kPa", "2 MPa")], &[]);
+    assert_eq!(code, 0);
+    remarked(&warnings, "the solid is strained by ");
+    let (code, _, warnings) = column(&[("10 kPa", "200 MPa")], &[]);
+    assert_eq!(code, 0);
+    remarked(&warnings, "more than its own size of ");
+    assert_eq!(column(&[], &[]).2, Vec::<String>::new());
+}
+
+#[test]
+fn a_load_beyond_all_numbers_stops_the_run() {
+    let (code, error, _) = column(&[("10 kPa", "1e200 Pa")], &[]);
+    assert_eq!(code, 3, "{error}");
+    assert!(error.contains("strain energy"), "{error}");
+}
+
+const MOVING: [(&str, &str); 2] = [
+    (
+        "pressure = \"10 kPa\"",
+        "pressure = \"10 kPa\"\nhistory = { kind = \"table\", points = [[0.0, 0.0], [0.0145, 0.0], [0.015, 1.0], [0.0155, 0.0]] }",
+    ),
+    ("[output]", "[solid.dynamics]\n\n[time]\nend = 0.1\nsolid_step = 0.01\n\n[output]"),
+];
+
+#[test]
+fn a_pulse_between_two_steps_is_remarked_on() {
+    let (code, _, warnings) = column(&MOVING, &[]);
+    assert_eq!(code, 0);
+    remarked(
+        &warnings,
+        "solid.load.0: time.solid_step = 0.01 s gives its history steps which pass by the factor 1 at 0.015 s",
+    );
+    let fine = ["time.solid_step=0.0005", "output.history_interval=0.01"];
+    let (code, _, warnings) = column(&MOVING, &fine);
+    assert_eq!(code, 0);
+    remarked(
+        &warnings,
+        "solid.load.0: output.history_interval = 0.01 s gives its history rows which pass by",
+    );
+    assert_eq!(
+        column(&MOVING, &["time.solid_step=0.0005", "output.history_interval=0.0005"]).2,
+        Vec::<String>::new()
+    );
+}
+
+#[test]
+fn layers_of_different_density_need_their_weights_for_k0() {
+    let k0 = [
+        ("density = 2000", "density = 1000"),
+        ("gravity = false", "gravity = true"),
+        (
+            "[output]",
+            "[solid.initial_stress]\nmethod = \"k0\"\nk0 = 0.5\n\n[solid.quasi_static]\n\n[time]\nend = 1.0\nsolid_step = 1.0\n\n[output]",
+        ),
+    ];
+    let (code, error, _) = column(&k0, &[]);
+    assert_eq!(code, 2, "{error}");
+    assert!(
+        error.contains("solid.initial_stress.layers: found nothing, and materials of 1000 to 2000 kg/m3, expected the layers"),
+        "{error}"
+    );
+    let (code, error, _) = column(&k0, &["solid.initial_stress.layers=[[2.0, 2000], [1.0, 1000]]"]);
+    assert_eq!(code, 0, "{error}");
+    let (code, error, _) = column(&k0[1..], &[]);
+    assert_eq!(code, 0, "{error}");
+}
+
+/// A body that is held, of moduli that differ by 1e13, is not called one that is not held.
+#[test]
+fn unlike_stiffnesses_are_named() {
+    let (code, error, _) = column(&[("young = \"20 MPa\"", "young = 1e-6")], &[]);
+    assert_eq!(code, 2, "{error}");
+    assert!(error.contains("found stiffnesses too unlike to be solved together"), "{error}");
+    assert!(
+        error.contains("Young's moduli differ by a factor of 2.0e13") && !error.contains("not held"),
+        "{error}"
+    );
+}
+
+/// On a plate of 8 × 8 × 2 elements the 675 dofs of the surface read four times what the full solid does; ten modes read less.
+#[test]
+fn a_reduction_that_makes_steps_dearer_is_remarked_on() {
+    let folder = Folder::new("reduction");
+    let mut mesh = trackbed_fem::Mesh::block([8, 8, 2], [2.0, 2.0, 1.0]);
+    mesh.coordinates.iter_mut().for_each(|x| x[2] -= 1.0);
+    write_lists(&mesh, folder.path());
+    let scene = folder.write("scene.toml", COUPLED);
+    let short =
+        ["track.load.cycles=1", "track.load.rest=0.002", "track.load.ramp=0.002", "track.load.frequency=200"];
+    for (reduction, dearer) in [("{ kind = \"surface\" }", true), ("{ kind = \"modes\", modes = 10 }", false)]
+    {
+        let reduction = format!("solid.reduction={reduction}");
+        let set: Vec<&str> = short.iter().copied().chain([reduction.as_str()]).collect();
+        run(&scene, &folder.join("out"), &set).good();
+        let warnings = json(&folder.join("out/summary.json"))["warnings"].to_string();
+        println!("{reduction}: {warnings}");
+        assert_eq!(warnings.contains("times as dear as without"), dearer, "{warnings}");
+    }
+}

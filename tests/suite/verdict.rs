@@ -1,0 +1,90 @@
+//! Runs are judged by their accounts: those that close pass, those that blow up end with exit code 3.
+
+use super::support::{Folder, json, repository, run};
+use serde_json::Value;
+
+fn judged<'a>(summary: &'a Value, what: &str) -> &'a Value {
+    let all = summary["verdict"]["judged"].as_array().expect("accounts");
+    let named = |j: &&Value| j["what"].as_str().is_some_and(|w| w.starts_with(what));
+    all.iter().find(named).unwrap_or_else(|| panic!("{what} in {all:#?}"))
+}
+
+/// A solid integrated beyond the limit of an explicit scheme: it grew to 1e272 J and was called done.
+#[test]
+fn a_solid_that_blows_up_has_failed() {
+    let folder = Folder::new("verdict-pulse");
+    let set = [
+        "solid.dynamics.alpha=0",
+        "solid.dynamics.delta=0.5",
+        "solid.dynamics.accept_conditional_stability=true",
+        "output.frames=0",
+    ];
+    let outcome = run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set);
+    assert_eq!(outcome.code, 3, "{}", outcome.err);
+    assert!(outcome.err.contains("the energy account does not close"), "{}", outcome.err);
+    assert!(outcome.err.contains("at t = "), "{}", outcome.err);
+    let summary = json(&folder.join("out/summary.json"));
+    assert_eq!(summary["verdict"]["outcome"], "failed");
+    assert!(summary["status"].as_str().unwrap().starts_with("failed"));
+}
+
+/// The same solid with the step it is made for passes, and says what it was judged by.
+#[test]
+fn a_solid_that_is_right_passes() {
+    let folder = Folder::new("verdict-pass");
+    let set = ["output.frames=0"];
+    let outcome = run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set).good();
+    assert!(outcome.out.contains("verdict: passed, 1 accounts judged"), "{}", outcome.out);
+    let summary = json(&folder.join("out/summary.json"));
+    let energy = judged(&summary, "energy error");
+    assert_eq!(energy["outcome"], "passed");
+    assert!(energy["value"].as_f64().unwrap() < 1e-6, "{energy}");
+}
+
+/// Grains whose step is three times too long: they heat, and the run stops before the bed has flown apart.
+#[test]
+fn grains_that_heat_have_failed() {
+    let folder = Folder::new("verdict-grains");
+    folder.write(
+        "scene.toml",
+        r#"
+[[material]]
+name = "stone"
+density = 2600.0
+stiffness = 1e6
+friction = 0.5
+restitution = 0.9
+
+[[grains]]
+name = "spheres"
+shape = "sphere"
+material = "stone"
+count = 200
+size = [0.02, 0.02]
+fill = { low = [-0.06, -0.06, 0.0], high = [0.06, 0.06] }
+
+[[walls]]
+name = "floor"
+kind = "plane"
+material = "stone"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+
+[deposition]
+max_time = 0.5
+settled_speed = 0.1
+
+[time]
+end = 0.5
+"#,
+    );
+    let scene = folder.join("scene.toml");
+    let good = run(&scene, &folder.join("good"), &["time.end=0.05"]).good();
+    assert!(good.out.contains("verdict: "), "{}", good.out);
+    let summary = json(&folder.join("good/summary.json"));
+    assert!(judged(&summary, "momentum error")["value"].as_f64().unwrap() < 1e-9);
+    let limit = summary["model"]["grain_step_limit"].as_f64().unwrap();
+    let step = format!("time.grain_step={}", 4.0 * limit);
+    let long = run(&scene, &folder.join("long"), &[&step, "time.accept_grain_step=true"]);
+    assert_eq!(long.code, 3, "{}{}", long.out, long.err);
+}
