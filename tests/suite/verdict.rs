@@ -20,9 +20,9 @@ fn a_solid_that_blows_up_has_failed() {
         "output.frames=0",
     ];
     let outcome = run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set);
-    assert_eq!(outcome.code, 3, "{}", outcome.err);
-    assert!(outcome.err.contains("the energy account does not close"), "{}", outcome.err);
-    assert!(outcome.err.contains("at t = "), "{}", outcome.err);
+    assert_eq!(outcome.code, 3, "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("the energy account does not close"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("at t = "), "{}", outcome.stderr);
     let summary = json(&folder.join("out/summary.json"));
     assert_eq!(summary["verdict"]["outcome"], "failed");
     assert!(summary["status"].as_str().unwrap().starts_with("failed"));
@@ -34,7 +34,7 @@ fn a_solid_that_is_right_passes() {
     let folder = Folder::new("verdict-pass");
     let set = ["output.frames=0"];
     let outcome = run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set).good();
-    assert!(outcome.out.contains("verdict: passed, 1 accounts judged"), "{}", outcome.out);
+    assert!(outcome.stdout.contains("verdict: passed, 1 accounts judged"), "{}", outcome.stdout);
     let summary = json(&folder.join("out/summary.json"));
     let energy = judged(&summary, "energy error");
     assert_eq!(energy["outcome"], "passed");
@@ -80,11 +80,11 @@ end = 0.5
     );
     let scene = folder.join("scene.toml");
     let good = run(&scene, &folder.join("good"), &["time.end=0.05"]).good();
-    assert!(good.out.contains("verdict: "), "{}", good.out);
+    assert!(good.stdout.contains("verdict: "), "{}", good.stdout);
     let summary = json(&folder.join("good/summary.json"));
     assert!(judged(&summary, "momentum error")["value"].as_f64().unwrap() < 1e-9);
     let limit = summary["model"]["grain_step_limit"].as_f64().unwrap();
     let step = format!("time.grain_step={}", 4.0 * limit);
-    let long = run(&scene, &folder.join("long"), &[&step, "time.accept_grain_step=true"]);
-    assert_eq!(long.code, 3, "{}{}", long.out, long.err);
+    let long = run(&scene, &folder.join("long"), &[&step, "time.accept_step_above_limit=true"]);
+    assert_eq!(long.code, 3, "{}{}", long.stdout, long.stderr);
 }

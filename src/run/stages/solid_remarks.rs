@@ -33,7 +33,7 @@ pub fn large(model: &Model, u: &[f64]) -> Vec<String> {
 pub fn missed(job: &Job) -> Vec<String> {
     let (Some(solid), Some(step)) = (&job.solid, job.solid_step) else { return Vec::new() };
     let loads = solid.loads.iter().enumerate().map(|(i, l)| (format!("solid.load.{i}"), &l.function));
-    let moving = solid.moving.iter().take(1).map(|(_, _, f)| ("a moving support".to_string(), f));
+    let moving = solid.supports.moving.iter().take(1).map(|(_, _, f)| ("a moving support".to_string(), f));
     let interval = job.output.history_interval;
     let mut remarks = Vec::new();
     for (name, function) in loads.chain(moving) {
