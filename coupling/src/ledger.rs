@@ -182,6 +182,11 @@ impl Balance {
         self.now.total() - self.start.total() + self.spent.dissipated() - self.spent.work()
     }
 
+    /// What springs and motion hold now [J].
+    pub fn held(&self) -> f64 {
+        self.now.held()
+    }
+
     /// The error with what a solid has gained in its time integration [J]: alone, it books there whatever does not close.
     pub fn unexplained(&self) -> f64 {
         self.error().abs() + (-self.spent.numerical).max(0.0)

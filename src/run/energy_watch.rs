@@ -7,15 +7,19 @@ use trackbed_coupling::ledger::Balance;
 /// Energy error over the energy turned over: above this it is remarked, and above the second the run stops.
 pub const ENERGY: (f64, f64) = (0.01, 0.2);
 
-/// The energy account over a run: the largest error in proportion to what had been turned over by then.
+/// Share of what springs and motion hold that counts as turned over when a run is to be stopped: in the first steps next to
+/// nothing has been turned over yet, and the error of a first contact is large beside that.
+const HELD: f64 = 0.25;
+
+/// The energy account over a run: its errors in proportion to what had been turned over.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct EnergyWatch {
-    /// Largest energy turned over so far [J].
-    turnover: f64,
-    /// Largest error over it, or over the floor where that is larger, at any row.
-    pub worst: f64,
-    /// The same now.
-    pub now: f64,
+    /// Largest energy turned over so far, or the floor where that is larger [J].
+    scale: f64,
+    /// Largest error so far [J].
+    largest: f64,
+    /// Error now [J].
+    error: f64,
 }
 
 impl EnergyWatch {
@@ -24,22 +28,37 @@ impl EnergyWatch {
     /// # Errors
     /// The error is so large that nothing of the run means anything.
     pub fn follow(&mut self, balance: &Balance) -> Result<(), Failure> {
-        self.turnover = self.turnover.max(balance.turnover());
-        let scale = self.turnover.max(balance.floor());
-        let error = balance.unexplained();
-        self.now = if error > 0.0 || error.is_nan() { error / scale } else { 0.0 };
-        self.worst = self.worst.max(self.now);
-        if self.now <= ENERGY.1 {
+        self.scale = self.scale.max(balance.turnover()).max(balance.floor());
+        self.error = balance.error().abs();
+        self.largest = self.largest.max(self.error);
+        let scale = self.scale.max(HELD * balance.held());
+        let share = relative(balance.unexplained(), scale);
+        if share <= ENERGY.1 {
             return Ok(());
         }
+        let error = balance.unexplained();
         Err(Failure::Numerical(format!(
             "the energy account does not close: an error of {error:.3e} J is {:.0} % of the {scale:.3e} J that were turned \
              over, and above {:.0} % nothing of a run can be relied on; expected shorter steps (time.grain_step, \
              solid.dynamics, coupling), or a start without large overlaps",
-            100.0 * self.now,
+            100.0 * share,
             100.0 * ENERGY.1
         )))
     }
+
+    /// Error now over the most that has been turned over.
+    pub fn now(&self) -> f64 {
+        relative(self.error, self.scale)
+    }
+
+    /// Largest error at any row over the most that has been turned over.
+    pub fn worst(&self) -> f64 {
+        relative(self.largest, self.scale)
+    }
+}
+
+fn relative(error: f64, scale: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / scale }
 }
 
 #[cfg(test)]
@@ -57,10 +76,10 @@ mod tests {
     fn energy_is_judged_at_every_row_by_the_largest_turnover_so_far() {
         let mut watch = EnergyWatch::default();
         watch.follow(&balance(0.2, 0.81)).unwrap();
-        assert!((watch.now - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
+        assert!((watch.now() - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
         // The same error with nothing turned over at the moment.
         watch.follow(&balance(1.01, 0.0)).unwrap();
-        assert!((watch.now - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
+        assert!((watch.now() - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
         let failure = watch.follow(&balance(1.5, 0.0)).unwrap_err();
         assert_eq!(failure.code(), 3);
         assert!(failure.to_string().contains("62 %"), "{failure}");

@@ -36,7 +36,7 @@ fn a_solid_that_is_right_passes() {
     let outcome = run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set).good();
     assert!(outcome.stdout.contains("verdict: passed, 1 accounts judged"), "{}", outcome.stdout);
     let summary = json(&folder.join("out/summary.json"));
-    let energy = judged(&summary, "energy error");
+    let energy = judged(&summary, "largest energy error");
     assert_eq!(energy["outcome"], "passed");
     assert!(energy["value"].as_f64().unwrap() < 1e-6, "{energy}");
 }

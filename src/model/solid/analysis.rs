@@ -300,7 +300,8 @@ pub fn check_overburden(
     mesh: &Mesh,
     materials: &Materials,
 ) -> Result<(), SceneError> {
-    let Some(InitialStressPlan { kind: InitialStressKind::K0 { overburden, .. }, .. }) = &plans.initial_stress
+    let Some(InitialStressPlan { kind: InitialStressKind::K0 { overburden, .. }, .. }) =
+        &plans.initial_stress
     else {
         return Ok(());
     };

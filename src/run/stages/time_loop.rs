@@ -306,9 +306,9 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
         error: balance.error(),
         work: balance.spent.work(),
         turned_over: balance.turnover(),
-        relative_error: watch.now,
+        relative_error: watch.now(),
         largest_error: recorder.largest_error(),
-        largest_relative_error: watch.worst,
+        largest_relative_error: watch.worst(),
     }
 }
 

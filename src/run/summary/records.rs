@@ -73,7 +73,7 @@ pub struct EnergyRecord {
     pub relative_error: f64,
     /// Largest |error| at any row of the history [J].
     pub largest_error: f64,
-    /// Largest relative error at any row of the history.
+    /// The same of the largest error at any row.
     pub largest_relative_error: f64,
 }
 

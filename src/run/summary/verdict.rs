@@ -75,7 +75,7 @@ impl Verdict {
         let mut judged = Vec::new();
         if let Some(e) = &summary.energy {
             let (warn, stop) = ENERGY;
-            let what = "energy error over energy turned over, largest at any row";
+            let what = "largest energy error over energy turned over";
             judged.push(Judged::new(what, e.largest_relative_error, warn, Some(stop)));
             for (name, loss) in e.spent.losses() {
                 let below = (-loss).max(0.0) / e.turned_over.max(f64::MIN_POSITIVE);
