@@ -134,6 +134,9 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
     let summary = &mut state.summary;
     summary.verdict = Verdict::of(summary);
     let result = result.and_then(|()| summary.verdict.judge());
+    if let Err(Failure::Numerical(_)) = &result {
+        summary.verdict.fail();
+    }
     summary.run.peak_memory = peak_memory();
     match &result {
         Ok(()) => summary.run.status = "done".into(),

@@ -356,16 +356,26 @@ fn a_stiff_one_on_stones_is_a_rigid_one() {
     assert!(rigid.1 < 1e-3 && meshed.1 < 1e-3);
 }
 
-/// Windows ten times too long for the dashpots on the ground are remarked on before the run, and after it with what they did.
+/// Windows too long for the dashpots on the ground are remarked on before the run, and after it with what they did; ten times
+/// too long, the run stops.
 #[test]
 fn dashpots_that_act_late_are_remarked_on() {
-    let (folder, _) = ran(&on_layers(""), &["coupling.substeps=60"]);
+    let (folder, _) = ran(&on_layers(""), &["coupling.substeps=20"]);
     let summary = json(&folder.join("out/summary.json"));
-    let warnings = summary["warnings"].to_string();
-    assert!(warnings.contains("the exchange may be unstable"), "{warnings}");
-    assert!(warnings.contains("the dashpots at the solid's surface took "), "{warnings}");
+    let remarked = |summary: &serde_json::Value| {
+        let warnings = summary["warnings"].to_string();
+        assert!(warnings.contains("the exchange may be unstable"), "{warnings}");
+        assert!(warnings.contains("the dashpots at the solid's surface took "), "{warnings}");
+    };
+    remarked(&summary);
     let spent = |key: &str| summary["energy"]["spent"][key].as_f64().unwrap();
     assert!(spent("dashpot_lag") < -spent("dashpot"), "{}", summary["energy"]);
+    assert_eq!(summary["verdict"]["outcome"], "warned");
+    let longer =
+        super::support::run(&folder.join("scene.toml"), &folder.join("out"), &["coupling.substeps=60"]);
+    assert_eq!(longer.code, 3, "{}", longer.stderr);
+    assert!(longer.stderr.contains("the energy account does not close"), "{}", longer.stderr);
+    remarked(&json(&folder.join("out/summary.json")));
 }
 
 /// Two short sleepers on a bed that settles.

@@ -112,16 +112,7 @@ pub(crate) fn limit(
         }
         let shape = &input.shapes[body.shape];
         let flexibility = compliance(&body, shape);
-        let sides = match shape {
-            Shape::Sphere { .. } => 12.0,
-            Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
-            Shape::Box { half } => {
-                let h = half.map(|h| 2.0 * h * body.scale / (2.0 * r_min) + 1.0);
-                let grains = 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0]);
-                // Boxes on two opposite sides touch in four points each.
-                if several { grains.max(16.0) } else { grains }
-            }
-        };
+        let sides = sides(shape, body.scale, r_min, several);
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
             // The stiffest contact has the largest circle: that of the body's own radius on a plane.
@@ -164,6 +155,21 @@ pub(crate) fn limit(
         }
     }
     least
+}
+
+/// Contacts that act in one direction at once, twice. `smallest`: radius of the smallest neighbour [m]; `several`: there are
+/// other boxes.
+fn sides(shape: &Shape, scale: f64, smallest: f64, several: bool) -> f64 {
+    match shape {
+        Shape::Sphere { .. } => 12.0,
+        Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
+        Shape::Box { half } => {
+            let h = half.map(|h| 2.0 * h * scale / (2.0 * smallest) + 1.0);
+            let grains = 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0]);
+            // Boxes on two opposite sides touch in four points each.
+            if several { grains.max(16.0) } else { grains }
+        }
+    }
 }
 
 /// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.

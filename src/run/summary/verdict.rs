@@ -74,9 +74,9 @@ impl Verdict {
     pub fn of(summary: &Summary) -> Verdict {
         let mut judged = Vec::new();
         if let Some(e) = &summary.energy {
-            let (warn, stop) = ENERGY;
+            // What stops a run does so at the row where it is seen.
             let what = "largest energy error over energy turned over";
-            judged.push(Judged::new(what, e.largest_relative_error, warn, Some(stop)));
+            judged.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
             for (name, loss) in e.spent.losses() {
                 let below = (-loss).max(0.0) / e.turned_over.max(f64::MIN_POSITIVE);
                 if below > NEGATIVE {
@@ -103,6 +103,11 @@ impl Verdict {
         Verdict { outcome, judged }
     }
 
+    /// A run that has failed, whatever the accounts say.
+    pub fn fail(&mut self) {
+        self.outcome = Outcome::Failed;
+    }
+
     /// Lines for the end of a run.
     pub fn report(&self) -> Vec<String> {
         let word = |outcome: Outcome| match outcome {
@@ -110,8 +115,9 @@ impl Verdict {
             Outcome::Warned => "warned",
             Outcome::Failed => "failed",
         };
-        let mut lines =
-            vec![format!("verdict: {}, {} accounts judged", word(self.outcome), self.judged.len())];
+        let count = self.judged.len();
+        let accounts = if count == 1 { "account" } else { "accounts" };
+        let mut lines = vec![format!("verdict: {}, {count} {accounts} judged", word(self.outcome))];
         for j in self.judged.iter().filter(|j| j.outcome != Outcome::Passed) {
             lines.push(format!(
                 "  {}: {} is {:.3e}, expected at most {:.0e}",

@@ -1,8 +1,8 @@
 //! The corners of a body and a plane: with flat faces and straight edges nothing else touches first.
 
+use super::pair::{PairKind, Touch, Touches};
 use super::scene::PlaneView;
 use super::side::{Corner, Corners, Planes};
-use super::{PairKind, Touch, Touches};
 use crate::law::ContactGeometry;
 use crate::spatial::detect;
 

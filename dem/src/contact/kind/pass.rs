@@ -1,23 +1,14 @@
 //! What is done with the pairs of a kind, written once for all of them.
 
+use super::pair::{PairKind, Touch, Touches, Visited};
 use super::scene::{Now, Scene, Search};
-use super::side::{First, Second, Side, within_reach};
-use super::{PairKind, Touch, Touches, Visited};
+use super::side::{First, Renamed, Second, Side, within_reach};
 use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Impulse;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
 use crate::pairs::list::{NO_FEATURE, PairList, PairName, PointMemory};
-
-/// Where bodies are after a new order; `None` where they do not stay.
-pub(crate) trait Renamed {
-    /// Block and number of what was a sphere of an old block.
-    fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]>;
-
-    /// Block and place of what was a body of an old block.
-    fn body(&self, block: usize, place: u32) -> Option<[u32; 2]>;
-}
 
 /// What the contacts of a block do besides the forces that go to slots.
 pub(crate) struct Books<'a> {

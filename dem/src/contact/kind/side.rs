@@ -1,12 +1,20 @@
 //! What the partners of a pair can be.
 
-use super::pass::Renamed;
 use super::scene::{Placed, PlaneView, Scene, Search};
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::PointMotion;
 use crate::lanes::record::Record;
 use crate::spatial::bvh::Aabb;
+
+/// Where bodies are after a new order; `None` where they do not stay.
+pub(crate) trait Renamed {
+    /// Block and number of what was a sphere of an old block.
+    fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]>;
+
+    /// Block and place of what was a body of an old block.
+    fn body(&self, block: usize, place: u32) -> Option<[u32; 2]>;
+}
 
 /// One partner of a pair. A partner has a number within its block: that of a sphere, of a body, of a corner; planes have
 /// numbers of their own.

@@ -1,8 +1,8 @@
 //! A sphere and a box: the closest point of the box's surface.
 
+use super::pair::{PairKind, Touch, Touches};
 use super::scene::Placed;
 use super::side::{Solids, Spheres};
-use super::{PairKind, Touch, Touches};
 use crate::lanes::record::{Record, xyz};
 use crate::shape::cuboid;
 use crate::spatial::detect;

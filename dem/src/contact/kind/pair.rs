@@ -1,0 +1,68 @@
+//! What a kind of pair says, and the contacts that it finds.
+
+use super::side::{First, Second, Side};
+use crate::base::Vec3;
+use crate::law::ContactGeometry;
+
+/// Which two shapes touch, and where.
+pub(crate) trait PairKind: Sync {
+    /// What the first partner is: its forces are those of the contact.
+    type First: First;
+    /// What the second partner is.
+    type Second: Second;
+
+    /// Contact points that a pair can have.
+    const POINTS: usize;
+
+    /// Whether the two may be nearer than `reach` [m]: exact, or rather too often than too seldom. False for shapes that
+    /// the kind is not for.
+    fn near(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
+
+    /// Finds where they touch, at most in [`PairKind::POINTS`] points.
+    fn touches(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, found: &mut Touches);
+}
+
+/// A partner where it is, as its side shows it.
+pub(crate) type View<'a, S> = <S as Side>::View<'a>;
+
+/// A point in which two partners touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    /// What touches: of the first partner in the upper 16 bits, of the second in the lower. Memory goes with it.
+    pub feature: u32,
+    pub geometry: ContactGeometry,
+    /// Share of the law's force that acts here: one, but where one area is stood for by several points.
+    pub weight: f64,
+    /// Overlap above which the contact has lost its meaning [m].
+    pub bound: f64,
+}
+
+impl Touch {
+    /// The only point of a pair.
+    pub fn only(geometry: ContactGeometry, bound: f64) -> Touch {
+        Touch { feature: 0, geometry, weight: 1.0, bound }
+    }
+}
+
+/// The points in which a pair touches.
+pub(crate) type Touches = Vec<Touch>;
+
+/// One contact as measures see it.
+pub(crate) struct Visited<'a> {
+    pub body: u32,
+    pub partner: crate::base::error::Partner,
+    pub geometry: ContactGeometry,
+    /// Share of the law's force that acts here.
+    pub weight: f64,
+    /// Velocity of the body relative to the partner at the contact point [m/s].
+    pub velocity: Vec3,
+    /// Effective mass [kg].
+    pub mass: f64,
+    pub history: &'a crate::law::History,
+    /// Spin of the body less that of its partner [rad/s].
+    pub spin: Vec3,
+    /// Materials of the two.
+    pub materials: [u32; 2],
+    /// From the partner to its touched image [m].
+    pub shift: Vec3,
+}
