@@ -100,7 +100,7 @@ impl Side for Spheres {
     }
 
     #[inline(always)]
-    fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> &'a Record {
+    fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> &Record {
         scene.sphere(block, number)
     }
 
@@ -133,7 +133,7 @@ impl Side for Solids {
     }
 
     #[inline(always)]
-    fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> Placed<'a> {
+    fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Placed<'_> {
         scene.placed(block, number as usize)
     }
 
