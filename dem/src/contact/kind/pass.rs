@@ -2,7 +2,7 @@
 
 use super::pair::{PairKind, Touch, Touches, Visited};
 use super::scene::{Now, Scene, Search};
-use super::side::{First, Renamed, Second, Side, within_reach};
+use super::side::{First, Renamed, Second, Side, grown};
 use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Impulse;
@@ -104,7 +104,7 @@ impl<K: PairKind> Kind for Of<K> {
         K::First::own(search, b, |i| {
             let first = K::First::view(now, b, i);
             let still = K::First::still(now, b, i);
-            let bounds = within_reach(K::First::bounds(&first), reach);
+            let bounds = grown(K::First::bounds(&first), reach);
             K::Second::around(search, b, bounds, row, |other, j| {
                 // Of two partners that could both come first the earlier one does.
                 let turned = K::Second::body(now, other as usize, j).is_some() && [other, j] <= [b as u32, i];
@@ -131,6 +131,10 @@ impl<K: PairKind> Kind for Of<K> {
         list: &mut PairList,
         books: &mut Books<'_>,
     ) {
+        // Most blocks of a scene have no such pair.
+        if list.len() == 0 {
+            return;
+        }
         let mut found = Touches::with_capacity(K::POINTS);
         for k in 0..list.len() {
             let name = list.name(k);

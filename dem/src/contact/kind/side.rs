@@ -78,13 +78,9 @@ pub(crate) trait Second: Side {
     fn around(search: &Search<'_>, block: usize, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32, u32));
 }
 
-fn grown((low, high): Aabb, by: f64) -> Aabb {
+/// Bounds grown by a length [m].
+pub(crate) fn grown((low, high): Aabb, by: f64) -> Aabb {
     (low.map(|x| x - by), high.map(|x| x + by))
-}
-
-/// Bounds grown by the reach of a search [m].
-pub(crate) fn within_reach(bounds: Aabb, reach: f64) -> Aabb {
-    grown(bounds, reach)
 }
 
 /// Spheres: single ones and members of clumps.
