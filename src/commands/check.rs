@@ -50,7 +50,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>) -> Result<Str
                 lines.extend(coupling_lines(coupling, solid, grains, &model));
             }
         }
-        None => lines.extend(stages::of(job).flat_map(|s| s.report(job, 0.0))),
+        None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
     }
     Ok(lines.iter().fold(format!("{}\n", job.title), |text, line| text + "  " + line + "\n"))
 }
@@ -101,9 +101,24 @@ fn grain_lines(
     grains.track.check_ram(document, model.dt())?;
     let mut lines = vec![
         format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()),
-        format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
+        match model.measured() {
+            None => format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
+            Some(share) => format!(
+                "  step {:.4e} s at first, then {share} of what the contacts allow, {:.4e} s at most; {}",
+                model.dt(),
+                model.longest(true),
+                model.dt_limit()
+            ),
+        },
     ];
-    let stages = stages::of(job).flat_map(|s| s.report(job, model.dt()));
+    let steps = |time: f64| {
+        let most = time / model.dt();
+        match model.measured() {
+            None => format!("{most:.0} steps"),
+            Some(_) => format!("{:.0} to {most:.0} steps", time / model.longest(true)),
+        }
+    };
+    let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
     lines.extend(stages.map(|line| format!("  {line}")));
     Ok((model, lines))
 }

@@ -145,8 +145,8 @@ impl TrackSystem for QuasiStaticSystem<'_> {
 }
 
 impl System for QuasiStaticSystem<'_> {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (0, 1)
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (0, windows)
     }
 
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
@@ -281,8 +281,8 @@ impl TrackSystem for PlasticDynamics<'_> {
 }
 
 impl System for PlasticDynamics<'_> {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (0, 1)
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (0, windows)
     }
 
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {

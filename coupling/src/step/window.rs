@@ -8,6 +8,7 @@ use super::stiffened::Held;
 use crate::scheme::Scheme;
 use crate::surface::Motion;
 use trackbed_dem as dem;
+use trackbed_dem::stability;
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
@@ -180,15 +181,18 @@ fn grains(
     work: &mut Work,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<(), StepError> {
-    let dt = model.grains.dt();
+    let substeps = stability::divide(&model.grains, &mut state.grains, model.window(), model.substeps);
+    let dt = state.grains.dt();
     begin(model, state, work)?;
     work.transfer.begin_window();
-    for k in 0..model.substeps {
+    for k in 0..substeps {
         work.surface.advance((f64::from(k) + 0.5) * dt);
         work.applied.clear();
         applied(state.grains.time, &state.grains, &mut work.applied);
+        // The solid gets what the grains get, also in the step in which their length changes.
+        let kick = state.grains.kick();
         dem::step(&model.grains, &mut state.grains, &mut work.grains, &work.surface, &work.applied)?;
-        work.transfer.add(&work.surface, work.grains.surface_contacts(), dt, &mut state.audit);
+        work.transfer.add(&work.surface, work.grains.surface_contacts(), kick, &mut state.audit);
     }
     work.contact_load.fill(0.0);
     work.transfer.add_mean_load(&work.surface, model.window(), &mut work.contact_load);

@@ -7,6 +7,7 @@ pub(crate) mod bonds;
 pub(crate) mod candidates;
 mod check;
 mod check_periodic;
+pub(crate) mod collision;
 pub mod input;
 pub mod model;
 pub(crate) mod neighbours;

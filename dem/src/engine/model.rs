@@ -1,6 +1,7 @@
 //! The checked, resolved and immutable model: what a run needs and never changes.
 
 use super::check;
+use super::collision;
 use super::input::{ModelInput, TimeStep};
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
@@ -46,6 +47,13 @@ pub struct Model {
     pub(crate) periodic: Option<Periodic>,
     dt: f64,
     limit: DtLimit,
+    /// Share of the measured limit that steps take, where they follow it.
+    measured: Option<f64>,
+    /// Longest step that rigid bodies of walls and the input allow [s], and that single collisions do.
+    longest: f64,
+    collision: f64,
+    /// What the latter is multiplied by where most contacts last.
+    lasting: f64,
 }
 
 impl Model {
@@ -87,9 +95,20 @@ impl Model {
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
-        timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let wall_limit =
+            timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let partners = timestep::partners(&bodies, &input);
+        let mut collision = collision::longest(&bodies, &input, &laws, &partners, expected);
+        let mut longest = wall_limit;
         let dt = match input.time_step {
             TimeStep::Auto { fraction } => fraction * limit.dt,
+            TimeStep::Measured { share, longest: most, collisions } => {
+                if !collisions {
+                    collision *= collision::PACKED;
+                }
+                longest = longest.min(most);
+                (share * limit.dt).min(longest).min(collision)
+            }
             TimeStep::Fixed(dt) if dt > limit.dt => {
                 return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
             }
@@ -128,10 +147,18 @@ impl Model {
             radii,
             dt,
             limit,
+            measured: if let TimeStep::Measured { share, .. } = input.time_step { Some(share) } else { None },
+            longest,
+            collision,
+            lasting: if matches!(input.time_step, TimeStep::Measured { collisions: false, .. }) {
+                1.0
+            } else {
+                collision::PACKED
+            },
         })
     }
 
-    /// The time step [s].
+    /// The time step that a run begins with [s]; [`State::dt`](crate::State::dt) is the one that it has.
     pub fn dt(&self) -> f64 {
         self.dt
     }
@@ -139,6 +166,17 @@ impl Model {
     /// The stability limit of the time step and what sets it.
     pub fn dt_limit(&self) -> &DtLimit {
         &self.limit
+    }
+
+    /// Share of what the contacts allow that steps take, where they follow it (see [`crate::stability`]).
+    pub fn measured(&self) -> Option<f64> {
+        self.measured
+    }
+
+    /// Longest step that collisions, rigid bodies of walls and the input allow [s], whatever touches; `packed`: where most
+    /// contacts last (see [`crate::stability`]).
+    pub fn longest(&self, packed: bool) -> f64 {
+        self.longest.min(if packed { self.lasting * self.collision } else { self.collision })
     }
 
     /// Gives up the positions that the bodies start from, for a run that has its state: 24 bytes per body.

@@ -20,7 +20,7 @@ const MOST: u32 = 20;
 
 /// The exchange, resolved.
 pub struct CouplingPart {
-    substeps: Option<u32>,
+    window: WindowPlan,
     /// Order of the exchange.
     pub scheme: Scheme,
     /// How contact forces reach the solid.
@@ -31,6 +31,17 @@ pub struct CouplingPart {
     pub faces: Vec<Face>,
     /// How many of them are the ground's.
     pub ground_faces: usize,
+}
+
+/// How long a step of the solid is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WindowPlan {
+    /// As long as the exchange allows.
+    Auto,
+    /// So many first steps of the grains.
+    Steps(u32),
+    /// So many seconds, rounded to first steps of the grains.
+    Seconds(f64),
 }
 
 /// How contact forces reach the solid.
@@ -83,15 +94,26 @@ impl CouplingPart {
     ) -> (Vec<ContactClass>, u32) {
         let ground = self.ground_classes(grains, model, solid, surface);
         let dt = model.dt();
-        let mut substeps = self.substeps.unwrap_or_else(|| {
-            // W and D are proportional to the window.
-            let excess = ground.iter().map(|c| c.at(dt).excess()).fold(0.0, f64::max);
-            if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, MOST) } else { MOST }
-        });
+        let mut substeps = match self.window {
+            WindowPlan::Steps(n) => n,
+            WindowPlan::Seconds(window) => ((window / dt).round() as u32).max(1),
+            WindowPlan::Auto => {
+                // Steps that follow the contacts grow beyond the first.
+                let growth = if model.measured().is_some() {
+                    (model.longest(true) / dt).clamp(1.0, 50.0)
+                } else {
+                    1.0
+                };
+                let most = (f64::from(MOST) * growth) as u32;
+                // W and D are proportional to the window.
+                let excess = ground.iter().map(|c| c.at(dt).excess()).fold(0.0, f64::max);
+                if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
+            }
+        };
         loop {
             let window = f64::from(substeps) * dt;
             let sleepers = self.sleeper_classes(grains, model, solid, window);
-            if self.substeps.is_some() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {
+            if !self.automatic() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {
                 return (ground.iter().map(|c| c.at(window)).chain(sleepers).collect(), substeps);
             }
             substeps -= 1;
@@ -100,7 +122,7 @@ impl CouplingPart {
 
     /// Whether the scene leaves the number of steps to the program.
     pub fn automatic(&self) -> bool {
-        self.substeps.is_none()
+        self.window == WindowPlan::Auto
     }
 
     /// The classes of contacts with the ground for windows of 1 s; [`ContactClass::at`] gives them for others.

@@ -33,6 +33,9 @@ pub enum GrainTime {
     AtMost(f64),
 }
 
+/// Steps of the grains in a time [s], in words.
+pub type Steps<'a> = &'a dyn Fn(f64) -> String;
+
 /// One stage of a run. What a run carries out is what `check` and `explain` report of it.
 pub trait Stage: Sync {
     /// Name for users; none where the stage is the end of the one before.
@@ -41,8 +44,8 @@ pub trait Stage: Sync {
     /// Whether a run of the scene has it.
     fn applies(&self, job: &Job) -> bool;
 
-    /// What `check` reports of it, line by line; `dt` is the step of the grains [s], where there are grains.
-    fn report(&self, _job: &Job, _dt: f64) -> Vec<String> {
+    /// What `check` reports of it, line by line.
+    fn report(&self, _job: &Job, _steps: Steps<'_>) -> Vec<String> {
         Vec::new()
     }
 

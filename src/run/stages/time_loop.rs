@@ -262,16 +262,15 @@ impl<'a> TimeLoop<'a> {
             bond_output::write_breaks(dir, view.state)?;
             summary.bonds = Some(bond_output::summary(view));
         }
-        let (grain_steps, solid_steps) = system.steps_per_window();
         let done = self.place.done;
+        let (grain_steps, solid_steps) = system.steps_done(done);
         let end = done as f64 * self.cadence.window;
         let seconds = self.progress.finish(&format!("{end:.3} s simulated"));
-        summary.stages.push(StageRecord {
-            name: "run".into(),
-            seconds,
-            grain_steps: done * grain_steps,
-            solid_steps: done * solid_steps,
-        });
+        summary.stages.push(StageRecord { name: "run".into(), seconds, grain_steps, solid_steps });
+        if let Some(view) = system.grains().filter(|v| v.model.measured().is_some() && grain_steps > 0) {
+            summary.model.grain_step = Some(view.state.time / grain_steps as f64);
+            summary.model.grain_step_limit = view.state.measured_limit().or(summary.model.grain_step_limit);
+        }
         summary.track.push = track_output::push(&self.track, dir)?;
         if let (Some(flow), Some(view)) = (&self.flow, system.grains()) {
             let (record, warnings) = flow.finish(end, view);
