@@ -44,6 +44,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
             folder.push("_modes");
             folder.into()
         });
+        let _lock = run::Lock::take(&dir)?;
         write_modes(&part.model, &modes, &dir)?;
         let mut text = format!("{}\n  mode  frequency [Hz]  effective mass x, y, z [kg]\n", scene.title);
         for (i, f) in modes.frequencies.iter().enumerate() {

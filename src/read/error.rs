@@ -3,6 +3,11 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::message::shown;
+
+/// Longest part of a message [characters].
+const LONGEST: usize = 1000;
+
 /// One fault in an input file, printed as one sentence:
 /// `NODECOORD.DAT:17: coordinate y: found "1.2.3", expected a number`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -50,7 +55,8 @@ impl fmt::Display for ReadError {
         if let Some(line) = self.line {
             write!(f, "{line}:")?;
         }
-        write!(f, " {}: found {}, expected {}", self.key, self.found, self.expected)
+        let [key, found, expected] = [&self.key, &self.found, &self.expected].map(|text| shown(text, LONGEST));
+        write!(f, " {key}: found {found}, expected {expected}")
     }
 }
 
