@@ -37,6 +37,7 @@ use crate::failure::Failure;
 use crate::guard::guarded;
 use crate::message;
 use crate::model::Job;
+use crate::model::grains::preview;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
@@ -141,6 +142,10 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
 fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<Outcome, Failure> {
     let mut state = RunState::new(loaded, summary);
     let result = guarded(|| {
+        // What the main loop would refuse is refused before hours of packing.
+        if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && state.loaded.is_none()) {
+            preview(run.document, grains, run.job.end)?;
+        }
         describe(run, &mut state.summary)?;
         state.begin(run.job)?;
         stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state))

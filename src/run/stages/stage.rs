@@ -154,9 +154,7 @@ pub struct RunState<'a> {
 
 /// Whether grains are packed before the main loop.
 pub fn is_packed(job: &Job) -> bool {
-    job.grains.as_ref().is_some_and(|g| {
-        g.packing.deposition.is_some() || !g.groups.growths.is_empty() || !g.packing.compaction.is_empty()
-    })
+    job.grains.as_ref().is_some_and(GrainsPart::is_packed)
 }
 
 /// Points of the planes [m].
