@@ -34,7 +34,9 @@ pub fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failur
         let place = PLACE.lock().unwrap_or_else(PoisonError::into_inner).take();
         let place = place.map_or(String::new(), |place| format!(" ({place})"));
         let text = text(payload.as_ref());
-        Err(Failure::Numerical(format!("the program has failed: {text}{place}; please report it with the scene")))
+        Err(Failure::Numerical(format!(
+            "the program has failed: {text}{place}; please report it with the scene"
+        )))
     })
 }
 

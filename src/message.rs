@@ -19,11 +19,10 @@ pub(crate) fn note(remark: &str) {
     say(&format!("note: {remark}"));
 }
 
-/// A text of others, such as a token of a file, as it can be shown: control characters but line feeds escaped, and of more than
+/// A text of others, such as a token of a file, as it can be shown in one line: control characters escaped, and of more than
 /// `longest` characters the first ones with the number of all.
 pub(crate) fn shown(text: &str, longest: usize) -> String {
-    let plain = |c: char| c == '\n' || !c.is_control();
-    if text.len() <= longest && text.chars().all(plain) {
+    if text.len() <= longest && !text.contains(char::is_control) {
         return text.to_string();
     }
     let mut out = String::new();
@@ -32,9 +31,9 @@ pub(crate) fn shown(text: &str, longest: usize) -> String {
             out += &format!("… ({} characters)", text.chars().count());
             break;
         }
-        match plain(c) {
-            true => out.push(c),
-            false => out.extend(c.escape_default()),
+        match c.is_control() {
+            false => out.push(c),
+            true => out.extend(c.escape_default()),
         }
     }
     out
@@ -46,7 +45,7 @@ mod tests {
 
     #[test]
     fn what_others_wrote_is_shown_without_control_characters_and_in_short() {
-        assert_eq!(shown("a b\nc", 10), "a b\nc");
+        assert_eq!(shown("a b\nc", 10), "a b\\nc");
         assert_eq!(shown("a\u{1b}[31m\u{7}\0é", 40), "a\\u{1b}[31m\\u{7}\\u{0}é");
         assert_eq!(shown(&"x".repeat(200_000), 5), "xxxxx… (200000 characters)");
         assert_eq!(shown("ééé", 3), "ééé");

@@ -11,10 +11,14 @@ pub mod track;
 pub use output::OutputPlan;
 
 use crate::failure::Failure;
+use crate::message::shown;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
+
+/// Longest title [characters].
+const LONGEST: usize = 200;
 
 /// A resolved scene.
 pub struct Job {
@@ -112,8 +116,11 @@ impl Job {
             .map(|(i, p)| probe(document, i, p, solid.as_ref()))
             .collect::<Result<Vec<_>, _>>()?;
         let output = OutputPlan::new(document, scene, end)?;
-        let title =
-            if scene.title.is_empty() { document.file().display().to_string() } else { scene.title.clone() };
+        let title = if scene.title.is_empty() {
+            document.file().display().to_string()
+        } else {
+            shown(&scene.title.replace(['\r', '\n'], " "), LONGEST)
+        };
         Ok(Job { title, solid, grains, coupling, end, solid_step, output, probes })
     }
 }

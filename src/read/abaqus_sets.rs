@@ -85,7 +85,8 @@ impl Members {
     /// Members that `ids` names too.
     fn among(&self, ids: &HashSet<u32>) -> u64 {
         let ones = self.ones.iter().filter(|id| ids.contains(id)).count();
-        let ranges = self.ranges.iter().map(|r| ids.iter().filter(|id| holds(r, **id)).count()).sum::<usize>();
+        let ranges =
+            self.ranges.iter().map(|r| ids.iter().filter(|id| holds(r, **id)).count()).sum::<usize>();
         (ones + ranges) as u64
     }
 

@@ -79,8 +79,7 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, ReadError> {
         let constraints = path.join(CONSTRAINTS);
         let constraints = constraints.exists().then_some(constraints);
         let nodes = path.join(NODES);
-        let lists =
-            read_lists(&nodes, &path.join(ELEMENTS), constraints.as_deref(), &ListLayout::default())?;
+        let lists = read_lists(&nodes, &path.join(ELEMENTS), constraints.as_deref(), &ListLayout::default())?;
         return Ok(lists.into());
     }
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();

@@ -98,7 +98,10 @@ mod tests {
             let device = refused(Path::new("/dev/zero"), LARGEST);
             assert_eq!(device, "found a device or a pipe, expected a regular file");
             // Says that it has no bytes, and has some.
-            assert_eq!(refused(Path::new("/proc/self/status"), 10), "found 11 bytes, expected at most 10 bytes");
+            assert_eq!(
+                refused(Path::new("/proc/self/status"), 10),
+                "found 11 bytes, expected at most 10 bytes"
+            );
         }
     }
 }

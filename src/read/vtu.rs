@@ -147,7 +147,8 @@ fn add_piece<'a>(
         let components = components.trim().parse::<usize>().ok().filter(|c| (1..=1000).contains(c));
         let components =
             components.ok_or_else(|| fault("no such number".into(), "a number of components"))?;
-        let most = most_numbers(array.section, &name, points as u64, cells as u64, components as u64).min(*left);
+        let most =
+            most_numbers(array.section, &name, points as u64, cells as u64, components as u64).min(*left);
         let format = array.tag.attribute("format").unwrap_or_default();
         let decoded = match format.as_str() {
             "ascii" | "" => text_numbers(array.text),

@@ -60,7 +60,8 @@ pub fn first_result(dir: &Path) -> Option<PathBuf> {
     let named = files().map(|name| dir.join(name)).find(|file| file.exists());
     let found = |folder: &Path, ours: &dyn Fn(&Path) -> bool| {
         let entries = fs::read_dir(folder).ok()?;
-        let mut found: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(|f| ours(f)).collect();
+        let mut found: Vec<PathBuf> =
+            entries.filter_map(|e| Some(e.ok()?.path())).filter(|f| ours(f)).collect();
         found.sort();
         found.into_iter().next()
     };

@@ -29,10 +29,10 @@ impl Lock {
     /// Locks a folder, which is made where it is missing; goes again with the lock if nothing was put there.
     ///
     /// # Errors
-    /// Bad input: another process has it, or it is no folder. What the system refuses.
+    /// Bad input: another process has it. It is no folder; what the system refuses.
     pub fn take(dir: &Path) -> Result<Lock, Failure> {
         if dir.exists() && !dir.is_dir() {
-            return Err(Failure::Input(format!("{}: found a file, expected a folder", dir.display())));
+            return Err(Failure::Other(format!("{}: found a file, expected a folder", dir.display())));
         }
         let system = |e: io::Error| Failure::Other(format!("{}: {e}", dir.display()));
         let missing = dir.ancestors().take_while(|d| !d.as_os_str().is_empty() && !d.exists());
@@ -51,7 +51,9 @@ impl Lock {
                 let process = process.trim().parse::<u32>().map_or(String::new(), |n| format!(" {n}"));
                 let expected = "a folder that no other run writes to (--out)";
                 let dir = dir.display();
-                Err(Failure::Input(format!("{dir}: found it in use by process{process}, expected {expected}")))
+                Err(Failure::Input(format!(
+                    "{dir}: found it in use by process{process}, expected {expected}"
+                )))
             }
         }
     }
@@ -128,7 +130,10 @@ mod tests {
         assert!(inner.is_dir() && !inner.join(FILE).exists());
         fs::write(dir.join("file"), "").unwrap();
         let error = Lock::take(&dir.join("file")).unwrap_err();
-        assert!(error.code() == 2 && error.to_string().ends_with("found a file, expected a folder"), "{error}");
+        assert!(
+            error.code() == 1 && error.to_string().ends_with("found a file, expected a folder"),
+            "{error}"
+        );
         fs::remove_dir_all(&dir).unwrap();
     }
 }

@@ -9,9 +9,9 @@ use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
-use trackbed_fem::{SolveError, State};
 use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
 use trackbed_fem::nonlinear::{Loading, Memory, QuasiStatic, Statistics, StepControl, energy};
+use trackbed_fem::{SolveError, State};
 
 /// Loads and supports of a solid in time; before time 0 they are brought on from nothing.
 pub struct Course<'a> {
@@ -359,15 +359,13 @@ impl System for PlasticDynamics<'_> {
         let to = (self.steps + 1) as f64 * self.step;
         let mut course = Course { part, gravity: &self.gravity, carried: 1.0, interrupt: &self.interrupt };
         let spent = &mut self.spent;
-        let outcome = self
-            .solver
-            .advance(&part.model, &mut self.state, to, &mut course, |_, _, audit| {
-                spent.solid_load_work += audit.external_work + audit.support_work;
-                spent.rayleigh += audit.damping_dissipation;
-                spent.absorbed += audit.boundary_dissipation;
-                spent.plastic += audit.plastic_dissipation;
-                spent.numerical += audit.numerical_dissipation;
-            });
+        let outcome = self.solver.advance(&part.model, &mut self.state, to, &mut course, |_, _, audit| {
+            spent.solid_load_work += audit.external_work + audit.support_work;
+            spent.rayleigh += audit.damping_dissipation;
+            spent.absorbed += audit.boundary_dissipation;
+            spent.plastic += audit.plastic_dissipation;
+            spent.numerical += audit.numerical_dissipation;
+        });
         if outcome == Err(SolveError::Stopped) {
             (self.state, self.given_up, self.spent) = (before, Some(memory), spent_before);
             return Err(part.failure(&SolveError::Stopped));

@@ -152,7 +152,13 @@ fn pairs(document: &Document, scene: &Scene) -> Result<Vec<PairOverride>, SceneE
     for (i, c) in scene.contact.iter().enumerate() {
         let key = |k: &str| format!("contact.{i}.{k}");
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
-        check(document, &key("restitution"), c.restitution, |e| (LEAST_RESTITUTION..=1.0).contains(&e), "0.0001 to 1")?;
+        check(
+            document,
+            &key("restitution"),
+            c.restitution,
+            |e| (LEAST_RESTITUTION..=1.0).contains(&e),
+            "0.0001 to 1",
+        )?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
         check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| {
