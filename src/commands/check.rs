@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
-use crate::model::grains::{GrainsPart, Preview, preview};
+use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
 use crate::run::{self, stages};
 use crate::scene::{Document, Scene};
@@ -88,7 +88,7 @@ fn grain_lines(
     job: &Job,
     grains: &GrainsPart,
 ) -> Result<(dem::Model, Vec<String>), Failure> {
-    let Preview { alone, whole: model } = preview(document, grains, job.end)?;
+    let Preview { alone, whole: model } = stages::preview(document, job, grains)?;
     let mut lines = vec![
         format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()),
         format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),

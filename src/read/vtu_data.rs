@@ -122,7 +122,8 @@ fn inflate(
     if blocks > most {
         return Err(format!("{blocks} blocks"));
     }
-    fits(size.saturating_mul(blocks.saturating_sub(1)).saturating_add(last))?;
+    let shorter = if last > 0 { last } else { size };
+    fits(size.saturating_mul(blocks.saturating_sub(1)).saturating_add(shorter))?;
     let lengths: Vec<u64> = (0..blocks).map(|_| length(stream, coding)).collect::<Result<_, _>>()?;
     // The lengths are base64 of their own: what is left of their last group is padding.
     stream.pending.clear();

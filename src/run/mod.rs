@@ -37,7 +37,6 @@ use crate::failure::Failure;
 use crate::guard::guarded;
 use crate::message;
 use crate::model::Job;
-use crate::model::grains::preview;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
@@ -144,7 +143,7 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
     let result = guarded(|| {
         // What the main loop would refuse is refused before hours of packing.
         if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && state.loaded.is_none()) {
-            preview(run.document, grains, run.job.end)?;
+            stages::preview(run.document, run.job, grains)?;
         }
         describe(run, &mut state.summary)?;
         state.begin(run.job)?;

@@ -18,11 +18,11 @@ pub struct Preview {
     pub whole: Model,
 }
 
-/// Makes the models of a run that lasts `end` [s], and checks what depends on their step and on all bodies together.
+/// Makes the models, and checks what depends on their step and on all bodies together.
 ///
 /// # Errors
 /// Bad input.
-pub fn preview(document: &Document, grains: &GrainsPart, end: f64) -> Result<Preview, SceneError> {
+pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, SceneError> {
     let sleepers = grains
         .track
         .rigid_sleeper()
@@ -39,17 +39,16 @@ pub fn preview(document: &Document, grains: &GrainsPart, end: f64) -> Result<Pre
     let bodies = grains.groups.bodies.iter().cloned().chain(sleepers).collect();
     let whole = Model::new(grains.input(bodies)).map_err(|e| refused(document, &e))?;
     let dt = whole.dt();
-    check_steps(document, "time.end", end, dt)?;
-    if let Some(deposition) = &grains.packing.deposition {
-        check_steps(document, "deposition.max_time", deposition.max_time, dt)?;
-    }
     grains.track.check_pads(document, dt)?;
     grains.track.check_ram(document, dt)?;
     Ok(Preview { alone, whole })
 }
 
 /// Refuses a time that takes more steps of `dt` [s] than anyone can wait for.
-fn check_steps(document: &Document, key: &str, time: f64, dt: f64) -> Result<(), SceneError> {
+///
+/// # Errors
+/// Bad input.
+pub fn check_steps(document: &Document, key: &str, time: f64, dt: f64) -> Result<(), SceneError> {
     let steps = time / dt;
     if steps <= MOST_STEPS {
         return Ok(());

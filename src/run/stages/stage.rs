@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GrainsPart, check_joined, refused};
+use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::packing::{CompactionRecord, GrowthRecord};
@@ -213,6 +213,7 @@ impl RunState<'_> {
             summary.sources.extend(sources::BONDS);
         }
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+        check_steps(run.document, "time.end", run.job.end, model.dt())?;
         part.track.check_ram(run.document, model.dt())?;
         part.track.check_pads(run.document, model.dt())?;
         if part.track.rail.is_some() {

@@ -102,6 +102,12 @@ fn runs_without_end_are_refused() {
         refused(["run", &scene, "--out", &out, "--set", set], words);
     }
     assert!(!folder.join("out").exists());
+    let compaction = repository().join("inputs/grains/compaction.toml").display().to_string();
+    let cycles = "compaction.0.cycles=4294967295";
+    refused(
+        ["check", &compaction, "--set", cycles, "--set", "compaction.0.frequency=1e-3"],
+        "compaction: found ",
+    );
 }
 
 /// G4: ranges stay ranges, sets in sets count once.

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Values that no key expects, or too large, too small or of no sign for it.
+#[rustfmt::skip]
 const VALUES: [&str; 34] = [
     "0",
     "-0.0",
@@ -69,22 +70,41 @@ fn leaves(path: &str, value: &toml::Value, out: &mut Vec<(String, toml::Value)>)
     }
 }
 
+/// A number, or one with its unit, times a factor.
+fn scaled(value: &toml::Value, factor: f64) -> Option<String> {
+    match value {
+        toml::Value::Integer(i) if factor > 1.0 => Some(format!("{}", (*i as f64 * factor) as i64)),
+        toml::Value::Float(x) => Some(format!("{:e}", x * factor)),
+        toml::Value::String(text) => {
+            let (number, unit) = text.split_once(' ')?;
+            Some(format!("\"{:e} {unit}\"", number.parse::<f64>().ok()? * factor))
+        }
+        toml::Value::Array(items) if !items.is_empty() => {
+            let items: Option<Vec<String>> = items.iter().map(|item| scaled(item, factor)).collect();
+            Some(format!("[{}]", items?.join(", ")))
+        }
+        _ => None,
+    }
+}
+
+/// Factors on a number: most of them may well be meant.
+const FACTORS: [f64; 12] = [0.5, 2.0, 0.9, 1.1, 0.1, 10.0, 1e-3, 1e3, 1e-6, 1e6, -1.0, 1e12];
+
 /// One override at random.
 fn change(leaves: &[(String, toml::Value)], chance: &mut Chance) -> String {
     let (path, value) = &leaves[chance.below(leaves.len())];
-    let numbers = |v: &toml::Value| v.as_float().or_else(|| v.as_integer().map(|i| i as f64));
-    match (chance.below(6), numbers(value), value.as_array()) {
+    let other = VALUES[chance.below(VALUES.len())];
+    match (chance.below(8), scaled(value, FACTORS[chance.below(FACTORS.len())]), value.as_array()) {
         (0, ..) => format!("{path}="),
-        (1 | 2, Some(x), _) => format!("{path}={:e}", x * 10_f64.powi(chance.below(13) as i32 - 6)),
-        (3, Some(x), _) => format!("{path}={:e}", -x),
+        (1..=4, Some(text), _) => format!("{path}={text}"),
         // One item of a list.
-        (1..=3, _, Some(items)) if !items.is_empty() => {
+        (5, _, Some(items)) if !items.is_empty() => {
             let mut items: Vec<String> = items.iter().map(toml::Value::to_string).collect();
             let at = chance.below(items.len());
-            items[at] = VALUES[chance.below(VALUES.len())].to_string();
+            items[at] = other.to_string();
             format!("{path}=[{}]", items.join(", "))
         }
-        _ => format!("{path}={}", VALUES[chance.below(VALUES.len())]),
+        _ => format!("{path}={other}"),
     }
 }
 
@@ -126,13 +146,17 @@ fn fault(verb: &str, scene: &Path, set: &[String], out: &Path) -> Option<String>
         arguments.extend(["--quiet".to_string(), "--out".into(), out.display().to_string()]);
     }
     let shown = format!("{verb} {} --set {}", scene.display(), set.join(" --set "));
-    let Some(outcome) = within(if verb == "run" { 5 } else { 30 }, &arguments) else {
+    let Some(outcome) = within(if verb == "run" { 5 } else { 60 }, &arguments) else {
         // A run may take its time.
         return (verb != "run").then(|| format!("no end: {shown}"));
     };
     let good = match (verb, outcome.code) {
         (_, 0) => true,
         ("check", 2) => outcome.stderr.lines().count() == 1 && outcome.stderr.contains(": "),
+        // What no look at a matrix shows, but its factorization.
+        ("run", 2) => ["too unlike to be solved", "expected a body that is held"]
+            .iter()
+            .any(|w| outcome.stderr.contains(w)),
         ("run", 3) => !outcome.stderr.contains("the program has failed"),
         _ => false,
     };
@@ -143,13 +167,13 @@ fn fault(verb: &str, scene: &Path, set: &[String], out: &Path) -> Option<String>
 fn changed(scenes: &[PathBuf], count: usize, seed: u64, runs: bool) {
     let folder = Folder::new("mutations");
     let mut chance = Chance(seed);
-    let (mut faults, mut taken) = (Vec::new(), 0);
+    let (mut faults, mut ran) = (Vec::new(), 0);
     for scene in scenes {
         let tree: toml::Table = toml::from_str(&fs::read_to_string(scene).unwrap()).unwrap();
         let mut all = Vec::new();
         leaves("", &toml::Value::Table(tree), &mut all);
         for _ in 0..count {
-            let set: Vec<String> = (0..=chance.below(3)).map(|_| change(&all, &mut chance)).collect();
+            let set: Vec<String> = (0..=chance.below(5) / 3).map(|_| change(&all, &mut chance)).collect();
             let out = folder.join("out");
             let wrong = fault("check", scene, &set, &out);
             let good = wrong.is_none() && runs && {
@@ -160,15 +184,15 @@ fn changed(scenes: &[PathBuf], count: usize, seed: u64, runs: bool) {
             };
             faults.extend(wrong);
             if good {
-                taken += 1;
+                ran += 1;
                 faults.extend(fault("run", scene, &set, &out));
                 let _ = fs::remove_dir_all(&out);
             }
         }
     }
-    println!("{taken} changed scenes ran");
+    println!("{ran} changed scenes ran");
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
-    assert!(!runs || taken > count / 4, "hardly any changed scene ran: {taken}");
+    assert!(!runs || ran > count / 4, "hardly any changed scene ran: {ran}");
 }
 
 #[test]
