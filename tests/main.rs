@@ -15,6 +15,7 @@ mod suite {
     mod fem_cases;
     mod flow;
     mod grain_limits;
+    mod hostile;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
-use crate::model::grains::{GrainsPart, refused};
+use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
 use crate::run::{self, stages};
 use crate::scene::{Document, Scene};
@@ -88,17 +88,7 @@ fn grain_lines(
     job: &Job,
     grains: &GrainsPart,
 ) -> Result<(dem::Model, Vec<String>), Failure> {
-    let model_of = |bodies| dem::Model::new(grains.input(bodies)).map_err(|e| refused(document, &e));
-    // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
-    let alone = model_of(grains.groups.bodies.clone())?;
-    let sleepers = grains
-        .track
-        .rigid_sleeper()
-        .into_iter()
-        .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
-    let model = model_of(grains.groups.bodies.iter().cloned().chain(sleepers).collect())?;
-    grains.track.check_pads(document, model.dt())?;
-    grains.track.check_ram(document, model.dt())?;
+    let Preview { alone, whole: model } = stages::preview(document, job, grains)?;
     let mut lines = vec![
         format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()),
         match model.measured() {

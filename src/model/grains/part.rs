@@ -95,6 +95,12 @@ impl GrainsPart {
         }
     }
 
+    /// Whether grains are packed before the run proper.
+    pub fn is_packed(&self) -> bool {
+        let PackingPlan { deposition, compaction } = &self.packing;
+        deposition.is_some() || !self.groups.growths.is_empty() || !compaction.is_empty()
+    }
+
     /// The model of the run proper with the given bodies.
     pub fn input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
         for moving in &self.groups.moving {

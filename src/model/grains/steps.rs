@@ -54,8 +54,8 @@ pub(super) fn time_step(document: &Document, time: &TimeControl) -> Result<TimeS
                 document,
                 "time.grain_step_fraction",
                 Some(share),
-                |f| f > 0.0 && f <= 1.0,
-                "above 0, at most 1",
+                |f| (1e-6..=1.0).contains(&f),
+                "0.000001 to 1",
             )?;
             Ok(TimeStep::Measured { share, longest: f64::INFINITY, collisions: true })
         }

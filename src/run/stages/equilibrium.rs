@@ -2,6 +2,7 @@
 
 use super::stage::{CoupledRun, RunState, Stage};
 use crate::failure::Failure;
+use crate::message;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::solid::SolidPart;
@@ -55,7 +56,7 @@ impl Stage for Equilibrium {
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
         if !run.quiet {
             // Before anything can blow up.
-            remarks.iter().for_each(|r| eprintln!("note: {r}"));
+            remarks.iter().for_each(|r| message::note(r));
         }
         summary.warnings.extend(remarks);
         let lowest = system.work.surface.lowest();
@@ -128,7 +129,7 @@ fn couple<'b>(
             )
         });
         if !run.quiet {
-            slower.iter().for_each(|r| eprintln!("note: {r}"));
+            slower.iter().for_each(|r| message::note(r));
         }
         summary.warnings.extend(slower);
         let reduced =

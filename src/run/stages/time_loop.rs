@@ -183,7 +183,13 @@ impl<'a> TimeLoop<'a> {
         let (k, track) = (self.place.done + 1, &mut self.track);
         let time = k as f64 * self.cadence.window;
         track.begin_window();
-        system.advance(&mut |t, model, state, out| track.apply(t, model, state, out))?;
+        match system.advance(&mut |t, model, state, out| track.apply(t, model, state, out)) {
+            // A step that was given up leaves the system as it was before.
+            Err(Failure::Interrupted(_)) => {
+                return self.keep(self.place.done as f64 * self.cadence.window, system);
+            }
+            outcome => outcome?,
+        }
         track.follow(time, system);
         if let Some(flow) = &mut self.flow {
             flow.follow(k, time, system).map_err(|e| e.at(time))?;
