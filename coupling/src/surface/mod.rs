@@ -299,6 +299,11 @@ impl SolidSurface {
         bad.or_else(|| self.sides.seams.iter().find(|s| turned(s)).map(|s| s[0] as usize))
     }
 
+    /// Whether corner `corner` of face `patch` lies on the border of the surface.
+    pub(crate) fn corner_on_border(&self, patch: u32, corner: usize) -> bool {
+        self.sides.rim[self.face_nodes[patch as usize][corner] as usize]
+    }
+
     /// Whether side `side` of face `patch` belongs to that face alone.
     pub(crate) fn on_border(&self, patch: u32, side: usize) -> bool {
         self.sides.border[patch as usize][side]

@@ -11,6 +11,9 @@ pub(super) struct Sides {
     pub border: Vec<[bool; 4]>,
     /// Pairs of faces that share a side.
     pub seams: Vec<[u32; 2]>,
+    /// Whether each surface node ends a side that belongs to one face alone; a triangle may touch the border with a
+    /// corner and none of its sides. Shape `[surface nodes]`.
+    pub rim: Vec<bool>,
 }
 
 impl Sides {
@@ -29,11 +32,15 @@ impl Sides {
             number: vec![[0; 4]; shapes.len()],
             border: vec![[true; 4]; shapes.len()],
             seams: Vec::new(),
+            rim: vec![false; nodes.iter().flatten().map(|n| *n as usize + 1).max().unwrap_or(0)],
         };
         for (group, number) in all.chunk_by(|a, b| a.0 == b.0).zip(0..) {
             for &(_, face, side) in group {
                 sides.number[face as usize][side] = number;
                 sides.border[face as usize][side] = group.len() == 1;
+            }
+            if group.len() == 1 {
+                group[0].0.iter().for_each(|&n| sides.rim[n as usize] = true);
             }
             sides.seams.extend(group.windows(2).map(|pair| [pair[0].1, pair[1].1]));
         }
@@ -61,5 +68,9 @@ mod tests {
         assert_eq!(sides.number[0][1], sides.number[1][2]);
         assert_eq!(sides.number[1][1], sides.number[2][2]);
         assert_ne!(sides.number[0][0], sides.number[1][0]);
+        assert!(sides.rim[..6].iter().all(|r| *r));
+        // A fourth triangle about node 2 closes the ring: the node is then within, which the sides of no face tell.
+        let around = [[0, 1, 2, 0, 0, 0, 0, 0], [1, 3, 2, 1, 1, 1, 1, 1], [3, 0, 2, 3, 3, 3, 3, 3]];
+        assert_eq!(Sides::new(&[FaceShape::Tri3; 3], &around).rim, [true, true, false, true]);
     }
 }
