@@ -54,7 +54,7 @@ fn spheres_rest_with_their_weight_on_a_mixture_in_every_form() {
     fs::copy(source.join("slab.inp"), folder.join("slab.inp")).unwrap();
     let text = fs::read_to_string(source.join("scene.toml")).unwrap();
     let scene = folder.write("scene.toml", &text);
-    let spheres =
+    let spheres: [[f64; 3]; 5] =
         [[0.0, 0.0, 0.03], [0.13, 0.2, 0.04], [-0.2, -0.02, 0.035], [0.35, 0.3, 0.05], [0.2, -0.4, 0.025]];
     let placed: Vec<String> =
         spheres.iter().map(|[x, y, r]| format!("[{x}, {y}, {}, {r}]", r + 1e-5)).collect();

@@ -127,8 +127,9 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
                 Scheme::Iterated { .. } => "",
             };
             let damping = c.d_limit.map_or(String::new(), |limit| format!(", D = {:.2} (at most {limit})", c.d));
+            let may = if scheme == Scheme::Lagged { "unstable or err in its energy" } else { "unstable" };
             format!(
-                "the exchange may be unstable for {} on {}: W = {:.2} (at most {:.2} here){damping}; {fewer}{other}, or \
+                "the exchange may be {may} for {} on {}: W = {:.2} (at most {:.2} here){damping}; {fewer}{other}, or \
                  softer contacts",
                 c.grains, c.solid, c.w, c.w_limit
             )
