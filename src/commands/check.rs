@@ -47,7 +47,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>) -> Result<Str
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-                lines.extend(coupling_lines(coupling, solid, grains, &model));
+                lines.extend(coupling_lines(document, coupling, solid, grains, &model)?);
             }
         }
         None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
@@ -114,13 +114,15 @@ fn grain_lines(
 }
 
 fn coupling_lines(
+    document: &Document,
     coupling: &CouplingPart,
     solid: &SolidPart,
     grains: &GrainsPart,
     model: &dem::Model,
-) -> Vec<String> {
+) -> Result<Vec<String>, Failure> {
     let surface = coupling.ground(solid, grains);
     let (classes, substeps) = coupling.classes(grains, model, solid, &surface);
+    coupling.refuse(document, &classes, substeps, model.dt())?;
     let window = model.dt() * f64::from(substeps);
     let s = exchange::stability(&classes);
     let mut lines = vec![format!(
@@ -137,5 +139,5 @@ fn coupling_lines(
     lines.extend(classes.iter().map(|c| format!("  {}", c.line())));
     let remarks = exchange::remarks(&classes, coupling.scheme, substeps);
     lines.extend(remarks.iter().map(|remark| format!("  note: {remark}")));
-    lines
+    Ok(lines)
 }

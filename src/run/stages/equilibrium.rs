@@ -39,6 +39,7 @@ impl Stage for Equilibrium {
         let ground = grains.ground.take().expect("a coupled run has a ground");
         let transfer_kind = plan.transfer_kind(&ground);
         let (classes, substeps) = plan.classes(&grains.part, &model, part, &ground);
+        plan.refuse(run.document, &classes, substeps, model.dt())?;
         let bases = std::mem::take(&mut grains.bases);
         let whole = part.sleepers.as_ref().map(|s| s.set_down(&part.model, &bases));
         let (solid, surface) = match whole {
