@@ -9,13 +9,28 @@
 //! Limit: a face folded so strongly that several local minima lie within reach yields the one nearest to the
 //! start.
 
-use super::domain::Domain;
-use super::{Closest, Form, cross, dot};
+use super::domain::{Domain, Location};
+use super::form::{Form, cross, dot};
 
 /// Newton stops when the step in natural coordinates is below this: convergence is quadratic, so the error left is
 /// about its square.
 const STEP: f64 = 1e-8;
 const MAX_ITERATIONS: usize = 50;
+
+/// Closest point of a face to a given centre.
+#[derive(Clone, Copy, Debug)]
+pub struct Closest {
+    /// Natural coordinates (ξ, η): in [−1, 1]² on a quadrilateral; 0 or more with a sum of at most 1 on a triangle.
+    pub natural: [f64; 2],
+    /// The point itself [m].
+    pub point: [f64; 3],
+    /// Unit normal of the face there, outward for faces ordered as [`trackbed_fem::mesh::Face`].
+    pub normal: [f64; 3],
+    /// Inside, on a side or on a corner.
+    pub location: Location,
+    /// Newton iterations used.
+    pub iterations: usize,
+}
 
 /// The face and the distance function at one natural point.
 pub(super) struct Local {

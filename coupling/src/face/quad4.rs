@@ -1,7 +1,7 @@
 //! The 4-node quadrilateral: face of the hex8, and of the wedge6 and the pyramid5. Bilinear: flat or twisted.
 
-use super::FaceKind;
 use super::domain::Square;
+use super::kind::FaceKind;
 
 /// Kind of face, see the head of the file.
 pub(super) struct Quad4;

@@ -1,7 +1,7 @@
 //! The 8-node quadrilateral: face of the hex20, and of the wedge15 and the pyramid13.
 
-use super::FaceKind;
 use super::domain::Square;
+use super::kind::FaceKind;
 
 /// Kind of face, see the head of the file.
 pub(super) struct Quad8;

@@ -2,7 +2,9 @@
 //! natural coordinates and its least value over the triangle is found without iterations.
 
 use super::domain::{Domain, Triangle};
-use super::{Closest, FaceKind, Form, newton};
+use super::form::Form;
+use super::kind::FaceKind;
+use super::newton::{self, Closest};
 
 /// Kind of face, see the head of the file.
 pub(super) struct Tri3;

@@ -1,7 +1,7 @@
 //! The 6-node triangle: face of the tet10, and of the wedge15 and the pyramid13.
 
-use super::FaceKind;
 use super::domain::Triangle;
+use super::kind::FaceKind;
 
 /// Kind of face, see the head of the file.
 pub(super) struct Tri6;
