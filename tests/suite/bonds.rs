@@ -242,7 +242,7 @@ fn breaking_is_resumed() {
     };
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));
     trackbed::run::run(&scene, &options(&whole, 1)).unwrap();
-    let steps = json(&whole.join("summary.json"))["stages"][0]["grain_steps"].as_u64().unwrap();
+    let steps = json(&whole.join("summary.json"))["stages"][0]["windows"].as_u64().unwrap();
     for (k, share) in [0.9, 0.05].into_iter().enumerate() {
         let interrupt = Interrupt::after((share * steps as f64) as u64);
         let stopped =

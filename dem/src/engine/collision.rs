@@ -66,7 +66,7 @@ mod tests {
     fn undamped_collisions_need_many_steps() {
         assert_eq!(collision(0.0), SMALLEST);
         assert_eq!(collision(0.3), LARGEST);
-        let between = collision(0.003);
+        let between = collision(0.0005);
         assert!(SMALLEST < between && between < LARGEST, "{between}");
     }
 }

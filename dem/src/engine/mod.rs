@@ -18,6 +18,7 @@ mod probe;
 pub(crate) mod start;
 pub mod state;
 pub mod step;
+mod steps;
 pub(crate) mod threads;
 pub mod timestep;
 pub(crate) mod walls;

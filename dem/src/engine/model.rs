@@ -2,7 +2,8 @@
 
 use super::check;
 use super::collision;
-use super::input::{ModelInput, TimeStep};
+use super::input::ModelInput;
+use super::steps::Steps;
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
@@ -45,15 +46,8 @@ pub struct Model {
     /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
     pub(crate) periodic: Option<Periodic>,
-    dt: f64,
+    steps: Steps,
     limit: DtLimit,
-    /// Share of the measured limit that steps take, where they follow it.
-    measured: Option<f64>,
-    /// Longest step that rigid bodies of walls and the input allow [s], and that single collisions do.
-    longest: f64,
-    collision: f64,
-    /// What the latter is multiplied by where most contacts last.
-    lasting: f64,
 }
 
 impl Model {
@@ -95,25 +89,10 @@ impl Model {
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
-        let wall_limit =
-            timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
         let partners = timestep::partners(&bodies, &input);
-        let mut collision = collision::longest(&bodies, &input, &laws, &partners, expected);
-        let mut longest = wall_limit;
-        let dt = match input.time_step {
-            TimeStep::Auto { fraction } => fraction * limit.dt,
-            TimeStep::Measured { share, longest: most, collisions } => {
-                if !collisions {
-                    collision *= collision::PACKED;
-                }
-                longest = longest.min(most);
-                (share * limit.dt).min(longest).min(collision)
-            }
-            TimeStep::Fixed(dt) if dt > limit.dt => {
-                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
-            }
-            TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => dt,
-        };
+        let collision = collision::longest(&bodies, &input, &laws, &partners, expected);
+        let steps = Steps::new(&input.time_step, &limit, rigid, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let surface = check::surfaces(&input).map(|m| m as u32);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
@@ -145,22 +124,14 @@ impl Model {
             periodic,
             bonds,
             radii,
-            dt,
+            steps,
             limit,
-            measured: if let TimeStep::Measured { share, .. } = input.time_step { Some(share) } else { None },
-            longest,
-            collision,
-            lasting: if matches!(input.time_step, TimeStep::Measured { collisions: false, .. }) {
-                1.0
-            } else {
-                collision::PACKED
-            },
         })
     }
 
     /// The time step that a run begins with [s]; [`State::dt`](crate::State::dt) is the one that it has.
     pub fn dt(&self) -> f64 {
-        self.dt
+        self.steps.first
     }
 
     /// The stability limit of the time step and what sets it.
@@ -170,13 +141,13 @@ impl Model {
 
     /// Share of what the contacts allow that steps take, where they follow it (see [`crate::stability`]).
     pub fn measured(&self) -> Option<f64> {
-        self.measured
+        self.steps.share
     }
 
     /// Longest step that collisions, rigid bodies of walls and the input allow [s], whatever touches; `packed`: where most
     /// contacts last (see [`crate::stability`]).
     pub fn longest(&self, packed: bool) -> f64 {
-        self.longest.min(if packed { self.lasting * self.collision } else { self.collision })
+        self.steps.longest.min(if packed { self.steps.lasting } else { self.steps.collision })
     }
 
     /// Gives up the positions that the bodies start from, for a run that has its state: 24 bytes per body.

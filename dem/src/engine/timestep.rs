@@ -3,12 +3,12 @@
 //! A body of mass m held by contacts of stiffness K on all sides, its neighbours moving against it, swings at most
 //! at ω² = s K (1/m + r²/I), where s counts the contacts that act in one direction (twice, for the neighbours'
 //! motion: Gershgorin's bound) and r²/I is for a contact off the centre. With dashpots on velocities of half a step ago the
-//! leapfrog is stable for
+//! leapfrog is stable for (ω dt)² + 4 ζ' ω dt < 4, ζ' = ζ √(s/2) the damping ratio of the body in all its contacts. Twice the
+//! damping is allowed for,
 //!
-//! (ω dt)² + 4 ζ' ω dt < 4,  so  ω dt < 2 √(1 + ζ'²) − 2 ζ',
+//! (ω dt)² + 8 ζ' ω dt < 4,  so  ω dt < √(4 + 16 ζ'²) − 4 ζ',
 //!
-//! ζ' = ζ √(s/2) the damping ratio of the body in all its contacts; the way in which the laws take their dashpots
-//! (`law/composed.rs`) is stable for more. (At the limit the faster root of z² + (Ω² + b − 2) z + 1 − b, b = 2ζ'Ω, is −1.)
+//! because single hits that begin with such a step are to find their restitution.
 //!
 //! This is what is known before anything touches. What the contacts that are there allow, usually several times as much,
 //! is measured from them in the course of a run: `stability`.
@@ -132,13 +132,13 @@ pub(crate) fn limit(
                     + (levers - 1.0) * tangential * (flexibility - 1.0 / body.mass)
             };
             let zeta = laws.damping_ratio(a, b) * f64::sqrt(0.5 * sides);
-            let bound = 2.0 * (1.0 + zeta * zeta).sqrt() - 2.0 * zeta;
+            let bound = (4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta;
             let alone = bound / (sides * own).sqrt();
             let [bond_stiffness, bond_damping] = bonded.get(k).copied().unwrap_or_default();
             let dt = if bond_stiffness > 0.0 {
-                // Contacts and bonds together: (λ₁ + λ₂) dt² + (4 ζ' √λ₁ + 2 γ) dt = 4.
+                // Contacts and bonds together: (λ₁ + λ₂) dt² + (8 ζ' √λ₁ + 2 γ) dt = 4.
                 let all = sides * own + bond_stiffness;
-                let damping = 2.0 * zeta * (sides * own).sqrt() + bond_damping;
+                let damping = 4.0 * zeta * (sides * own).sqrt() + bond_damping;
                 ((damping * damping + 4.0 * all).sqrt() - damping) / all
             } else {
                 alone

@@ -265,7 +265,7 @@ impl Body {
             .fold(0.0, f64::max);
         let own = k.max(tangential) * (1.0 / self.mass + turn / self.inertia.min());
         let zeta = zeta * (0.5 * sides).sqrt();
-        2.0 * ((1.0 + zeta * zeta).sqrt() - zeta) / (sides * own).sqrt()
+        ((4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta) / (sides * own).sqrt()
     }
 }
 

@@ -130,7 +130,7 @@ fn compact(
     let kind = plan.press.name();
     let seconds = progress.finish(&format!("{kind}: porosity {before:.4} to {after:.4}"));
     let name = format!("compaction {}: {kind}", index + 1);
-    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0 });
+    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0, windows: 0 });
     settled.compaction.push(CompactionRecord {
         kind: kind.into(),
         porosity_before: before,

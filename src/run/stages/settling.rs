@@ -121,7 +121,13 @@ fn settle(
     if bodies.is_empty() {
         return Err(run.document.error("deposition.level", "no grain below it", "at least one").into());
     }
-    bed.stages.push(StageRecord { name: SETTLING.into(), seconds, grain_steps: state.steps, solid_steps: 0 });
+    bed.stages.push(StageRecord {
+        name: SETTLING.into(),
+        seconds,
+        grain_steps: state.steps,
+        solid_steps: 0,
+        windows: 0,
+    });
     bed.bodies = bodies;
     bed.time = state.time;
     Ok(())

@@ -94,6 +94,7 @@ fn solve(
         seconds: begun.elapsed().as_secs_f64(),
         grain_steps: 0,
         solid_steps: 1,
+        windows: 0,
     });
     Ok(())
 }

@@ -104,6 +104,7 @@ fn bracket(
         seconds: begun.elapsed().as_secs_f64(),
         grain_steps: 0,
         solid_steps: found.trials.len() as u64,
+        windows: 0,
     });
     Ok(())
 }

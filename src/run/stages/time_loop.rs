@@ -272,7 +272,13 @@ impl<'a> TimeLoop<'a> {
         let (grain_steps, solid_steps) = system.steps_done(done);
         let end = done as f64 * self.cadence.window;
         let seconds = self.progress.finish(&format!("{end:.3} s simulated"));
-        summary.stages.push(StageRecord { name: "run".into(), seconds, grain_steps, solid_steps });
+        summary.stages.push(StageRecord {
+            name: "run".into(),
+            seconds,
+            grain_steps,
+            solid_steps,
+            windows: done,
+        });
         if let Some(view) = system.grains().filter(|v| v.model.measured().is_some() && grain_steps > 0) {
             summary.model.grain_step = Some(view.state.time / grain_steps as f64);
             summary.model.grain_step_limit = view.state.measured_limit().or(summary.model.grain_step_limit);

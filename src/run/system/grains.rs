@@ -46,14 +46,15 @@ impl GrainsSystem {
     }
 }
 
-/// A window of grains alone: one step where the scene fixes it, else as many that a window can hold few long ones or many short
-/// ones, a whole number of them in an interval of the history [s].
+/// A window of grains alone: one step where the scene fixes it, else so many first steps that few long ones find room in their
+/// place, and about a whole number of windows in an interval of the history [s].
 fn window(model: &dem::Model, interval: f64) -> f64 {
     if model.measured().is_none() {
         return model.dt();
     }
-    let longest = STEPS * model.dt();
-    if interval > 0.0 { interval / (interval / longest).ceil().max(1.0) } else { longest }
+    let windows = (interval / (STEPS * model.dt())).ceil().max(1.0);
+    let steps = (interval / (windows * model.dt())).round();
+    model.dt() * steps.clamp(1.0, STEPS)
 }
 
 /// Steps in a window when a run begins.
