@@ -38,6 +38,7 @@ motion = [0, 0, "5 mm/s"]
 
 {bond}
 [time]
+grain_step_fraction = 0.4
 end = "{end}"
 [output]
 frames = 1
