@@ -149,7 +149,7 @@ fn as_many_sub_steps_as_both_limits_leave_room_for() {
         "solid.material.0.young=1e6",
         "solid.material.0.density=300",
         "material.0.stiffness=1e7",
-        "time.grain_step=20 us",
+        "time.grain_step=18 us",
     ];
     let s = summary("light", &light, &[&set[..], &["coupling.substeps=\"auto\""]].concat());
     let c = &s["coupling"]["classes"][0];
