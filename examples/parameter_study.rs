@@ -16,7 +16,8 @@ pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> 
     for friction in frictions {
         // As `--set` on the command line; one frame, for only the summary counts here.
         let set = vec![format!("contact.0.friction={friction}"), "output.frames=1".into()];
-        let options = Options { out: Some(out.clone()), set, quiet: true, ..Options::default() };
+        // Each variant takes the place of the one before.
+        let options = Options { out: Some(out.clone()), set, quiet: true, force: true, ..Options::default() };
         if let Outcome::Done(summary) = run(&scene, &options)? {
             found.push(summary.bed.packing.ok_or("a run without grains")?.coordination);
         }

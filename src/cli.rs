@@ -55,8 +55,12 @@ pub struct RunArgs {
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
     /// Go on from the last checkpoint in the folder of the results. Scene and overrides must be the same, threads need not.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "force")]
     pub resume: bool,
+    /// Replace what is in the folder of the results: the checkpoint of an interrupted run, the results of another scene, files
+    /// of others.
+    #[arg(long)]
+    pub force: bool,
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,

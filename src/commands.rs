@@ -9,6 +9,7 @@ mod stone;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
+use crate::message;
 use crate::run;
 use output::print;
 
@@ -43,12 +44,19 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         set: args.set,
         memory,
         resume: args.resume,
+        force: args.force,
         interrupt: run::Interrupt::on_signals()?,
         quiet: args.quiet,
     };
     match run::run(&args.scene, &options)? {
         run::Outcome::Done(_) if args.quiet => Ok(()),
-        run::Outcome::Done(summary) => print(&summary.report()),
+        run::Outcome::Done(summary) => {
+            // The results are in their folder, and the same text in its log: nobody need listen.
+            if let Err(failure) = print(&summary.report()) {
+                message::note(&format!("standard output: {failure}"));
+            }
+            Ok(())
+        }
         run::Outcome::WasDone(dir) => {
             print(&format!("{}: the run is finished, there is nothing to go on with\n", dir.display()))
         }

@@ -3,10 +3,16 @@
 //! Data flows one way: a scene file ([`scene`]) is resolved into models ([`model`]), the run loop ([`mod@run`]) steps
 //! them, and writers ([`mod@write`]) put the results on disk.
 
+// A closed or full output must not end a run: see `message`.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 pub mod cli;
 pub mod commands;
 pub mod failure;
+pub mod guard;
+mod machine;
 pub mod mesh_tools;
+pub mod message;
 pub mod model;
 mod progress;
 pub mod read;

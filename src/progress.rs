@@ -1,5 +1,6 @@
 //! Progress bars with an estimate of the time left; silent when asked or when the output is not a terminal.
 
+use crate::message;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -41,7 +42,7 @@ impl Progress {
     #[must_use]
     pub fn resumed(mut self, done: f64, seconds: f64) -> Progress {
         self.before = seconds;
-        self.bar.set_elapsed(Duration::from_secs_f64(seconds.max(0.0)));
+        self.bar.set_elapsed(Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or_default());
         self.at(done);
         self
     }
@@ -66,7 +67,7 @@ impl Progress {
         let seconds = self.seconds();
         self.bar.finish_and_clear();
         if !self.quiet {
-            eprintln!("{:>12}  {text} ({seconds:.1} s)", self.stage);
+            message::say(&format!("{:>12}  {text} ({seconds:.1} s)", self.stage));
         }
         seconds
     }

@@ -12,9 +12,11 @@ mod suite {
     mod determinism;
     mod examples;
     mod exchange;
+    mod faces;
     mod fem_cases;
     mod flow;
     mod grain_limits;
+    mod hostile;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;

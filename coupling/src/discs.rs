@@ -4,7 +4,6 @@ use crate::face::{Closest, Location, cross, dot};
 use crate::spread::{Spread, Turned};
 use crate::surface::SolidSurface;
 use std::collections::BTreeMap;
-use trackbed_fem::element::quad8;
 
 /// Rings of quadrature points, at Gauss points in the square of the radius: each ring stands for its share of the area.
 const RINGS: [(f64, f64); 3] =
@@ -51,7 +50,7 @@ fn operator(surface: &SolidSurface, radius: f64) -> Spread {
         let inverse = if centred { None } else { inertia(&points, c).and_then(|j| inverse(&j, radius)) };
         if centred || inverse.is_some() {
             for p in &points {
-                let shape = quad8::shape_functions(p.natural);
+                let shape = surface.shape_functions(p.patch, p.natural);
                 for (&node, s) in surface.face_nodes(p.patch).iter().zip(shape) {
                     *own.entry(node).or_default() += p.weight * s;
                 }
@@ -63,7 +62,7 @@ fn operator(surface: &SolidSurface, radius: f64) -> Spread {
         if let Some(inverse) = inverse {
             let mut levers: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
             for p in &points {
-                let shape = quad8::shape_functions(p.natural);
+                let shape = surface.shape_functions(p.patch, p.natural);
                 for (&node, s) in surface.face_nodes(p.patch).iter().zip(shape) {
                     let b = levers.entry(node).or_default();
                     (0..3).for_each(|d| b[d] += p.weight * s * (p.place[d] - c[d]));
@@ -77,14 +76,20 @@ fn operator(surface: &SolidSurface, radius: f64) -> Spread {
     spread
 }
 
-/// Sides that one face has alone, as the two halves from corner to mid-side to corner.
+/// Sides that one face has alone: from corner to corner, over the mid-side node where the kind of face has one.
 fn border(surface: &SolidSurface) -> Vec<[[f64; 3]; 2]> {
     let mut out = Vec::new();
     for patch in 0..surface.faces().len() as u32 {
-        let x = surface.face_nodes(patch).map(|n| surface.position(n));
-        for side in (0..4).filter(|&side| surface.on_border(patch, side)) {
-            out.push([x[side], x[4 + side]]);
-            out.push([x[4 + side], x[(side + 1) % 4]]);
+        let nodes = surface.face_nodes(patch);
+        let (x, corners) = (|k: usize| surface.position(nodes[k]), surface.shape(patch).corner_count());
+        for side in (0..corners).filter(|&side| surface.on_border(patch, side)) {
+            let [first, last] = [x(side), x((side + 1) % corners)];
+            if nodes.len() > corners {
+                let middle = x(corners + side);
+                out.extend([[first, middle], [middle, last]]);
+            } else {
+                out.push([first, last]);
+            }
         }
     }
     out

@@ -1,7 +1,7 @@
 //! Contact forces become nodal loads: Fᵢ = Nᵢ(ξ, η) F (S2 eq. 19), with the shape functions of the touched
-//! 8-node face at the mapped contact point.
+//! face at the mapped contact point.
 //!
-//! On a face of a hex20 the functions of the twelve other nodes vanish, so this *is* the 20-node formula.
+//! On a face the functions of the element's other nodes vanish, so this *is* the formula of the element, whatever its kind.
 //! Σ Nᵢ = 1 keeps the force exactly; Σ Nᵢ xᵢ = x(ξ, η) keeps the moment exactly about the mapped point, which is
 //! where the contact force acts on both partners (seed correction F5). Both sums are formed from the nodal
 //! loads and compared with the contact forces at every exchange.
@@ -10,7 +10,6 @@ use crate::face::{self, cross};
 use crate::surface::SolidSurface;
 use std::ops::Range;
 use trackbed_dem::surface::SurfaceContact;
-use trackbed_fem::element::quad8;
 
 /// Largest deviation between nodal loads and contact forces over all exchanges so far.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -81,7 +80,7 @@ impl Transfer {
         let mut force_scale = 0.0;
         let mut moment_scale = 0.0;
         for contact in contacts {
-            let n = quad8::shape_functions(contact.local);
+            let n = surface.shape_functions(contact.patch, contact.local);
             for (&node, n) in surface.face_nodes(contact.patch).iter().zip(n) {
                 let load = &mut self.load[node as usize];
                 if *load == [0.0; 3] {

@@ -6,7 +6,8 @@
 //! Folders are layers; each imports from those above it in this list only: `base` (vectors, errors, the ledger), `lanes`
 //! (several numbers at a time), `shape`, `spatial` (trees, cells, surfaces, how two shapes touch), `law` (laws of
 //! contact), `bodies` (arrays of motion), `pairs` (storage of contacts), `contact` (the loops over contacts),
-//! `integrate`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `insert`.
+//! `integrate`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `stability` (the step that contacts
+//! allow), `insert`.
 
 mod base;
 mod bodies;
@@ -21,6 +22,7 @@ pub mod measure;
 mod pairs;
 pub mod shape;
 mod spatial;
+pub mod stability;
 #[cfg(test)]
 mod testing;
 pub mod wall;

@@ -119,6 +119,8 @@ pub enum SolveError {
         xi: [f64; 3],
         region: Region,
     },
+    #[error("the step was given up between two iterations, as requested")]
+    Stopped,
     #[error("{what} is {value}, expected {expected}")]
     Option { what: &'static str, value: f64, expected: &'static str },
     #[error("the time step is {dt} s, expected a finite number above 0")]

@@ -20,6 +20,12 @@ pub trait Loading {
     /// Sets the displacements [m] of the constrained dofs at `time`, in the order of
     /// [`Supports::fixed`](crate::supports::Supports::fixed); they come in with the values of the model.
     fn prescribed(&mut self, _time: f64, _values: &mut [f64]) {}
+
+    /// Whether a step is to be given up: a look between two iterations. The step then fails with
+    /// [`SolveError::Stopped`], and the state is that of the last accepted one.
+    fn stopped(&self) -> bool {
+        false
+    }
 }
 
 impl<F: FnMut(f64, &mut [f64])> Loading for F {

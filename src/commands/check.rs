@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
-use crate::model::grains::{GrainsPart, refused};
+use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
 use crate::run::{self, stages};
 use crate::scene::{Document, Scene};
@@ -47,10 +47,10 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>) -> Result<Str
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-                lines.extend(coupling_lines(coupling, solid, grains, &model));
+                lines.extend(coupling_lines(document, coupling, solid, grains, &model)?);
             }
         }
-        None => lines.extend(stages::of(job).flat_map(|s| s.report(job, 0.0))),
+        None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
     }
     Ok(lines.iter().fold(format!("{}\n", job.title), |text, line| text + "  " + line + "\n"))
 }
@@ -88,34 +88,41 @@ fn grain_lines(
     job: &Job,
     grains: &GrainsPart,
 ) -> Result<(dem::Model, Vec<String>), Failure> {
-    let model_of = |bodies| dem::Model::new(grains.input(bodies)).map_err(|e| refused(document, &e));
-    // First without the sleeper, as a run does to find its place. That place does not matter to the step's limit.
-    let alone = model_of(grains.groups.bodies.clone())?;
-    let sleepers = grains
-        .track
-        .rigid_sleeper()
-        .into_iter()
-        .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
-    let model = model_of(grains.groups.bodies.iter().cloned().chain(sleepers).collect())?;
-    grains.track.check_pads(document, model.dt())?;
-    grains.track.check_ram(document, model.dt())?;
+    let Preview { alone, whole: model } = stages::preview(document, job, grains)?;
     let mut lines = vec![
         format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()),
-        format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
+        match model.measured() {
+            None => format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
+            Some(share) => format!(
+                "  step {:.4e} s at first, then {share} of what the contacts allow, {:.4e} s at most; {}",
+                model.dt(),
+                model.longest(true),
+                model.dt_limit()
+            ),
+        },
     ];
-    let stages = stages::of(job).flat_map(|s| s.report(job, model.dt()));
+    let steps = |time: f64| {
+        let most = time / model.dt();
+        match model.measured() {
+            None => format!("{most:.0} steps"),
+            Some(_) => format!("{:.0} to {most:.0} steps", time / model.longest(true)),
+        }
+    };
+    let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
     lines.extend(stages.map(|line| format!("  {line}")));
     Ok((model, lines))
 }
 
 fn coupling_lines(
+    document: &Document,
     coupling: &CouplingPart,
     solid: &SolidPart,
     grains: &GrainsPart,
     model: &dem::Model,
-) -> Vec<String> {
+) -> Result<Vec<String>, Failure> {
     let surface = coupling.ground(solid, grains);
     let (classes, substeps) = coupling.classes(grains, model, solid, &surface);
+    coupling.refuse(document, &classes, substeps, model.dt())?;
     let window = model.dt() * f64::from(substeps);
     let s = exchange::stability(&classes);
     let mut lines = vec![format!(
@@ -132,5 +139,5 @@ fn coupling_lines(
     lines.extend(classes.iter().map(|c| format!("  {}", c.line())));
     let remarks = exchange::remarks(&classes, coupling.scheme, substeps);
     lines.extend(remarks.iter().map(|remark| format!("  note: {remark}")));
-    lines
+    Ok(lines)
 }

@@ -17,6 +17,8 @@ use trackbed_dem as dem;
 const SIDE: usize = 16;
 /// Steps that are timed.
 const STEPS: u32 = 200;
+/// Mean step of beds over the first one where steps follow the contacts: 1.5 to 6 (guide, "Step limit").
+const GROWTH: f64 = 4.0;
 /// What a clump costs, in spheres, per member: ten-sphere clumps cost 3.4 spheres (guide, speed).
 const MEMBER: f64 = 0.34;
 
@@ -66,7 +68,11 @@ impl Probe {
             self.bytes,
             size((self.bytes * model.sphere_count() as f64) as u64)
         );
-        let time = |simulated: f64| duration(simulated / model.dt() * self.seconds * share(model));
+        let step = match model.measured() {
+            None => model.dt(),
+            Some(_) => (GROWTH * model.dt()).min(model.longest(true)),
+        };
+        let time = |simulated: f64| duration(simulated / step * self.seconds * share(model));
         let times = stages::of(job).rev().filter_map(|stage| {
             let name = stage.name()?;
             Some(match stage.grain_time(job)? {

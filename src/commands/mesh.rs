@@ -1,14 +1,14 @@
 //! `trackbed mesh`: counts and measures a mesh, finds its faults, converts it.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::output::print;
 use crate::cli::{MeshArgs, MeshFormat};
 use crate::failure::Failure;
 use crate::mesh_tools;
 use crate::model::solid::mesh_file;
-use crate::read::{MESH_ENDINGS, MeshFile, read_mesh_file};
+use crate::read::{MESH_ENDINGS, MeshFile, folder_files, mesh_files, read_mesh_file};
 use crate::scene::{Document, Scene};
 use crate::write::{MeshOptions, write_mesh_file};
 
@@ -58,15 +58,43 @@ pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>
             "--format: found {found}, expected a file ending in .msh with it"
         )));
     }
+    refuse_input(&args.input, output)?;
     let file = read(args)?;
     let options = MeshOptions { msh2: format == Some(MeshFormat::Msh2) };
     let lost = write_mesh_file(output, &file, options)?;
     print(&format!("{} written\n{}{}", output.display(), remarks(&file.warnings), remarks(&lost)))
 }
 
+/// Refuses to write over a file that the mesh is read from.
+fn refuse_input(input: &Path, output: &Path) -> Result<(), Failure> {
+    let mut read = vec![input.to_path_buf()];
+    if is_scene(input) {
+        let document = Document::open(input)?;
+        let scene: Scene = document.read()?;
+        let named = scene.solid.iter().flat_map(|s| [&s.mesh, &s.nodes, &s.elements, &s.constraints]);
+        read.extend(named.flatten().map(|file| document.resolve(file)));
+    }
+    let read = read.iter().flat_map(|file| mesh_files(file));
+    let read: Vec<PathBuf> = read.filter_map(|file| file.canonicalize().ok()).collect();
+    let lists = output.extension().is_none();
+    let written = if lists { folder_files(output) } else { vec![output.to_path_buf()] };
+    let both = written.iter().find(|file| file.canonicalize().is_ok_and(|file| read.contains(&file)));
+    match both {
+        None => Ok(()),
+        Some(file) => {
+            let found = format!("{}, which the mesh is read from", file.display());
+            Err(Failure::Input(format!("output: found {found}, expected another file")))
+        }
+    }
+}
+
+fn is_scene(input: &Path) -> bool {
+    input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
+}
+
 /// Reads a mesh of any form, or the one of a scene's solid.
 fn read(args: &MeshArgs) -> Result<MeshFile, Failure> {
-    if !args.input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+    if !is_scene(&args.input) {
         return Ok(read_mesh_file(&args.input)?);
     }
     let document = Document::open(&args.input)?;

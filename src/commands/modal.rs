@@ -44,6 +44,11 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
             folder.push("_modes");
             folder.into()
         });
+        let _lock = run::Lock::take(&dir)?;
+        if dir.join("results.pvd").exists() && !dir.join("modes.csv").exists() {
+            let found = "results.pvd, which no modes have left there";
+            return Err(Failure::Input(format!("{}: found {found}, expected another --out", dir.display())));
+        }
         write_modes(&part.model, &modes, &dir)?;
         let mut text = format!("{}\n  mode  frequency [Hz]  effective mass x, y, z [kg]\n", scene.title);
         for (i, f) in modes.frequencies.iter().enumerate() {

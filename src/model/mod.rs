@@ -11,10 +11,14 @@ pub mod track;
 pub use output::OutputPlan;
 
 use crate::failure::Failure;
+use crate::message::shown;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
+
+/// Longest title [characters].
+const LONGEST: usize = 200;
 
 /// A resolved scene.
 pub struct Job {
@@ -112,8 +116,11 @@ impl Job {
             .map(|(i, p)| probe(document, i, p, solid.as_ref()))
             .collect::<Result<Vec<_>, _>>()?;
         let output = OutputPlan::new(document, scene, end)?;
-        let title =
-            if scene.title.is_empty() { document.file().display().to_string() } else { scene.title.clone() };
+        let title = if scene.title.is_empty() {
+            document.file().display().to_string()
+        } else {
+            shown(&scene.title.replace(['\r', '\n'], " "), LONGEST)
+        };
         Ok(Job { title, solid, grains, coupling, end, solid_step, output, probes })
     }
 }
@@ -191,10 +198,19 @@ fn end_time(
     }
 }
 
+/// Most steps of a solid that runs alone: at a thousand steps a second they take twelve days.
+const MOST_STEPS: f64 = 1e9;
+
 fn solid_step(document: &Document, scene: &Scene, end: f64) -> Result<Option<f64>, SceneError> {
     let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
     match (scene.time.solid_step, alone_and_dynamic) {
-        (Some(step), true) if step.si > 0.0 && step.si <= end => Ok(Some(step.si)),
+        (Some(step), true) if step.si > 0.0 && step.si <= end && end / step.si <= MOST_STEPS => {
+            Ok(Some(step.si))
+        }
+        (Some(step), true) if step.si > 0.0 && step.si <= end => {
+            let found = format!("{} s, of which the run has {:.1e}", step.si, end / step.si);
+            Err(document.error("time.solid_step", found, format!("at most {MOST_STEPS:.0e} steps")))
+        }
         (Some(step), true) => Err(document.error(
             "time.solid_step",
             format!("{} s", step.si),

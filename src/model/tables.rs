@@ -1,6 +1,6 @@
 //! Tables that grains are made from: sphere packings and sieve limits in CSV, stone libraries in TOML.
 
-use crate::read::ReadError;
+use crate::read::{ReadError, source};
 use crate::scene::{Document, SceneError};
 use std::path::Path;
 use trackbed_dem::insert::gradation::Gradation;
@@ -25,7 +25,31 @@ fn fault(
 }
 
 fn text(file: &Path, what: &str) -> Result<String, ReadError> {
-    std::fs::read_to_string(file).map_err(|e| fault(file, None, what, e.to_string(), "a readable file"))
+    let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
+        let (found, expected) = refusal.words(|e| e.to_string());
+        fault(file, None, what, found, expected)
+    })?;
+    String::from_utf8(bytes).map_err(|_| fault(file, None, what, "bytes that are no UTF-8", "text"))
+}
+
+/// Refuses a row that has not as many columns as the heading, or as there are names where there is none. One number
+/// more may be the second half of another: `0,5` for 0.5.
+fn check_width(
+    file: &Path,
+    line: usize,
+    fields: &[&str],
+    heading: Option<usize>,
+    names: &str,
+    count: usize,
+) -> Result<(), ReadError> {
+    let width = heading.unwrap_or(count);
+    if fields.len() == width {
+        return Ok(());
+    }
+    let of = if heading.is_some() { ", as in the heading" } else { "" };
+    let hint = if fields.len() > width { "; decimals behind a point, not a comma" } else { "" };
+    let expected = format!("{names}: {width} columns{of}{hint}");
+    Err(fault(file, Some(line), "row", format!("{} columns", fields.len()), expected))
 }
 
 /// Rows of a CSV file that are neither empty nor comments, with their line numbers; fields trimmed, quotes kept off.
@@ -41,15 +65,14 @@ fn rows(content: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
 /// Rows of numbers under a heading that may be missing; each row starts with the columns named.
 fn numbers<const N: usize>(file: &Path, columns: [&str; N]) -> Result<Vec<(usize, [f64; N])>, ReadError> {
     let content = text(file, "packing")?;
-    let mut table = Vec::new();
+    let (mut table, mut heading) = (Vec::new(), None);
     for (n, (line, fields)) in rows(&content).enumerate() {
         if n == 0 && fields[0].parse::<f64>().is_err() {
+            // A heading may name more columns, which are passed over.
+            heading = Some(fields.len()).filter(|width| *width >= N);
             continue;
         }
-        if fields.len() < N {
-            let found = format!("{} columns", fields.len());
-            return Err(fault(file, Some(line), "row", found, columns.join(", ")));
-        }
+        check_width(file, line, &fields, heading, &columns.join(", "), N)?;
         let mut value = [0.0; N];
         for (k, name) in columns.into_iter().enumerate() {
             value[k] = fields[k]
@@ -125,14 +148,14 @@ pub fn clump_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, Rea
 /// The file is missing, a row has too few columns, a value is no finite number, or times do not ascend.
 pub fn history(file: &Path) -> Result<Vec<(f64, f64)>, ReadError> {
     let content = text(file, "history")?;
-    let mut points: Vec<(f64, f64)> = Vec::new();
+    let (mut points, mut heading): (Vec<(f64, f64)>, _) = (Vec::new(), None);
     for (n, (line, fields)) in rows(&content).enumerate() {
         if n == 0 && fields[0].parse::<f64>().is_err() {
+            // As in `numbers`.
+            heading = Some(fields.len()).filter(|width| *width >= 2);
             continue;
         }
-        if fields.len() < 2 {
-            return Err(fault(file, Some(line), "row", format!("{} columns", fields.len()), "time, factor"));
-        }
+        check_width(file, line, &fields, heading, "time, factor", 2)?;
         let number = |k: usize, name: &str| {
             let value = fields[k].parse::<f64>().ok().filter(|v| v.is_finite());
             value.ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", fields[k]), "a number"))

@@ -21,6 +21,7 @@ use trackbed_fem::ElementKind;
 
 use super::abaqus_data as data;
 use super::abaqus_lines::{Block, read_blocks};
+use super::abaqus_sets::{self as sets, Members};
 use super::degenerate::from_brick;
 use super::error::ReadError;
 use super::mesh_file::{Builder, MeshFile};
@@ -65,9 +66,11 @@ const MECHANICAL: [&str; 16] = [
 #[derive(Default)]
 pub(super) struct Deck {
     /// Element sets by number.
-    pub element_sets: BTreeMap<String, Vec<u32>>,
+    pub element_sets: BTreeMap<String, Members>,
     /// Node sets by number.
-    pub node_sets: BTreeMap<String, Vec<u32>>,
+    pub node_sets: BTreeMap<String, Members>,
+    /// Members that the keywords of sets have added so far.
+    pub members: u64,
     /// Names of sets as first written, by upper case.
     pub names: BTreeMap<String, String>,
     /// Materials in file order.
@@ -102,9 +105,10 @@ pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
         keyword(&mut builder, &mut deck, block)?;
     }
     builder.file = file.to_path_buf();
+    sets::check_sizes(&builder, &deck)?;
     data::sections(&mut builder, &deck)?;
     data::boundaries(&mut builder, &deck)?;
-    data::sets(&mut builder, &deck);
+    sets::sets(&mut builder, &deck);
     if !deck.skipped.is_empty() {
         let skipped: Vec<String> = deck.skipped.iter().map(|(name, n)| format!("*{name} ({n})")).collect();
         builder.warn(format!("keywords that were not read: {}", skipped.join(", ")));
@@ -116,8 +120,8 @@ fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
     match block.keyword.as_str() {
         "NODE" => nodes(builder, deck, block),
         "ELEMENT" => elements(builder, deck, block),
-        "NSET" => data::node_set(builder, deck, block),
-        "ELSET" => data::element_set(builder, deck, block),
+        "NSET" => sets::node_set(builder, deck, block),
+        "ELSET" => sets::element_set(builder, deck, block),
         "MATERIAL" => {
             let name = block.required(builder, "NAME")?.to_string();
             deck.materials.push(data::Material { name, ..Default::default() });
@@ -192,7 +196,7 @@ fn nodes(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), Re
     }
     if let Some(set) = block.option("NSET") {
         let name = deck.name(set);
-        deck.node_sets.entry(name).or_default().extend(ids);
+        deck.node_sets.entry(name).or_default().add(ids);
     }
     Ok(())
 }
@@ -283,7 +287,7 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
     }
     if let Some(set) = block.option("ELSET") {
         let name = deck.name(set);
-        deck.element_sets.entry(name).or_default().extend(ids);
+        deck.element_sets.entry(name).or_default().add(ids);
     }
     Ok(())
 }

@@ -1,15 +1,13 @@
-//! Sets, materials, sections and constraints of an Abaqus input file.
+//! Materials, sections and constraints of an Abaqus input file.
 
 use std::collections::HashSet;
 
 use super::abaqus::Deck;
 use super::abaqus_lines::Block;
+use super::abaqus_sets::{Members, with_elements, with_nodes};
 use super::error::ReadError;
 use super::mesh_file::{Builder, FileMaterial};
 use super::number;
-
-/// Members of the longest range that is taken for no mistake.
-const LONGEST_RANGE: u32 = 100_000_000;
 
 /// A material as its keywords tell it.
 #[derive(Default)]
@@ -37,74 +35,6 @@ pub(super) fn whole(builder: &Builder, line: usize, key: &str, text: Option<&str
 pub(super) fn real(builder: &Builder, line: usize, key: &str, text: &str) -> Result<f64, ReadError> {
     let value = number::real(text).filter(|v| v.is_finite());
     value.ok_or_else(|| builder.fault(line, key, format!("\"{text}\""), "a finite number"))
-}
-
-/// Members of a set as its rows list them; names of other sets are resolved by `sets`.
-fn members(
-    builder: &Builder,
-    deck: &Deck,
-    block: &Block,
-    sets: &std::collections::BTreeMap<String, Vec<u32>>,
-) -> Result<Vec<u32>, ReadError> {
-    let mut ids = Vec::new();
-    let generate = block.option("GENERATE").is_some();
-    for (line, row) in block.rows() {
-        let key = format!("*{}", block.keyword);
-        let row: Vec<&str> =
-            row.into_iter().filter(|t| !t.is_empty()).map(|t| deck.without_instance(t)).collect();
-        if generate {
-            if row.len() < 2 {
-                return Err(builder.fault(line, key, row.join(", "), "first, last, step"));
-            }
-            let (first, last) =
-                (whole(builder, line, &key, Some(row[0]))?, whole(builder, line, &key, Some(row[1]))?);
-            let step = if row.len() > 2 { whole(builder, line, &key, Some(row[2]))? } else { 1 };
-            // A damaged range must not fill the memory.
-            if step == 0 || last < first || (last - first) / step > LONGEST_RANGE {
-                let found = format!("{first} to {last} in steps of {step}");
-                return Err(builder.fault(line, key, found, "a range of at most 100 million, upwards"));
-            }
-            ids.extend((first..=last).step_by(step as usize));
-            continue;
-        }
-        for text in row {
-            if let Some(id) = number::whole(text) {
-                ids.push(id);
-            } else if let Some(set) = sets.get(&text.to_uppercase()) {
-                ids.extend(set);
-            } else {
-                return Err(builder.fault(line, key, format!("\"{text}\""), "a number or the name of a set"));
-            }
-        }
-    }
-    Ok(ids)
-}
-
-pub(super) fn node_set(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
-    let name = block.required(builder, "NSET")?.to_string();
-    let mut ids = members(builder, deck, block, &deck.node_sets)?;
-    if let Some(of) = block.option("ELSET") {
-        let of = deck.without_instance(of).to_uppercase();
-        let Some(elements) = deck.element_sets.get(&of) else {
-            return Err(builder.fault(block.line, "*NSET", format!("ELSET={of}"), "a set of elements"));
-        };
-        let mesh = &builder.made.mesh;
-        let nodes = elements.iter().filter_map(|id| builder.element_index(*id));
-        ids.extend(
-            nodes.flat_map(|e| mesh.connectivity[e as usize].iter().map(|n| mesh.node_ids[*n as usize])),
-        );
-    }
-    let name = deck.name(&name);
-    deck.node_sets.entry(name).or_default().extend(ids);
-    Ok(())
-}
-
-pub(super) fn element_set(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
-    let name = block.required(builder, "ELSET")?.to_string();
-    let ids = members(builder, deck, block, &deck.element_sets)?;
-    let name = deck.name(&name);
-    deck.element_sets.entry(name).or_default().extend(ids);
-    Ok(())
 }
 
 /// *ELASTIC and *DENSITY of the last material.
@@ -190,8 +120,7 @@ pub(super) fn sections(builder: &mut Builder, deck: &Deck) -> Result<(), ReadErr
                 "a *MATERIAL",
             ));
         };
-        for id in ids {
-            let Some(index) = builder.element_index(*id) else { continue };
+        for index in with_elements(builder, |known| ids.resolve(known)).0 {
             builder.made.mesh.materials[index as usize] = numbers[at];
             with[index as usize] = true;
         }
@@ -255,9 +184,9 @@ pub(super) fn boundaries(builder: &mut Builder, deck: &Deck) -> Result<(), ReadE
     for row in &deck.boundaries {
         let target = deck.without_instance(&row.target);
         let one;
-        let ids: &[u32] = match number::whole(target) {
+        let ids = match number::whole(target) {
             Some(id) => {
-                one = [id];
+                one = Members::of([id]);
                 &one
             }
             None => match deck.node_sets.get(&target.to_uppercase()) {
@@ -268,44 +197,14 @@ pub(super) fn boundaries(builder: &mut Builder, deck: &Deck) -> Result<(), ReadE
                 }
             },
         };
-        for id in ids {
-            let Some(node) = builder.node_index(*id) else {
-                let found = format!("node {id}");
-                return Err(builder.fault(row.line, "*BOUNDARY", found, "a node of the file"));
-            };
+        if let Some(id) = with_nodes(builder, |known| ids.first_absent(known)) {
+            return Err(builder.fault(row.line, "*BOUNDARY", format!("node {id}"), "a node of the file"));
+        }
+        for node in with_nodes(builder, |known| ids.resolve(known)).0 {
             for direction in &row.directions {
                 builder.constrain(row.line, node, *direction, row.value)?;
             }
         }
     }
     Ok(())
-}
-
-/// Hands the sets over, but for those that only serve a section of the same name as a material.
-pub(super) fn sets(builder: &mut Builder, deck: &Deck) {
-    let spelled = |upper: &String| deck.names.get(upper).unwrap_or(upper).clone();
-    for (upper, ids) in &deck.node_sets {
-        let nodes: Vec<u32> = ids.iter().filter_map(|id| builder.node_index(*id)).collect();
-        if nodes.len() < ids.len() {
-            let absent = ids.len() - nodes.len();
-            builder.warn(format!("set {} names {absent} nodes that are not there", spelled(upper)));
-        }
-        builder.node_set(&spelled(upper), nodes);
-    }
-    for (upper, ids) in &deck.element_sets {
-        if deck.sections.iter().any(|(_, set, material)| set == upper && material == upper) {
-            continue;
-        }
-        let elements: Vec<u32> = ids.iter().filter_map(|id| builder.element_index(*id)).collect();
-        let absent = ids
-            .iter()
-            .filter(|id| builder.element_index(**id).is_none() && !deck.left_out.contains(id))
-            .count();
-        if absent > 0 {
-            builder.warn(format!("set {} names {absent} elements that are not there", spelled(upper)));
-        }
-        if !elements.is_empty() {
-            builder.element_set(&spelled(upper), elements);
-        }
-    }
 }

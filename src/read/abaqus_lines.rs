@@ -7,6 +7,8 @@ use super::mesh_file::{Builder, read_text};
 
 /// Files within files that are followed.
 const DEPTH: usize = 10;
+/// Files that may be included in all, one as often as it is named.
+const FILES: usize = 200;
 
 /// A keyword line and the data lines below it.
 pub(super) struct Block {
@@ -52,11 +54,25 @@ impl Block {
 /// The keywords of a file and of those that it includes.
 pub(super) fn read_blocks(file: &Path) -> Result<Vec<Block>, ReadError> {
     let mut blocks = Vec::new();
-    follow(file, 0, &mut blocks)?;
+    follow(file, 0, &mut blocks, &mut Vec::new())?;
     Ok(blocks)
 }
 
-fn follow(file: &Path, depth: usize, blocks: &mut Vec<Block>) -> Result<(), ReadError> {
+/// The file and those that it includes, as far as they can be read; what is missing shows when it is read as a mesh.
+pub(super) fn files(file: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    // Faults are for the reader to report.
+    let _ = follow(file, 0, &mut Vec::new(), &mut files);
+    files
+}
+
+fn follow(
+    file: &Path,
+    depth: usize,
+    blocks: &mut Vec<Block>,
+    files: &mut Vec<PathBuf>,
+) -> Result<(), ReadError> {
+    files.push(file.to_path_buf());
     let text = read_text(file, "Abaqus input")?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.starts_with("**"));
     while let Some((number, text)) = lines.next() {
@@ -105,7 +121,11 @@ fn follow(file: &Path, depth: usize, blocks: &mut Vec<Block>) -> Result<(), Read
         if depth == DEPTH {
             return Err(ReadError::at(file, line, "*INCLUDE", "files within files", format!("{DEPTH} deep")));
         }
-        follow(&file.parent().unwrap_or(Path::new("")).join(input), depth + 1, blocks)?;
+        if files.len() > FILES {
+            let found = format!("{} files included", files.len());
+            return Err(ReadError::at(file, line, "*INCLUDE", found, format!("at most {FILES}")));
+        }
+        follow(&file.parent().unwrap_or(Path::new("")).join(input), depth + 1, blocks, files)?;
     }
     Ok(())
 }

@@ -3,6 +3,13 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::message::shown;
+
+/// Longest name or value of a file in a message [characters].
+const LONGEST: usize = 300;
+/// Longest list of what was expected [characters].
+const LONGEST_LIST: usize = 1000;
+
 /// One fault in an input file, printed as one sentence:
 /// `NODECOORD.DAT:17: coordinate y: found "1.2.3", expected a number`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -50,7 +57,9 @@ impl fmt::Display for ReadError {
         if let Some(line) = self.line {
             write!(f, "{line}:")?;
         }
-        write!(f, " {}: found {}, expected {}", self.key, self.found, self.expected)
+        let (key, found) = (shown(&self.key, LONGEST), shown(&self.found, LONGEST));
+        let expected = shown(&self.expected, LONGEST_LIST);
+        write!(f, " {key}: found {found}, expected {expected}")
     }
 }
 

@@ -7,6 +7,7 @@ use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::error::ReadError;
+use super::source;
 
 /// What a mesh file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -268,12 +269,12 @@ pub(super) fn drop_unused_nodes(
 
 /// The bytes of a file; `what` names its content in messages.
 pub(super) fn read_bytes(file: &Path, what: &str) -> Result<Vec<u8>, ReadError> {
-    std::fs::read(file).map_err(|error| {
-        let found = match error.kind() {
+    source::bytes(file, source::LARGEST).map_err(|refusal| {
+        let (found, expected) = refusal.words(|error| match error.kind() {
             std::io::ErrorKind::NotFound => "no such file".to_string(),
             _ => format!("that it cannot be read ({error})"),
-        };
-        ReadError::whole(file, what, found, "a readable file")
+        });
+        ReadError::whole(file, what, found, expected)
     })
 }
 

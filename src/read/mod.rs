@@ -6,6 +6,7 @@
 mod abaqus;
 mod abaqus_data;
 mod abaqus_lines;
+mod abaqus_sets;
 pub mod ansys_lists;
 mod cdb;
 mod cdb_blocks;
@@ -18,6 +19,7 @@ mod gmsh4;
 mod mesh_file;
 mod number;
 mod obj;
+pub(crate) mod source;
 mod stl;
 pub mod surface;
 mod table;
@@ -28,7 +30,7 @@ mod vtu;
 mod vtu_data;
 pub(crate) mod xml;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use abaqus::read_inp;
 pub use ansys_lists::{ElementColumns, ListLayout, Lists, read_lists};
@@ -45,6 +47,27 @@ pub use vtu::read_vtu;
 /// Endings of mesh files that can be read and written.
 pub const MESH_ENDINGS: [&str; 5] = ["cdb", "msh", "inp", "vtu", "vtk"];
 
+/// The files that [`read_mesh_file`] reads for a mesh: the three lists of a folder, what an Abaqus file includes.
+pub fn mesh_files(path: &Path) -> Vec<PathBuf> {
+    if path.is_dir() {
+        return folder_files(path);
+    }
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("inp") => abaqus_lines::files(path),
+        _ => vec![path.to_path_buf()],
+    }
+}
+
+/// The three lists of a folder.
+pub fn folder_files(folder: &Path) -> Vec<PathBuf> {
+    [NODES, ELEMENTS, CONSTRAINTS].map(|name| folder.join(name)).to_vec()
+}
+
+/// Lists of a folder.
+const NODES: &str = "NODECOORD.DAT";
+const ELEMENTS: &str = "ELEMENTNUM.DAT";
+const CONSTRAINTS: &str = "DOF.DAT";
+
 /// Reads a mesh of any form, identified by the ending of its name: `.cdb` (ANSYS archive), `.msh` (Gmsh), `.inp` (Abaqus,
 /// CalculiX), `.vtu`, `.vtk`; a folder holds `NODECOORD.DAT`, `ELEMENTNUM.DAT` and, where there are constraints,
 /// `DOF.DAT`.
@@ -53,11 +76,10 @@ pub const MESH_ENDINGS: [&str; 5] = ["cdb", "msh", "inp", "vtu", "vtk"];
 /// Another ending, and what the reader of the form refuses.
 pub fn read_mesh_file(path: &Path) -> Result<MeshFile, ReadError> {
     if path.is_dir() {
-        let constraints = path.join("DOF.DAT");
+        let constraints = path.join(CONSTRAINTS);
         let constraints = constraints.exists().then_some(constraints);
-        let nodes = path.join("NODECOORD.DAT");
-        let lists =
-            read_lists(&nodes, &path.join("ELEMENTNUM.DAT"), constraints.as_deref(), &ListLayout::default())?;
+        let nodes = path.join(NODES);
+        let lists = read_lists(&nodes, &path.join(ELEMENTS), constraints.as_deref(), &ListLayout::default())?;
         return Ok(lists.into());
     }
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();

@@ -9,6 +9,7 @@
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
+use super::mesh_file::read_bytes;
 use super::number;
 
 /// One line of a file that holds data.
@@ -32,13 +33,7 @@ pub struct Table {
 impl Table {
     /// Reads `file`; `what` names its content in messages.
     pub fn read(file: &Path, what: &str) -> Result<Table, ReadError> {
-        let bytes = std::fs::read(file).map_err(|error| {
-            let found = match error.kind() {
-                std::io::ErrorKind::NotFound => "no such file".to_string(),
-                _ => format!("that it cannot be read ({error})"),
-            };
-            ReadError::whole(file, what, found, "a readable file")
-        })?;
+        let bytes = read_bytes(file, what)?;
         // Headers may hold any 8-bit code page; the data are ASCII.
         let text = String::from_utf8_lossy(&bytes).into_owned();
         Self::parse(file, what, text)

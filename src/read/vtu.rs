@@ -22,6 +22,14 @@ struct Raw<'a> {
     text: &'a [u8],
 }
 
+/// Numbers that one byte of a file may stand for: those of regular grids are packed to a few.
+const DENSEST: u64 = 40;
+/// Numbers that any file may hold.
+const FREE: u64 = 1_000_000;
+/// Nodes of the largest cell, and mean number of cells of lower dimension at a point.
+const CELL_NODES: u64 = 27;
+const POINT_CELLS: u64 = 64;
+
 const SECTIONS: [&str; 4] = ["PointData", "CellData", "Points", "Cells"];
 
 /// Reads a `.vtu` file.
@@ -80,9 +88,10 @@ pub fn read_vtu(file: &Path) -> Result<MeshFile, ReadError> {
         return Err(fault("VTK file", "no VTKFile element", "<VTKFile type=\"UnstructuredGrid\" …>"));
     }
     let mut grid = Grid::default();
+    let mut left = FREE + DENSEST * bytes.len() as u64;
     for piece in 0..pieces.len() {
         let of_piece = raw.iter().filter(|r| r.piece == piece);
-        add_piece(file, of_piece, coding, appended, pieces[piece], &mut grid)?;
+        add_piece(file, of_piece, coding, appended, pieces[piece], &mut grid, &mut left)?;
     }
     if pieces.len() > 1 {
         // Arrays of several pieces belong together by name.
@@ -122,6 +131,7 @@ fn add_piece<'a>(
     appended: Option<(&[u8], bool)>,
     (points, cells): (usize, usize),
     grid: &mut Grid,
+    left: &mut u64,
 ) -> Result<(), ReadError> {
     let (first_point, first_node) = (grid.points.len() / 3, grid.connectivity.len());
     let (old_points, old_cells) = (grid.points.len(), grid.types.len());
@@ -137,10 +147,12 @@ fn add_piece<'a>(
         let components = components.trim().parse::<usize>().ok().filter(|c| (1..=1000).contains(c));
         let components =
             components.ok_or_else(|| fault("no such number".into(), "a number of components"))?;
+        let most =
+            most_numbers(array.section, &name, points as u64, cells as u64, components as u64).min(*left);
         let format = array.tag.attribute("format").unwrap_or_default();
         let decoded = match format.as_str() {
             "ascii" | "" => text_numbers(array.text),
-            "binary" => decode(array.text, true, &kind, coding),
+            "binary" => decode(array.text, true, &kind, coding, most),
             "appended" => {
                 let offset = array.tag.attribute("offset").unwrap_or_default();
                 let data = offset.trim().parse::<usize>().ok().and_then(|offset| {
@@ -150,11 +162,13 @@ fn add_piece<'a>(
                 let Some((data, base64)) = data else {
                     return Err(fault(format!("offset \"{offset}\""), "a place in AppendedData"));
                 };
-                decode(data, base64, &kind, coding)
+                decode(data, base64, &kind, coding, most)
             }
             _ => Err(format!("format \"{format}\"")),
         };
-        let values = decoded.map_err(|found| fault(found, "numbers in ascii, binary or appended form"))?;
+        let form = format!("at most {most} numbers, in ascii, binary or appended form");
+        let values = decoded.map_err(|found| fault(found, &form))?;
+        *left = left.saturating_sub(values.len() as u64);
         match (array.section, name.as_str()) {
             ("Points", _) => grid.points.extend(values),
             ("Cells", "connectivity") => {
@@ -177,6 +191,20 @@ fn add_piece<'a>(
         return Err(ReadError::whole(file, "Piece", found, expected));
     }
     Ok(())
+}
+
+/// Numbers that an array may have in a piece of so many points and cells.
+fn most_numbers(section: &str, name: &str, points: u64, cells: u64, components: u64) -> u64 {
+    match (section, name) {
+        ("Points", _) => points.saturating_mul(3),
+        ("Cells", "connectivity") => {
+            cells.saturating_mul(CELL_NODES).saturating_add(points.saturating_mul(POINT_CELLS))
+        }
+        ("Cells", "offsets" | "types") => cells,
+        ("PointData", _) => points.saturating_mul(components),
+        ("CellData", _) => cells.saturating_mul(components),
+        _ => u64::MAX,
+    }
 }
 
 /// Numbers in text.

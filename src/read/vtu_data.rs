@@ -57,11 +57,37 @@ impl Stream<'_> {
     }
 }
 
-/// The numbers of an array of type `kind` from the start of `bytes`; the error names what was found.
-pub(super) fn decode(bytes: &[u8], base64: bool, kind: &str, coding: Coding) -> Result<Vec<f64>, String> {
+/// The numbers of an array of type `kind` from the start of `bytes`, at most so many; the error names what was found. What says
+/// that it is longer is not unpacked.
+pub(super) fn decode(
+    bytes: &[u8],
+    base64: bool,
+    kind: &str,
+    coding: Coding,
+    most: u64,
+) -> Result<Vec<f64>, String> {
     let mut stream = Stream { bytes, base64, pending: Vec::new() };
-    let data = if coding.zlib { inflate(&mut stream, coding)? } else { plain(&mut stream, coding)? };
-    numbers(&data, kind, coding.big_endian)
+    let width = width(kind)?;
+    let fits = |bytes: u64| match bytes / width as u64 {
+        count if count > most => Err(format!("{count} numbers")),
+        _ => Ok(()),
+    };
+    let data = match coding.zlib {
+        true => inflate(&mut stream, coding, fits)?,
+        false => plain(&mut stream, coding, fits)?,
+    };
+    numbers(&data, kind, width, coding.big_endian)
+}
+
+/// Bytes of a number.
+fn width(kind: &str) -> Result<usize, String> {
+    match kind {
+        "Int8" | "UInt8" => Ok(1),
+        "Int16" | "UInt16" => Ok(2),
+        "Int32" | "UInt32" | "Float32" => Ok(4),
+        "Int64" | "UInt64" | "Float64" => Ok(8),
+        _ => Err(format!("type \"{kind}\"")),
+    }
 }
 
 fn length(stream: &mut Stream, coding: Coding) -> Result<u64, String> {
@@ -74,19 +100,30 @@ fn unsigned(bytes: &[u8], big_endian: bool) -> u64 {
     if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
 }
 
-fn plain(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
+fn plain(
+    stream: &mut Stream,
+    coding: Coding,
+    fits: impl Fn(u64) -> Result<(), String>,
+) -> Result<Vec<u8>, String> {
     let count = length(stream, coding)?;
+    fits(count)?;
     stream.read(usize::try_from(count).map_err(|_| format!("a length of {count}"))?)
 }
 
 /// Number of blocks, length of a block, length of the last one if shorter, compressed lengths, and the blocks.
-fn inflate(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
+fn inflate(
+    stream: &mut Stream,
+    coding: Coding,
+    fits: impl Fn(u64) -> Result<(), String>,
+) -> Result<Vec<u8>, String> {
     let blocks = length(stream, coding)?;
     let (size, last) = (length(stream, coding)?, length(stream, coding)?);
     let most = (stream.bytes.len() + stream.pending.len()) as u64;
     if blocks > most {
         return Err(format!("{blocks} blocks"));
     }
+    let shorter = if last > 0 { last } else { size };
+    fits(size.saturating_mul(blocks.saturating_sub(1)).saturating_add(shorter))?;
     let lengths: Vec<u64> = (0..blocks).map(|_| length(stream, coding)).collect::<Result<_, _>>()?;
     // The lengths are base64 of their own: what is left of their last group is padding.
     stream.pending.clear();
@@ -110,14 +147,7 @@ fn inflate(stream: &mut Stream, coding: Coding) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-fn numbers(data: &[u8], kind: &str, big_endian: bool) -> Result<Vec<f64>, String> {
-    let width = match kind {
-        "Int8" | "UInt8" => 1,
-        "Int16" | "UInt16" => 2,
-        "Int32" | "UInt32" | "Float32" => 4,
-        "Int64" | "UInt64" | "Float64" => 8,
-        _ => return Err(format!("type \"{kind}\"")),
-    };
+fn numbers(data: &[u8], kind: &str, width: usize, big_endian: bool) -> Result<Vec<f64>, String> {
     if !data.len().is_multiple_of(width) {
         return Err(format!("{} bytes of {kind}", data.len()));
     }
@@ -143,11 +173,11 @@ mod tests {
         // 4 bytes of length, then "abc": together, and each padded on its own.
         for text in ["AwAAAGFiYw==", "AwAAAA==YWJj", "  AwAA\nAGFiYw=="] {
             let mut stream = Stream { bytes: text.as_bytes(), base64: true, pending: Vec::new() };
-            assert_eq!(plain(&mut stream, Coding::default()).unwrap(), b"abc", "{text}");
+            assert_eq!(plain(&mut stream, Coding::default(), |_| Ok(())).unwrap(), b"abc", "{text}");
         }
         for text in ["AwAAAGFi", "AwAAAGF!Yw==", "AwAA==FiYw=="] {
             let mut stream = Stream { bytes: text.as_bytes(), base64: true, pending: Vec::new() };
-            assert!(plain(&mut stream, Coding::default()).is_err(), "{text}");
+            assert!(plain(&mut stream, Coding::default(), |_| Ok(())).is_err(), "{text}");
         }
     }
 }

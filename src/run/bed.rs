@@ -40,6 +40,7 @@ impl<'a> Bed<'a> {
     /// # Errors
     /// Overlaps or speeds without meaning; an interrupt.
     pub fn step(&mut self, applied: &[dem::AppliedForce]) -> Result<(), Failure> {
+        dem::stability::follow(&self.model, &mut self.state);
         match self.surface {
             Some(s) => dem::step(&self.model, &mut self.state, &mut self.work, s, applied),
             None => {
@@ -50,9 +51,22 @@ impl<'a> Bed<'a> {
         self.checkpoints.check(self.doing)
     }
 
-    /// Steps in about a millisecond, the time between two looks at the bed.
-    pub fn stride(&self) -> u64 {
-        ((1e-3 / self.model.dt()) as u64).max(1)
+    /// Length of the next step [s].
+    pub fn dt(&mut self) -> f64 {
+        dem::stability::follow(&self.model, &mut self.state);
+        self.state.dt()
+    }
+
+    /// Steps until a millisecond has passed, the time between two looks at the bed.
+    ///
+    /// # Errors
+    /// As [`Bed::step`].
+    pub fn until_look(&mut self) -> Result<(), Failure> {
+        self.step(&[])?;
+        while !passed(&self.state, 1e-3) {
+            self.step(&[])?;
+        }
+        Ok(())
     }
 
     /// Lets the bed come to rest, for as long as the plan allows; whether it did.
@@ -62,9 +76,7 @@ impl<'a> Bed<'a> {
     pub fn rest(&mut self, plan: &DepositionPlan) -> Result<bool, Failure> {
         let begun = self.state.time;
         while self.state.time - begun < plan.max_time {
-            for _ in 0..self.stride() {
-                self.step(&[])?;
-            }
+            self.until_look()?;
             let moving = self.state.time - begun < START;
             if !moving && plan.settled(rms_speed(&self.model, &self.state), &self.model, &self.state) {
                 return Ok(true);
@@ -91,6 +103,11 @@ impl<'a> Bed<'a> {
             ..input.clone()
         }
     }
+}
+
+/// Whether the last step has passed a multiple of `interval` [s].
+pub fn passed(state: &dem::State, interval: f64) -> bool {
+    (state.time / interval).floor() > ((state.time - state.last_dt()) / interval).floor()
 }
 
 /// Root-mean-square speed of all bodies [m/s].

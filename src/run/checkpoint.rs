@@ -16,6 +16,7 @@
 
 use super::hash::Hash;
 use crate::failure::Failure;
+use crate::read::source::{self, Refusal};
 use crate::scene::Document;
 use crate::write::WriteError;
 use crate::write::atomic;
@@ -148,6 +149,11 @@ impl Slots {
         &self.dir
     }
 
+    /// Whether there is a checkpoint, good or not, of whatever run.
+    pub fn any(&self) -> bool {
+        SLOTS.iter().any(|slot| self.dir.join(slot).exists())
+    }
+
     /// Whether this run has a checkpoint.
     pub fn has_one(&self) -> bool {
         self.own && self.next > 0
@@ -213,30 +219,35 @@ impl Slots {
     /// Bad input: there is none, all are damaged, or it is of another program or scene.
     pub fn load(&mut self, document: &Document) -> Result<(Loaded, Option<String>), Failure> {
         let refuse = |text: String| Failure::Input(format!("--resume: {text}"));
-        let (mut found, mut damaged) = (Vec::new(), Vec::new());
+        let (mut found, mut damaged, mut forms) = (Vec::new(), Vec::new(), Vec::new());
         for slot in SLOTS {
             let file = self.dir.join(slot);
-            let bytes = match fs::read(&file) {
-                Err(e) if e.kind() == io::ErrorKind::NotFound => continue,
-                bytes => bytes.map_err(|e| refuse(format!("{}: {e}", file.display())))?,
+            let bytes = match source::bytes(&file, source::LARGEST) {
+                Err(Refusal::System(e)) if e.kind() == io::ErrorKind::NotFound => continue,
+                bytes => bytes.map_err(|refusal| {
+                    let (found, expected) = refusal.words(|e| format!("that it cannot be read ({e})"));
+                    refuse(format!("{}: found {found}, expected {expected}", file.display()))
+                })?,
             };
             match read(bytes) {
                 Ok(loaded) => found.push((file, loaded)),
-                Err(Unfit::Form(text)) => return Err(refuse(format!("{}: {text}", file.display()))),
+                Err(Unfit::Form(text)) => forms.push(format!("{}: {text}", file.display())),
                 Err(Unfit::Damaged(text)) => damaged.push(format!("{} is damaged: {text}", file.display())),
             }
         }
         found.sort_by_key(|(_, (header, _))| header.number);
         let Some((file, (header, loaded))) = found.pop() else {
             let folder = self.dir.display();
-            return Err(refuse(match damaged.is_empty() {
-                true => format!("no checkpoint in {folder}, expected one of an interrupted run"),
-                false => damaged.join("; "),
+            return Err(refuse(match (forms.is_empty(), damaged.is_empty()) {
+                (false, _) => forms.join("; "),
+                (_, true) => format!("no checkpoint in {folder}, expected one of an interrupted run"),
+                (_, false) => damaged.join("; "),
             }));
         };
         if let Some(text) = self.origin.difference(&header.origin, document) {
             return Err(refuse(format!("{}: {text}", file.display())));
         }
+        damaged.extend(forms);
         let remark = damaged.first().map(|text| format!("{text}; the run goes on from {}", file.display()));
         (self.own, self.next) = (true, header.number + 1);
         Ok((loaded, remark))
@@ -253,24 +264,31 @@ enum Unfit {
     Damaged(String),
 }
 
+/// Whether the checksum is that of the content. A form of another program has its checksum too; one digit that flipped in the
+/// number of the form has not.
+fn is_whole(bytes: &[u8]) -> bool {
+    let end = bytes.len().saturating_sub(CHECKSUM);
+    let mut hash = Hash::default();
+    hash.add(&bytes[..end]);
+    bytes[end..] == hash.value().to_le_bytes()
+}
+
 fn read(bytes: Vec<u8>) -> Result<(Header, Loaded), Unfit> {
     let damaged = |text: &str| Unfit::Damaged(text.to_string());
     let line = |from: usize| bytes[from..].iter().position(|b| *b == b'\n').map(|n| from + n);
     let first = line(0).ok_or_else(|| damaged("it has no first line"))?;
     let form = std::str::from_utf8(&bytes[..first]).ok().and_then(|l| l.strip_prefix(MAGIC));
     match form.and_then(|f| f.parse::<u32>().ok()) {
-        Some(FORM) => {}
-        Some(other) => {
+        Some(other) if other != FORM && is_whole(&bytes) => {
             return Err(Unfit::Form(format!("found form {other} of a checkpoint, expected {FORM}")));
         }
+        Some(_) => {}
         None => return Err(damaged("it does not begin as a checkpoint")),
     }
-    let end = bytes.len().saturating_sub(CHECKSUM);
-    let mut hash = Hash::default();
-    hash.add(&bytes[..end]);
-    if bytes[end..] != hash.value().to_le_bytes() {
+    if !is_whole(&bytes) {
         return Err(damaged("its checksum is not that of its content"));
     }
+    let end = bytes.len().saturating_sub(CHECKSUM);
     let second = line(first + 1).ok_or_else(|| damaged("it has no header"))?;
     let header: Header =
         serde_json::from_slice(&bytes[first + 1..second]).map_err(|e| Unfit::Damaged(e.to_string()))?;

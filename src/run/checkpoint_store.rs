@@ -19,16 +19,27 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// A request that comes with Ctrl-C (SIGINT) or SIGTERM. A second signal ends the program at once, with exit code 130, as
-    /// the first does where nothing could be kept.
+    /// A request that comes with Ctrl-C (SIGINT), SIGTERM, or SIGHUP, of a terminal that is closed, unless it is ignored as
+    /// under `nohup`. A second signal ends the program at once, with exit code 130, as the first does where nothing could be
+    /// kept. A file that grows beyond the limit of its size (SIGXFSZ) is an error of that file.
     ///
     /// # Errors
     /// The system refuses the handlers.
     pub fn on_signals() -> io::Result<Interrupt> {
         use signal_hook::consts::{SIGINT, SIGTERM};
         use signal_hook::flag;
+        let mut signals = vec![SIGINT, SIGTERM];
+        #[cfg(unix)]
+        {
+            use signal_hook::consts::{SIGHUP, SIGXFSZ};
+            if !is_ignored(SIGHUP) {
+                signals.push(SIGHUP);
+            }
+            // Having any action, it does not end the program, and the system says to the writer what is wrong.
+            flag::register(SIGXFSZ, Arc::default())?;
+        }
         let interrupt = Interrupt { at_once: Arc::new(AtomicBool::new(true)), ..Interrupt::default() };
-        for signal in [SIGINT, SIGTERM] {
+        for signal in signals {
             // In this order: the first signal finds `at_once` as the stage has set it, the second finds it set.
             flag::register_conditional_shutdown(signal, 130, interrupt.at_once.clone())?;
             flag::register(signal, interrupt.at_once.clone())?;
@@ -37,10 +48,24 @@ impl Interrupt {
         Ok(interrupt)
     }
 
+    /// Whether a signal has come.
+    pub(crate) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
     /// A request that comes of itself after so many steps of the program, in whatever stages they are.
     pub fn after(steps: u64) -> Interrupt {
         Interrupt { steps: Some(steps), ..Interrupt::default() }
     }
+}
+
+/// Whether the program was started with a signal ignored, by the system's own account.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask & (1 << (signal - 1)) != 0
 }
 
 /// Time between two looks at the clock that is aimed at, from half to twice.
@@ -77,6 +102,11 @@ impl CheckpointStore {
             steps: Cell::new(0),
             command,
         }
+    }
+
+    /// The request to stop.
+    pub fn interrupt(&self) -> &Interrupt {
+        &self.interrupt
     }
 
     /// Begins a stage that calls [`CheckpointStore::step`] after every step.

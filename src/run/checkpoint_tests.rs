@@ -155,10 +155,50 @@ fn another_form_is_refused() {
     let file = dir.join("checkpoint/a.checkpoint");
     let mut bytes = fs::read(&file).unwrap();
     bytes[MAGIC.len()] = b'7';
+    // Of another program, whose checksum is right; else it is damage.
+    let end = bytes.len() - CHECKSUM;
+    let mut hash = Hash::default();
+    hash.add(&bytes[..end]);
+    bytes.splice(end.., hash.value().to_le_bytes());
     fs::write(&file, bytes).unwrap();
     let error = Slots::new(&dir, origin(SCENE, "5")).load(&document(SCENE)).err().unwrap();
     let message = format!("found form 7 of a checkpoint, expected {FORM}");
     assert!(error.to_string().ends_with(&message), "{error}");
+    fs::remove_dir_all(&dir).unwrap();
+}
+
+/// Bytes changed at random with a checksum that is right again: a checkpoint or an error, never a panic, and no memory for
+/// lengths that the file cannot hold.
+#[test]
+fn crafted_checkpoints_are_read_or_refused() {
+    let dir = folder("checkpoint_crafted");
+    let mut slots = Slots::new(&dir, origin(SCENE, "5"));
+    let parts = (vec![1.5_f64; 20], vec![vec![1_u32; 3]; 4], Some("text".to_string()), [0.5; 3]);
+    slots.save(moment(1), |body| body.put(&parts)).unwrap();
+    let whole = fs::read(dir.join("checkpoint/a.checkpoint")).unwrap();
+    let mut number = 1_u64;
+    let mut below = |n: usize| {
+        number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (number >> 33) as usize % n
+    };
+    for _ in 0..20_000 {
+        let mut bytes = whole[..whole.len() - CHECKSUM].to_vec();
+        for _ in 0..=below(4) {
+            let at = below(bytes.len());
+            match below(3) {
+                0 => bytes[at] = below(256) as u8,
+                1 => bytes.truncate(at + 1),
+                _ => bytes.splice(at..at, [0xff; 9]).for_each(drop),
+            }
+        }
+        let mut hash = Hash::default();
+        hash.add(&bytes);
+        bytes.extend(hash.value().to_le_bytes());
+        if let Ok((header, mut loaded)) = read(bytes) {
+            let _ = origin(SCENE, "6").difference(&header.origin, &document(SCENE));
+            let _ = loaded.take::<(Vec<f64>, Vec<Vec<u32>>, Option<String>, [f64; 3])>();
+        }
+    }
     fs::remove_dir_all(&dir).unwrap();
 }
 

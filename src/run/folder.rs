@@ -55,6 +55,20 @@ fn remove(folder: &Path, unwanted: impl Fn(&Path) -> bool) -> io::Result<()> {
     Ok(())
 }
 
+/// A file of a folder that has the name of a result, if there is one.
+pub fn first_result(dir: &Path) -> Option<PathBuf> {
+    let named = files().map(|name| dir.join(name)).find(|file| file.exists());
+    let found = |folder: &Path, ours: &dyn Fn(&Path) -> bool| {
+        let entries = fs::read_dir(folder).ok()?;
+        let mut found: Vec<PathBuf> =
+            entries.filter_map(|e| Some(e.ok()?.path())).filter(|f| ours(f)).collect();
+        found.sort();
+        found.into_iter().next()
+    };
+    let frame = |format: &Format| found(&dir.join(format.folder), &|file| format.is_frame(file));
+    named.or_else(|| found(dir, &of_a_group)).or_else(|| FORMATS.iter().find_map(|format| frame(format)))
+}
+
 /// Makes the folders of the frames of a run.
 fn make(dir: &Path, output: &OutputPlan) -> io::Result<()> {
     fs::create_dir_all(dir)?;

@@ -4,8 +4,8 @@
 //! structure of its equations; what the results take is a handful of nodal vectors. A run that will not fit is refused.
 
 use crate::failure::Failure;
+use crate::machine::{available, resident};
 use crate::model::solid::{Analysis, SolidPart};
-use std::path::Path;
 
 /// Bytes of a nodal vector's worth of results for each node: state, stresses, and the text of a frame.
 const RESULT_BYTES_PER_NODE: u64 = 1200;
@@ -92,31 +92,6 @@ pub fn parse_size(text: &str) -> Option<u64> {
         _ => return None,
     };
     Some((number * factor) as u64)
-}
-
-/// Resident memory of this process now [bytes].
-fn resident() -> Option<u64> {
-    field(Path::new("/proc/self/status"), "VmRSS:")
-}
-
-/// Memory that the machine, or the group that this process belongs to, has free [bytes].
-fn available() -> Option<u64> {
-    let machine = field(Path::new("/proc/meminfo"), "MemAvailable:");
-    let number = |file: &str| std::fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
-    let group = number("/sys/fs/cgroup/memory.max")
-        .zip(number("/sys/fs/cgroup/memory.current"))
-        .map(|(max, current)| max.saturating_sub(current));
-    match (machine, group) {
-        (Some(m), Some(g)) => Some(m.min(g)),
-        (one, other) => one.or(other),
-    }
-}
-
-/// The field of a status file that is given in kB [bytes].
-fn field(file: &Path, name: &str) -> Option<u64> {
-    let text = std::fs::read_to_string(file).ok()?;
-    let line = text.lines().find(|l| l.starts_with(name))?;
-    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
 }
 
 #[cfg(test)]

@@ -11,7 +11,9 @@ mod folder;
 mod frames;
 mod hash;
 mod initial;
+mod lock;
 mod memory;
+mod occupied;
 mod origin;
 mod packing;
 mod plastic;
@@ -25,12 +27,15 @@ mod track_output;
 mod wall_output;
 
 pub use checkpoint_store::Interrupt;
+pub(crate) use lock::Lock;
 pub use memory::{Prediction, parse_size, size};
 pub(crate) use origin::default_folder;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
+use crate::guard::guarded;
+use crate::message;
 use crate::model::Job;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
@@ -39,6 +44,9 @@ use context::Run;
 use stages::{RUN, RunState};
 use std::cell::{Cell, OnceCell};
 use std::path::{Path, PathBuf};
+
+/// Most threads: more than the largest machines have.
+const MOST_THREADS: usize = 1024;
 
 /// How to run a scene.
 #[derive(Clone, Debug, Default)]
@@ -53,6 +61,8 @@ pub struct Options {
     pub memory: Option<u64>,
     /// Go on from the last checkpoint in the folder of the results.
     pub resume: bool,
+    /// Replace what is in the folder of the results: a checkpoint, results of another scene, files of others.
+    pub force: bool,
     /// Request to stop with a checkpoint.
     pub interrupt: Interrupt,
     /// Print nothing.
@@ -83,20 +93,22 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let dir = options.out.clone().unwrap_or_else(|| default_folder(scene));
     let origin = origin::origin(&document, &parsed);
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
-    let mut slots = Slots::new(&dir, origin);
+    let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
     if options.resume {
         if origin::was_done(&dir, &scene_hash)? {
             return Ok(Outcome::WasDone(dir));
         }
         let (checkpoint, remark) = slots.load(&document)?;
-        if let Some(remark) = remark {
-            eprintln!("note: {remark}");
-        }
+        remark.iter().for_each(|remark| message::note(remark));
         loaded = Some(checkpoint);
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
+        let lock = Lock::take(&dir)?;
+        if !options.resume && !options.force {
+            occupied::check(&dir, &origin, &slots, &lock)?;
+        }
         let record = RunRecord {
             status: "running".into(),
             title: job.title.clone(),
@@ -128,9 +140,15 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
 /// Carries out the stages of a run, and writes its summary whatever becomes of them.
 fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<Outcome, Failure> {
     let mut state = RunState::new(loaded, summary);
-    let result = describe(run, &mut state.summary)
-        .and_then(|()| state.begin(run.job))
-        .and_then(|()| stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state)));
+    let result = guarded(|| {
+        // What the main loop would refuse is refused before hours of packing.
+        if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && state.loaded.is_none()) {
+            stages::preview(run.document, run.job, grains)?;
+        }
+        describe(run, &mut state.summary)?;
+        state.begin(run.job)?;
+        stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state))
+    });
     let summary = &mut state.summary;
     summary.verdict = Verdict::of(summary);
     let result = result.and_then(|()| summary.verdict.judge());
@@ -155,6 +173,9 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
     let result = match (result, run.checkpoints.kept()) {
         (Err(Failure::Numerical(text)), Some(kept)) => {
             Err(Failure::Numerical(format!("{text}; the last checkpoint is kept in {kept}")))
+        }
+        (Err(Failure::Other(text)), Some(kept)) => {
+            Err(Failure::Other(format!("{text}; the last checkpoint is kept in {kept}")))
         }
         (result, _) => result,
     };
@@ -184,8 +205,8 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
 
 /// The pool that a run works in: as many threads as asked for, with stacks deep enough for recursive elimination.
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    if threads == Some(0) {
-        return Err(Failure::Input("--threads: found 0, expected 1 or more".into()));
+    if let Some(threads) = threads.filter(|n| !(1..=MOST_THREADS).contains(n)) {
+        return Err(Failure::Input(format!("--threads: found {threads}, expected 1 to {MOST_THREADS}")));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))

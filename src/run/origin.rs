@@ -3,6 +3,7 @@
 use super::checkpoint::{self, Origin};
 use super::hash::Hash;
 use crate::failure::Failure;
+use crate::read::{mesh_files, source};
 use crate::scene::{Document, Scene};
 use std::path::{Path, PathBuf};
 
@@ -11,8 +12,8 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// Bad input: they are of another scene.
 pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
-    let text = std::fs::read_to_string(dir.join("summary.json")).unwrap_or_default();
-    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let bytes = source::bytes(&dir.join("summary.json"), source::LARGEST_TEXT).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&bytes).unwrap_or_default();
     if summary["status"] != "done" || dir.join(checkpoint::FOLDER).exists() {
         return Ok(false);
     }
@@ -58,13 +59,15 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
         hash.add(value.as_bytes());
     }
     let mut files = Vec::new();
-    for file in files_of(scene) {
-        // One that is missing or has gone changes the hash, which is what it is for.
-        let content = std::fs::read(document.resolve(file)).unwrap_or_default();
+    let named = files_of(scene).into_iter().map(Path::to_path_buf);
+    for file in named.chain(behind_the_mesh(document, scene)) {
+        // One that is missing or has gone changes the hash, which is what it is for; so does one that is not to be read, which the
+        // model refuses.
+        let content = source::bytes(&document.resolve(&file), source::LARGEST).unwrap_or_default();
         hash.add(&content);
         let mut own = Hash::default();
         own.add(&content);
-        files.push((file.to_path_buf(), own.hex()));
+        files.push((file, own.hex()));
     }
     Origin {
         version: env!("CARGO_PKG_VERSION").into(),
@@ -73,6 +76,16 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
         overrides: document.overrides().iter().map(|(k, v)| format!("{k}={v}")).collect(),
         files,
     }
+}
+
+/// The files that a scene does not name, but its mesh: the lists of a folder, what a file includes.
+fn behind_the_mesh(document: &Document, scene: &Scene) -> Vec<PathBuf> {
+    let Some(mesh) = scene.solid.as_ref().and_then(|s| s.mesh.as_ref()) else { return Vec::new() };
+    let path = document.resolve(mesh);
+    let files = mesh_files(&path).into_iter().filter(|file| *file != path);
+    // By the names that a reader of the scene would give them, wherever the run was started.
+    let folder = document.file().parent().unwrap_or(Path::new(""));
+    files.map(|file| file.strip_prefix(folder).map_or(file.clone(), Path::to_path_buf)).collect()
 }
 
 /// The files that a scene names.

@@ -1,6 +1,7 @@
 //! A plastic solid that runs alone: in quasi-static steps, or through time.
 
 use super::checkpoint::{Body, Loaded};
+use super::checkpoint_store::Interrupt;
 use super::system::{Applied, SolidView, System};
 use crate::failure::Failure;
 use crate::model::solid::{QuasiStaticPlan, SolidPart, TimeMethod};
@@ -8,9 +9,9 @@ use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
-use trackbed_fem::State;
 use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
-use trackbed_fem::nonlinear::{Loading, QuasiStatic, Statistics, StepControl, energy};
+use trackbed_fem::nonlinear::{Loading, Memory, QuasiStatic, Statistics, StepControl, energy};
+use trackbed_fem::{SolveError, State};
 
 /// Loads and supports of a solid in time; before time 0 they are brought on from nothing.
 pub struct Course<'a> {
@@ -20,6 +21,8 @@ pub struct Course<'a> {
     pub gravity: &'a [f64],
     /// Share of the weight that acts at the beginning of the time before 0: 1 where the initial stress carries it.
     pub carried: f64,
+    /// Request to give a step up.
+    pub interrupt: &'a Interrupt,
 }
 
 impl Course<'_> {
@@ -46,11 +49,18 @@ impl Loading for Course<'_> {
         self.part.prescribe(time, values);
         values.iter_mut().for_each(|v| *v *= share);
     }
+
+    fn stopped(&self) -> bool {
+        self.interrupt.stopped()
+    }
 }
 
 /// A solid at every step in equilibrium.
 pub struct QuasiStaticSystem<'a> {
     part: &'a SolidPart,
+    interrupt: Interrupt,
+    /// What the solver remembered before a step that was given up, which the checkpoint holds then.
+    given_up: Option<Memory>,
     state: State,
     solver: QuasiStatic,
     gravity: Vec<f64>,
@@ -67,7 +77,12 @@ impl<'a> QuasiStaticSystem<'a> {
     ///
     /// # Errors
     /// The body is not held, or finds no equilibrium at time 0.
-    pub fn new(part: &'a SolidPart, plan: &QuasiStaticPlan, step: f64) -> Result<Self, Failure> {
+    pub fn new(
+        part: &'a SolidPart,
+        plan: &QuasiStaticPlan,
+        step: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Failure> {
         let model = &part.model;
         let gravity = model.gravity_load();
         let (mut state, carried) = super::initial::state(part, &part.model, &gravity)?;
@@ -80,7 +95,7 @@ impl<'a> QuasiStaticSystem<'a> {
         };
         let mut begin = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
         state.time = -1.0;
-        let mut course = Course { part, gravity: &gravity, carried };
+        let mut course = Course { part, gravity: &gravity, carried, interrupt };
         begin
             .advance(model, &mut state, 0.0, &mut course, |_, _| {})
             .map_err(|e| part.failure(&e).in_stage("before time 0, while weight and loads are brought on"))?;
@@ -91,6 +106,8 @@ impl<'a> QuasiStaticSystem<'a> {
         course.load(0.0, &mut load);
         Ok(QuasiStaticSystem {
             part,
+            interrupt: interrupt.clone(),
+            given_up: None,
             state,
             solver,
             carried,
@@ -111,6 +128,7 @@ impl<'a> QuasiStaticSystem<'a> {
         part: &'a SolidPart,
         plan: &QuasiStaticPlan,
         step: f64,
+        interrupt: &Interrupt,
         loaded: &mut Loaded,
     ) -> Result<Self, Failure> {
         let mut solver = quasi_static(part, plan, step)?;
@@ -118,7 +136,20 @@ impl<'a> QuasiStaticSystem<'a> {
         solver.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
         let (state, carried, steps, load, reactions, spent) = loaded.take()?;
         let gravity = part.model.gravity_load();
-        Ok(QuasiStaticSystem { part, state, solver, carried, step, steps, load, reactions, spent, gravity })
+        Ok(QuasiStaticSystem {
+            part,
+            interrupt: interrupt.clone(),
+            given_up: None,
+            state,
+            solver,
+            carried,
+            step,
+            steps,
+            load,
+            reactions,
+            spent,
+            gravity,
+        })
     }
 
     /// Counts of the iteration.
@@ -145,19 +176,23 @@ impl TrackSystem for QuasiStaticSystem<'_> {
 }
 
 impl System for QuasiStaticSystem<'_> {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (0, 1)
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (0, windows)
     }
 
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
         let (part, model) = (self.part, &self.part.model);
-        let before = self.state.clone();
+        let (before, memory) = (self.state.clone(), self.solver.memory());
         let to = (self.steps + 1) as f64 * self.step;
-        let mut course = Course { part, gravity: &self.gravity, carried: self.carried };
-        let outcome = self
-            .solver
-            .advance(model, &mut self.state, to, &mut course, |_, _| {})
-            .map_err(|e| part.failure(&e));
+        let mut course =
+            Course { part, gravity: &self.gravity, carried: self.carried, interrupt: &self.interrupt };
+        let outcome = self.solver.advance(model, &mut self.state, to, &mut course, |_, _| {});
+        if outcome == Err(SolveError::Stopped) {
+            // The run goes on from the step before, whatever shorter steps this one has come to.
+            (self.state, self.given_up) = (before, Some(memory));
+            return Err(part.failure(&SolveError::Stopped));
+        }
+        let outcome = outcome.map_err(|e| part.failure(&e));
         // A step given up half-way counts as far as it came, so that the accounts belong to the state that is kept.
         let reached = if outcome.is_ok() { to } else { self.state.time };
         self.steps += u64::from(outcome.is_ok());
@@ -179,7 +214,7 @@ impl System for QuasiStaticSystem<'_> {
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
-        body.put(&self.solver.memory())?;
+        body.put(&self.given_up.unwrap_or_else(|| self.solver.memory()))?;
         body.put(&(&self.state, self.carried, self.steps, &self.load, &self.reactions, &self.spent))
     }
 
@@ -214,6 +249,9 @@ const SMALLEST_PART: f64 = 1.0 / 256.0;
 /// A plastic solid through time.
 pub struct PlasticDynamics<'a> {
     part: &'a SolidPart,
+    interrupt: Interrupt,
+    /// As of [`QuasiStaticSystem`].
+    given_up: Option<Memory>,
     state: State,
     solver: Dynamics,
     gravity: Vec<f64>,
@@ -228,16 +266,33 @@ impl<'a> PlasticDynamics<'a> {
     ///
     /// # Errors
     /// The initial stress finds no equilibrium, or a matrix cannot be factored.
-    pub fn new(part: &'a SolidPart, method: TimeMethod, step: f64) -> Result<Self, Failure> {
+    pub fn new(
+        part: &'a SolidPart,
+        method: TimeMethod,
+        step: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Failure> {
         let model = &part.model;
         let gravity = model.gravity_load();
         let (mut state, _) = super::initial::state(part, &part.model, &gravity)?;
         let solver = dynamics_solver(part, method, step)?;
         let mut load = vec![0.0; model.dof_count()];
-        let mut course = Course { part, gravity: &gravity, carried: 1.0 };
+        let mut course = Course { part, gravity: &gravity, carried: 1.0, interrupt };
         course.load(0.0, &mut load);
         dynamics::initial_acceleration(model, &mut state, &load).map_err(|e| part.failure(&e))?;
-        Ok(PlasticDynamics { part, state, solver, load, step, steps: 0, spent: Spent::default(), gravity })
+        let (interrupt, spent) = (interrupt.clone(), Spent::default());
+        Ok(PlasticDynamics {
+            part,
+            interrupt,
+            given_up: None,
+            state,
+            solver,
+            load,
+            step,
+            steps: 0,
+            spent,
+            gravity,
+        })
     }
 
     /// The solid as a checkpoint has it.
@@ -248,6 +303,7 @@ impl<'a> PlasticDynamics<'a> {
         part: &'a SolidPart,
         method: TimeMethod,
         step: f64,
+        interrupt: &Interrupt,
         loaded: &mut Loaded,
     ) -> Result<Self, Failure> {
         let mut solver = dynamics_solver(part, method, step)?;
@@ -255,7 +311,19 @@ impl<'a> PlasticDynamics<'a> {
         solver.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
         let (state, steps, load, spent) = loaded.take()?;
         let gravity = part.model.gravity_load();
-        Ok(PlasticDynamics { part, state, solver, load, step, steps, spent, gravity })
+        let interrupt = interrupt.clone();
+        Ok(PlasticDynamics {
+            part,
+            interrupt,
+            given_up: None,
+            state,
+            solver,
+            load,
+            step,
+            steps,
+            spent,
+            gravity,
+        })
     }
 
     /// Counts of the iteration.
@@ -281,29 +349,32 @@ impl TrackSystem for PlasticDynamics<'_> {
 }
 
 impl System for PlasticDynamics<'_> {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (0, 1)
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (0, windows)
     }
 
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
-        let (part, before) = (self.part, self.state.u.clone());
+        let (part, before) = (self.part, self.state.clone());
+        let (memory, spent_before) = (self.solver.memory(), self.spent);
         let to = (self.steps + 1) as f64 * self.step;
-        let mut course = Course { part, gravity: &self.gravity, carried: 1.0 };
+        let mut course = Course { part, gravity: &self.gravity, carried: 1.0, interrupt: &self.interrupt };
         let spent = &mut self.spent;
-        let outcome = self
-            .solver
-            .advance(&part.model, &mut self.state, to, &mut course, |_, _, audit| {
-                spent.solid_load_work += audit.external_work + audit.support_work;
-                spent.rayleigh += audit.damping_dissipation;
-                spent.absorbed += audit.boundary_dissipation;
-                spent.plastic += audit.plastic_dissipation;
-                spent.numerical += audit.numerical_dissipation;
-            })
-            .map_err(|e| part.failure(&e));
+        let outcome = self.solver.advance(&part.model, &mut self.state, to, &mut course, |_, _, audit| {
+            spent.solid_load_work += audit.external_work + audit.support_work;
+            spent.rayleigh += audit.damping_dissipation;
+            spent.absorbed += audit.boundary_dissipation;
+            spent.plastic += audit.plastic_dissipation;
+            spent.numerical += audit.numerical_dissipation;
+        });
+        if outcome == Err(SolveError::Stopped) {
+            (self.state, self.given_up, self.spent) = (before, Some(memory), spent_before);
+            return Err(part.failure(&SolveError::Stopped));
+        }
+        let outcome = outcome.map_err(|e| part.failure(&e));
         // A step given up half-way counts as far as it came, so that the accounts belong to the state that is kept.
         let reached = if outcome.is_ok() { to } else { self.state.time };
         self.steps += u64::from(outcome.is_ok());
-        let moved = self.state.u.iter().zip(&before).map(|(u, b)| u - b);
+        let moved = self.state.u.iter().zip(&before.u).map(|(u, b)| u - b);
         self.spent.solid_load_work -= self.gravity.iter().zip(moved).map(|(f, du)| f * du).sum::<f64>();
         self.load.fill(0.0);
         course.load(reached, &mut self.load);
@@ -311,7 +382,7 @@ impl System for PlasticDynamics<'_> {
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
-        body.put(&self.solver.memory())?;
+        body.put(&self.given_up.unwrap_or_else(|| self.solver.memory()))?;
         body.put(&(&self.state, self.steps, &self.load, &self.spent))
     }
 

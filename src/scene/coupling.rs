@@ -1,6 +1,6 @@
 //! `[coupling]`: the exchange between grains and solid.
 
-use super::units::{Angle, Length, Quantity};
+use super::units::{Angle, Length, Quantity, Time};
 use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
 use std::fmt;
@@ -9,9 +9,10 @@ use std::fmt;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Coupling {
-    /// Steps of the grains per step of the solid, 1–1000, or `"auto"`; default 10.
-    #[serde(default)]
-    pub substeps: Substeps,
+    /// Steps of the grains, as long as the first, per step of the solid, 1–1000, or `"auto"`; default 10.
+    pub substeps: Option<Substeps>,
+    /// Step of the solid [s], in place of `substeps`.
+    pub window: Option<Quantity<Time>>,
     /// Order of the exchange.
     #[serde(default)]
     pub scheme: SchemeName,

@@ -1,6 +1,7 @@
 //! The scene file as a tree with the line of every key, so that each message can name its place.
 
 use super::SceneError;
+use crate::read::source;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use std::ops::Range;
@@ -22,12 +23,9 @@ impl Document {
     /// # Errors
     /// The file is missing or unreadable, or it is not TOML.
     pub fn open(file: &Path) -> Result<Document, SceneError> {
-        let text = std::fs::read_to_string(file).map_err(|e| SceneError {
-            file: file.to_path_buf(),
-            line: None,
-            key: "file".into(),
-            found: e.to_string(),
-            expected: "a readable file".into(),
+        let text = source::text(file).map_err(|refusal| {
+            let (found, expected) = refusal.words(|e| e.to_string());
+            SceneError { file: file.to_path_buf(), line: None, key: "file".into(), found, expected }
         })?;
         Document::parse(file, text)
     }

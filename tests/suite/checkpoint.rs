@@ -103,8 +103,8 @@ fn steps(out: &Path) -> u64 {
         .as_array()
         .unwrap()
         .iter()
-        .map(|s| match count(s, "solid_steps") {
-            0 => count(s, "grain_steps") - 1,
+        .map(|s| match count(s, "windows") {
+            0 => count(s, "grain_steps").max(count(s, "solid_steps")) - 1,
             windows => windows - 1,
         })
         .sum()

@@ -61,7 +61,7 @@ fn wrong_usage_is_bad_input() {
     let outcome = trackbed_in(folder.path(), ["run", &scene, "--threads", "0"]);
     assert_eq!(
         (outcome.code, outcome.stderr.as_str()),
-        (2, "error: --threads: found 0, expected 1 or more\n")
+        (2, "error: --threads: found 0, expected 1 to 1024\n")
     );
     assert!(!folder.join("results").exists());
 }

@@ -81,7 +81,7 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
                 // The pair takes the smaller of the two.
                 format!("material.1.restitution={e}"),
                 // Where loading turns into unloading lies within a step: the error falls with the step.
-                "time.grain_step_fraction=0.01".to_string(),
+                "time.grain_step=3e-7".to_string(),
                 format!("time.end={}", 0.04 / speed / e + 0.01),
                 "output.vtk=false".to_string(),
             ];

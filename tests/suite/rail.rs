@@ -146,7 +146,9 @@ fn rails_go_back_with_a_window_that_is_made_again() {
     let mut peaks = Vec::new();
     for scheme in ["predicted", "iterated"] {
         let out = folder.join(scheme);
-        run(&folder.join("scene.toml"), &out, &[&format!("coupling.scheme={scheme:?}")]).good();
+        // Both sides of a pad book the same work to rounding where all steps are alike.
+        let set = [&format!("coupling.scheme={scheme:?}")[..], "time.grain_step=20 us"];
+        run(&folder.join("scene.toml"), &out, &set).good();
         let summary = json(&out.join("summary.json"));
         let energy = summary["energy"]["relative_error"].as_f64().unwrap();
         let passes = summary["coupling"]["passes"]["passes"].as_f64().unwrap();

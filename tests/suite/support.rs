@@ -92,10 +92,10 @@ pub fn trackbed<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A
     trackbed_in(&std::env::temp_dir(), arguments)
 }
 
-/// Runs a scene quietly into `out` with overrides `key.path=value`.
+/// Runs a scene quietly into `out` with overrides `key.path=value`, whatever is there.
 pub fn run(scene: &Path, out: &Path, set: &[&str]) -> Outcome {
     let mut arguments: Vec<String> =
-        ["run", &scene.display().to_string(), "--out", &out.display().to_string(), "--quiet"]
+        ["run", &scene.display().to_string(), "--out", &out.display().to_string(), "--quiet", "--force"]
             .map(String::from)
             .into();
     for assignment in set {

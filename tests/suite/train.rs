@@ -86,6 +86,7 @@ fn breaking_and_yielding_goes_on_bit_for_bit() {
         "bond.0.parallel.tensile_strength=3e5",
         "bond.0.parallel.shear_strength=5e5",
         "time.grain_step=1.2e-5",
+        "time.accept_step_above_limit=true",
         "coupling.substeps=16",
     ];
     let file = scene("breakable.toml");

@@ -11,7 +11,8 @@ pub struct Model<'a> {
     pub solid: &'a fem::model::Model,
     /// The grains.
     pub grains: dem::Model,
-    /// Steps of the grains per window.
+    /// Steps of the grains per window, of the length that the run begins with; where steps follow the contacts
+    /// ([`dem::stability`]) fewer, longer ones make up the same window.
     pub substeps: u32,
     /// Order of the exchange.
     pub scheme: Scheme,

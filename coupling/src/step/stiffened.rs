@@ -18,7 +18,6 @@ use trackbed_dem as dem;
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
-use trackbed_fem::element::quad8;
 use trackbed_fem::window::WindowSolver;
 
 /// A contact of the last grain step of a window.
@@ -46,6 +45,7 @@ impl From<&SurfaceContact> for Held {
 
 /// A linearized contact: matrix against the velocity of its point.
 struct Spring {
+    /// Nodes of the touched face and values of its shape functions there; zero beyond the nodes of its kind.
     nodes: [u32; 8],
     shape: [f64; 8],
     normal: [f64; 3],
@@ -91,7 +91,7 @@ impl Spring {
             let across = slip[d] - closing * normal[d];
             held - half * tangential * across - pressure * normal[d]
         });
-        let (shape, nodes) = (quad8::shape_functions(near.local), *surface.face_nodes(c.patch));
+        let (shape, nodes) = (surface.shape_functions(c.patch, near.local), surface.padded_nodes(c.patch));
         let (along, across) = (half * stiffness + dashpot, half * tangential);
         Some((Spring { nodes, shape, normal, along, across }, force))
     }

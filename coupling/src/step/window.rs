@@ -8,6 +8,7 @@ use super::stiffened::Held;
 use crate::scheme::Scheme;
 use crate::surface::Motion;
 use trackbed_dem as dem;
+use trackbed_dem::stability;
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
@@ -96,8 +97,8 @@ fn lagged(
     Ok(())
 }
 
-/// A window of the iterated scheme: passes until the velocity of the surface is that of the solid, `most` at most. Returns the
-/// passes made.
+/// A window of the iterated scheme: passes until the velocity of the surface is that of the solid, `most` at most. A window
+/// that does not come there ends with the motion of the pass that came nearest. Returns the passes made.
 fn iterated(
     model: &Model<'_>,
     state: &mut State,
@@ -113,6 +114,7 @@ fn iterated(
     let nodes = work.surface.nodes().to_vec();
     let unknowns = || nodes.iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
     let mut at: Vec<f64> = unknowns().map(|i| work.rate[i]).collect();
+    let mut best = (f64::INFINITY, at.clone());
     let mut passes = 1;
     loop {
         grains(model, state, work, applied)?;
@@ -121,11 +123,21 @@ fn iterated(
         let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let change = found.iter().zip(&at).fold(0.0_f64, |m, (f, a)| m.max((f - a).abs()));
         let there = change <= tolerance * largest(&found).max(largest(&at)) + STILL;
-        if there || passes >= most {
+        // The last pass allowed, or one that repeats the best of them.
+        let last = there || passes > most || (passes == most && change <= best.0);
+        if last {
             state.passes.unconverged += u64::from(!there);
             return Ok((passes, audit));
         }
-        work.accelerator.next(&mut at, &found);
+        if change < best.0 {
+            best.0 = change;
+            best.1.copy_from_slice(&at);
+        }
+        if passes == most {
+            at.copy_from_slice(&best.1);
+        } else {
+            work.accelerator.next(&mut at, &found);
+        }
         unknowns().zip(&at).for_each(|(i, a)| work.rate[i] = *a);
         copy(&work.before, &mut state.solid);
         state.solid.points.clone_from(&work.before.points);
@@ -180,15 +192,18 @@ fn grains(
     work: &mut Work,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<(), StepError> {
-    let dt = model.grains.dt();
+    let substeps = stability::divide(&model.grains, &mut state.grains, model.window(), model.substeps);
+    let dt = state.grains.dt();
     begin(model, state, work)?;
     work.transfer.begin_window();
-    for k in 0..model.substeps {
+    for k in 0..substeps {
         work.surface.advance((f64::from(k) + 0.5) * dt);
         work.applied.clear();
         applied(state.grains.time, &state.grains, &mut work.applied);
+        // The solid gets what the grains get, also in the step in which their length changes.
+        let kick = state.grains.kick();
         dem::step(&model.grains, &mut state.grains, &mut work.grains, &work.surface, &work.applied)?;
-        work.transfer.add(&work.surface, work.grains.surface_contacts(), dt, &mut state.audit);
+        work.transfer.add(&work.surface, work.grains.surface_contacts(), kick, &mut state.audit);
     }
     work.contact_load.fill(0.0);
     work.transfer.add_mean_load(&work.surface, model.window(), &mut work.contact_load);

@@ -56,6 +56,11 @@ impl PushPlan {
         }
     }
 
+    /// Longest step [s] that can follow a ram of `stiffness` [N/m] against a sleeper of `mass` [kg].
+    pub fn longest_step(stiffness: f64, mass: f64) -> f64 {
+        LARGEST_STEP * (mass / stiffness).sqrt()
+    }
+
     /// Largest stiffness of a ram against a sleeper of `mass` [kg] that steps of `dt` [s] can follow [N/m]:
     /// dt √(k/m) is a tenth.
     pub fn largest_stiffness(mass: f64, dt: f64) -> f64 {

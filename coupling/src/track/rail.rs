@@ -139,6 +139,14 @@ pub struct RailScratch {
     moved: Vec<f64>,
 }
 
+/// Factor of Newmark's matrix (mean acceleration) for steps of `dt` [s].
+fn factor(mass: &Band, damping: &Band, stiffness: &Band, dt: f64) -> Option<BandFactor> {
+    let mut effective = mass.clone();
+    effective.add_scaled(0.5 * dt, damping);
+    effective.add_scaled(0.25 * dt * dt, stiffness);
+    effective.factor()
+}
+
 impl Rail {
     /// The rail with the factor for steps of `dt` [s]; `None` where its matrix is not positive definite, which takes
     /// input that is not finite or positive.
@@ -187,16 +195,23 @@ impl Rail {
         }
         let mut damping = beyond.clone();
         seats.iter().for_each(|&d| damping.add(d, d, input.pad[1]));
-        let mut effective = mass.clone();
-        effective.add_scaled(0.5 * dt, &damping);
-        effective.add_scaled(0.25 * dt * dt, &stiffness);
-        let factor = effective.factor()?;
+        let factor = factor(&mass, &damping, &stiffness, dt)?;
         Some(Rail { input, dofs, seats, mass, damping, beyond, stiffness, weight, factor, dt })
     }
 
     /// Step [s].
     pub fn dt(&self) -> f64 {
         self.dt
+    }
+
+    /// Gives the steps from now on another length [s].
+    pub fn set_dt(&mut self, dt: f64) {
+        if dt != self.dt {
+            // With one step it was positive definite, so it is with any.
+            if let Some(factor) = factor(&self.mass, &self.damping, &self.stiffness, dt) {
+                (self.factor, self.dt) = (factor, dt);
+            }
+        }
     }
 
     /// Where the rail begins and ends, from the first modelled sleeper [m].

@@ -55,12 +55,12 @@ impl Rails {
         Some(LaidRails { step, heights: heights.collect(), rails })
     }
 
-    /// Advances the rails to the time of the grains, a step later; does nothing where they are there already.
+    /// Advances the rails to the time of the grains, a step of `dt` [s] later; does nothing where they are there already.
     pub fn advance(
         &mut self,
         laid: &mut LaidRails,
         time: f64,
-        step: u64,
+        (step, dt): (u64, f64),
         heights: impl Iterator<Item = f64>,
     ) {
         if laid.step == step {
@@ -68,6 +68,7 @@ impl Rails {
         }
         debug_assert_eq!(laid.step + 1, step);
         laid.step = step;
+        self.rail.set_dt(dt);
         self.load.wheels(time, self.count, &mut self.wheels);
         self.seats.clear();
         self.seats.extend(heights.zip(&laid.heights).map(|(now, then)| now - then));

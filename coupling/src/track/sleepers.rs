@@ -148,7 +148,7 @@ impl<'a> Track<'a> {
         let heights = seats(self.row, self.first, model, state).map(|s| s.3.z);
         match laid {
             None => *laid = rails.lay(state.time, state.steps, heights),
-            Some(laid) => rails.advance(laid, state.time, state.steps, heights),
+            Some(laid) => rails.advance(laid, state.time, (state.steps, state.last_dt()), heights),
         }
     }
 
@@ -167,7 +167,7 @@ impl<'a> Track<'a> {
         let (Some(load), Some(row)) = (self.load, self.row.filter(|r| !r.meshed)) else { return };
         self.advance_rails(model, state);
         let speeds = (0..row.centres.len()).map(|k| state.velocity(self.first + k).z);
-        self.momentum.begin(state.steps, speeds);
+        self.momentum.begin(state.steps, state.kick(), speeds);
         let share = 1.0 / row.seats.len() as f64;
         for (k, r, body, point) in seats(self.row, self.first, model, state) {
             let down = match (&self.rails, &self.state.laid) {
@@ -175,7 +175,7 @@ impl<'a> Track<'a> {
                 (Some(_), None) => 0.0,
                 (None, _) => load.on(k, t) * share,
             };
-            self.momentum.add(k, -(down * model.dt()));
+            self.momentum.add(k, -(down * state.kick()));
             out.push(dem::AppliedForce { body, force: dem::Vec3::new(0.0, 0.0, -down), point });
         }
     }
@@ -185,7 +185,7 @@ impl<'a> Track<'a> {
         let Some(row) = self.row.filter(|r| !r.held[2]) else { return false };
         let weight = row.mass * view.model.gravity().z;
         let speed = view.state.velocity(self.first + k).z;
-        self.momentum.is_free(k, row.mass, weight, view.model.dt(), view.state.steps, speed)
+        self.momentum.is_free(k, row.mass, weight, speed)
     }
 
     /// Records the state at the end of a window.

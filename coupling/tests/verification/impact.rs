@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use trackbed_coupling::scheme::Scheme;
-use trackbed_coupling::{face, step};
+use trackbed_coupling::step;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_dem::surface::Surface;
@@ -86,8 +86,8 @@ impl<'a> Impact<'a> {
             if self.coupled.model.substeps == 1 {
                 for c in self.coupled.work.grains.surface_contacts() {
                     let mesh = self.coupled.model.solid.mesh();
-                    let nodes = self.coupled.work.surface.faces()[c.patch as usize].nodes;
-                    let reference = face::interpolate(&nodes.map(|n| mesh.coordinates[n as usize]), c.local);
+                    let face = self.coupled.work.surface.faces()[c.patch as usize];
+                    let reference = face.point_and_area(mesh, c.local).0;
                     let u = Vec3::from(c.point) - Vec3::from(reference);
                     self.geometric += u.cross(&Vec3::from(c.force)) * window;
                 }

@@ -10,6 +10,7 @@ mod curved;
 mod cyclic;
 mod edges;
 mod impact;
+mod kinds;
 mod mapping;
 mod plate;
 mod pressure;

@@ -1,7 +1,6 @@
 //! (ii): the inverse map on a distorted surface of many elements.
 
 use crate::support::Scatter;
-use trackbed_coupling::face;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::surface::Surface;
 use trackbed_fem::Mesh;
@@ -58,8 +57,7 @@ fn every_point_of_a_distorted_top_is_found_in_its_element() {
     for k in 0..10_000 {
         let patch = k % faces;
         let local = [0.9999 * random.symmetric(), 0.9999 * random.symmetric()];
-        let x = surface.face_nodes(patch).map(|n| surface.position(n));
-        let point = face::interpolate(&x, local);
+        let point = surface.place(patch, local);
         patches.clear();
         surface.candidates(point.map(|c| c - 1e-9), point.map(|c| c + 1e-9), &mut patches);
         let Some((element, residual, natural)) = nearest(&surface, patches.iter().copied(), point) else {

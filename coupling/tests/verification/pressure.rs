@@ -70,8 +70,7 @@ impl Patch {
         let surface = top(&solid);
         let mut consistent = vec![0.0; solid.dof_count()];
         for f in surface.faces() {
-            let x = f.nodes.map(|n| solid.mesh().coordinates[n as usize]);
-            let centre = trackbed_coupling::face::interpolate(&x, [0.0, 0.0]);
+            let centre = f.centre(solid.mesh());
             if (centre[0] - 0.5).abs() < 0.25 && (centre[1] - 0.5).abs() < 0.25 {
                 fem::loads::face_pressure(solid.mesh(), f, TOTAL / 0.25, &mut consistent);
             }

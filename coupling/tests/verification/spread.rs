@@ -33,8 +33,7 @@ fn spread_load(model: &fem::Model, surface: &SolidSurface, c: &SurfaceContact) -
 fn seen(model: &fem::Model, surface: &mut SolidSurface, c: &SurfaceContact, u: &[f64]) -> f64 {
     let zero = vec![0.0; u.len()];
     surface.begin_window(model.mesh(), u, &zero, &zero, 1.0);
-    let x = surface.face_nodes(c.patch).map(|n| surface.position(n));
-    let height = trackbed_coupling::face::interpolate(&x, c.local)[2] - c.point[2];
+    let height = surface.place(c.patch, c.local)[2] - c.point[2];
     surface.begin_window(model.mesh(), &zero, &zero, &zero, 1.0);
     height
 }
@@ -119,8 +118,7 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
         }
         let force = [30.0 * (0.3 * t).sin(), 20.0 * (0.7 * t).cos(), -100.0];
         let patch = k % surface.faces().len() as u32;
-        let x = surface.face_nodes(patch).map(|n| surface.position(n));
-        let point = trackbed_coupling::face::interpolate(&x, local);
+        let point = surface.place(patch, local);
         let c = SurfaceContact {
             sphere: 0,
             body: 0,

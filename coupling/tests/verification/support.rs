@@ -121,7 +121,7 @@ pub fn nodal_load(
 
 /// Vertical displacement of the solid under a contact: Σ N(ξ) u at the contact point [m].
 pub fn deflection(surface: &SolidSurface, contact: &SurfaceContact, u: &[f64]) -> f64 {
-    let n = fem::element::quad8::shape_functions(contact.local);
+    let n = surface.shape_functions(contact.patch, contact.local);
     surface
         .face_nodes(contact.patch)
         .iter()

@@ -23,8 +23,7 @@ fn rough_block() -> trackbed_fem::Model {
 }
 
 fn at(surface: &SolidSurface, patch: u32, local: [f64; 2], force: [f64; 3]) -> SurfaceContact {
-    let x = surface.face_nodes(patch).map(|n| surface.position(n));
-    let point = trackbed_coupling::face::interpolate(&x, local);
+    let point = surface.place(patch, local);
     SurfaceContact { sphere: 0, body: 0, patch, local, point, force, dashpot: [0.0; 3], overlap: 0.0 }
 }
 

@@ -12,9 +12,9 @@ use crate::bond::{BondList, Break, BreakMode, Held};
 use crate::lanes::record::xyz;
 use crate::law::History;
 
-/// What the passes over bonds need of a model.
-pub(crate) fn parts(model: &Model, fresh: bool) -> Parts<'_> {
-    Parts { bonds: &model.bonds, laws: &model.laws, dt: model.dt(), fresh }
+/// What the passes over bonds need of a model; `dt` is the step that has brought the bodies here [s].
+pub(crate) fn parts(model: &Model, dt: f64, fresh: bool) -> Parts<'_> {
+    Parts { bonds: &model.bonds, laws: &model.laws, dt, fresh }
 }
 
 /// Lays the scratch of the bonds out in the state's present order.
@@ -183,7 +183,7 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
     // The force of this step used the velocities of half a step ago, its work is that on the mean of those and the
     // next: c v² + ½ c v·Δv, and the second part sums up to a quarter of the change of power.
     let last = if state.bonds.fresh { power } else { state.bonds.power };
-    state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * model.dt();
+    state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * state.pace.kick();
     state.bonds.power = power;
     state.bonds.fresh = false;
     changed |= hand_over(state);
@@ -210,7 +210,7 @@ fn part(
     if !bond.contact && mobile {
         let (one, two) = (p.material(i), q.material(j));
         let (ra, rb) = (p.centre[i][3], q.centre[j][3]);
-        let dt = model.dt();
+        let dt = state.pace.dt;
         let (x, v) = (xyz(&p.centre[i]) - xyz(&q.centre[j]), xyz(&p.velocity[i]) - xyz(&q.velocity[j]));
         // The bodies have moved on: lengths one step and half a step ago, the latter at the new velocity.
         let half = ra + rb - (x - v * (0.5 * dt)).norm();

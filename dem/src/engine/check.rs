@@ -196,7 +196,9 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
         return error("impact speed", speed, NOT_NEGATIVE);
     }
     match input.time_step {
-        TimeStep::Auto { fraction } if !(fraction > 0.0 && fraction <= 1.0) => {
+        TimeStep::Auto { fraction } | TimeStep::Measured { share: fraction, .. }
+            if !(fraction > 0.0 && fraction <= 1.0) =>
+        {
             return error("time step fraction", fraction, "lie above 0 and not above 1");
         }
         TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) if !positive(dt) => {

@@ -17,6 +17,16 @@ pub enum TimeStep {
         /// Fraction of the limit [-].
         fraction: f64,
     },
+    /// This share, in (0, 1], of what the contacts of each moment allow (see [`crate::stability`]), which whoever advances
+    /// the state has to ask for ([`crate::stability::divide`]); until then as `Auto`.
+    Measured {
+        /// Share of the limit [-].
+        share: f64,
+        /// Longest step for reasons that the grains do not know of, such as springs on bodies from outside [s].
+        longest: f64,
+        /// Whether the restitution of single collisions matters, which takes short steps as long as few contacts last.
+        collisions: bool,
+    },
     /// This many seconds, refused when above the limit.
     Fixed(f64),
     /// This many seconds, whatever the limit.

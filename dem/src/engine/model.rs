@@ -1,7 +1,9 @@
 //! The checked, resolved and immutable model: what a run needs and never changes.
 
 use super::check;
-use super::input::{ModelInput, TimeStep};
+use super::collision;
+use super::input::ModelInput;
+use super::steps::Steps;
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
@@ -44,7 +46,7 @@ pub struct Model {
     /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
     pub(crate) periodic: Option<Periodic>,
-    dt: f64,
+    steps: Steps,
     limit: DtLimit,
 }
 
@@ -87,14 +89,10 @@ impl Model {
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
-        timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
-        let dt = match input.time_step {
-            TimeStep::Auto { fraction } => fraction * limit.dt,
-            TimeStep::Fixed(dt) if dt > limit.dt => {
-                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
-            }
-            TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => dt,
-        };
+        let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let partners = timestep::partners(&bodies, &input);
+        let collision = collision::longest(&bodies, &input, &laws, &partners, expected);
+        let steps = Steps::new(&input.time_step, &limit, rigid, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let surface = check::surfaces(&input).map(|m| m as u32);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
@@ -126,19 +124,30 @@ impl Model {
             periodic,
             bonds,
             radii,
-            dt,
+            steps,
             limit,
         })
     }
 
-    /// The time step [s].
+    /// The time step that a run begins with [s]; [`State::dt`](crate::State::dt) is the one that it has.
     pub fn dt(&self) -> f64 {
-        self.dt
+        self.steps.first
     }
 
     /// The stability limit of the time step and what sets it.
     pub fn dt_limit(&self) -> &DtLimit {
         &self.limit
+    }
+
+    /// Share of what the contacts allow that steps take, where they follow it (see [`crate::stability`]).
+    pub fn measured(&self) -> Option<f64> {
+        self.steps.share
+    }
+
+    /// Longest step that collisions, rigid bodies of walls and the input allow [s], whatever touches; `packed`: where most
+    /// contacts last (see [`crate::stability`]).
+    pub fn longest(&self, packed: bool) -> f64 {
+        self.steps.longest.min(if packed { self.steps.lasting } else { self.steps.collision })
     }
 
     /// Gives up the positions that the bodies start from, for a run that has its state: 24 bytes per body.

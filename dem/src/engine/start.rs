@@ -8,13 +8,14 @@ use crate::base::Vec3;
 use crate::base::ledger::Ledger;
 use crate::bodies::block::Rotation;
 use crate::bond::BondState;
+use crate::integrate::pace::Pace;
 use crate::shape::plane::PlaneMotion;
 
-/// The leapfrog's velocity half a step before a moment at which the body moves at `velocity` [m/s], free to fall.
-pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3) -> Vec3 {
+/// The leapfrog's velocity half a step of `dt` [s] before a moment at which the body moves at `velocity` [m/s], free to fall.
+pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3, dt: f64) -> Vec3 {
     let fixed = model.body(body).fixed;
     let kick = Vec3::from_fn(|d, _| if fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
-    velocity - kick * (0.5 * model.dt())
+    velocity - kick * (0.5 * dt)
 }
 
 impl State {
@@ -27,6 +28,7 @@ impl State {
             |p: &crate::Plane| PlaneMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false };
         let mut state = State {
             time: 0.0,
+            pace: Pace::new(model.dt()),
             steps: 0,
             ledger: Ledger::default(),
             places: Vec::new(),
@@ -58,7 +60,7 @@ impl State {
         state.number(model);
         bonds::start(model, &mut state);
         for k in (0..model.bodies.len()).filter(|&k| !model.bodies.absent(k)) {
-            let velocity = half_a_step_ago(model, k, &model.bodies.velocity(k));
+            let velocity = half_a_step_ago(model, k, &model.bodies.velocity(k), model.dt());
             state.set_velocity(model, k, velocity, model.bodies.spin(k));
         }
         state

@@ -12,6 +12,7 @@ use crate::bodies::block::{Block, spin_of};
 use crate::bodies::table::Kind;
 use crate::bond::{BondList, BondState};
 use crate::engine::model::Model;
+use crate::integrate::pace::Pace;
 use crate::lanes::record::{set_xyz, xyz};
 use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
@@ -50,6 +51,7 @@ pub struct State {
     pub(crate) lists: Vec<BlockLists>,
     /// Contacts between blocks, by the block of their first sphere.
     pub(crate) cross: Vec<Cross>,
+    pub(crate) pace: Pace,
     pub(crate) bonds: BondState,
     pub(crate) planes: Vec<PlaneMotion>,
     pub(crate) walls: Vec<WallState>,
@@ -66,6 +68,31 @@ pub struct State {
 pub(crate) const NOWHERE: [u32; 2] = [u32::MAX, 0];
 
 impl State {
+    /// Length of the next step [s]; [`Model::dt`] until another is set.
+    pub fn dt(&self) -> f64 {
+        self.pace.dt
+    }
+
+    /// Length of the last step [s]: velocities are those of half of it before `time`.
+    pub fn last_dt(&self) -> f64 {
+        self.pace.last
+    }
+
+    /// Time by which velocities advance in the next step [s]: the mean of that step and the last.
+    pub fn kick(&self) -> f64 {
+        self.pace.kick()
+    }
+
+    /// The largest stable step found last [s], where steps follow the contacts ([`crate::stability`]).
+    pub fn measured_limit(&self) -> Option<f64> {
+        (self.pace.limit > 0.0).then_some(self.pace.limit)
+    }
+
+    /// Sets the length of the steps from now on [s].
+    pub fn set_dt(&mut self, dt: f64) {
+        self.pace.dt = dt;
+    }
+
     /// Whether a body is there. Those that are not have no position, velocity or orientation, and take part in nothing.
     pub fn present(&self, body: usize) -> bool {
         self.places[body] != NOWHERE

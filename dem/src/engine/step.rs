@@ -26,7 +26,7 @@ use crate::wall::set::PlacedWalls;
 
 pub use super::probe::find_contacts;
 
-/// Advances `state` by one step of [`Model::dt`].
+/// Advances `state` by one step of [`State::dt`].
 ///
 /// `surface` is a surface that another crate owns ([`NoSurface`](crate::spatial::surface::NoSurface) for none), as it is at
 /// the state's time; its contacts are then in [`Work::surface_contacts`]. `applied` forces act during this step.
@@ -58,7 +58,7 @@ pub fn step<S: Surface>(
     applied::place(model, state, applied, &mut work.applied)?;
     neighbours::update(model, state, work, surface);
     if !model.bonds.is_empty() {
-        let parts = bonds::parts(model, state.bonds.fresh);
+        let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
         let State { blocks, bonds, .. } = &mut *state;
         bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
     }
@@ -69,7 +69,8 @@ pub fn step<S: Surface>(
 
 /// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
 fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let (dt, parallel) = (model.dt(), work.parallel);
+    let (pace, parallel) = (state.pace, work.parallel);
+    let dt = pace.kick();
     let setting = Setting { laws: &model.laws, simd: work.simd, dt };
     let material = work.material;
     let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, .. } = state;
@@ -93,13 +94,13 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         surface,
         planes: (&work.planes, work.plane_material),
         walls: model.walls.placed(walls),
-        bonds: (bonded, bonds::parts(model, bonds.fresh)),
+        bonds: (bonded, bonds::parts(model, pace.last, bonds.fresh)),
         drive: Drive {
             gravity: model.gravity,
             damping: model.damping,
-            bound: 0.5 * model.radii.0 / dt,
+            bound: 0.5 * model.radii.0 / pace.dt,
             bodies: &model.bodies,
-            dt,
+            pace,
         },
         gone: *drift + *wall_drift,
     };
@@ -189,7 +190,7 @@ impl<S: Surface> Shared<'_, S> {
 
 /// Adds up what the blocks report, in block order, and moves on in time.
 fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64) -> Result<(), StepError> {
-    let dt = model.dt();
+    let dt = state.pace.dt;
     let mut fastest = 0.0_f64;
     let mut failure = None;
     work.surface_contacts.clear();
@@ -223,6 +224,7 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
     state.lasted = state.lasted.saturating_add(1);
     state.steps += 1;
     state.time = time + dt;
+    state.pace.last = dt;
     match failure {
         None => Ok(()),
         Some(Failure::Overlap { body, partner, overlap, bound }) => {

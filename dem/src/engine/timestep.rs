@@ -2,13 +2,16 @@
 //!
 //! A body of mass m held by contacts of stiffness K on all sides, its neighbours moving against it, swings at most
 //! at ω² = s K (1/m + r²/I), where s counts the contacts that act in one direction (twice, for the neighbours'
-//! motion: Gershgorin's bound) and r²/I is for a contact off the centre. With the dashpot's velocity extrapolated
-//! to the full step (see `contact/linear.rs`) the leapfrog is stable for
+//! motion: Gershgorin's bound) and r²/I is for a contact off the centre. With dashpots on velocities of half a step ago the
+//! leapfrog is stable for (ω dt)² + 4 ζ' ω dt < 4, ζ' = ζ √(s/2) the damping ratio of the body in all its contacts. Twice the
+//! damping is allowed for,
 //!
 //! (ω dt)² + 8 ζ' ω dt < 4,  so  ω dt < √(4 + 16 ζ'²) − 4 ζ',
 //!
-//! ζ' = ζ √(s/2) the damping ratio of the body in all its contacts. (At the limit the fastest root of
-//! z³ + (Ω² + 3b/2 − 2) z² + (1 − 2b) z + b/2, b = 2ζ'Ω, is −1.)
+//! because single hits that begin with such a step are to find their restitution.
+//!
+//! This is what is known before anything touches. What the contacts that are there allow, usually several times as much,
+//! is measured from them in the course of a run: `stability`.
 //!
 //! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
 //! it with more than one member) or twice as many as touch a plane at once where that is more (needles and plates
@@ -192,7 +195,7 @@ pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws)
 }
 
 /// Materials that something to touch is made of, ascending.
-fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
+pub(crate) fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     let mut used = vec![false; input.materials.len()];
     bodies.iter().for_each(|b| used[b.material as usize] = true);
     input.planes.iter().for_each(|p| used[p.material] = true);
@@ -240,7 +243,7 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
 }
 
 /// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
-/// where a rigid body of triangles needs it. `radii` are those of the smallest and the largest sphere [m], `expected`
+/// where a rigid body of triangles needs it; returns the least of these [s]. `radii` are those of the smallest and the largest sphere [m], `expected`
 /// the overlap expected over the radius.
 pub(crate) fn walls(
     walls: &mut Walls,
@@ -250,10 +253,8 @@ pub(crate) fn walls(
     laws: &Laws,
     expected: f64,
     radii: (f64, f64),
-) {
-    if walls.walls.is_empty() {
-        return;
-    }
+) -> f64 {
+    let mut least = f64::INFINITY;
     let grains: BTreeSet<u32> = (0..bodies.len()).map(|b| bodies.get(b).material).collect();
     let planes = planes.iter().map(|p| p.material as u32);
     let all: BTreeSet<u32> = grains.iter().copied().chain(planes).collect();
@@ -268,10 +269,12 @@ pub(crate) fn walls(
             let ratio = laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
             let zeta = laws.damping_ratio(wall.material, partner);
             let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
+            least = least.min(dt);
             if dt < limit.dt {
                 let (partner, mass) = (partner as usize, body.mass);
                 *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds: 0.0, wall: Some(k) };
             }
         }
     }
+    least
 }

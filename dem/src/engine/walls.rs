@@ -22,7 +22,7 @@ pub(crate) fn advance(
     work: &Work,
     ledger: &mut Ledger,
 ) -> (f64, Option<Failure>) {
-    let dt = model.dt();
+    let (kick, dt) = (state.pace.kick(), state.pace.dt);
     let bound = 0.5 * model.radii.0 / dt;
     let mut fastest = 0.0_f64;
     let mut failure = None;
@@ -38,10 +38,10 @@ pub(crate) fn advance(
         own.moment = -sum.moment;
         let speed = match &wall.body {
             Some(b) => {
-                let ground = ground(model, &state.planes);
+                let ground = ground(model, &state.planes, kick);
                 let (force, torque) = body::stand(&ground, b, wall.material, own, ledger);
                 let (force, torque) = (force + own.force, torque + own.moment);
-                b.advance(own, &force, &torque, &model.gravity, dt, ledger);
+                b.advance(own, &force, &torque, &model.gravity, &state.pace, ledger);
                 let speed = b.speed(own);
                 if (speed.is_nan() || speed > bound) && failure.is_none() {
                     failure = Some(Failure::Wall { wall: k as u32, speed, bound });
@@ -52,7 +52,7 @@ pub(crate) fn advance(
                 let centre = wall.centre + own.offset;
                 let mut speed = own.drive;
                 if let Some(servo) = wall.servo.as_ref().filter(|_| !own.open) {
-                    let impedance = sum.stiffness * dt + 2.0 * wall.damping * 2.0 * sum.damping;
+                    let impedance = sum.stiffness * kick + 2.0 * wall.damping * 2.0 * sum.damping;
                     speed =
                         servo.direction * servo.speed(state.time, sum.force.dot(&servo.direction), impedance);
                 }
@@ -76,14 +76,14 @@ pub(crate) fn advance(
                     own.turned = true;
                 }
                 let mean = (before + own.velocity) * 0.5;
-                let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * dt;
+                let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * kick;
                 if wall.servo.is_some() {
                     ledger.work_servo += done;
                 } else {
                     ledger.work_walls += done;
                 }
-                ledger.walls.add(&centre, &(sum.force * dt));
-                ledger.walls.angular += sum.moment * dt;
+                ledger.walls.add(&centre, &(sum.force * kick));
+                ledger.walls.angular += sum.moment * kick;
                 own.velocity.norm() + spin.norm() * wall.reach
             }
         };
@@ -141,7 +141,7 @@ pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<
         .fold(0.0, f64::max)
 }
 
-/// The planes that bodies of triangles stand on.
-pub(crate) fn ground<'a>(model: &'a Model, motions: &'a [PlaneMotion]) -> Ground<'a> {
-    Ground { laws: &model.laws, planes: &model.planes, motions, tip_radius: model.radii.0, dt: model.dt() }
+/// The planes that bodies of triangles stand on, for a step of `dt` [s].
+pub(crate) fn ground<'a>(model: &'a Model, motions: &'a [PlaneMotion], dt: f64) -> Ground<'a> {
+    Ground { laws: &model.laws, planes: &model.planes, motions, tip_radius: model.radii.0, dt }
 }

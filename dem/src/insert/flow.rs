@@ -107,7 +107,7 @@ pub fn exchange(
     crate::engine::order::reorder(state, model, &positions, &turnover);
     let by_number: BTreeMap<usize, &Arrival> = arrive.iter().map(|a| (a.body, a)).collect();
     for (&body, a) in &by_number {
-        let velocity = half_a_step_ago(model, body, &a.velocity);
+        let velocity = half_a_step_ago(model, body, &a.velocity, state.pace.last);
         state.set_velocity(model, body, velocity, a.spin);
     }
     if !arrive.is_empty() {

@@ -11,6 +11,7 @@
 //!
 //! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
 
+use super::pace::Pace;
 use super::rotation::{self, Turn};
 use crate::base::Vec3;
 use crate::base::failure::Failure;
@@ -42,8 +43,8 @@ pub(crate) struct Drive<'a> {
     /// Largest speed that a step allows [m/s].
     pub bound: f64,
     pub bodies: &'a Bodies,
-    /// Time step [s].
-    pub dt: f64,
+    /// Lengths of the step and of the one before.
+    pub pace: Pace,
 }
 
 /// Moves the bodies of a block under the forces of `tally` and the block's applied forces, which are in order of place.
@@ -89,7 +90,7 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
     #[inline(always)]
     fn by_four<P: Pack>(self) {
         let Advance { drive, block, members, tally, mut applied } = self;
-        let (dt, bound) = (drive.dt, drive.bound);
+        let (kick, bound) = (drive.pace.kick(), drive.bound);
         let forces = std::mem::take(&mut tally.sums);
         let n = block.bodies.len();
         let mut sums = Sums::<P::Quad>::new();
@@ -145,7 +146,7 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
             }
         }
         if drive.damping != 0.0 {
-            sums.book_damping(&mut tally.ledger, dt);
+            sums.book_damping(&mut tally.ledger, kick);
         }
         moment += Vec3::new(sums.moment.x.sum(), sums.moment.y.sum(), sums.moment.z.sum());
         fastest2 = fastest2.max(sums.fastest2.largest());
@@ -156,7 +157,7 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
             }
         }
         tally.fastest = fastest2.sqrt();
-        let impulse = drive.gravity * dt;
+        let impulse = drive.gravity * kick;
         tally.ledger.gravity.linear += impulse * members.mass_sum;
         tally.ledger.gravity.angular += moment.cross(&impulse);
         tally.sums = forces;
@@ -194,13 +195,13 @@ impl<R: Four> Sums<R> {
     }
 
     #[inline(always)]
-    fn book_damping(&self, ledger: &mut Ledger, dt: f64) {
-        ledger.dissipated_local_damping -= self.power.sum() * dt;
+    fn book_damping(&self, ledger: &mut Ledger, kick: f64) {
+        ledger.dissipated_local_damping -= self.power.sum() * kick;
         let ([fx, fy, fz, _], [tx, ty, tz, _]) = (self.force.array(), self.torque.array());
         let about = &self.angular;
         let about = Vec3::new(about.x.sum() + tx, about.y.sum() + ty, about.z.sum() + tz);
-        ledger.local_damping.linear += Vec3::new(fx, fy, fz) * dt;
-        ledger.local_damping.angular += about * dt;
+        ledger.local_damping.linear += Vec3::new(fx, fy, fz) * kick;
+        ledger.local_damping.angular += about * kick;
     }
 }
 
@@ -229,8 +230,9 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     k: usize,
     sums: &mut Sums<R>,
 ) {
-    let dt = drive.dt;
-    let step = R::load(&[dt, dt, dt, 0.0]);
+    let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
+    let step = R::load(&[kick, kick, kick, 0.0]);
+    let way = R::load(&[dt, dt, dt, 0.0]);
     let gravity = R::load(&[drive.gravity.x, drive.gravity.y, drive.gravity.z, 0.0]);
     let (mut before, mut after) = ([R::zero(); 4], [R::zero(); 4]);
     let (mut torque, mut held, mut stop) = ([R::zero(); 4], [R::zero(); 4], [R::zero(); 4]);
@@ -257,7 +259,7 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
             torque[l] = torque[l] + stop[l];
         }
         kicked.store(&mut velocity[l]);
-        (x + kicked * step).store(&mut centre[l]);
+        (x + kicked * way).store(&mut centre[l]);
         (before[l], after[l]) = (x, kicked);
     }
     let [x, y, z, r] = R::transpose(before);
@@ -272,10 +274,10 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
 
     let clumps = if RIGID { members.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
     if clumps {
-        speed2 = turn_four::<R, DAMPED>(block, members, k, (torque, stop), dt, speed2, sums);
+        speed2 = turn_four::<R, DAMPED>(block, members, k, (torque, stop), &drive.pace, speed2, sums);
     } else {
         // A sphere's moment of inertia is 2/5 m r².
-        let kick = (R::splat(2.5 * dt) * inverse_mass / (r * r)).array();
+        let kick = (R::splat(2.5 * kick) * inverse_mass / (r * r)).array();
         for l in 0..4 {
             let old = R::load(&spin[l]);
             let new = old + torque[l] * R::splat(kick[l]);
@@ -298,7 +300,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
     members: &Members,
     k: usize,
     (torque, stop): ([R; 4], [R; 4]),
-    dt: f64,
+    pace: &Pace,
     speed2: R,
     sums: &mut Sums<R>,
 ) -> R {
@@ -317,7 +319,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
     let [tx, ty, tz, _] = R::transpose(torque);
     let [wx, wy, wz, material] =
         R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
-    let impulse = V3::new(tx, ty, tz) * R::splat(dt);
+    let impulse = V3::new(tx, ty, tz) * R::splat(pace.kick());
     let sphere = !R::zero().lt(reach);
     let before = V3::new(wx, wy, wz);
     let momentum = V3::new(R::load(&mx), R::load(&my), R::load(&mz)) + impulse;
@@ -328,7 +330,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
         R::load(&rotation[3].orientation.coords.data.0[0]),
     ]);
     let old = Turn { v: V3::new(qi, qj, qk), s: qw };
-    let new = rotation::free(old, momentum, inertia, dt);
+    let new = rotation::free(old, momentum, inertia, pace.dt);
     let local = new.back(momentum);
     let rate = new.apply(V3::new(local.x / inertia.x, local.y / inertia.y, local.z / inertia.z));
     // A single sphere keeps its orientation; its momentum is not used.
@@ -412,7 +414,7 @@ fn general<const RIGID: bool>(
     k: usize,
     loads: &[Applied],
 ) -> f64 {
-    let dt = drive.dt;
+    let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
     let (x, v0, w0) = (xyz(&block.centre[k]), xyz(&block.velocity[k]), xyz(&block.spin[k]));
     let body = drive.bodies.get(block.bodies[k] as usize);
     let (mass, fixed) = (body.mass, body.fixed);
@@ -427,7 +429,7 @@ fn general<const RIGID: bool>(
     torque += damping_torque;
 
     // Translation.
-    let mut v1 = v0 + force * (dt / mass);
+    let mut v1 = v0 + force * (kick / mass);
     for d in 0..3 {
         if fixed >> d & 1 == 1 {
             v1[d] = v0[d];
@@ -436,7 +438,7 @@ fn general<const RIGID: bool>(
     let mean = (v0 + v1) * 0.5;
     let ledger = &mut tally.ledger;
     if fixed & 7 != 0 {
-        let hold = (v1 - v0) * mass - force * dt;
+        let hold = (v1 - v0) * mass - force * kick;
         ledger.constraints.add(&x, &hold);
         ledger.work_constraints += hold.dot(&mean);
     }
@@ -448,7 +450,7 @@ fn general<const RIGID: bool>(
         let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, ledger);
         (spin, members.reach[k])
     } else {
-        let mut w1 = w0 + torque * (dt / body.inertia.x);
+        let mut w1 = w0 + torque * (kick / body.inertia.x);
         for d in 0..3 {
             if fixed >> (d + 3) & 1 == 1 {
                 w1[d] = w0[d];
@@ -456,7 +458,7 @@ fn general<const RIGID: bool>(
         }
         let mean = (w0 + w1) * 0.5;
         if fixed >> 3 != 0 {
-            let hold = (w1 - w0) * body.inertia.x - torque * dt;
+            let hold = (w1 - w0) * body.inertia.x - torque * kick;
             ledger.constraints.angular += hold;
             ledger.work_constraints += hold.dot(&mean);
         }
@@ -465,14 +467,14 @@ fn general<const RIGID: bool>(
     };
 
     if !loads.is_empty() {
-        ledger.work_applied += (load.dot(&mean) + load_torque.dot(&mean_spin)) * dt;
-        ledger.applied.add(&x, &(load * dt));
-        ledger.applied.angular += load_torque * dt;
+        ledger.work_applied += (load.dot(&mean) + load_torque.dot(&mean_spin)) * kick;
+        ledger.applied.add(&x, &(load * kick));
+        ledger.applied.angular += load_torque * kick;
     }
     if drive.damping > 0.0 {
-        ledger.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * dt;
-        ledger.local_damping.add(&x, &(damping * dt));
-        ledger.local_damping.angular += damping_torque * dt;
+        ledger.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * kick;
+        ledger.local_damping.add(&x, &(damping * kick));
+        ledger.local_damping.angular += damping_torque * kick;
     }
     let speed = v1.norm() + xyz(&block.spin[k]).norm() * reach;
     speed * speed
@@ -494,11 +496,11 @@ fn rotate(
     fixed: u8,
     ledger: &mut Ledger,
 ) -> Vec3 {
-    let dt = drive.dt;
+    let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
     let w0 = xyz(&block.spin[k]);
     let r = &mut block.rotation[k];
     let before = *r;
-    r.momentum += torque * dt;
+    r.momentum += torque * kick;
     let kicked = spin_of(r, inertia);
     if fixed == 0 {
         r.orientation = rotation::free_one(&r.orientation, &r.momentum, inertia, dt);
@@ -511,9 +513,9 @@ fn rotate(
     let local = r.orientation.inverse_transform_vector(&kicked);
     r.momentum = r.orientation * local.component_mul(inertia);
     let mean = (w0 + kicked) * 0.5;
-    ledger.constraints.angular += r.momentum - before.momentum - torque * dt;
+    ledger.constraints.angular += r.momentum - before.momentum - torque * kick;
     ledger.work_constraints +=
-        0.5 * (r.momentum.dot(&kicked) - before.momentum.dot(&w0)) - torque.dot(&mean) * dt;
+        0.5 * (r.momentum.dot(&kicked) - before.momentum.dot(&w0)) - torque.dot(&mean) * kick;
     set_xyz(&mut block.spin[k], &kicked);
     mean
 }

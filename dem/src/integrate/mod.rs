@@ -1,4 +1,5 @@
 //! Integration in time.
 
 pub(crate) mod leapfrog;
+pub(crate) mod pace;
 pub mod rotation;

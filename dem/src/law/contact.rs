@@ -72,6 +72,23 @@ pub struct ContactForce {
     pub friction: f64,
 }
 
+/// A contact as springs and dashpots about where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Linearised {
+    /// Stiffness along the normal [N/m], the larger of loading and unloading.
+    pub normal: f64,
+    /// Stiffness across it [N/m].
+    pub tangential: f64,
+    /// Dashpot along the normal [N s/m].
+    pub damping: f64,
+    /// Dashpot across it [N s/m].
+    pub tangential_damping: f64,
+    /// Rolling stiffness [N m/rad].
+    pub rolling: f64,
+    /// Twisting stiffness [N m/rad].
+    pub twisting: f64,
+}
+
 /// Contacts as a law sees them, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct LawInput<R> {

@@ -1,7 +1,7 @@
 //! What the loops over contacts, the limit of the step and the measures know of a law.
 
 use super::constants::Constants;
-use super::contact::{ContactForce, ContactGeometry, History, LawInput, LawOutput, Memory};
+use super::contact::{ContactForce, ContactGeometry, History, LawInput, LawOutput, Linearised, Memory};
 use super::material::Pair;
 use super::normal::Expected;
 use crate::base::Vec3;
@@ -37,6 +37,9 @@ pub trait ContactLaw: Constants {
 
     /// Largest normal stiffness [N/m] at an overlap [m], for the time step.
     fn stiffness(&self, overlap: f64, radius: f64) -> f64;
+
+    /// The contact as springs and dashpots about where it is, sticking; `mass` is the effective mass of the bodies [kg].
+    fn linearised(&self, mass: f64, radius: f64, overlap: f64, history: &History) -> Linearised;
 
     /// Tangential over normal stiffness [-], both at one overlap.
     fn tangential_ratio(&self) -> f64;

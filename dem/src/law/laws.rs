@@ -1,6 +1,6 @@
 //! The laws of all pairs of materials of a model.
 
-use super::contact::History;
+use super::contact::{History, Linearised};
 use super::contact_law::ContactLaw;
 use super::material::{Material, Pair, PairOverride};
 use super::normal::Expected;
@@ -107,6 +107,18 @@ impl Laws {
 
     pub fn stiffness(&self, a: u32, b: u32, overlap: f64, radius: f64) -> f64 {
         with_law!(self, t => t.get(a, b).stiffness(overlap, radius))
+    }
+
+    /// A contact as springs and dashpots (see [`ContactLaw::linearised`]).
+    pub fn linearised(
+        &self,
+        [a, b]: [u32; 2],
+        mass: f64,
+        radius: f64,
+        overlap: f64,
+        history: &History,
+    ) -> Linearised {
+        with_law!(self, t => t.get(a, b).linearised(mass, radius, overlap, history))
     }
 
     /// Whether two materials are both rigid, so that they must never touch.

@@ -116,6 +116,7 @@ macro_rules! combinations {
                 springs(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> (f64, f64), (overlap, radius, history);
                 loading(overlap: f64, radius: f64) -> (f64, f64), (overlap, radius);
                 stiffness(overlap: f64, radius: f64) -> f64, (overlap, radius);
+                linearised(mass: f64, radius: f64, overlap: f64, history: &$crate::law::contact::History) -> $crate::law::contact::Linearised, (mass, radius, overlap, history);
                 tangential_ratio() -> f64, ();
                 damping_ratio() -> f64, ();
                 expected_overlap(expected: &$crate::law::normal::Expected) -> f64, (expected);

@@ -41,7 +41,7 @@ pub trait NormalLaw: Constants {
     /// Keys of a material that it needs, the first also when the partner is rigid.
     const KEYS: &'static [&'static str];
     /// Whether it has a dashpot, which gives the restitution. The number of its memory is then the approach speed half a
-    /// step before, which the dashpot extrapolates from; else it is the law's own, [`Response::remembered`].
+    /// step before; else it is the law's own, [`Response::remembered`].
     const DASHPOT: bool;
     /// Whether the dashpot's force jumps at first touch, so that its first one counts for a part of the step.
     const JUMPS: bool;

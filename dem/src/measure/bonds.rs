@@ -48,7 +48,7 @@ fn ends(state: &State, b: u32, e: &Entry) -> (Motion<f64>, Motion<f64>) {
 
 /// Elastic energy of all bonds at the last half step [J].
 pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
-    let dt = model.dt();
+    let dt = state.pace.last;
     // Before the first step the memory is that of the start itself.
     let since = if state.bonds.fresh { -0.5 * dt } else { 0.5 * dt };
     let mut sum = 0.0;
@@ -61,7 +61,7 @@ pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
 
 /// All unbroken bonds, block by block.
 pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
-    let dt = if state.bonds.fresh { 0.0 } else { model.dt() };
+    let dt = if state.bonds.fresh { 0.0 } else { state.pace.last };
     let mut out = Vec::with_capacity(state.bond_count());
     state.each_bond(|number, (b, mut e)| {
         let bond = &model.bonds[number as usize];

@@ -48,6 +48,8 @@ struct Snapshot<'a> {
     spheres: Vec<Vec<Record>>,
     owners: Vec<Vec<u32>>,
     back: f64,
+    /// The last step [s].
+    last: f64,
 }
 
 impl<'a> Snapshot<'a> {
@@ -57,7 +59,7 @@ impl<'a> Snapshot<'a> {
             blocks.to_mut().iter_mut().for_each(|block| move_back(block, back));
         }
         let (spheres, owners) = blocks.iter().map(|block| members(model, block)).unzip();
-        Snapshot { model, planes: &state.planes, blocks, spheres, owners, back }
+        Snapshot { model, planes: &state.planes, blocks, spheres, owners, back, last: state.pace.last }
     }
 }
 
@@ -167,7 +169,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 spin: state.walls[k].spin,
                 inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
             };
-            patch(model, &now, b, contact, &partner, &mut f);
+            patch(&now, b, contact, &partner, &mut f);
         }
         for contact in &lists.surface.live {
             let partner = Partnership {
@@ -177,7 +179,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 spin: Vec3::zeros(),
                 inverse_mass: 0.0,
             };
-            patch(model, &now, b, contact, &partner, &mut f);
+            patch(&now, b, contact, &partner, &mut f);
         }
     }
 }
@@ -238,7 +240,6 @@ fn planes(state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visit
 
 /// A contact with a patch: the geometry of the last step, its overlap brought to the time asked for.
 fn patch(
-    model: &Model,
     now: &Snapshot<'_>,
     b: usize,
     pair: &PatchContact,
@@ -251,7 +252,7 @@ fn patch(
     let block = &now.blocks[b];
     let a = now.owner(b, pair.i);
     let velocity = block.motion(a, &pair.point).at_point() - partner.velocity;
-    let overlap = pair.overlap - velocity.dot(&pair.normal) * (model.dt() - now.back);
+    let overlap = pair.overlap - velocity.dot(&pair.normal) * (now.last - now.back);
     if overlap > 0.0 {
         let radius = now.sphere(b, pair.i)[3];
         f(&Visited {
@@ -282,7 +283,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             &c.velocity,
             &c.spin,
             &mut history,
-            model.dt(),
+            state.pace.kick(),
         );
         out.push(ContactRecord {
             a: c.body as usize,

@@ -50,10 +50,10 @@ impl Energies {
 pub fn energies(model: &Model, state: &State) -> Energies {
     let mut e = Energies::default();
     bodies(model, state, |_| true, &mut e);
-    let ground = crate::engine::walls::ground(model, &state.planes);
+    let ground = crate::engine::walls::ground(model, &state.planes, state.pace.last);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
         let Some(body) = &wall.body else { continue };
-        let [translation, rotation, gravity] = body.energies(own, &model.gravity, model.dt());
+        let [translation, rotation, gravity] = body.energies(own, &model.gravity, 0.5 * state.pace.last);
         let [normal, tangential] = wall::body::stored(&ground, body, wall.material, own);
         e.kinetic_translation += translation;
         e.kinetic_rotation += rotation;
@@ -78,7 +78,7 @@ pub(crate) fn energies_of(model: &Model, state: &State, counted: impl Fn(usize) 
 
 /// Adds what bodies have by themselves.
 fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut Energies) {
-    let back = 0.5 * model.dt();
+    let back = 0.5 * state.pace.last;
     for block in &state.blocks {
         for (k, &body) in block.bodies.iter().enumerate().filter(|(_, b)| counted(**b as usize)) {
             let b = model.body(body as usize);
@@ -95,7 +95,7 @@ fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut
 
 /// Adds the springs of contacts.
 fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool, e: &mut Energies) {
-    let back = 0.5 * model.dt();
+    let back = 0.5 * state.pace.last;
     visit(model, state, back, |c| {
         if !counted(c) {
             return;

@@ -21,6 +21,7 @@ mod stress;
 
 pub use bonds::{BondRecord, records as bond_records};
 pub use clip::sphere_box_volume;
+pub(crate) use contacts::visit;
 pub use contacts::{ContactRecord, contact_forces, contact_forces_of, contacts, coordination};
 pub use coordination::{
     Coordination, StrongNetwork, coordination_of, fabric, neighbours, strong_network, unbalanced_ratio,

@@ -18,6 +18,7 @@ use crate::base::error::ModelError;
 use crate::base::ledger::{Impulse, Ledger};
 use crate::bodies::block::Rotation;
 use crate::contact::single;
+use crate::integrate::pace::Pace;
 use crate::law::{ContactGeometry, History, Laws};
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::detect;
@@ -178,22 +179,23 @@ impl Body {
         force: &Vec3,
         torque: &Vec3,
         gravity: &Vec3,
-        dt: f64,
+        pace: &Pace,
         ledger: &mut Ledger,
     ) {
+        let (kick, dt) = (pace.kick(), pace.dt);
         let x = self.centre + state.offset;
         let (v0, w0) = (state.velocity, state.spin);
         let pull = gravity * self.mass;
-        ledger.gravity.add(&x, &(pull * dt));
+        ledger.gravity.add(&x, &(pull * kick));
         let whole = force + pull;
-        let mut v1 = v0 + whole * (dt / self.mass);
+        let mut v1 = v0 + whole * (kick / self.mass);
         for d in 0..3 {
             if self.fixed >> d & 1 == 1 {
                 v1[d] = v0[d];
             }
         }
         if self.fixed & 7 != 0 {
-            let hold = (v1 - v0) * self.mass - whole * dt;
+            let hold = (v1 - v0) * self.mass - whole * kick;
             ledger.constraints.add(&x, &hold);
             ledger.work_constraints += hold.dot(&((v0 + v1) * 0.5));
         }
@@ -201,7 +203,7 @@ impl Body {
         state.offset += v1 * dt;
 
         let before = state.momentum;
-        state.momentum += torque * dt;
+        state.momentum += torque * kick;
         let kicked = self.spin_of(&state.frame, &state.momentum);
         if self.fixed >> 3 == 0 {
             state.frame =
@@ -220,9 +222,9 @@ impl Body {
             let local = state.frame.inverse_transform_vector(&kicked);
             state.momentum = state.frame * local.component_mul(&self.inertia);
             state.spin = kicked;
-            ledger.constraints.angular += state.momentum - before - torque * dt;
+            ledger.constraints.angular += state.momentum - before - torque * kick;
             ledger.work_constraints += 0.5 * (state.momentum.dot(&kicked) - before.dot(&w0))
-                - torque.dot(&((w0 + kicked) * 0.5)) * dt;
+                - torque.dot(&((w0 + kicked) * 0.5)) * kick;
         }
         state.orientation = state.frame * self.axes.inverse();
         state.turned = true;
@@ -234,8 +236,9 @@ impl Body {
     }
 
     /// Kinetic energy of translation and rotation, and energy in gravity, at the last half step [J].
-    pub fn energies(&self, state: &WallState, gravity: &Vec3, dt: f64) -> [f64; 3] {
-        let x = self.centre + state.offset - state.velocity * (0.5 * dt);
+    /// `back`: half of the last step [s].
+    pub fn energies(&self, state: &WallState, gravity: &Vec3, back: f64) -> [f64; 3] {
+        let x = self.centre + state.offset - state.velocity * back;
         [
             0.5 * self.mass * state.velocity.norm_squared(),
             0.5 * state.spin.dot(&state.momentum),

@@ -25,6 +25,7 @@ mod rolling;
 mod round_walls;
 mod scene;
 mod seams;
+mod stability;
 mod tables;
 mod triangle_bodies;
 mod wall_motion;

@@ -183,8 +183,9 @@ impl Dynamics {
         model.mass_times(&state.a, product);
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let forces = norm(&self.load[1]).max(norm(product)).max(INERTIA * norm(&self.rhs));
-        let problem =
-            Problem { old: &state.points, rhs: &self.rhs, fixed: &self.fixed, linear, forces: Some(forces) };
+        let stop = || loading.stopped();
+        let (old, forces) = (&state.points, Some(forces));
+        let problem = Problem { old, rhs: &self.rhs, fixed: &self.fixed, linear, forces, stop: &stop };
         self.newton.solve(model, &problem)?;
         let next = &mut self.next;
         for d in 0..state.u.len() {

@@ -83,6 +83,8 @@ pub(crate) struct Problem<'a> {
     pub linear: Combination,
     /// Size of the forces [N] that the residual is measured by, where it is larger than the internal force; the size of `rhs` if none.
     pub forces: Option<f64>,
+    /// Whether the step is to be given up.
+    pub stop: &'a dyn Fn() -> bool,
 }
 
 /// An iteration that leaves more than this part of the smallest residual of its step so far makes no progress.
@@ -167,6 +169,9 @@ impl Newton {
         self.stalls = 0;
         let mut matrix = Matrix::Elastic;
         for iteration in 1..=self.options.max_iterations {
+            if (problem.stop)() {
+                return Err(Failure::Fatal(SolveError::Stopped));
+            }
             self.correction.fill(0.0);
             if iteration == 1 {
                 self.predict(model, problem, moving);

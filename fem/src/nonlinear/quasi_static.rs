@@ -87,12 +87,14 @@ impl QuasiStatic {
             // The sum of the steps must end at `to` exactly.
             let time = if dt >= to - state.time { to } else { state.time + dt };
             self.conditions(model, state, time, loading)?;
+            let stop = || loading.stopped();
             let problem = Problem {
                 old: &state.points,
                 rhs: &self.load,
                 fixed: &self.fixed,
                 linear: Combination::default(),
                 forces: None,
+                stop: &stop,
             };
             match self.newton.solve(model, &problem) {
                 Ok(()) => {

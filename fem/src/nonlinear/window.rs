@@ -209,8 +209,8 @@ impl PlasticWindowSolver {
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let forces = norm(mean_load).max(norm(start)).max(INERTIA * norm(&self.rhs));
         // 2. Iterate.
-        let problem =
-            Problem { old: &state.points, rhs: &self.rhs, fixed: &self.fixed, linear, forces: Some(forces) };
+        let (old, forces, stop) = (&state.points, Some(forces), &|| false);
+        let problem = Problem { old, rhs: &self.rhs, fixed: &self.fixed, linear, forces, stop };
         self.newton.solve(model, &problem)?;
         // 3. The motion at the end, and the ledger.
         let next = &mut self.next;

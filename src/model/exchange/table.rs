@@ -1,7 +1,7 @@
 //! `[coupling]` resolved.
 
 use super::class::WITH_SLEEPERS;
-use super::{CouplingPart, TransferPlan};
+use super::{CouplingPart, TransferPlan, WindowPlan};
 use crate::model::solid::SolidPart;
 use crate::scene::coupling::{Coupling, SchemeName, Substeps, TransferTable};
 use crate::scene::{Document, SceneError};
@@ -19,13 +19,7 @@ const TOLERANCE: f64 = 1e-6;
 /// # Errors
 /// Bad input.
 pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<CouplingPart, SceneError> {
-    let substeps = match c.substeps {
-        Substeps::Auto => None,
-        Substeps::Count(n) if (1..=1000).contains(&n) => Some(n as u32),
-        Substeps::Count(n) => {
-            return Err(document.error("coupling.substeps", n.to_string(), "1 to 1000, or \"auto\""));
-        }
-    };
+    let window = window(document, c)?;
     let theta = c.theta.unwrap_or(if solid.sleepers.is_some() { WITH_SLEEPERS } else { 0.5 });
     if !(0.5..=1.0).contains(&theta) {
         return Err(document.error("coupling.theta", theta.to_string(), "0.5 to 1"));
@@ -54,7 +48,23 @@ pub fn build(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Cou
         // On all sides: in the order of their elements, so sleeper by sleeper.
         faces.extend(mesh.boundary_faces().into_iter().filter(|f| f.element as usize >= ground));
     }
-    Ok(CouplingPart { substeps, scheme, transfer, theta, faces, ground_faces })
+    Ok(CouplingPart { window, scheme, transfer, theta, faces, ground_faces })
+}
+
+/// How long a step of the solid is.
+fn window(document: &Document, c: &Coupling) -> Result<WindowPlan, SceneError> {
+    match (c.substeps.unwrap_or_default(), c.window) {
+        (_, Some(_)) if c.substeps.is_some() => {
+            Err(document.error("coupling.window", "a value", "no such key beside `substeps`"))
+        }
+        (_, Some(window)) if window.si > 0.0 && window.si.is_finite() => Ok(WindowPlan::Seconds(window.si)),
+        (_, Some(window)) => Err(document.error("coupling.window", window.si.to_string(), "a time above 0")),
+        (Substeps::Auto, None) => Ok(WindowPlan::Auto),
+        (Substeps::Count(n), None) if (1..=1000).contains(&n) => Ok(WindowPlan::Steps(n as u32)),
+        (Substeps::Count(n), None) => {
+            Err(document.error("coupling.substeps", n.to_string(), "1 to 1000, or \"auto\""))
+        }
+    }
 }
 
 fn scheme(document: &Document, c: &Coupling, solid: &SolidPart) -> Result<Scheme, SceneError> {

@@ -10,6 +10,10 @@ use trackbed_dem::law::table;
 use trackbed_dem::material::LawName;
 use trackbed_dem::{Material, PairOverride};
 
+/// Least coefficient of restitution: the step of the grains falls with it without bound, and nobody tells a hundredth of
+/// a per cent of the speed from none.
+const LEAST_RESTITUTION: f64 = 1e-4;
+
 /// Materials of a scene.
 #[derive(Clone)]
 pub struct MaterialsPart {
@@ -93,8 +97,8 @@ fn materials(document: &Document, scene: &Scene) -> Result<Vec<Material>, SceneE
             document,
             &key("restitution"),
             Some(m.restitution),
-            |e| e > 0.0 && e <= 1.0,
-            "above 0, at most 1",
+            |e| (LEAST_RESTITUTION..=1.0).contains(&e),
+            "0.0001 to 1",
         )?;
         for (k, value) in
             [("rolling_friction", m.rolling_friction), ("twisting_friction", m.twisting_friction)]
@@ -148,7 +152,13 @@ fn pairs(document: &Document, scene: &Scene) -> Result<Vec<PairOverride>, SceneE
     for (i, c) in scene.contact.iter().enumerate() {
         let key = |k: &str| format!("contact.{i}.{k}");
         check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
-        check(document, &key("restitution"), c.restitution, |e| e > 0.0 && e <= 1.0, "above 0, at most 1")?;
+        check(
+            document,
+            &key("restitution"),
+            c.restitution,
+            |e| (LEAST_RESTITUTION..=1.0).contains(&e),
+            "0.0001 to 1",
+        )?;
         check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
         check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
         let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| {

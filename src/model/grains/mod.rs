@@ -11,6 +11,7 @@ mod materials;
 mod measure;
 mod part;
 mod periodic;
+mod preview;
 mod refused;
 mod sources;
 mod steps;
@@ -30,6 +31,7 @@ pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
 pub use groups::{GradedGroup, GroupsPart};
 pub use measure::{MeasurePlan, RadialPlan};
 pub use part::{GrainsPart, PackingPlan, SurfaceMaterials};
+pub use preview::{Preview, check_steps, preview};
 pub use refused::refused;
 
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.

@@ -11,7 +11,7 @@ use super::periodic::Borders;
 use super::steps::StepPlan;
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
-use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, Vec3};
+use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
 
 /// The grains, ready to build models of.
 #[derive(Clone)]
@@ -68,6 +68,10 @@ impl GrainsPart {
         // Sleepers are not there yet.
         let alone = ModelInput { other_surface: None, ..self.input(self.groups.bodies.clone()) };
         let mut input = ModelInput { contacts, damping, ..alone };
+        // How grains bounce on their way into the bed does not matter.
+        if let TimeStep::Measured { longest, collisions, .. } = &mut input.time_step {
+            (*longest, *collisions) = (f64::INFINITY, false);
+        }
         // Walls wait for the run proper, which starts with them in their first place; driven walls and rigid bodies come
         // in only then.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
@@ -79,6 +83,22 @@ impl GrainsPart {
         }
         self.bonds.add_stones_to(&mut input);
         input
+    }
+
+    /// The step, or how it is found; not longer than the track's springs on sleepers allow.
+    fn time_step(&self) -> TimeStep {
+        match self.steps.step {
+            TimeStep::Measured { share, .. } => {
+                TimeStep::Measured { share, longest: self.track.longest_step(), collisions: true }
+            }
+            fixed => fixed,
+        }
+    }
+
+    /// Whether grains are packed before the run proper.
+    pub fn is_packed(&self) -> bool {
+        let PackingPlan { deposition, compaction } = &self.packing;
+        deposition.is_some() || !self.groups.growths.is_empty() || !compaction.is_empty()
     }
 
     /// The model of the run proper with the given bodies.
@@ -99,7 +119,7 @@ impl GrainsPart {
             surface_material: self.surface.ground,
             other_surface: self.surface.sleepers,
             gravity: self.gravity,
-            time_step: self.steps.step,
+            time_step: self.time_step(),
             impact_speed: self.steps.impact_speed,
             skin: None,
             damping: None,

@@ -6,10 +6,13 @@ use super::materials::MaterialsPart;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 use trackbed_dem::TimeStep;
 
+/// Share of what the contacts allow that is taken for the step.
+const SHARE: f64 = 0.8;
+
 /// How the step of the grains is found.
 #[derive(Clone, Copy, Debug)]
 pub struct StepPlan {
-    /// The step, or its share of the largest stable one.
+    /// The step, or its share of what the contacts of each moment allow.
     pub step: TimeStep,
     /// Approach speed that contacts whose stiffness grows are to be stable at [m/s].
     pub impact_speed: Option<f64>,
@@ -46,15 +49,15 @@ pub(super) fn time_step(document: &Document, time: &TimeControl) -> Result<TimeS
                 let key = "time.accept_step_above_limit";
                 return Err(document.error(key, "true", "a `grain_step` that it accepts"));
             }
-            let fraction = fraction.unwrap_or(0.9);
+            let share = fraction.unwrap_or(SHARE);
             check(
                 document,
                 "time.grain_step_fraction",
-                Some(fraction),
-                |f| f > 0.0 && f <= 1.0,
-                "above 0, at most 1",
+                Some(share),
+                |f| (1e-6..=1.0).contains(&f),
+                "0.000001 to 1",
             )?;
-            Ok(TimeStep::Auto { fraction })
+            Ok(TimeStep::Measured { share, longest: f64::INFINITY, collisions: true })
         }
     }
 }

@@ -192,8 +192,9 @@ fn quasi_static(document: &Document, q: &QuasiStatic) -> Result<QuasiStaticPlan,
         smallest_step: q.smallest_step.unwrap_or(1.0 / 1024.0),
         target_iterations: q.target_iterations.unwrap_or(40),
     };
-    let good = plan.smallest_step > 0.0 && plan.smallest_step <= 1.0;
-    check(document, "solid.quasi_static.smallest_step", plan.smallest_step, good, "above 0, at most 1")?;
+    // A step is halved down to this: smaller parts than a double tells apart would never end.
+    let good = (1e-9..=1.0).contains(&plan.smallest_step);
+    check(document, "solid.quasi_static.smallest_step", plan.smallest_step, good, "1e-9 to 1")?;
     let target = plan.target_iterations;
     let key = "solid.quasi_static.target_iterations";
     check(document, key, f64::from(target), (2..=1000).contains(&target), "2 to 1000")?;
@@ -214,11 +215,13 @@ fn strength_reduction(
         ..default
     };
     let key = |k: &str| format!("solid.strength_reduction.{k}");
-    let positive = |x: f64| x > 0.0 && x.is_finite();
-    check(document, &key("start"), plan.start, positive(plan.start), "a factor above 0")?;
-    check(document, &key("tolerance"), plan.tolerance, positive(plan.tolerance), "a width above 0")?;
-    let good = positive(plan.largest) && plan.largest > plan.start.max(plan.start.recip());
-    check(document, &key("largest"), plan.largest, good, "above `start` and its reciprocal")?;
+    let good = (1e-3..=1e3).contains(&plan.start);
+    check(document, &key("start"), plan.start, good, "0.001 to 1000")?;
+    // Each halving of the bracket is a search of its own for equilibrium; strength is known to a hundredth at best.
+    let good = (1e-4..=10.0).contains(&plan.tolerance);
+    check(document, &key("tolerance"), plan.tolerance, good, "0.0001 to 10")?;
+    let good = plan.largest <= 1e4 && plan.largest > plan.start.max(plan.start.recip());
+    check(document, &key("largest"), plan.largest, good, "above `start` and its reciprocal, at most 10000")?;
     Ok(plan)
 }
 
@@ -330,7 +333,7 @@ fn newton(document: &Document, newton: Option<&Newton>) -> Result<Option<NewtonP
         plan.line_search = l;
     }
     if let Some(t) = n.tolerance {
-        check(document, "solid.newton.tolerance", t, t > 0.0 && t <= 1e-2, "above 0, at most 0.01")?;
+        check(document, "solid.newton.tolerance", t, (1e-12..=1e-2).contains(&t), "1e-12 to 0.01")?;
         plan.force_tolerance = t;
     }
     if let Some(m) = n.max_iterations {

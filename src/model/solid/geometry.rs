@@ -2,6 +2,7 @@
 
 use super::common::check;
 use crate::failure::Failure;
+use crate::machine;
 use crate::read::{self, MeshFile};
 use crate::scene::solid::{Axis, Block, Order, Solid};
 use crate::scene::{Document, SceneError};
@@ -55,7 +56,7 @@ pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure>
             refuse(document, "constraints", solid.constraints.is_some(), "with lists alone")?;
             let file = document.file().to_path_buf();
             Geometry {
-                mesh: block(document, b)?,
+                mesh: block(document, b, solid.order)?,
                 element_file: file.clone(),
                 constraint_file: file,
                 ..Geometry::default()
@@ -123,16 +124,37 @@ fn refuse(document: &Document, key: &str, present: bool, only: &str) -> Result<(
     }
 }
 
-fn block(document: &Document, block: &Block) -> Result<Mesh, SceneError> {
+/// Most elements of a block.
+const MOST_ELEMENTS: u64 = 20_000_000;
+/// Least memory that the model of a block of quadratic and of linear bricks takes for each of them [bytes].
+const ELEMENT_BYTES: [u64; 2] = [30_000, 2_500];
+
+/// Refuses more elements than are planned for, or than the free memory holds, before any is made.
+fn check_counts(document: &Document, block: &Block, order: Option<Order>) -> Result<(), SceneError> {
+    let bytes = ELEMENT_BYTES[usize::from(matches!(order, Some(Order::Linear)))];
+    let along = |axis: &Axis| axis.counts.iter().fold(0_u64, |n, &c| n.saturating_add(c as u64));
+    let [x, y, z] = [along(&block.x), along(&block.y), along(&block.z)];
+    let elements = x.saturating_mul(y).saturating_mul(z);
+    let found = format!("{x} x {y} x {z} elements");
+    if elements > MOST_ELEMENTS {
+        return Err(document.error("solid.block", found, format!("at most {MOST_ELEMENTS}")));
+    }
+    match machine::available() {
+        Some(free) if elements * bytes > free => {
+            let expected = format!("at most {}, for whose model the free memory may do", free / bytes);
+            Err(document.error("solid.block", found, expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn block(document: &Document, block: &Block, order: Option<Order>) -> Result<Mesh, SceneError> {
+    check_counts(document, block, order)?;
     let planes = [
         planes(document, "x", &block.x)?,
         planes(document, "y", &block.y)?,
         planes(document, "z", &block.z)?,
     ];
-    let elements: usize = planes.iter().map(|p| p.len() - 1).product();
-    if elements > 20_000_000 {
-        return Err(document.error("solid.block", format!("{elements} elements"), "at most 20000000"));
-    }
     let mut mesh = Mesh::grid(&planes);
     let ends = |p: &[f64]| (p[0], p[p.len() - 1]);
     let (bottom, top) = ends(&planes[2]);

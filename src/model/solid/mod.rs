@@ -80,6 +80,7 @@ impl SolidPart {
             SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
                 "{file}: constraints: found too few ({error}), expected a body that is held"
             )),
+            SolveError::Stopped => Failure::Interrupted("interrupted".into()),
             SolveError::Newmark(_) | SolveError::TimeStep { .. } | SolveError::Theta { .. } => {
                 Failure::Input(error.to_string())
             }

@@ -201,8 +201,8 @@ impl SleeperBodies {
     pub fn telling_faces(&self, surface: &SolidSurface) -> Vec<u32> {
         let base = |k: &u32| surface.normal(*k, [0.0; 2])[2] < -0.5;
         let far = |k: u32| {
-            let middle = surface.face_nodes(k).map(|n| surface.mesh_position(n));
-            [0, 1].map(|d| middle.iter().map(|x| x[d] / 8.0).sum::<f64>()).map(|x| x * x).iter().sum::<f64>()
+            let middle = surface.face_nodes(k).iter().map(|&n| surface.mesh_position(n));
+            [0, 1].map(|d| middle.clone().map(|x| x[d] / 8.0).sum::<f64>()).map(|x| x * x).iter().sum::<f64>()
         };
         let of_base: Vec<u32> = (0..surface.faces().len() as u32).filter(base).collect();
         let least = of_base.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)));

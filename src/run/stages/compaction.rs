@@ -130,7 +130,7 @@ fn compact(
     let kind = plan.press.name();
     let seconds = progress.finish(&format!("{kind}: porosity {before:.4} to {after:.4}"));
     let name = format!("compaction {}: {kind}", index + 1);
-    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0 });
+    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0, windows: 0 });
     settled.compaction.push(CompactionRecord {
         kind: kind.into(),
         porosity_before: before,
@@ -167,12 +167,12 @@ fn shake(
     frequency: f64,
     cycles: u32,
 ) -> Result<(), Failure> {
-    let dt = bed.model.dt();
-    let steps = (f64::from(cycles) / frequency / dt).ceil() as u64;
-    let at = |k: u64| if k < steps { (TAU * frequency * k as f64 * dt).sin() } else { 0.0 };
-    for k in 0..steps {
+    let (begun, end) = (bed.state.time, f64::from(cycles) / frequency);
+    let at = |t: f64| if t < end { (TAU * frequency * t).sin() } else { 0.0 };
+    while bed.state.time - begun < end {
+        let (t, dt) = (bed.state.time - begun, bed.dt());
         // The velocity that takes the plane from one place to the next exactly.
-        let velocity = amplitude * ((at(k + 1) - at(k)) / dt);
+        let velocity = amplitude * ((at(t + dt) - at(t)) / dt);
         planes.iter().for_each(|&p| bed.state.set_plane_velocity(p, velocity));
         bed.step(&[])?;
     }
@@ -218,9 +218,7 @@ fn squeeze(
         if (now - start).norm() >= max_travel {
             break (region, false);
         }
-        for _ in 0..bed.stride() {
-            bed.step(&[])?;
-        }
+        bed.until_look()?;
     };
     bed.state.set_plane_velocity(plane, Vec3::zeros());
     Ok(outcome)

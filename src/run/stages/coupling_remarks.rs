@@ -8,7 +8,7 @@ use trackbed_coupling::scheme::Passes;
 pub fn unconverged(passes: &Passes) -> Option<String> {
     (passes.unconverged > 0).then(|| {
         format!(
-            "{} of {} windows had not converged after the last pass allowed: raise coupling.max_passes, or take fewer \
+            "{} of {} windows had not converged after the last pass allowed (the best pass was used): raise coupling.max_passes, or take fewer \
              coupling.substeps",
             passes.unconverged, passes.windows
         )

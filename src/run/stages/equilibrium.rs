@@ -2,6 +2,7 @@
 
 use super::stage::{CoupledRun, RunState, Stage};
 use crate::failure::Failure;
+use crate::message;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::solid::SolidPart;
@@ -38,6 +39,7 @@ impl Stage for Equilibrium {
         let ground = grains.ground.take().expect("a coupled run has a ground");
         let transfer_kind = plan.transfer_kind(&ground);
         let (classes, substeps) = plan.classes(&grains.part, &model, part, &ground);
+        plan.refuse(run.document, &classes, substeps, model.dt())?;
         let bases = std::mem::take(&mut grains.bases);
         let whole = part.sleepers.as_ref().map(|s| s.set_down(&part.model, &bases));
         let (solid, surface) = match whole {
@@ -55,7 +57,7 @@ impl Stage for Equilibrium {
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
         if !run.quiet {
             // Before anything can blow up.
-            remarks.iter().for_each(|r| eprintln!("note: {r}"));
+            remarks.iter().for_each(|r| message::note(r));
         }
         summary.warnings.extend(remarks);
         let lowest = system.work.surface.lowest();
@@ -128,7 +130,7 @@ fn couple<'b>(
             )
         });
         if !run.quiet {
-            slower.iter().for_each(|r| eprintln!("note: {r}"));
+            slower.iter().for_each(|r| message::note(r));
         }
         summary.warnings.extend(slower);
         let reduced =

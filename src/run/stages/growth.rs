@@ -50,6 +50,7 @@ fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Res
             seconds,
             grain_steps: grown.steps,
             solid_steps: 0,
+            windows: 0,
         });
         bed.growth.push(GrowthRecord {
             group: plan.group,

@@ -64,7 +64,13 @@ pub fn drop_layers(
         progress.at(k as f64 + 1.0);
     }
     let seconds = progress.finish(&format!("{} layers at rest", layers.len() - 1));
-    bed.stages.push(StageRecord { name: "layers".into(), seconds, grain_steps: steps, solid_steps: 0 });
+    bed.stages.push(StageRecord {
+        name: "layers".into(),
+        seconds,
+        grain_steps: steps,
+        solid_steps: 0,
+        windows: 0,
+    });
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use super::coupling_remarks::{fallen, late, unconverged};
 use super::solid_loop::solid_alone;
-use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage};
+use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps};
 use super::{solid_remarks, statics, time_loop};
 use crate::failure::Failure;
 use crate::model::Job;
@@ -31,9 +31,9 @@ impl Stage for MainLoop {
                 .is_some_and(|s| matches!(s.analysis, Analysis::Dynamic(_) | Analysis::QuasiStatic(_)))
     }
 
-    fn report(&self, job: &Job, dt: f64) -> Vec<String> {
+    fn report(&self, job: &Job, steps: Steps<'_>) -> Vec<String> {
         if let Some(grains) = &job.grains {
-            let mut lines = vec![format!("run: {} s, {:.0} steps", job.end, job.end / dt)];
+            let mut lines = vec![format!("run: {} s, {}", job.end, steps(job.end))];
             let waiting = |part| grains.groups.bodies.iter().filter(|b| b.absent && b.part == part).count();
             lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.groups.names, waiting)));
             return lines;
@@ -42,8 +42,8 @@ impl Stage for MainLoop {
             Some(Analysis::QuasiStatic(_)) => "quasi-static",
             _ => "dynamics",
         };
-        let steps = |step: f64| format!("{kind}: {} s in {:.0} steps of {step} s", job.end, job.end / step);
-        job.solid_step.map(steps).into_iter().collect()
+        let line = |step: f64| format!("{kind}: {} s in {:.0} steps of {step} s", job.end, job.end / step);
+        job.solid_step.map(line).into_iter().collect()
     }
 
     fn grain_time(&self, job: &Job) -> Option<GrainTime> {
@@ -61,10 +61,11 @@ impl Stage for MainLoop {
 
 fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> {
     let model = state.grain_model(run)?;
+    let interval = run.job.output.history_interval;
     let mut resumed = state.loaded.take();
     let mut system = match &mut resumed {
-        Some(loaded) => GrainsSystem::resume(model, loaded)?,
-        None => GrainsSystem::new(model)?,
+        Some(loaded) => GrainsSystem::resume(model, interval, loaded)?,
+        None => GrainsSystem::new(model, interval)?,
     };
     run.prepare()?;
     let grains = state.grains.as_ref().expect("a run with grains");

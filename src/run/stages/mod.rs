@@ -20,6 +20,9 @@ mod time_loop;
 pub use stage::{GrainTime, RUN, RunState, Stage};
 
 use crate::model::Job;
+use crate::model::grains::{self, GrainsPart, Preview};
+use crate::scene::{Document, SceneError};
+use stage::SETTLING;
 
 /// All stages, in order.
 static STAGES: [&dyn Stage; 9] = [
@@ -33,6 +36,24 @@ static STAGES: [&dyn Stage; 9] = [
     &strength_reduction::StrengthReduction,
     &main_loop::MainLoop,
 ];
+
+/// Makes the models of the grains as far as they are known before anything moves.
+///
+/// # Errors
+/// Bad input: what the main loop would refuse, and stages of more steps than anyone waits for.
+pub fn preview(document: &Document, job: &Job, grains: &GrainsPart) -> Result<Preview, SceneError> {
+    let preview = grains::preview(document, grains)?;
+    for stage in of(job) {
+        let (key, time) = match stage.grain_time(job) {
+            None => continue,
+            Some(GrainTime::Exactly(time)) => ("time.end", time),
+            Some(GrainTime::AtMost(time)) if stage.name() == Some(SETTLING) => ("deposition.max_time", time),
+            Some(GrainTime::AtMost(time)) => ("compaction", time),
+        };
+        grains::check_steps(document, key, time, preview.whole.dt())?;
+    }
+    Ok(preview)
+}
 
 /// The stages of a scene, in order.
 pub fn of(job: &Job) -> impl DoubleEndedIterator<Item = &'static dyn Stage> {

@@ -1,7 +1,7 @@
 //! Settling: filled grains come to rest under gravity, and the bed is levelled.
 
 use super::layers::drop_layers;
-use super::stage::{GrainTime, Packed, RunState, SETTLING, Settled, Stage};
+use super::stage::{GrainTime, Packed, RunState, SETTLING, Settled, Stage, Steps};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::{DepositionPlan, GrainsPart, refused};
@@ -13,6 +13,9 @@ use crate::run::summary::StageRecord;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
+
+/// Time between two looks at the speed [s].
+const LOOK: f64 = 1e-3;
 
 /// Time that bodies need to get going before slowness counts as rest [s].
 const START_OF_SETTLING: f64 = 0.05;
@@ -29,10 +32,9 @@ impl Stage for Settling {
         job.grains.as_ref().is_some_and(|g| g.packing.deposition.is_some())
     }
 
-    fn report(&self, job: &Job, dt: f64) -> Vec<String> {
+    fn report(&self, job: &Job, steps: Steps<'_>) -> Vec<String> {
         let plan = job.grains.as_ref().and_then(|g| g.packing.deposition.as_ref());
-        let line =
-            |d: &DepositionPlan| format!("settling: at most {} s, {:.0} steps", d.max_time, d.max_time / dt);
+        let line = |d: &DepositionPlan| format!("settling: at most {} s, {}", d.max_time, steps(d.max_time));
         plan.map(line).into_iter().collect()
     }
 
@@ -73,18 +75,18 @@ fn settle(
     };
     let mut work = dem::Work::new(&model, &state);
     let progress = Progress::start(SETTLING, plan.max_time, run.quiet).resumed(state.time, seconds);
-    // Look at the speed about every millisecond.
-    let stride = ((1e-3 / model.dt()) as u64).max(1);
     let mut settled = false;
     let mut going = true;
     run.checkpoints.begin();
     while going {
+        dem::stability::follow(&model, &mut state);
         match surface {
             Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
             None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
         }
         .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
-        if state.steps.is_multiple_of(stride) {
+        // Look at the speed every millisecond.
+        if bed::passed(&state, LOOK) {
             let speed = bed::rms_speed(&model, &state);
             // Everything starts at rest: free fall has to be under way before slowness means anything.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
@@ -119,7 +121,13 @@ fn settle(
     if bodies.is_empty() {
         return Err(run.document.error("deposition.level", "no grain below it", "at least one").into());
     }
-    bed.stages.push(StageRecord { name: SETTLING.into(), seconds, grain_steps: state.steps, solid_steps: 0 });
+    bed.stages.push(StageRecord {
+        name: SETTLING.into(),
+        seconds,
+        grain_steps: state.steps,
+        solid_steps: 0,
+        windows: 0,
+    });
     bed.bodies = bodies;
     bed.time = state.time;
     Ok(())

@@ -16,6 +16,7 @@ use crate::run::system::{SolidSystem, System};
 /// A numerical failure, an interrupt, what the disk refuses.
 pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -> Result<(), Failure> {
     let (mut resumed, summary) = (state.loaded.take(), &mut state.summary);
+    let interrupt = run.checkpoints.interrupt();
     match &solid.analysis {
         Analysis::Dynamic(method) if solid.is_linear() => {
             let dt = run.job.solid_step.expect("a dynamic solid has a step");
@@ -28,8 +29,8 @@ pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -
         Analysis::QuasiStatic(plan) => {
             let step = run.job.solid_step.expect("a quasi-static solid has a step");
             let mut system = match &mut resumed {
-                Some(loaded) => QuasiStaticSystem::resume(solid, plan, step, loaded)?,
-                None => QuasiStaticSystem::new(solid, plan, step)?,
+                Some(loaded) => QuasiStaticSystem::resume(solid, plan, step, interrupt, loaded)?,
+                None => QuasiStaticSystem::new(solid, plan, step, interrupt)?,
             };
             let outcome = march(run, solid, &mut system, resumed, summary);
             summary.solid.newton = Some(NewtonRecord::of(&system.statistics()));
@@ -40,8 +41,8 @@ pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -
         Analysis::Dynamic(method) => {
             let dt = run.job.solid_step.expect("a dynamic solid has a step");
             let mut system = match &mut resumed {
-                Some(loaded) => PlasticDynamics::resume(solid, *method, dt, loaded)?,
-                None => PlasticDynamics::new(solid, *method, dt)?,
+                Some(loaded) => PlasticDynamics::resume(solid, *method, dt, interrupt, loaded)?,
+                None => PlasticDynamics::new(solid, *method, dt, interrupt)?,
             };
             let outcome = march(run, solid, &mut system, resumed, summary);
             summary.solid.newton = Some(NewtonRecord::of(&system.statistics()));

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GrainsPart, check_joined, refused};
+use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::packing::{CompactionRecord, GrowthRecord};
@@ -33,6 +33,9 @@ pub enum GrainTime {
     AtMost(f64),
 }
 
+/// Steps of the grains in a time [s], in words.
+pub type Steps<'a> = &'a dyn Fn(f64) -> String;
+
 /// One stage of a run. What a run carries out is what `check` and `explain` report of it.
 pub trait Stage: Sync {
     /// Name for users; none where the stage is the end of the one before.
@@ -41,8 +44,8 @@ pub trait Stage: Sync {
     /// Whether a run of the scene has it.
     fn applies(&self, job: &Job) -> bool;
 
-    /// What `check` reports of it, line by line; `dt` is the step of the grains [s], where there are grains.
-    fn report(&self, _job: &Job, _dt: f64) -> Vec<String> {
+    /// What `check` reports of it, line by line.
+    fn report(&self, _job: &Job, _steps: Steps<'_>) -> Vec<String> {
         Vec::new()
     }
 
@@ -154,9 +157,7 @@ pub struct RunState<'a> {
 
 /// Whether grains are packed before the main loop.
 pub fn is_packed(job: &Job) -> bool {
-    job.grains.as_ref().is_some_and(|g| {
-        g.packing.deposition.is_some() || !g.groups.growths.is_empty() || !g.packing.compaction.is_empty()
-    })
+    job.grains.as_ref().is_some_and(GrainsPart::is_packed)
 }
 
 /// Points of the planes [m].
@@ -215,6 +216,7 @@ impl RunState<'_> {
             summary.sources.extend(sources::BONDS);
         }
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+        check_steps(run.document, "time.end", run.job.end, model.dt())?;
         part.track.check_ram(run.document, model.dt())?;
         part.track.check_pads(run.document, model.dt())?;
         if part.track.rail.is_some() {

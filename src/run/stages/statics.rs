@@ -1,7 +1,7 @@
 //! A static solid: one solve, its reactions, its tables.
 
 use super::solid_remarks;
-use super::stage::{RunState, Stage};
+use super::stage::{RunState, Stage, Steps};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::{Analysis, SolidPart};
@@ -29,7 +29,7 @@ impl Stage for Statics {
         job.grains.is_none() && job.solid.as_ref().is_some_and(|s| matches!(s.analysis, Analysis::Static))
     }
 
-    fn report(&self, _: &Job, _: f64) -> Vec<String> {
+    fn report(&self, _: &Job, _: Steps<'_>) -> Vec<String> {
         vec!["statics: one solve".into()]
     }
 
@@ -94,6 +94,7 @@ fn solve(
         seconds: begun.elapsed().as_secs_f64(),
         grain_steps: 0,
         solid_steps: 1,
+        windows: 0,
     });
     Ok(())
 }

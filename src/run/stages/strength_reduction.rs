@@ -1,6 +1,6 @@
 //! Factor of safety of a solid by strength reduction.
 
-use super::stage::{RunState, Stage};
+use super::stage::{RunState, Stage, Steps};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::{Analysis, SolidPart, StrengthReductionPlan};
@@ -43,7 +43,7 @@ impl Stage for StrengthReduction {
         plan_of(job).is_some()
     }
 
-    fn report(&self, job: &Job, _: f64) -> Vec<String> {
+    fn report(&self, job: &Job, _: Steps<'_>) -> Vec<String> {
         let line = |(_, plan): (&SolidPart, &StrengthReductionPlan)| {
             format!("strength reduction: from the factor {} on, to within {}", plan.start, plan.tolerance)
         };
@@ -104,6 +104,7 @@ fn bracket(
         seconds: begun.elapsed().as_secs_f64(),
         grain_steps: 0,
         solid_steps: found.trials.len() as u64,
+        windows: 0,
     });
     Ok(())
 }

@@ -183,7 +183,13 @@ impl<'a> TimeLoop<'a> {
         let (k, track) = (self.place.done + 1, &mut self.track);
         let time = k as f64 * self.cadence.window;
         track.begin_window();
-        system.advance(&mut |t, model, state, out| track.apply(t, model, state, out))?;
+        match system.advance(&mut |t, model, state, out| track.apply(t, model, state, out)) {
+            // A step that was given up leaves the system as it was before.
+            Err(Failure::Interrupted(_)) => {
+                return self.keep(self.place.done as f64 * self.cadence.window, system);
+            }
+            outcome => outcome?,
+        }
         track.follow(time, system);
         if let Some(flow) = &mut self.flow {
             flow.follow(k, time, system).map_err(|e| e.at(time))?;
@@ -262,16 +268,21 @@ impl<'a> TimeLoop<'a> {
             bond_output::write_breaks(dir, view.state)?;
             summary.bonds = Some(bond_output::summary(view));
         }
-        let (grain_steps, solid_steps) = system.steps_per_window();
         let done = self.place.done;
+        let (grain_steps, solid_steps) = system.steps_done(done);
         let end = done as f64 * self.cadence.window;
         let seconds = self.progress.finish(&format!("{end:.3} s simulated"));
         summary.stages.push(StageRecord {
             name: "run".into(),
             seconds,
-            grain_steps: done * grain_steps,
-            solid_steps: done * solid_steps,
+            grain_steps,
+            solid_steps,
+            windows: done,
         });
+        if let Some(view) = system.grains().filter(|v| v.model.measured().is_some() && grain_steps > 0) {
+            summary.model.grain_step = Some(view.state.time / grain_steps as f64);
+            summary.model.grain_step_limit = view.state.measured_limit().or(summary.model.grain_step_limit);
+        }
         summary.track.push = track_output::push(&self.track, dir)?;
         if let (Some(flow), Some(view)) = (&self.flow, system.grains()) {
             let (record, warnings) = flow.finish(end, view);

@@ -21,6 +21,8 @@ pub struct StageRecord {
     pub grain_steps: u64,
     /// Steps of the solid.
     pub solid_steps: u64,
+    /// Windows: stretches of time after which something can be recorded; zero in stages without records.
+    pub windows: u64,
 }
 
 /// Sizes of the model.

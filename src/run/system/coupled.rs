@@ -84,8 +84,8 @@ impl TrackSystem for CoupledSystem<'_> {
 }
 
 impl System for CoupledSystem<'_> {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (u64::from(self.model.substeps), 1)
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (self.state.grains.steps, windows)
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {

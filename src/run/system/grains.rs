@@ -18,35 +18,51 @@ pub struct GrainsSystem {
     /// Scratch.
     pub work: dem::Work,
     applied: Vec<dem::AppliedForce>,
+    /// Length of a window [s].
+    window: f64,
 }
 
 impl GrainsSystem {
-    /// The grains at the start of their model.
+    /// The grains at the start of their model; `interval` is that of the history [s].
     ///
     /// # Errors
     /// They overlap so much that no step can be made.
-    pub fn new(model: dem::Model) -> Result<GrainsSystem, Failure> {
+    pub fn new(model: dem::Model, interval: f64) -> Result<GrainsSystem, Failure> {
         let mut state = dem::State::new(&model);
         let mut work = dem::Work::new(&model, &state);
         dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
-        Ok(GrainsSystem { model, state, work, applied: Vec::new() })
+        Ok(GrainsSystem { window: window(&model, interval), model, state, work, applied: Vec::new() })
     }
 
-    /// The grains as a checkpoint has them.
+    /// The grains as a checkpoint has them; `interval` as in [`GrainsSystem::new`].
     ///
     /// # Errors
     /// A checkpoint of something else.
-    pub fn resume(model: dem::Model, loaded: &mut Loaded) -> Result<GrainsSystem, Failure> {
+    pub fn resume(model: dem::Model, interval: f64, loaded: &mut Loaded) -> Result<GrainsSystem, Failure> {
         let state = loaded.take()?;
         let work = dem::Work::new(&model, &state);
-        Ok(GrainsSystem { model, state, work, applied: Vec::new() })
+        Ok(GrainsSystem { window: window(&model, interval), model, state, work, applied: Vec::new() })
     }
 }
 
+/// A window of grains alone: one step where the scene fixes it, else so many first steps that few long ones find room in their
+/// place, and about a whole number of windows in an interval of the history [s].
+fn window(model: &dem::Model, interval: f64) -> f64 {
+    if model.measured().is_none() {
+        return model.dt();
+    }
+    let windows = (interval / (STEPS * model.dt())).ceil().max(1.0);
+    let steps = (interval / (windows * model.dt())).round();
+    model.dt() * steps.clamp(1.0, STEPS)
+}
+
+/// Steps in a window when a run begins.
+const STEPS: f64 = 64.0;
+
 impl TrackSystem for GrainsSystem {
     fn window(&self) -> f64 {
-        self.model.dt()
+        self.window
     }
 
     fn grains(&self) -> Option<GrainsView<'_>> {
@@ -60,15 +76,19 @@ impl TrackSystem for GrainsSystem {
 }
 
 impl System for GrainsSystem {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (1, 0)
+    fn steps_done(&self, _: u64) -> (u64, u64) {
+        (self.state.steps, 0)
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
-        self.applied.clear();
-        applied(self.state.time, &self.model, &self.state, &mut self.applied);
-        dem::step(&self.model, &mut self.state, &mut self.work, &dem::surface::NoSurface, &self.applied)
-            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+        let none = &dem::surface::NoSurface;
+        for _ in 0..dem::stability::divide(&self.model, &mut self.state, self.window, 1) {
+            self.applied.clear();
+            applied(self.state.time, &self.model, &self.state, &mut self.applied);
+            dem::step(&self.model, &mut self.state, &mut self.work, none, &self.applied)
+                .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+        }
+        Ok(())
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {

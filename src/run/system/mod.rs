@@ -31,8 +31,8 @@ pub struct SolidView<'a> {
 
 /// A model that can be advanced window by window.
 pub trait System: TrackSystem {
-    /// Steps of grains and solid in a window.
-    fn steps_per_window(&self) -> (u64, u64);
+    /// Steps of grains and solid since the start, after `windows` windows.
+    fn steps_done(&self, windows: u64) -> (u64, u64);
     /// Advances by one window.
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
     /// Puts into a checkpoint what `resume` of the system goes on from.

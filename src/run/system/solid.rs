@@ -64,8 +64,8 @@ impl TrackSystem for SolidSystem<'_> {
 }
 
 impl System for SolidSystem<'_> {
-    fn steps_per_window(&self) -> (u64, u64) {
-        (0, 1)
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (0, windows)
     }
 
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {

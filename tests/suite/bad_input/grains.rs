@@ -41,7 +41,7 @@ fn grains_without_density() {
 fn restitution_of_zero() {
     grains_scene()
         .scene("restitution = 0.4", "restitution = 0")
-        .refused("scene.toml:8: material.0.restitution: found 0, expected above 0, at most 1");
+        .refused("scene.toml:8: material.0.restitution: found 0, expected 0.0001 to 1");
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::deposition::DepositionPlan;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError};
 use rule::{Joinable, rule};
+use trackbed_dem::ModelInput;
 use trackbed_dem::bond::BondInput;
 
 /// Resolves the kinds of bonds, so that grains can name them.
@@ -53,12 +54,31 @@ pub(super) fn rules(
     Ok(())
 }
 
+/// Refuses rules that can join nothing, wherever the bodies of `input` come to lie.
+pub(super) fn check_joinable(
+    document: &Document,
+    part: &BondPart,
+    input: &ModelInput,
+) -> Result<(), SceneError> {
+    for kind in 0..part.names.len() {
+        if !part.can_join(kind, &input.bodies, &input.shapes) {
+            return Err(nothing_joined(document, part, kind));
+        }
+    }
+    Ok(())
+}
+
+fn nothing_joined(document: &Document, part: &BondPart, kind: usize) -> SceneError {
+    let expected = "a bond that joins grains: a larger `gap`, or other groups";
+    let found = format!("no pair for \"{}\"", part.names[kind]);
+    document.error(&format!("bond.{kind}"), found, expected)
+}
+
 /// Refuses rules that join nothing in the bodies that a run starts with.
 pub fn check_joined(document: &Document, part: &BondPart, bonds: &[BondInput]) -> Result<(), SceneError> {
-    for (kind, name) in part.names.iter().enumerate() {
+    for kind in 0..part.names.len() {
         if !bonds.iter().any(|b| b.kind == kind) {
-            let expected = "a bond that joins grains: a larger `gap`, or other groups";
-            return Err(document.error(&format!("bond.{kind}"), format!("no pair for \"{name}\""), expected));
+            return Err(nothing_joined(document, part, kind));
         }
     }
     Ok(())

@@ -106,6 +106,22 @@ impl BondPart {
         input.bonds = self.stones.iter().map(|&([a, b], kind)| BondInput::new(a, b, kind)).collect();
     }
 
+    /// Whether the rule of a kind can join any two of these bodies, wherever they come to lie: only single spheres are joined.
+    pub(super) fn can_join(&self, kind: usize, bodies: &[BodyInput], shapes: &[Shape]) -> bool {
+        let rule = &self.rules[kind];
+        let spheres = |part: Option<u32>| {
+            let sphere = |b: &&BodyInput| matches!(shapes[b.shape], Shape::Sphere { .. });
+            bodies.iter().filter(sphere).filter(|b| part.is_none_or(|p| b.part == p)).take(2).count()
+        };
+        match (&rule.source, rule.between) {
+            (PairSource::Gap(_), None) => spheres(None) > 1,
+            (PairSource::Gap(_), Some([a, b])) if a == b => spheres(Some(a)) > 1,
+            (PairSource::Gap(_), Some([a, b])) => spheres(Some(a)) > 0 && spheres(Some(b)) > 0,
+            (PairSource::Pairs(pairs), _) => !pairs.is_empty(),
+            (PairSource::Stones, _) => self.in_stones(kind),
+        }
+    }
+
     /// All bonds, table by table. A pair joined by one table is left alone by those after it.
     pub fn bonds(&self, bodies: &[BodyInput], shapes: &[Shape]) -> Vec<BondInput> {
         let sphere = |b: usize| matches!(shapes[bodies[b].shape], Shape::Sphere { .. });

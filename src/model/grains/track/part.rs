@@ -43,6 +43,26 @@ pub struct AfterPlan {
 }
 
 impl TrackPart {
+    /// Longest steps of the grains [s] for which [`TrackPart::check_pads`] and [`TrackPart::check_ram`] refuse nothing.
+    pub fn longest_step(&self) -> f64 {
+        let pads = self.pads().map(|(pad, lightness)| {
+            let stiff = (0.25 / (pad[0] * lightness)).sqrt();
+            stiff.min(0.5 / (pad[1] * lightness))
+        });
+        let ram = self.after.push.as_ref().zip(self.sleeper.as_ref());
+        let ram = ram.map(|(push, sleeper)| PushPlan::longest_step(push.stiffness, sleeper.row.mass));
+        pads.unwrap_or(f64::INFINITY).min(ram.unwrap_or(f64::INFINITY))
+    }
+
+    /// Stiffness and damping of the pads, and 1/m of a seat, turning about both level axes included: a bound for all modes.
+    fn pads(&self) -> Option<([f64; 2], f64)> {
+        let (rail, sleeper) = (self.rail.as_ref()?, &self.sleeper.as_ref()?.row);
+        let [a, b, c] = sleeper.half;
+        let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
+        let seat = |s: &[f64; 3]| 1.0 / sleeper.mass + s[0] * s[0] * third(a, c) + s[1] * s[1] * third(b, c);
+        Some((rail.pad, sleeper.seats.iter().map(seat).sum()))
+    }
+
     /// Refuses pads that are too stiff or too strongly damped for sleepers that move in steps of `dt` [s] under the pads'
     /// force at the start of each step.
     ///
@@ -50,20 +70,10 @@ impl TrackPart {
     /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
     /// damping.
     pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
-        let (Some(rail), Some(sleeper)) = (&self.rail, self.sleeper.as_ref().map(|s| &s.row)) else {
-            return Ok(());
-        };
-        let [a, b, c] = sleeper.half;
-        // 1/m of a seat, turning about both level axes included: a bound for all modes.
-        let third = |x: f64, y: f64| 3.0 / (sleeper.mass * (x * x + y * y));
-        let lightness: f64 = sleeper
-            .seats
-            .iter()
-            .map(|s| 1.0 / sleeper.mass + s[0] * s[0] * third(a, c) + s[1] * s[1] * third(b, c))
-            .sum();
+        let Some((pad, lightness)) = self.pads() else { return Ok(()) };
         for (key, value, most) in [
-            ("pad_stiffness", rail.pad[0], 0.25 / (dt * dt * lightness)),
-            ("pad_damping", rail.pad[1], 0.5 / (dt * lightness)),
+            ("pad_stiffness", pad[0], 0.25 / (dt * dt * lightness)),
+            ("pad_damping", pad[1], 0.5 / (dt * lightness)),
         ] {
             if value > most {
                 let expected = format!("at most {most:.4e} with grain steps of {dt:.4e} s");

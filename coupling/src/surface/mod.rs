@@ -1,19 +1,25 @@
-//! The solid's surface as the grains see it: curved 8-node faces moving with the nodes.
+//! The solid's surface as the grains see it: curved faces of all kinds moving with the nodes.
 //!
 //! Within one exchange window the nodes move on straight lines, x(τ) = x₀ + v τ, from where the solid is at the start of
 //! the window, with a velocity that the scheme of the exchange tells ([`crate::scheme`]): displacement **and** velocity
 //! go to the grains, so that damping and friction see the surface move. With a [`Spread`] it is the discs' mean motion
 //! that they see.
 
+mod sides;
+
 use crate::face::{self, Form, Location};
 use crate::spread::Spread;
+use sides::Sides;
 use trackbed_dem::bvh::Bvh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
 use trackbed_fem::FaceShape;
 use trackbed_fem::mesh::{Face, Mesh};
 
-/// Where a face is looked at to see whether it has folded: its middle and its corners.
-const PLACES: [[f64; 2]; 5] = [[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+/// Where a face is looked at to see whether it has folded: its middle and its corners. A triangle's last one is there twice.
+fn places(shape: FaceShape) -> [[f64; 2]; 5] {
+    let (corners, middle) = (face::landmarks(shape), shape.natural_centre());
+    [0, 1, 2, 3, 4].map(|k| if k == 0 { middle } else { corners[(k - 1).min(shape.corner_count() - 1)] })
+}
 
 /// Cosine between the normals of two faces below which their common side is an edge, which may close a little.
 const SHARP: f64 = 0.1;
@@ -23,7 +29,9 @@ pub struct SolidSurface {
     faces: Vec<Face>,
     /// Solid node of each surface node, ascending.
     nodes: Vec<u32>,
-    /// Surface nodes of each face. Shape `[faces][8]`.
+    /// Kind of each face.
+    shapes: Vec<FaceShape>,
+    /// Surface nodes of each face; those beyond the nodes of its kind repeat the first. Shape `[faces][8]`.
     face_nodes: Vec<[u32; 8]>,
     /// The nodes in the mesh's own shape.
     shape: Vec<[f64; 3]>,
@@ -41,11 +49,8 @@ pub struct SolidSurface {
     tree: Bvh,
     boxes: Vec<([f64; 3], [f64; 3])>,
     pub(crate) spread: Option<Spread>,
-    /// Pairs of faces that share a side.
-    seams: Vec<[u32; 2]>,
-    /// Whether each side of a face is that face's alone.
-    border: Vec<[bool; 4]>,
-    /// Normals of the faces in the mesh's own shape at [`PLACES`].
+    sides: Sides,
+    /// Normals of the faces in the mesh's own shape at their [`places`].
     areas: Vec<[[f64; 3]; 5]>,
     scratch: Vec<[f64; 3]>,
 }
@@ -68,29 +73,18 @@ pub struct Motion<'a> {
 impl SolidSurface {
     /// The surface made of `faces` of `mesh`, at rest in the mesh's own shape.
     pub fn new(mesh: &Mesh, faces: Vec<Face>) -> SolidSurface {
-        let mut nodes: Vec<u32> = faces.iter().flat_map(|f| f.nodes).collect();
+        let mut nodes: Vec<u32> = faces.iter().flat_map(|f| f.nodes()).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
         let local = |node: u32| nodes.binary_search(&node).expect("node of a face is a surface node") as u32;
         let face_nodes: Vec<[u32; 8]> = faces.iter().map(|f| f.nodes.map(local)).collect();
         let start: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.coordinates[n as usize]).collect();
-        let coordinates = |f: &[u32; 8]| f.map(|n| start[n as usize]);
-        let boxes: Vec<_> = face_nodes.iter().map(|f| bounds(&coordinates(f))).collect();
-        let forms = face_nodes.iter().map(|f| [Form::new(&coordinates(f)), Form::default()]).collect();
-        // A mid-side node belongs to the faces that share its side.
-        let mut sides: Vec<[u32; 3]> = face_nodes
-            .iter()
-            .zip(0..)
-            .flat_map(|(f, k)| [0, 1, 2, 3].map(|s| [f[4 + s], k, s as u32]))
-            .collect();
-        sides.sort_unstable();
-        let mut border = vec![[true; 4]; faces.len()];
-        let mut seams = Vec::new();
-        for pair in sides.windows(2).filter(|w| w[0][0] == w[1][0]) {
-            seams.push([pair[0][1], pair[1][1]]);
-            pair.iter().for_each(|s| border[s[1] as usize][s[2] as usize] = false);
-        }
-        let areas = face_nodes.iter().map(|f| PLACES.map(|p| Form::new(&coordinates(f)).area(p))).collect();
+        let shapes: Vec<FaceShape> = faces.iter().map(|f| f.shape).collect();
+        let of_kind = || shapes.iter().zip(&face_nodes).map(|(s, f)| (*s, f.map(|n| start[n as usize])));
+        let boxes: Vec<_> = of_kind().map(|(s, x)| face::bounds(s, &x)).collect();
+        let forms = of_kind().map(|(s, x)| [Form::new(s, &x), Form::default()]).collect();
+        let areas = of_kind().map(|(s, x)| places(s).map(|p| Form::new(s, &x).area(p))).collect();
+        let sides = Sides::new(&shapes, &face_nodes);
         SolidSurface {
             tree: Bvh::new(&boxes),
             boxes,
@@ -104,12 +98,12 @@ impl SolidSurface {
             scratch: vec![[0.0; 3]; start.len()],
             start,
             nodes,
+            shapes,
             face_nodes,
             faces,
             max_speed: 0.0,
             spread: None,
-            seams,
-            border,
+            sides,
             areas,
         }
     }
@@ -119,17 +113,14 @@ impl SolidSurface {
         self.spread.as_ref()
     }
 
-    /// The 8-node boundary faces of `mesh` whose outward area vector makes an angle of at most `max_angle` [rad] with
+    /// The boundary faces of `mesh` whose outward area vector makes an angle of at most `max_angle` [rad] with
     /// `direction`: the default choice of a surface for ballast is "upward, up to 75 degrees".
     pub fn facing(mesh: &Mesh, direction: [f64; 3], max_angle: f64) -> Vec<Face> {
         let length = face::dot(direction, direction).sqrt();
         mesh.boundary_faces()
             .into_iter()
-            .filter(|f| f.shape == FaceShape::Quad8)
             .filter(|f| {
-                let x = |k: usize| mesh.coordinates[f.nodes[k] as usize];
-                let diagonal = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-                let area = face::cross(diagonal(x(0), x(2)), diagonal(x(1), x(3)));
+                let area = twice_the_area(f.shape, |k| mesh.coordinates[f.nodes[k] as usize]);
                 let norm = face::dot(area, area).sqrt();
                 face::dot(area, direction) >= max_angle.cos() * norm * length
             })
@@ -146,9 +137,33 @@ impl SolidSurface {
         &self.nodes
     }
 
-    /// Surface nodes of face `patch`.
-    pub fn face_nodes(&self, patch: u32) -> &[u32; 8] {
-        &self.face_nodes[patch as usize]
+    /// Kind of face `patch`.
+    #[inline]
+    pub fn shape(&self, patch: u32) -> FaceShape {
+        self.shapes[patch as usize]
+    }
+
+    /// Surface nodes of face `patch`: corners, then mid-sides where its kind has some.
+    #[inline]
+    pub fn face_nodes(&self, patch: u32) -> &[u32] {
+        &self.face_nodes[patch as usize][..self.shape(patch).node_count()]
+    }
+
+    /// The same, with the first node in the places beyond those of its kind.
+    pub(crate) fn padded_nodes(&self, patch: u32) -> [u32; 8] {
+        self.face_nodes[patch as usize]
+    }
+
+    /// Values of the shape functions at a point of face `patch`; zero beyond the nodes of its kind.
+    #[inline]
+    pub fn shape_functions(&self, patch: u32, natural: [f64; 2]) -> [f64; 8] {
+        self.shape(patch).shape_functions(natural)
+    }
+
+    /// Present place of a point of face `patch` [m].
+    pub fn place(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
+        let x = self.face_nodes[patch as usize].map(|n| self.position(n));
+        face::interpolate(self.shape(patch), &x, natural)
     }
 
     /// Present position of surface node `node` [m].
@@ -178,14 +193,13 @@ impl SolidSurface {
             let x = self.position(*n);
             face::dot(x, x)
         };
-        self.face_nodes[patch as usize].iter().map(square).fold(0.0, f64::max).sqrt()
+        self.face_nodes(patch).iter().map(square).fold(0.0, f64::max).sqrt()
     }
 
     /// Area vector of face `patch` in its present shape, by its corners: outward normal times area [m²].
     pub fn area_vector(&self, patch: u32) -> [f64; 3] {
-        let x = |k: usize| self.position(self.face_nodes[patch as usize][k]);
-        let diagonal = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-        face::cross(diagonal(x(0), x(2)), diagonal(x(1), x(3))).map(|c| 0.5 * c)
+        let corner = |k: usize| self.position(self.face_nodes[patch as usize][k]);
+        twice_the_area(self.shape(patch), corner).map(|c| 0.5 * c)
     }
 
     /// Outward unit normal at a point of face `patch` at the start of the window.
@@ -231,18 +245,20 @@ impl SolidSurface {
             let change = last.iter().zip(&first).map(|(b, a)| [0, 1, 2].map(|d| b[d] - a[d])).collect();
             [first, change]
         });
-        // The absolute sum of the eight functions is at most 3 (at the centre: 4 × ¼ + 4 × ½).
+        // The absolute sum of the shape functions is at most 3 (8 nodes, at the centre: 4 × ¼ + 4 × ½), 5/3 with 6 nodes.
         self.max_speed = 3.0 * speed;
         self.moving = speed > 0.0;
         (self.tau, self.duration) = (0.0, motion.duration);
         // The boxes hold the faces over the whole window: motion is linear in time, so both ends suffice.
-        for ((b, f), form) in self.boxes.iter_mut().zip(&self.face_nodes).zip(&mut self.forms) {
+        let kinds = self.face_nodes.iter().zip(&self.shapes);
+        for ((b, (f, &shape)), form) in self.boxes.iter_mut().zip(kinds).zip(&mut self.forms) {
             let start = f.map(|n| self.start[n as usize]);
             let rate = f.map(|n| self.rate[n as usize]);
-            *form = [Form::new(&start), Form::new(&rate)];
+            *form = [Form::new(shape, &start), Form::new(shape, &rate)];
             let (x, v, t) = (start, rate, motion.duration);
-            let first = bounds(&x);
-            let last = bounds(&[0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|d| x[k][d] + v[k][d] * t)));
+            let first = face::bounds(shape, &x);
+            let end = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|d| x[k][d] + v[k][d] * t));
+            let last = face::bounds(shape, &end);
             for d in 0..3 {
                 b.0[d] = first.0[d].min(last.0[d]);
                 b.1[d] = first.1[d].max(last.1[d]);
@@ -267,7 +283,7 @@ impl SolidSurface {
     /// and looked the same way. Looks at the start of the window.
     pub fn folded(&self) -> Option<usize> {
         let bad = (0..self.faces.len()).find(|&k| {
-            PLACES.iter().zip(&self.areas[k]).any(|(&place, before)| {
+            places(self.shapes[k]).iter().zip(&self.areas[k]).any(|(&place, before)| {
                 // A number that is none is bad, too.
                 let part = face::dot(*before, self.forms[k][0].area(place)) / face::dot(*before, *before);
                 part.is_nan() || part < 0.05
@@ -275,23 +291,29 @@ impl SolidSurface {
         });
         let turned = |&[a, b]: &[u32; 2]| {
             let (a, b) = (a as usize, b as usize);
-            let now = face::dot(self.forms[a][0].area(PLACES[0]), self.forms[b][0].area(PLACES[0]));
+            let middle = |k: usize| self.forms[k][0].area(self.shapes[k].natural_centre());
+            let now = face::dot(middle(a), middle(b));
             let product = |i: usize, j: usize| face::dot(self.areas[i][0], self.areas[j][0]);
             now <= 0.0 && product(a, b) > SHARP * (product(a, a) * product(b, b)).sqrt()
         };
-        bad.or_else(|| self.seams.iter().find(|s| turned(s)).map(|s| s[0] as usize))
+        bad.or_else(|| self.sides.seams.iter().find(|s| turned(s)).map(|s| s[0] as usize))
+    }
+
+    /// Whether corner `corner` of face `patch` lies on the border of the surface.
+    pub(crate) fn corner_on_border(&self, patch: u32, corner: usize) -> bool {
+        self.sides.rim[self.face_nodes[patch as usize][corner] as usize]
     }
 
     /// Whether side `side` of face `patch` belongs to that face alone.
     pub(crate) fn on_border(&self, patch: u32, side: usize) -> bool {
-        self.border[patch as usize][side]
+        self.sides.border[patch as usize][side]
     }
 
     /// The patch nearest to a point and the closest point on it, among those whose boxes come within `reach` [m] of it.
     pub(crate) fn nearest(&self, point: [f64; 3], reach: f64) -> Option<(u32, face::Closest)> {
         let mut patches = Vec::new();
         self.tree.query(point.map(|c| c - reach), point.map(|c| c + reach), &mut patches);
-        let found = patches.iter().map(|&k| (k, self.form(k).closest_point(point, [0.0; 2])));
+        let found = patches.iter().map(|&k| (k, self.form(k).closest_point(self.shape(k), point, [0.0; 2])));
         let way = |c: &face::Closest| {
             let r = [0, 1, 2].map(|d| c.point[d] - point[d]);
             face::dot(r, r)
@@ -314,23 +336,14 @@ fn smooth(spread: Option<&Spread>, field: &[[f64; 3]], out: &mut [[f64; 3]]) {
     }
 }
 
-/// Bounding box of a curved face, from its Bernstein control points: the eight-node field is biquadratic, and a
-/// biquadratic patch lies within the hull of its nine control points, whereas it may bulge beyond its nodes.
-fn bounds(x: &[[f64; 3]; 8]) -> ([f64; 3], [f64; 3]) {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for d in 0..3 {
-        let corner = [x[0][d], x[1][d], x[2][d], x[3][d]];
-        let side = [0, 1, 2, 3].map(|k| 2.0 * x[4 + k][d] - 0.5 * (corner[k] + corner[(k + 1) % 4]));
-        let corners: f64 = corner.iter().sum();
-        let centre = 0.5 * (x[4][d] + x[5][d] + x[6][d] + x[7][d]) - 0.25 * corners;
-        let middle = 4.0 * centre - 0.25 * corners - 0.5 * side.iter().sum::<f64>();
-        for c in corner.iter().chain(&side).chain([&middle]) {
-            low[d] = low[d].min(*c);
-            high[d] = high[d].max(*c);
-        }
+/// Outward normal times twice the area of a face, by its corners.
+fn twice_the_area(shape: FaceShape, x: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
+    let way = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+    match shape.corner_count() {
+        3 => face::cross(way(x(0), x(1)), way(x(0), x(2))),
+        // By the diagonals.
+        _ => face::cross(way(x(0), x(2)), way(x(1), x(3))),
     }
-    (low, high)
 }
 
 impl Surface for SolidSurface {
@@ -339,7 +352,8 @@ impl Surface for SolidSurface {
     }
 
     fn closest_point(&self, patch: u32, centre: [f64; 3], local: [f64; 2]) -> PatchPoint {
-        let closest = self.form(patch).closest_point(centre, local);
+        let shape = self.shapes[patch as usize];
+        let closest = self.form(patch).closest_point(shape, centre, local);
         let nodes = &self.face_nodes[patch as usize];
         let velocity = match &self.velocity {
             None if self.moving => self.forms[patch as usize][1].at(closest.natural),
@@ -347,13 +361,13 @@ impl Surface for SolidSurface {
             Some([first, change]) => {
                 let share = self.tau / self.duration;
                 let at = |n: u32| [0, 1, 2].map(|d| first[n as usize][d] + share * change[n as usize][d]);
-                face::interpolate(&nodes.map(at), closest.natural)
+                face::interpolate(shape, &nodes.map(at), closest.natural)
             }
         };
-        // A mid-side node names its edge and a corner node its vertex, whichever face they are seen from.
+        // Sides have the same number from both faces, and so have corners.
         let feature = match closest.location {
             Location::Inside => Feature::Face,
-            Location::Side(s) => Feature::Edge(nodes[4 + s as usize]),
+            Location::Side(s) => Feature::Edge(self.sides.number[patch as usize][s as usize]),
             Location::Corner(c) => Feature::Vertex(nodes[c as usize]),
         };
         PatchPoint { point: closest.point, normal: closest.normal, velocity, local: closest.natural, feature }

@@ -1,0 +1,171 @@
+use super::*;
+use crate::testing::Random;
+use trackbed_fem::element;
+
+const SHAPES: [FaceShape; 4] = [FaceShape::Quad8, FaceShape::Tri6, FaceShape::Quad4, FaceShape::Tri3];
+
+/// A face of this kind with every node moved about by up to 15 % of a half-edge.
+fn curved_face(shape: FaceShape, random: &mut Random) -> NodalValues {
+    let mut x = [[0.0; 3]; 8];
+    for (x, p) in x.iter_mut().zip(landmarks(shape)).take(shape.node_count()) {
+        // Triangles in the size of the squares.
+        let scale = if shape.corner_count() == 3 { 2.0 } else { 1.0 };
+        *x = [scale * p[0], scale * p[1], 0.0].map(|c| c + 0.15 * random.symmetric());
+    }
+    x
+}
+
+/// A natural point from the middle of a face to `reach` times its border.
+fn natural(shape: FaceShape, random: &mut Random, reach: f64) -> [f64; 2] {
+    let [a, b] = [random.symmetric(), random.symmetric()];
+    match shape.corner_count() {
+        4 => [reach * a, reach * b],
+        _ => {
+            let (r, s) = (0.5 * (a + 1.0), 0.5 * (b + 1.0));
+            let [r, s] = if r + s > 1.0 { [1.0 - r, 1.0 - s] } else { [r, s] };
+            [r, s].map(|c| 1.0 / 3.0 + reach * (c - 1.0 / 3.0))
+        }
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    dot(r, r).sqrt()
+}
+
+/// The powers of the natural coordinates are the field of the shape functions, and their derivatives its derivatives;
+/// the box holds it.
+#[test]
+fn powers_give_the_field_of_the_shape_functions() {
+    let mut random = Random::new(29);
+    for shape in SHAPES {
+        for _ in 0..100 {
+            let x = curved_face(shape, &mut random);
+            let form = Form::new(shape, &x);
+            let xi = natural(shape, &mut random, 1.0);
+            let point = form.at(xi);
+            assert!(distance(point, interpolate(shape, &x, xi)) < 1e-15 * 8.0);
+            let first = shape.gradients(xi);
+            for (a, tangent) in form.tangents(xi).into_iter().enumerate() {
+                for d in 0..3 {
+                    let sum: f64 = (0..shape.node_count()).map(|i| first[i][a] * x[i][d]).sum();
+                    assert!((tangent[d] - sum).abs() < 1e-14);
+                }
+            }
+            let h = 1e-4;
+            let at = |a: f64, b: f64| form.at([xi[0] + h * a, xi[1] + h * b]);
+            for d in 0..3 {
+                let [uu, vv, uv] = form.second(xi).map(|s| s[d] * h * h);
+                assert!((at(1., 0.)[d] + at(-1., 0.)[d] - 2.0 * point[d] - uu).abs() < 1e-14);
+                assert!((at(0., 1.)[d] + at(0., -1.)[d] - 2.0 * point[d] - vv).abs() < 1e-14);
+                let mixed = at(1., 1.)[d] - at(1., -1.)[d] - at(-1., 1.)[d] + at(-1., -1.)[d];
+                assert!((0.25 * mixed - uv).abs() < 1e-14);
+            }
+            assert!(distance(form.plus(0.5, &form).at(xi), point.map(|c| 1.5 * c)) < 1e-14);
+            let (low, high) = bounds(shape, &x);
+            assert!((0..3).all(|d| low[d] <= point[d] + 1e-14 && point[d] <= high[d] + 1e-14));
+        }
+    }
+}
+
+/// V0.4: points 0.02 edges off the face, some beyond its border, against a fine scan with local refinement.
+#[test]
+fn closest_point_matches_a_fine_scan() {
+    let mut random = Random::new(11);
+    for shape in SHAPES {
+        for _ in 0..200 {
+            let x = curved_face(shape, &mut random);
+            let on = interpolate(shape, &x, natural(shape, &mut random, 1.2));
+            let centre = [on[0], on[1], on[2] + 0.04];
+            let found = closest_point(shape, &x, centre, [0.0, 0.0]);
+            let mut best = (f64::INFINITY, [0.0; 2]);
+            let (mut half, mut middle) = (1.0, [0.0, 0.0]);
+            for _ in 0..8 {
+                for i in 0..=40 {
+                    for j in 0..=40 {
+                        let xi = [i, j].map(|k| half * (f64::from(k) / 20.0 - 1.0));
+                        let xi = [middle[0] + xi[0], middle[1] + xi[1]];
+                        let xi = with_kind!(shape, K => <<K as FaceKind>::Domain as Domain>::clamp(xi));
+                        let d = distance(interpolate(shape, &x, xi), centre);
+                        if d < best.0 {
+                            best = (d, xi);
+                        }
+                    }
+                }
+                middle = best.1;
+                half *= 0.15;
+            }
+            let d = distance(found.point, centre);
+            assert!((d - best.0).abs() < 1e-6 * 2.0, "{shape:?}: {d} against {}", best.0);
+        }
+    }
+}
+
+#[test]
+fn a_warm_start_gives_the_same_point_in_two_iterations() {
+    let mut random = Random::new(5);
+    for shape in SHAPES {
+        for _ in 0..100 {
+            let x = curved_face(shape, &mut random);
+            let on = interpolate(shape, &x, natural(shape, &mut random, 0.8));
+            let centre = [on[0], on[1], on[2] + 0.05];
+            let cold = closest_point(shape, &x, centre, [0.0, 0.0]);
+            // A stone at 1 m/s moves so far in a step of 5 µs on a face with half-edges of 1 m.
+            let near = [cold.natural[0] + 5e-6, cold.natural[1] - 5e-6];
+            let warm = closest_point(shape, &x, centre, near);
+            assert!(warm.iterations <= 2, "{shape:?}: {} iterations", warm.iterations);
+            assert!(distance(warm.point, cold.point) < 1e-13);
+        }
+    }
+}
+
+#[test]
+fn normal_points_out_and_residual_is_along_it() {
+    let mut random = Random::new(17);
+    for shape in SHAPES {
+        for _ in 0..100 {
+            let x = curved_face(shape, &mut random);
+            let on = interpolate(shape, &x, natural(shape, &mut random, 0.7));
+            let found = closest_point(shape, &x, [on[0], on[1], on[2] + 0.03], [0.0, 0.0]);
+            assert_eq!(found.location, Location::Inside);
+            let r = [on[0] - found.point[0], on[1] - found.point[1], on[2] + 0.03 - found.point[2]];
+            assert!(dot(r, found.normal) > 0.0);
+            assert!(dot(cross(r, found.normal), cross(r, found.normal)).sqrt() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn borders_are_named_as_the_nodes_are() {
+    let flat = |shape: FaceShape| {
+        let mut x = [[0.0; 3]; 8];
+        x.iter_mut().zip(landmarks(shape)).for_each(|(x, p)| *x = [p[0], p[1], 0.0]);
+        x
+    };
+    for shape in SHAPES {
+        let x = flat(shape);
+        let at = |p: [f64; 3]| closest_point(shape, &x, p, [0.0, 0.0]).location;
+        if shape.corner_count() == 4 {
+            assert_eq!(at([0.3, -1.4, 0.1]), Location::Side(0));
+            assert_eq!(at([1.2, 0.1, 0.1]), Location::Side(1));
+            assert_eq!(at([0.0, 1.5, 0.1]), Location::Side(2));
+            assert_eq!(at([-1.0, 0.2, 0.1]), Location::Side(3));
+            assert_eq!(at([-1.2, -1.2, 0.1]), Location::Corner(0));
+            assert_eq!(at([1.2, 1.1, 0.1]), Location::Corner(2));
+            assert_eq!(at([0.999, 0.1, 0.1]), Location::Inside);
+        } else {
+            assert_eq!(at([0.3, -0.4, 0.1]), Location::Side(0));
+            assert_eq!(at([0.6, 0.7, 0.1]), Location::Side(1));
+            assert_eq!(at([-0.2, 0.4, 0.1]), Location::Side(2));
+            assert_eq!(at([-0.2, -0.2, 0.1]), Location::Corner(0));
+            assert_eq!(at([1.4, -0.1, 0.1]), Location::Corner(1));
+            assert_eq!(at([0.1, 1.4, 0.1]), Location::Corner(2));
+            assert_eq!(at([0.499, 0.5, 0.1]), Location::Inside);
+        }
+    }
+    // Landmarks are the nodes, as the shape functions have them.
+    assert_eq!(
+        (landmarks(FaceShape::Quad4), landmarks(FaceShape::Tri3)),
+        (&element::quad8::NATURAL[..], &element::tri6::NATURAL[..])
+    );
+}

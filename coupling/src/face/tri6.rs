@@ -1,0 +1,35 @@
+//! The 6-node triangle: face of the tet10, and of the wedge15 and the pyramid13.
+
+use super::domain::Triangle;
+use super::kind::FaceKind;
+
+/// Kind of face, see the head of the file.
+pub(super) struct Tri6;
+
+impl FaceKind for Tri6 {
+    type Domain = Triangle;
+
+    /// N = L (2 L − 1) at corners and 4 Lᵢ Lⱼ at mid-sides, with L = (1 − ξ − η, ξ, η), sorted by powers.
+    #[inline]
+    fn powers([q0, q1, q2, m3, m4, m5, ..]: [f64; 8]) -> [f64; 8] {
+        [
+            q0,
+            4.0 * m3 - 3.0 * q0 - q1,
+            4.0 * m5 - 3.0 * q0 - q2,
+            2.0 * (q0 + q1 - 2.0 * m3),
+            2.0 * (q0 + q2 - 2.0 * m5),
+            4.0 * (q0 - m3 + m4 - m5),
+            0.0,
+            0.0,
+        ]
+    }
+
+    /// The Bernstein control points of the quadratic triangle.
+    #[inline]
+    fn hull(q: [f64; 8], mut add: impl FnMut(f64)) {
+        for k in 0..3 {
+            add(q[k]);
+            add(2.0 * q[3 + k] - 0.5 * (q[k] + q[(k + 1) % 3]));
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! What the input and the limits mean for the steps of a run.
+
+use super::collision;
+use super::input::TimeStep;
+use super::timestep::DtLimit;
+use crate::base::error::ModelError;
+
+/// The first step, and what bounds the others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steps {
+    /// The first step; all of them where they do not follow the contacts [s].
+    pub first: f64,
+    /// Share of what the contacts allow that steps take, where they follow them.
+    pub share: Option<f64>,
+    /// Longest step that rigid bodies of walls and the input allow [s].
+    pub longest: f64,
+    /// Longest step that collisions allow, while they are many and where most contacts last [s].
+    pub collision: f64,
+    pub lasting: f64,
+}
+
+impl Steps {
+    /// `rigid`: limit of the rigid bodies of walls [s]; `collision`: see [`collision::longest`] [s].
+    ///
+    /// # Errors
+    /// A fixed step above the limit.
+    pub fn new(input: &TimeStep, limit: &DtLimit, rigid: f64, collision: f64) -> Result<Steps, ModelError> {
+        let lasting = collision::PACKED * collision;
+        let steps = |first: f64| Steps { first, share: None, longest: rigid, collision, lasting };
+        Ok(match *input {
+            TimeStep::Auto { fraction } => steps(fraction * limit.dt),
+            TimeStep::Measured { share, longest, collisions } => {
+                let longest = longest.min(rigid);
+                let collision = if collisions { collision } else { lasting };
+                let first = (share * limit.dt).min(longest).min(collision);
+                Steps { first, share: Some(share), longest, collision, lasting }
+            }
+            TimeStep::Fixed(dt) if dt > limit.dt => {
+                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
+            }
+            TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => steps(dt),
+        })
+    }
+}

@@ -1,0 +1,194 @@
+//! M^(−½) (dt² K + 2 dt C) M^(−½) of the contacts and bonds of a state, as an operator on motions of all bodies.
+
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::bodies::table::Kind;
+use crate::bond::kernel;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::measure;
+use nalgebra::Matrix3;
+
+/// Springs and dashpots along an axis and across it.
+#[derive(Clone, Copy, Default)]
+struct Pair {
+    along: f64,
+    across: f64,
+}
+
+impl Pair {
+    /// Of a vector: the part along the unit vector `n` and the part across, each times its number.
+    fn apply(&self, n: &Vec3, v: &Vec3) -> Vec3 {
+        v * self.across + n * ((self.along - self.across) * n.dot(v))
+    }
+}
+
+/// What joins two bodies, or a body and something that does not move.
+struct Link {
+    /// Numbers of the bodies; the second is [`NOTHING`] where there is none.
+    ends: [u32; 2],
+    /// From the centres of the bodies to the point of contact [m].
+    arms: [Vec3; 2],
+    normal: Vec3,
+    /// Against displacement and against relative rotation.
+    stiffness: [Pair; 2],
+    damping: [Pair; 2],
+    /// C/2m* of a law's dashpot [1/s], which weakens it in long steps (`law/composed.rs`); zero of others.
+    lag: f64,
+    /// For the step in hand.
+    now: [Pair; 2],
+}
+
+const NOTHING: u32 = u32::MAX;
+
+/// The operator.
+pub(super) struct Operator {
+    links: Vec<Link>,
+    /// Square roots of the inverse masses by axis, and of the inverse tensors of inertia.
+    bodies: Vec<([f64; 3], Matrix3<f64>)>,
+    /// Motions and forces of all bodies.
+    motion: Vec<[Vec3; 2]>,
+    force: Vec<[Vec3; 2]>,
+}
+
+impl Operator {
+    pub fn new(model: &Model, state: &State) -> Operator {
+        let bodies: Vec<_> = (0..model.body_count()).map(|b| mobility(model, state, b)).collect();
+        let n = bodies.len();
+        let still = vec![[Vec3::zeros(); 2]; n];
+        let mut operator = Operator { links: Vec::new(), bodies, motion: still.clone(), force: still };
+        operator.add_contacts(model, state);
+        operator.add_bonds(model, state);
+        operator
+    }
+
+    /// Number of contacts and bonds.
+    pub fn links(&self) -> usize {
+        self.links.len()
+    }
+
+    /// Length of its vectors.
+    pub fn len(&self) -> usize {
+        6 * self.bodies.len()
+    }
+
+    fn add_contacts(&mut self, model: &Model, state: &State) {
+        let links = &mut self.links;
+        measure::visit(model, state, 0.0, |c| {
+            // Two that are both held.
+            if !c.mass.is_finite() {
+                return;
+            }
+            let g = &c.geometry;
+            let law = model.laws.linearised(c.materials, c.mass, g.radius, g.overlap, c.history);
+            let other = if let Partner::Body(b) = c.partner { Some(b) } else { None };
+            let arm = |b: usize, shift: Vec3| g.point - shift - state.position(b);
+            let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
+            links.push(Link {
+                ends: [c.body, other.map_or(NOTHING, |b| b as u32)],
+                arms: [
+                    arm(c.body as usize, Vec3::zeros()),
+                    other.map_or_else(Vec3::zeros, |b| arm(b, c.shift)),
+                ],
+                normal: g.normal,
+                stiffness: [pair(law.normal, law.tangential), pair(law.twisting, law.rolling)],
+                damping: [pair(law.damping, law.tangential_damping), Pair::default()],
+                lag: 0.5 * law.damping / c.mass,
+                now: [Pair::default(); 2],
+            });
+        });
+    }
+
+    fn add_bonds(&mut self, model: &Model, state: &State) {
+        state.each_bond(|number, _| {
+            let bond = &model.bonds[number as usize];
+            let [a, b] = bond.ends.map(|e| state.position(e as usize));
+            let (k, length) = (&bond.values, (a - b).norm());
+            let normal = (a - b) / length;
+            let arm = |sign: f64| 0.5 * (length + sign * k[kernel::OFFSET]);
+            let values = |first: usize| {
+                let pair =
+                    |along: usize, across: usize| Pair { along: k[first + along], across: k[first + across] };
+                [pair(0, 1), pair(3, 2)]
+            };
+            self.links.push(Link {
+                ends: bond.ends,
+                arms: [normal * -arm(1.0), normal * arm(-1.0)],
+                normal,
+                stiffness: values(kernel::STIFFNESS),
+                damping: values(kernel::DAMPING),
+                lag: 0.0,
+                now: [Pair::default(); 2],
+            });
+        });
+    }
+
+    /// The operator for steps of `dt` [s].
+    pub fn at(&mut self, dt: f64) -> &mut Operator {
+        for link in &mut self.links {
+            let share = 1.0 / (1.0 + link.lag * dt).sqrt();
+            link.now = std::array::from_fn(|m| {
+                let (k, c) = (&link.stiffness[m], &link.damping[m]);
+                let at = |k: f64, c: f64| dt * dt * k + 2.0 * dt * c * share;
+                Pair { along: at(k.along, c.along), across: at(k.across, c.across) }
+            });
+        }
+        self
+    }
+
+    /// `out` = the operator times `v`; six numbers per body: displacement and rotation.
+    pub fn apply(&mut self, v: &[f64], out: &mut [f64]) {
+        let six = |v: &[f64]| [Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5])];
+        let scaled = |(root, turn): &([f64; 3], Matrix3<f64>), [x, w]: [Vec3; 2]| {
+            [Vec3::from_fn(|d, _| root[d] * x[d]), turn * w]
+        };
+        for ((motion, force), (body, v)) in
+            self.motion.iter_mut().zip(&mut self.force).zip(self.bodies.iter().zip(v.chunks_exact(6)))
+        {
+            *motion = scaled(body, six(v));
+            *force = [Vec3::zeros(); 2];
+        }
+        for link in &self.links {
+            let [a, b] = link.ends.map(|e| e as usize);
+            let at = |[v, w]: &[Vec3; 2], arm: &Vec3| v + w.cross(arm);
+            let mut slip = at(&self.motion[a], &link.arms[0]);
+            let mut turn = self.motion[a][1];
+            if link.ends[1] != NOTHING {
+                slip -= at(&self.motion[b], &link.arms[1]);
+                turn -= self.motion[b][1];
+            }
+            let (pull, couple) =
+                (link.now[0].apply(&link.normal, &slip), link.now[1].apply(&link.normal, &turn));
+            self.force[a][0] += pull;
+            self.force[a][1] += link.arms[0].cross(&pull) + couple;
+            if link.ends[1] != NOTHING {
+                self.force[b][0] -= pull;
+                self.force[b][1] -= link.arms[1].cross(&pull) + couple;
+            }
+        }
+        for ((force, body), out) in self.force.iter().zip(&self.bodies).zip(out.chunks_exact_mut(6)) {
+            let [x, w] = scaled(body, *force);
+            out[..3].copy_from_slice(x.as_slice());
+            out[3..].copy_from_slice(w.as_slice());
+        }
+    }
+}
+
+/// Square roots of a body's inverse mass by axis and of its inverse tensor of inertia, in world axes; zero where it is fixed.
+fn mobility(model: &Model, state: &State, body: usize) -> ([f64; 3], Matrix3<f64>) {
+    let b = model.body(body);
+    if !state.present(body) {
+        return ([0.0; 3], Matrix3::zeros());
+    }
+    let free = |d: usize| if b.fixed >> d & 1 == 1 { 0.0 } else { 1.0 };
+    let root = std::array::from_fn(|d| free(d) / b.mass.sqrt());
+    let local = Matrix3::from_diagonal(&b.inertia.map(|i| 1.0 / i.sqrt()));
+    let turned = if b.kind == Kind::Sphere {
+        local
+    } else {
+        let turn = state.orientation(model, body).to_rotation_matrix();
+        turn.matrix() * local * turn.matrix().transpose()
+    };
+    // Fixed rotations about world axes: their rows and columns are left out, which keeps the matrix symmetric.
+    (root, Matrix3::from_fn(|i, j| turned[(i, j)] * free(3 + i) * free(3 + j)))
+}

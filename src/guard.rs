@@ -1,0 +1,70 @@
+//! A fault of the program itself ends a command as every other failure does: in one line, with an exit code, with what was
+//! kept before.
+
+use crate::failure::Failure;
+use std::any::Any;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Mutex, PoisonError};
+
+/// Place of the first panic, until it is reported.
+static PLACE: Mutex<Option<String>> = Mutex::new(None);
+
+/// Notes where a panic is instead of printing it; with the variable `RUST_BACKTRACE` it is printed as well.
+pub fn install() {
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        let place = panic.location().map(ToString::to_string);
+        let mut noted = PLACE.lock().unwrap_or_else(PoisonError::into_inner);
+        if noted.is_none() {
+            *noted = place;
+        }
+        drop(noted);
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|v| v != "0") {
+            usual(panic);
+        }
+    }));
+}
+
+/// Carries `work` out; a panic in it, or in a thread that it waits for, is a failure with exit code 3.
+///
+/// # Errors
+/// Those of `work`, and a panic.
+pub fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
+        let place = PLACE.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let place = place.map_or(String::new(), |place| format!(" ({place})"));
+        let text = text(payload.as_ref());
+        Err(Failure::Numerical(format!(
+            "the program has failed: {text}{place}; please report it with the scene"
+        )))
+    })
+}
+
+/// What a panic says, in one line.
+fn text(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no reason given").lines().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_one_line_with_exit_code_3() {
+        let parts = [1, 2, 3];
+        let failure = guarded(|| Ok(parts[std::hint::black_box(3)])).unwrap_err();
+        assert_eq!(failure.code(), 3);
+        let text = failure.to_string();
+        assert!(text.starts_with("the program has failed: index out of bounds"), "{text}");
+        assert_eq!(text.lines().count(), 1);
+        // In a thread of the pool.
+        let failure = guarded(|| {
+            rayon::join(|| panic!("two\nlines"), || ());
+            Ok(())
+        });
+        assert!(failure.unwrap_err().to_string().starts_with("the program has failed: two lines"));
+        assert_eq!(guarded(|| Ok(7)).unwrap(), 7);
+    }
+}

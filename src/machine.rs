@@ -1,0 +1,28 @@
+//! What the system says of this machine and this process.
+
+use std::path::Path;
+
+/// Resident memory of this process now [bytes].
+pub(crate) fn resident() -> Option<u64> {
+    field(Path::new("/proc/self/status"), "VmRSS:")
+}
+
+/// Memory that the machine, or the group that this process belongs to, has free [bytes].
+pub(crate) fn available() -> Option<u64> {
+    let machine = field(Path::new("/proc/meminfo"), "MemAvailable:");
+    let number = |file: &str| std::fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
+    let group = number("/sys/fs/cgroup/memory.max")
+        .zip(number("/sys/fs/cgroup/memory.current"))
+        .map(|(max, current)| max.saturating_sub(current));
+    match (machine, group) {
+        (Some(m), Some(g)) => Some(m.min(g)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// The field of a status file that is given in kB [bytes].
+fn field(file: &Path, name: &str) -> Option<u64> {
+    let text = std::fs::read_to_string(file).ok()?;
+    let line = text.lines().find(|l| l.starts_with(name))?;
+    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
+}

@@ -1,0 +1,53 @@
+//! What is said beside results, on standard error.
+//!
+//! Nobody may listen: the terminal is gone, the pipe closed, the disk full. That ends no run, so nothing here fails;
+//! `println!` and `eprintln!`, which panic then, are refused by a lint in this crate.
+
+use std::io::Write;
+
+/// Longest message [characters].
+const LONGEST: usize = 8000;
+
+/// Says one line.
+pub fn say(line: &str) {
+    // In one piece, so that lines of several processes do not mix; what cannot be said is dropped.
+    let _ = std::io::stderr().write_all(format!("{}\n", shown(line, LONGEST)).as_bytes());
+}
+
+/// Says a remark.
+pub(crate) fn note(remark: &str) {
+    say(&format!("note: {remark}"));
+}
+
+/// A text of others, such as a token of a file, as it can be shown in one line: control characters escaped, and of more than
+/// `longest` characters the first ones with the number of all.
+pub(crate) fn shown(text: &str, longest: usize) -> String {
+    if text.len() <= longest && !text.contains(char::is_control) {
+        return text.to_string();
+    }
+    let mut out = String::new();
+    for (k, c) in text.chars().enumerate() {
+        if k == longest {
+            out += &format!("… ({} characters)", text.chars().count());
+            break;
+        }
+        match c.is_control() {
+            false => out.push(c),
+            true => out.extend(c.escape_default()),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_others_wrote_is_shown_without_control_characters_and_in_short() {
+        assert_eq!(shown("a b\nc", 10), "a b\\nc");
+        assert_eq!(shown("a\u{1b}[31m\u{7}\0é", 40), "a\\u{1b}[31m\\u{7}\\u{0}é");
+        assert_eq!(shown(&"x".repeat(200_000), 5), "xxxxx… (200000 characters)");
+        assert_eq!(shown("ééé", 3), "ééé");
+    }
+}

@@ -1,0 +1,107 @@
+//! Whole files, read with a look at them first: only regular files, whose size is known before, and none that the memory
+//! cannot hold.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::machine;
+
+/// Largest file that is written by hand or by `stone` [bytes]: scenes, stone libraries, tables.
+pub(crate) const LARGEST_TEXT: u64 = 64 << 20;
+/// Largest file of a mesh, a surface, a packing or a checkpoint [bytes].
+pub(crate) const LARGEST: u64 = 8 << 30;
+/// Part of the free memory that a file may take: what is made of it needs more than the file itself.
+const SHARE: u64 = 2;
+
+/// Why a file is not read.
+#[derive(Debug)]
+pub(crate) enum Refusal {
+    /// The system refuses.
+    System(io::Error),
+    /// It is no file that can be read as a whole: what was found and what was expected.
+    Unfit(String, String),
+}
+
+impl Refusal {
+    /// What was found and what was expected; `system` words an error of the system.
+    pub fn words(self, system: impl FnOnce(io::Error) -> String) -> (String, String) {
+        match self {
+            Refusal::System(error) => (system(error), "a readable file".into()),
+            Refusal::Unfit(found, expected) => (found, expected),
+        }
+    }
+}
+
+impl From<io::Error> for Refusal {
+    fn from(error: io::Error) -> Refusal {
+        Refusal::System(error)
+    }
+}
+
+/// The bytes of a regular file of at most `most` bytes.
+///
+/// # Errors
+/// The file is missing or unreadable, no regular file (a folder, a device, a pipe), or too large.
+pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
+    // Before it is opened: opening a pipe waits for its other end.
+    let found = fs::metadata(file)?;
+    if !found.is_file() {
+        let kind = if found.is_dir() { "a folder" } else { "a device or a pipe" };
+        return Err(Refusal::Unfit(kind.into(), "a regular file".into()));
+    }
+    let free = machine::available().map_or(most, |free| free / SHARE);
+    let (least, why) = if free < most { (free, ", what the free memory allows") } else { (most, "") };
+    let too_large =
+        |size: u64| Refusal::Unfit(format!("{size} bytes"), format!("at most {least} bytes{why}"));
+    if found.len() > least {
+        return Err(too_large(found.len()));
+    }
+    let mut bytes = Vec::with_capacity(found.len() as usize);
+    // A file of the system that has no size, or one that grows meanwhile, ends at the limit as well.
+    File::open(file)?.take(least + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > least {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
+
+/// The text of a regular file of at most [`LARGEST_TEXT`] bytes.
+///
+/// # Errors
+/// As [`bytes`]; it is not UTF-8.
+pub(crate) fn text(file: &Path) -> Result<String, Refusal> {
+    // The words of the standard library for the same fault.
+    let not_utf8 = |_| io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
+    Ok(String::from_utf8(bytes(file, LARGEST_TEXT)?).map_err(not_utf8)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(file: &Path, most: u64) -> String {
+        let (found, expected) = bytes(file, most).unwrap_err().words(|e| e.to_string());
+        format!("found {found}, expected {expected}")
+    }
+
+    #[test]
+    fn only_regular_files_of_a_size_that_fits_are_read() {
+        let file = std::env::temp_dir().join(format!("trackbed-source-{}", std::process::id()));
+        fs::write(&file, "12345").unwrap();
+        assert_eq!(bytes(&file, 5).unwrap(), b"12345");
+        assert_eq!(refused(&file, 4), "found 5 bytes, expected at most 4 bytes");
+        assert_eq!(refused(&std::env::temp_dir(), 4), "found a folder, expected a regular file");
+        fs::remove_file(&file).unwrap();
+        assert!(refused(&file, 4).ends_with(", expected a readable file"));
+        if cfg!(target_os = "linux") {
+            let device = refused(Path::new("/dev/zero"), LARGEST);
+            assert_eq!(device, "found a device or a pipe, expected a regular file");
+            // Says that it has no bytes, and has some.
+            assert_eq!(
+                refused(Path::new("/proc/self/status"), 10),
+                "found 11 bytes, expected at most 10 bytes"
+            );
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The lock of a folder of results: one command at a time writes there.
+//!
+//! The file `run.lock` holds the number of the process, and is locked by the system (advisory), which ends with the process
+//! however that ends: the file that a killed run leaves behind locks nobody out. It is removed at the end.
+
+use crate::failure::Failure;
+use crate::message;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// Name of the file.
+pub const FILE: &str = "run.lock";
+/// Times that a lock is tried to be taken, where another process removes its own meanwhile.
+const TRIES: usize = 20;
+
+/// A folder that nobody else writes to.
+#[derive(Debug)]
+pub struct Lock {
+    path: PathBuf,
+    file: File,
+    /// Folders that were made for it, the outer ones first.
+    made: Vec<PathBuf>,
+    /// Whether a run that was killed has left its lock.
+    pub left_behind: bool,
+}
+
+impl Lock {
+    /// Locks a folder, which is made where it is missing; goes again with the lock if nothing was put there.
+    ///
+    /// # Errors
+    /// Bad input: another process has it. It is no folder; what the system refuses.
+    pub fn take(dir: &Path) -> Result<Lock, Failure> {
+        if dir.exists() && !dir.is_dir() {
+            return Err(Failure::Other(format!("{}: found a file, expected a folder", dir.display())));
+        }
+        let system = |e: io::Error| Failure::Other(format!("{}: {e}", dir.display()));
+        let missing = dir.ancestors().take_while(|d| !d.as_os_str().is_empty() && !d.exists());
+        let mut made: Vec<PathBuf> = missing.map(PathBuf::from).collect();
+        made.reverse();
+        fs::create_dir_all(dir).map_err(system)?;
+        let path = dir.join(FILE);
+        let locked = lock(&path);
+        if !matches!(locked, Ok(Some(_))) {
+            remove(&made);
+        }
+        match locked.map_err(system)? {
+            Some((file, left_behind)) => Ok(Lock { path, file, made, left_behind }),
+            None => {
+                let process = fs::read_to_string(&path).unwrap_or_default();
+                let process = process.trim().parse::<u32>().map_or(String::new(), |n| format!(" {n}"));
+                let expected = "a folder that no other run writes to (--out)";
+                let dir = dir.display();
+                Err(Failure::Input(format!(
+                    "{dir}: found it in use by process{process}, expected {expected}"
+                )))
+            }
+        }
+    }
+}
+
+/// The locked file and whether it was there before; none where another process has it.
+fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
+    let own = format!("{}\n", std::process::id());
+    for _ in 0..TRIES {
+        let before = path.exists();
+        let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Ok(None),
+            // Some file systems know no locks.
+            Err(TryLockError::Error(e)) => {
+                message::note(&format!("{}: cannot be locked against other runs ({e})", path.display()));
+            }
+        }
+        file.set_len(0)?;
+        file.rewind()?;
+        file.write_all(own.as_bytes())?;
+        // The process that had it may have removed the file between its opening and its lock.
+        let mut there = String::new();
+        if File::open(path).and_then(|mut f| f.read_to_string(&mut there)).is_ok() && there == own {
+            return Ok(Some((file, before)));
+        }
+    }
+    Ok(None)
+}
+
+fn remove(made: &[PathBuf]) {
+    // Folders that hold something stay.
+    made.iter().rev().for_each(|dir| drop(fs::remove_dir(dir)));
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // While it is locked, so that no lock of another process is removed; what cannot be removed locks nobody out.
+        let _ = fs::remove_file(&self.path);
+        let _ = self.file.unlock();
+        remove(&self.made);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+
+    #[test]
+    fn one_at_a_time_and_what_is_dead_locks_nobody_out() {
+        let dir = folder("lock");
+        let inner = dir.join("a/b");
+        let lock = Lock::take(&inner).unwrap();
+        assert!(!lock.left_behind);
+        let error = Lock::take(&inner).unwrap_err();
+        let process = std::process::id();
+        assert_eq!(
+            (error.code(), error.to_string()),
+            (
+                2,
+                format!(
+                    "{}: found it in use by process {process}, expected a folder that no other run writes to (--out)",
+                    inner.display()
+                )
+            )
+        );
+        drop(lock);
+        assert!(!dir.join("a").exists(), "folders that were made for nothing go");
+        fs::create_dir_all(&inner).unwrap();
+        fs::write(inner.join(FILE), "1\n").unwrap();
+        assert!(Lock::take(&inner).unwrap().left_behind);
+        assert!(inner.is_dir() && !inner.join(FILE).exists());
+        fs::write(dir.join("file"), "").unwrap();
+        let error = Lock::take(&dir.join("file")).unwrap_err();
+        assert!(
+            error.code() == 1 && error.to_string().ends_with("found a file, expected a folder"),
+            "{error}"
+        );
+        fs::remove_dir_all(&dir).unwrap();
+    }
+}

@@ -1,0 +1,55 @@
+//! Input and surroundings that mean no good: files that never end, counts that fill the memory, outputs that nobody reads,
+//! signals, two runs in one folder, and scenes and files changed at random.
+#![cfg(unix)]
+
+mod files;
+mod folders;
+mod mutations;
+mod readers;
+mod streams;
+
+use super::support::Outcome;
+use std::ffi::OsStr;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Memory that a refusal may take [kB], address space of the threads' stacks included.
+const MEMORY: u32 = 2_000_000;
+
+/// Runs the program with little memory, for at most `seconds`; `None` where it takes longer.
+fn within<A: AsRef<OsStr>>(seconds: u64, arguments: impl IntoIterator<Item = A>) -> Option<Outcome> {
+    let mut child = Command::new("sh")
+        .args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_trackbed")])
+        .args(arguments)
+        .env("RAYON_NUM_THREADS", "2")
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // What it says is short, so that no pipe is full before it ends; a report of a run is.
+    let begun = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begun.elapsed() > Duration::from_secs(seconds) {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            return None;
+        }
+        sleep(Duration::from_millis(2));
+    }
+    let output = child.wait_with_output().unwrap();
+    Some(Outcome {
+        code: output.status.code().unwrap_or(-1),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    })
+}
+
+/// The program refuses these arguments at once, in one line that holds `words`.
+#[track_caller]
+fn refused<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>, words: &str) {
+    let outcome = within(20, arguments).expect("a refusal comes at once");
+    assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{outcome:?}");
+    assert!(outcome.stderr.contains(words), "no {words:?} in {:?}", outcome.stderr);
+}

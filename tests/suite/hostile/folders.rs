@@ -1,0 +1,227 @@
+//! Folders of results: one run at a time, nothing of worth replaced in silence, and every file of a mesh in the hash.
+
+use super::super::support::{
+    COUPLED, Folder, GRAINS, SOLID, json, repository, scene_folder, small_block, snapshot, trackbed,
+    trackbed_in, write_lists,
+};
+use super::refused;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use trackbed::run::{Interrupt, Options};
+
+fn arguments<'a>(scene: &'a Path, out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    let own = ["run", scene.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()];
+    [&own, more].concat()
+}
+
+/// H1: the second of two runs in one folder is refused, and what a killed one leaves refuses nobody.
+#[test]
+fn one_run_at_a_time_in_a_folder() {
+    let folder = Folder::new("locked");
+    let (scene, out) = (repository().join("inputs/grains/box.toml"), folder.join("out"));
+    let long = arguments(&scene, &out, &["--set", "time.end=60"]);
+    let mut first =
+        Command::new(env!("CARGO_BIN_EXE_trackbed")).args(&long).stderr(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while !out.join("history.csv").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60) && first.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(1));
+    }
+    let words =
+        format!("found it in use by process {}, expected a folder that no other run writes to", first.id());
+    for more in [&[][..], &["--force"]] {
+        refused(arguments(&scene, &out, more), &words);
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert!(out.join("run.lock").exists());
+    let short = ["--set", "grains.0.count=20", "--set", "time.end=0.01"];
+    trackbed(arguments(&scene, &out, &short)).good();
+    assert!(json(&out.join("summary.json"))["status"] == "done" && !out.join("run.lock").exists());
+}
+
+/// H1: a run without `--resume` does not take away what an interrupted one can go on from.
+#[test]
+fn a_checkpoint_is_not_replaced_in_silence() {
+    let folder = scene_folder("kept", COUPLED);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    let options = Options {
+        out: Some(out.clone()),
+        threads: Some(1),
+        quiet: true,
+        interrupt: Interrupt::after(20),
+        ..Options::default()
+    };
+    trackbed::run::run(&scene, &options).unwrap_err();
+    let before = snapshot(&out);
+    let words = "found the checkpoint of an interrupted run, expected --resume to go on with it, --force to begin anew";
+    refused(arguments(&scene, &out, &[]), words);
+    assert!(snapshot(&out) == before, "a refusal leaves everything");
+    trackbed(arguments(&scene, &out, &["--resume"])).good();
+    trackbed(arguments(&scene, &out, &[])).good();
+    // Both together say two things.
+    assert_eq!(trackbed(arguments(&scene, &out, &["--resume", "--force"])).code, 2);
+}
+
+/// H1: variants of a scene, and scenes of one name, share the default folder: the second is refused.
+#[test]
+fn results_of_another_scene_are_not_replaced_in_silence() {
+    let folder = Folder::new("variants");
+    folder.write("a/scene.toml", GRAINS);
+    folder.write("b/a.toml", &GRAINS.replace("two spheres", "two\\u0007others"));
+    let run =
+        |more: &[&str]| trackbed_in(folder.path(), [&["run", "a/scene.toml", "--quiet"], more].concat());
+    run(&[]).good();
+    // The same scene again has the same results.
+    run(&[]).good();
+    let before = snapshot(&folder.join("results"));
+    let words =
+        "results/a: found the results of another scene (\"two spheres\"), expected another --out, or --force";
+    for outcome in
+        [run(&["--set", "time.end=0.01"]), trackbed_in(folder.path(), ["run", "b/a.toml", "--quiet"])]
+    {
+        assert!(outcome.code == 2 && outcome.stderr.contains(words), "{outcome:?}");
+    }
+    assert!(snapshot(&folder.join("results")) == before);
+    trackbed_in(folder.path(), ["run", "b/a.toml", "--quiet", "--force"]).good();
+    let log = fs::read_to_string(folder.join("results/a/log.txt")).unwrap();
+    assert!(log.starts_with("two\\u{7}others\n"), "{log}");
+}
+
+/// H4: files of others in the folder stay.
+#[test]
+fn files_of_others_stay() {
+    let folder = scene_folder("foreign", SOLID);
+    let scene = folder.join("scene.toml");
+    for name in
+        ["history.csv", "nodes.csv", "results.pvd", "frames/mine.vtu", "packing_3.csv", "summary.json"]
+    {
+        let own = Folder::new("foreign_files");
+        own.write(name, "mine");
+        let words = format!("found {name}, which no run has left there, expected another --out, or --force");
+        refused(arguments(&scene, own.path(), &[]), &words);
+        assert_eq!(fs::read_to_string(own.join(name)).unwrap(), "mine");
+        assert_eq!(snapshot(own.path()).len(), 1);
+        trackbed(arguments(&scene, own.path(), &["--force"])).good();
+    }
+    // Other names are nobody's business.
+    let own = Folder::new("foreign_names");
+    own.write("notes.txt", "mine");
+    own.write("frames/notes.txt", "mine");
+    trackbed(arguments(&scene, own.path(), &[])).good();
+    assert_eq!(fs::read_to_string(own.join("notes.txt")).unwrap(), "mine");
+}
+
+/// H1: a mesh is not written over the file that it is read from.
+#[test]
+fn a_mesh_is_not_converted_onto_itself() {
+    let folder = scene_folder("onto_itself", SOLID);
+    let convert = |input: &str, output: &str| trackbed_in(folder.path(), ["mesh", "convert", input, output]);
+    convert(".", "mesh.inp").good();
+    let text = fs::read_to_string(folder.join("mesh.inp")).unwrap();
+    folder.write("outer.inp", "*INCLUDE, INPUT=mesh.inp\n");
+    std::os::unix::fs::symlink("mesh.inp", folder.join("link.inp")).unwrap();
+    let before = snapshot(folder.path());
+    for (input, output) in [
+        ("mesh.inp", "mesh.inp"),
+        ("mesh.inp", "./link.inp"),
+        ("link.inp", "mesh.inp"),
+        ("outer.inp", "mesh.inp"),
+        (".", "."),
+        ("scene.toml", "."),
+    ] {
+        let outcome = convert(input, output);
+        assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{input} {output}: {outcome:?}");
+        assert!(outcome.stderr.contains("which the mesh is read from, expected another file"), "{outcome:?}");
+    }
+    assert!(snapshot(folder.path()) == before);
+    convert("mesh.inp", "lists").good();
+    assert_eq!(text, fs::read_to_string(folder.join("mesh.inp")).unwrap());
+}
+
+/// H2: a mesh is all of its files.
+#[test]
+fn every_file_of_a_mesh_is_in_the_hash() {
+    let folder = Folder::new("mesh_hash");
+    fs::create_dir(folder.join("lists")).unwrap();
+    write_lists(&small_block(), &folder.join("lists"));
+    trackbed_in(folder.path(), ["mesh", "convert", "lists", "inner.inp"]).good();
+    folder.write("outer.inp", "** a mesh in another file\n*INCLUDE, INPUT=inner.inp\n");
+    let lists = "nodes = \"NODECOORD.DAT\"\nelements = \"ELEMENTNUM.DAT\"\nconstraints = \"DOF.DAT\"\n";
+    for (mesh, changed) in [("lists", "lists/NODECOORD.DAT"), ("outer.inp", "inner.inp")] {
+        let scene = folder.write("scene.toml", &COUPLED.replace(lists, &format!("mesh = \"{mesh}\"\n")));
+        let out = folder.join(mesh.trim_end_matches(".inp")).join("out");
+        let out = if mesh == "lists" { folder.join("out_of_lists") } else { out };
+        let options = Options {
+            out: Some(out.clone()),
+            threads: Some(1),
+            quiet: true,
+            interrupt: Interrupt::after(20),
+            ..Options::default()
+        };
+        assert_eq!(trackbed::run::run(&scene, &options).unwrap_err().code(), 130);
+        let text = fs::read_to_string(folder.join(changed)).unwrap();
+        fs::write(folder.join(changed), format!("{text}\n")).unwrap();
+        refused(arguments(&scene, &out, &["--resume"]), &format!("{changed} has changed"));
+        fs::write(folder.join(changed), text).unwrap();
+        trackbed(arguments(&scene, &out, &["--resume"])).good();
+    }
+}
+
+/// H3: one digit of the number of the form in one slot is damage of that slot, and no other form.
+#[test]
+fn a_flipped_digit_in_one_slot_leaves_the_other() {
+    let folder = scene_folder("flipped", COUPLED);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    for (steps, resume) in [(20, false), (10, true)] {
+        let options = Options {
+            out: Some(out.clone()),
+            threads: Some(1),
+            quiet: true,
+            resume,
+            interrupt: Interrupt::after(steps),
+            ..Options::default()
+        };
+        trackbed::run::run(&scene, &options).unwrap_err();
+    }
+    let slot = out.join("checkpoint/b.checkpoint");
+    let mut bytes = fs::read(&slot).unwrap();
+    let digit = b"trackbed checkpoint ".len();
+    bytes[digit] ^= 4;
+    fs::write(&slot, bytes).unwrap();
+    let outcome = trackbed(arguments(&scene, &out, &["--resume"])).good();
+    let remark = "b.checkpoint is damaged: its checksum is not that of its content; the run goes on from";
+    assert!(outcome.stderr.starts_with("note: ") && outcome.stderr.contains(remark), "{outcome:?}");
+}
+
+/// G5: what a run would refuse after its bed has settled is refused at once, by `check` too.
+#[test]
+fn check_finds_what_would_show_after_settling() {
+    let folder = Folder::new("beforehand");
+    let bonds = "[[bond]]\nname = \"glue\"\ngap = 0.001\nbetween = [\"pair\", \"pair\"]\n\
+                 direct = { stiffness = [1e6, 1e6, 1e3, 1e3] }\n";
+    let one = GRAINS.replace(", [0.01, 0.0, 0.152, 0.05]]", "]");
+    for (name, text) in [
+        ("apart", GRAINS.replace("0.152", "0.352")),
+        ("alone", format!("{one}\n[deposition]\nmax_time = 0.1\nsettled_speed = 0.01\n")),
+    ] {
+        let scene = folder.write(&format!("{name}.toml"), &format!("{text}\n{bonds}"));
+        let out = folder.join(name);
+        let words = "bond.0: found no pair for \"glue\", expected a bond that joins grains";
+        refused([Path::new("check"), &scene], words);
+        refused(arguments(&scene, &out, &[]), words);
+        assert!(!out.exists());
+    }
+    let lateral = repository().join("inputs/ballast/lateral.toml");
+    let set = ["--set", "track.push.stiffness=1e14", "--set", "time.grain_step=2e-6"];
+    refused(
+        ["check", lateral.to_str().unwrap(), set[0], set[1], set[2], set[3]],
+        "track.push.stiffness: found 1.000e14 N/m",
+    );
+    let begun = Instant::now();
+    refused(arguments(&lateral, &folder.join("lateral"), &set), "track.push.stiffness: found 1.000e14 N/m");
+    assert!(begun.elapsed() < Duration::from_secs(10) && !folder.join("lateral").exists());
+}

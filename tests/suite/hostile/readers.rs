@@ -1,0 +1,244 @@
+//! Files of every form with bytes, numbers and lines changed at random: a reader returns a mesh or one error, soon and in little
+//! memory. The same functions are the targets of `fuzz/`, whose kept inputs are read here too.
+
+use super::super::support::{COUPLED, Folder, PLASTIC, repository, small_block};
+use std::collections::BTreeMap;
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use trackbed::read::{MeshFile, read_mesh_file, read_surface};
+use trackbed::write::{MeshOptions, write_mesh_file};
+use trackbed_fem::mesh::Constraint;
+
+/// Time for a file of up to a megabyte.
+const TIME: Duration = Duration::from_secs(1);
+/// Memory that all readers together may take more than before [bytes].
+const MEMORY: u64 = 400 << 20;
+
+/// What takes the place of a number of a text file.
+const NUMBERS: [&str; 14] = [
+    "0",
+    "-1",
+    "1",
+    "7",
+    "4294967295",
+    "4294967296",
+    "99999999999999999999",
+    "1e300",
+    "-1e300",
+    "1e-320",
+    "nan",
+    "inf",
+    "1,5",
+    "",
+];
+
+#[path = "../../../fuzz/targets.rs"]
+mod targets;
+
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % n.max(1) as u64) as usize
+    }
+}
+
+/// Changes bytes, a number, or lines.
+fn change(bytes: &mut Vec<u8>, chance: &mut Chance) {
+    let at = chance.below(bytes.len());
+    let to = (at + 1 + chance.below(40)).min(bytes.len());
+    match chance.below(9) {
+        0 => bytes.truncate(at),
+        1 => bytes.iter_mut().skip(at).take(1).for_each(|b| *b ^= 1 << chance.below(8)),
+        2 => bytes.iter_mut().skip(at).take(1).for_each(|b| *b = chance.below(256) as u8),
+        3 => drop(bytes.drain(at..to)),
+        4 => {
+            let piece = bytes[at..to].to_vec();
+            let place = chance.below(bytes.len());
+            bytes.splice(place..place, piece);
+        }
+        5 | 6 => number(bytes, at, NUMBERS[chance.below(NUMBERS.len())]),
+        _ => lines(bytes, chance),
+    }
+}
+
+/// Replaces the number at or behind a place.
+fn number(bytes: &mut Vec<u8>, at: usize, by: &str) {
+    let is_part = |b: &u8| b.is_ascii_digit() || matches!(b, b'.' | b'-' | b'+' | b'e' | b'E');
+    let Some(first) = bytes[at..].iter().position(u8::is_ascii_digit).map(|n| at + n) else { return };
+    let end = bytes[first..].iter().position(|b| !is_part(b)).map_or(bytes.len(), |n| first + n);
+    bytes.splice(first..end, by.bytes());
+}
+
+/// Takes a line away, doubles it, or changes it over with another.
+fn lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
+    let mut all: Vec<Vec<u8>> = bytes.split(|b| *b == b'\n').map(<[u8]>::to_vec).collect();
+    let (a, b) = (chance.below(all.len()), chance.below(all.len()));
+    match chance.below(3) {
+        0 => drop(all.remove(a)),
+        1 => all.insert(b, all[a].clone()),
+        _ => all.swap(a, b),
+    }
+    *bytes = all.join(&b'\n');
+}
+
+/// A mesh with sets, constraints and constants.
+fn mesh() -> MeshFile {
+    let mesh = small_block();
+    let constraints = (0..9).map(|node| Constraint { node, direction: 2, value: 0.0 }).collect();
+    MeshFile {
+        node_sets: BTreeMap::from([("BASE".to_string(), (0..9).collect())]),
+        element_sets: BTreeMap::from([("ALL".to_string(), (0..8).collect())]),
+        mesh,
+        constraints,
+        ..MeshFile::default()
+    }
+}
+
+const TRIANGLE: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+
+/// A good file of every form, and the one of the folder that is changed.
+fn good(folder: &Folder) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for (name, msh2) in [
+        ("a.cdb", false),
+        ("two.msh", true),
+        ("four.msh", false),
+        ("a.inp", false),
+        ("a.vtu", false),
+        ("a.vtk", false),
+        ("lists", false),
+    ] {
+        write_mesh_file(&folder.join(name), &mesh(), MeshOptions { msh2 }).unwrap();
+        files.push(folder.join(name));
+    }
+    let lists = files.pop().unwrap();
+    files.extend(["NODECOORD.DAT", "ELEMENTNUM.DAT", "DOF.DAT"].map(|name| lists.join(name)));
+    files.push(folder.write("a.stl", TRIANGLE));
+    files.push(
+        folder
+            .write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1/1/1 2//2 4/4\nf -1 -2 -3 -4\n"),
+    );
+    files.push(folder.write("a.tri", "4 2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 2 3\n1 2 4\n"));
+    let mut binary = vec![0_u8; 80];
+    binary.extend(2_u32.to_le_bytes());
+    binary.extend([7_u8; 100]);
+    fs::write(folder.join("b.stl"), binary).unwrap();
+    files.push(folder.join("b.stl"));
+    files
+}
+
+/// Reads a mesh or a surface, whatever comes of it.
+fn read(file: &Path) {
+    let ending = file.extension().unwrap().to_str().unwrap();
+    match ending {
+        "stl" | "obj" | "tri" => drop(read_surface(file)),
+        "DAT" => drop(read_mesh_file(file.parent().unwrap())),
+        _ => drop(read_mesh_file(file)),
+    }
+}
+
+/// Calls `target`; a panic or a long time is a fault with the name of the file that is kept.
+fn judged(name: &str, bytes: &[u8], target: impl Fn(), faults: &mut Vec<String>) {
+    let begun = Instant::now();
+    let panicked = catch_unwind(AssertUnwindSafe(target)).is_err();
+    let took = begun.elapsed();
+    if panicked || took > TIME {
+        let kept = std::env::temp_dir().join(format!("trackbed_fault_{}_{name}", faults.len()));
+        fs::write(&kept, bytes).unwrap();
+        faults.push(format!(
+            "{}: {}",
+            kept.display(),
+            if panicked { "panic".into() } else { format!("{took:?}") }
+        ));
+    }
+}
+
+fn changed_files(count: usize, seed: u64) {
+    let folder = Folder::new("changed_files");
+    let files = good(&folder);
+    files.iter().for_each(|file| read(file));
+    let before = trackbed::run::peak_memory().unwrap_or(0);
+    let (mut chance, mut faults) = (Chance(seed), Vec::new());
+    for file in &files {
+        let whole = fs::read(file).unwrap();
+        for _ in 0..count {
+            let mut bytes = whole.clone();
+            (0..=chance.below(4)).for_each(|_| change(&mut bytes, &mut chance));
+            fs::write(file, &bytes).unwrap();
+            let name = file.file_name().unwrap().to_str().unwrap();
+            judged(name, &bytes, || read(file), &mut faults);
+        }
+        fs::write(file, whole).unwrap();
+    }
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
+    let took = trackbed::run::peak_memory().unwrap_or(0) - before;
+    assert!(took < MEMORY, "{took} bytes for small files");
+}
+
+#[test]
+fn changed_mesh_and_surface_files_are_read_or_refused() {
+    changed_files(150, 3);
+}
+
+fn changed_texts(count: usize, seed: u64) {
+    let (mut chance, mut faults) = (Chance(seed), Vec::new());
+    for whole in [PLASTIC, COUPLED] {
+        for _ in 0..count {
+            let mut bytes = whole.as_bytes().to_vec();
+            (0..=chance.below(3)).for_each(|_| change(&mut bytes, &mut chance));
+            let mut set = b"solid.material.0.young=[1, \"2 MPa\", { a = 1 }]".to_vec();
+            change(&mut set, &mut chance);
+            bytes.push(b'\n');
+            bytes.extend(set);
+            judged("scene.toml", &bytes, || targets::scene(&bytes), &mut faults);
+        }
+    }
+    // As deep as it goes.
+    for open in ["[", "{ a = ", "[[a.", "a."] {
+        let deep = format!("a = {}", open.repeat(50_000));
+        judged("deep.toml", deep.as_bytes(), || targets::scene(deep.as_bytes()), &mut faults);
+    }
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn changed_scenes_and_overrides_are_parsed_or_refused() {
+    changed_texts(300, 4);
+}
+
+/// `TRACKBED_SEED` chooses other changes.
+#[test]
+#[ignore = "half a million changes, 10 min"]
+fn many_changed_files() {
+    let seed = std::env::var("TRACKBED_SEED").map_or(11, |v| v.parse().unwrap());
+    changed_files(30_000, seed);
+    changed_texts(30_000, seed);
+}
+
+/// Inputs that once were faults, and one of every form.
+#[test]
+fn kept_inputs_of_the_fuzz_targets_are_read_or_refused() {
+    let mut count = 0;
+    let mut faults = Vec::new();
+    for target in fs::read_dir(repository().join("fuzz/corpus")).unwrap() {
+        let target = target.unwrap().path();
+        for file in fs::read_dir(&target).unwrap() {
+            let file = file.unwrap().path();
+            let bytes = fs::read(&file).unwrap();
+            let name = file.file_name().unwrap().to_str().unwrap();
+            let call = match target.file_name().unwrap().to_str().unwrap() {
+                "mesh" => targets::mesh,
+                "surface" => targets::surface,
+                _ => targets::scene,
+            };
+            judged(name, &bytes, || call(&bytes), &mut faults);
+            count += 1;
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(count >= 8, "{count} inputs");
+}
