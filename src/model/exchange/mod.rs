@@ -130,7 +130,7 @@ impl CouplingPart {
     /// Refuses windows that the program was to choose and that one step of the grains makes too long already.
     ///
     /// # Errors
-    /// [`BEYOND`] times a limit, or more.
+    /// `BEYOND` times a limit, or more.
     pub fn refuse(
         &self,
         document: &Document,
