@@ -1,7 +1,8 @@
 //! A law of contact put together from its parts: normal force and dashpot, tangential spring and Coulomb friction, rolling
 //! and twisting resistance, adhesion. What they have in common is written here once.
 //!
-//! Second order in time in spite of the leapfrog's velocities at half steps. The dashpot sees the approach speed of half a
+//! What a contact loses is right to second order in spite of the leapfrog's velocities at half steps (the phase of a damped
+//! swing to first). The dashpot sees the approach speed of half a
 //! step ago, which acts as if the mass were smaller by the factor 1 − C dt/2m*, so that the damping ratio is larger by its
 //! root; with C/√(1 + C dt/2m*) in place of C it is what it should be, and so is the restitution. (The speed extrapolated to
 //! the full step, 3/2 ḋ(n−½) − 1/2 ḋ(n−3/2), takes steps up to a half shorter and errs five times as much; a speed at the full
