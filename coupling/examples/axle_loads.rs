@@ -15,7 +15,7 @@ fn main() {
     let spread = AxleSpread::Winkler(winkler);
     let pass = Pass::over(&[0.0], 20.0, axles, spread, Vec::new());
     let waveform = Waveform::Pass(pass);
-    let load = CyclicLoad { waveform, cycles: 1, rest: 0.0, ramp: 0.0, places: vec![0.0] };
+    let load = CyclicLoad { waveform, cycles: 1, rest: 0.0, ramp: 0.0, seating: None, places: vec![0.0] };
     for k in 0..=20 {
         let t = load.end() * f64::from(k) / 20.0;
         println!("t = {t:.3} s: {:6.2} kN on the sleeper", 1e-3 * load.on(0, t));

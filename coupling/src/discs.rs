@@ -121,7 +121,7 @@ fn disc(
     for (ring, (share, weight)) in RINGS.iter().enumerate() {
         for pair in 0..PAIRS {
             let angle = std::f64::consts::PI * (pair as f64 + 0.5 * (ring % 2) as f64) / PAIRS as f64;
-            let (s, c) = angle.sin_cos();
+            let (s, c) = libm::sincos(angle);
             let reach = radius * share.sqrt();
             let offset = [0, 1, 2].map(|d| reach * (c * along[d] + s * squeeze * across[d]));
             let both = |part: f64| {

@@ -67,7 +67,7 @@ impl Stored {
 /// Energy that has come in and gone since the start of the run [J].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Spent {
-    /// Work of applied loads on grains and sleeper.
+    /// Work of applied loads on grains and sleeper, and of body forces on grains, gravity excepted.
     pub applied_work: f64,
     /// Work of moving walls, and of what holds motions fixed, on grains; and the energy that grains brought in through
     /// inlets less what they took out.

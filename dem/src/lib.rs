@@ -6,11 +6,12 @@
 //! Folders are layers; each imports from those above it in this list only: `base` (vectors, errors, the ledger), `lanes`
 //! (several numbers at a time), `shape`, `spatial` (trees, cells, surfaces, how two shapes touch), `law` (laws of
 //! contact), `bodies` (arrays of motion), `pairs` (storage of contacts), `contact` (the loops over contacts),
-//! `integrate`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `stability` (the step that contacts
+//! `integrate`, `body_force`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `stability` (the step that contacts
 //! allow), `insert`.
 
 mod base;
 mod bodies;
+pub mod body_force;
 pub mod bond;
 mod contact;
 mod engine;
@@ -29,12 +30,14 @@ pub mod wall;
 
 pub use base::{Vec3, error, ledger, random};
 pub use bodies::input::BodyInput;
+pub use engine::back_end::BackEnd;
 pub use engine::{input, model, state, step, timestep, work};
 pub use insert::flow;
 pub use law::material;
 pub use shape::plane::{Plane, PlaneMotion};
 pub use spatial::{bvh, detect, distance, surface};
 
+pub use body_force::{BodyForce, Wind};
 pub use error::{ModelError, Partner, StepError};
 pub use input::{AppliedForce, LocalDamping, ModelInput, TimeStep};
 pub use law::material::{Material, PairOverride};

@@ -128,6 +128,9 @@ impl Job {
 /// Refuses keys that would have no effect beside the other parts of the scene.
 fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError> {
     if scene.grains.is_empty() {
+        if scene.wind.is_some() {
+            return Err(document.error("wind", "a table", "no such table without [[grains]]"));
+        }
         let time = &scene.time;
         for (key, present) in [
             ("time.grain_step", time.grain_step.is_some()),

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::model::grains::DepositionPlan;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
-use trackbed_dem::BodyInput;
+use trackbed_dem::{BackEnd, BodyInput};
 
 /// Time that bodies need to get going before slowness counts as rest [s].
 const START: f64 = 0.02;
@@ -41,13 +41,14 @@ impl<'a> Bed<'a> {
     /// Overlaps or speeds without meaning; an interrupt.
     pub fn step(&mut self, applied: &[dem::AppliedForce]) -> Result<(), Failure> {
         dem::stability::follow(&self.model, &mut self.state);
+        let Bed { model, state, work, .. } = self;
         match self.surface {
-            Some(s) => dem::step(&self.model, &mut self.state, &mut self.work, s, applied),
-            None => {
-                dem::step(&self.model, &mut self.state, &mut self.work, &dem::surface::NoSurface, applied)
-            }
+            Some(s) => work.step(model, state, s, applied),
+            None => work.step(model, state, &dem::surface::NoSurface, applied),
         }
         .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
+        // A bed is looked at after every step.
+        self.work.download(&self.model, &mut self.state);
         self.checkpoints.check(self.doing)
     }
 

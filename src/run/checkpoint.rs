@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 /// First line of a checkpoint, with the number of its form.
 const MAGIC: &str = "trackbed checkpoint ";
 /// The form that this program writes and reads.
-const FORM: u32 = 4;
+const FORM: u32 = 5;
 /// Bytes of the checksum at the end.
 const CHECKSUM: usize = 8;
 /// Bytes that are gathered before they are summed and written.

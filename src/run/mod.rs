@@ -199,7 +199,10 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.model.predicted_memory = Some(prediction.total());
         summary.sources.extend(sources::solid(solid, run.job.grains.is_some()));
     }
-    summary.sources.extend(run.job.grains.iter().flat_map(|part| part.materials.sources()));
+    if let Some(part) = &run.job.grains {
+        summary.sources.extend(part.materials.sources());
+        summary.sources.extend(part.body_forces.iter().map(|f| f.source()));
+    }
     Ok(())
 }
 

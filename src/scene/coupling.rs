@@ -16,7 +16,7 @@ pub struct Coupling {
     /// Order of the exchange.
     #[serde(default)]
     pub scheme: SchemeName,
-    /// Largest relative change of the surface's motion between passes of the iterated scheme; default 1e-6.
+    /// Largest relative change of the surface's motion between passes of the iterated scheme; default 1e-4.
     pub tolerance: Option<f64>,
     /// Passes of the iterated scheme at most; default 20.
     pub max_passes: Option<u32>,

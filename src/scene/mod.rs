@@ -20,11 +20,13 @@ pub mod solid;
 pub mod track;
 pub mod units;
 pub mod walls;
+mod wind;
 
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 pub use output::{Chains, Output};
+pub use wind::Wind;
 
 use serde::Deserialize;
 use units::{Acceleration, Length, Quantity, Time, Velocity};
@@ -56,6 +58,8 @@ pub struct Scene {
     /// Bonds between grains.
     #[serde(default)]
     pub bond: Vec<bonds::BondTable>,
+    /// Air or another fluid that streams past grains.
+    pub wind: Option<Wind>,
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,

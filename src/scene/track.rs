@@ -157,6 +157,8 @@ pub struct SeatLoad {
     /// Time for the sleepers to come to rest under their own weight before any load [s]; default 0.1 s.
     #[serde(default = "tenth")]
     pub rest: Quantity<Time>,
+    /// Pulses that press the sleepers into the bed before the first cycle, and do not count.
+    pub seating: Option<SeatingTable>,
     /// Time over which the load of the first instant, and the rail's weight, are brought on [s]; default 0.1 s.
     #[serde(default = "tenth")]
     pub ramp: Quantity<Time>,
@@ -168,6 +170,18 @@ pub struct SeatLoad {
 
 fn tenth() -> Quantity<Time> {
     Quantity::new(0.1)
+}
+
+/// `[track.load.seating]`: pulses from the load of the first instant to `maximum` and back.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SeatingTable {
+    /// Number of pulses.
+    pub cycles: u32,
+    /// Largest downward force on each sleeper [N].
+    pub maximum: Quantity<Force>,
+    /// Pulses per second [Hz].
+    pub frequency: Quantity<Frequency>,
 }
 
 /// Shape of one cycle.

@@ -100,3 +100,27 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
         }
     }
 }
+
+/// A fall through still air: kinetic energy of v = v∞ tanh(g t/v∞), v∞² = 8 r g ρₛ/(3 C ρ), within 0.2 %; the drag's work is in
+/// the account.
+#[test]
+fn a_stone_falls_through_air_as_the_closed_form_says() {
+    let folder = Folder::new("wind");
+    run(&repository().join("inputs/verify/wind.toml"), &folder.join("out"), &["output.vtk=false"]).good();
+    let history = Table::read(&folder.join("out/history.csv"));
+    let (r, density) = (0.01575_f64, 2700.0);
+    let mass = density * 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
+    let end = (8.0 * r * 9.81 * density / (3.0 * 0.9 * 1.225)).sqrt();
+    let (time, kinetic) = (history.column("time"), history.column("grains_kinetic"));
+    let mut seen = 0;
+    for (t, found) in time.iter().zip(kinetic).filter(|(t, _)| **t > 0.5) {
+        let v = end * (9.81 * t / end).tanh();
+        assert!((found / (0.5 * mass * v * v) - 1.0).abs() < 4e-3, "{found} at {t} s for {v} m/s");
+        seen += 1;
+    }
+    assert!(seen > 100);
+    let summary = json(&folder.join("out/summary.json"));
+    assert!(summary["energy"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
+    assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 1e-9);
+    assert!(sources(&summary).iter().any(|s| s.contains("Haider")));
+}

@@ -9,7 +9,7 @@ use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
 /// Work of each kind of load on the window's displacement, which the solver does not split, and what was dissipated.
-pub(super) fn book(model: &Model<'_>, state: &mut State, work: &Work, step: &StepAudit) {
+pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step: &StepAudit) {
     for (i, u) in state.solid.u.iter().enumerate() {
         let du = u - work.before.u[i];
         state.spent.contacts_on_solid += work.contact_load[i] * du;
@@ -67,7 +67,7 @@ pub fn spent(state: &State) -> Spent {
 pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
-        applied_work: ledger.work_applied,
+        applied_work: ledger.work_applied + ledger.work_body_forces,
         // Grains put back at the upper end of a periodic slope have their potential energy anew, and those that come in
         // bring all of theirs.
         wall_work: ledger.work_walls

@@ -38,10 +38,10 @@ pub struct State {
     pub(super) held: Vec<Held>,
 }
 
-/// Scratch memory and factors.
-pub struct Work {
-    /// Scratch of the grains.
-    pub grains: dem::Work,
+/// Scratch memory and factors; `B` computes the steps of the grains.
+pub struct Work<B = dem::Work> {
+    /// What computes the steps of the grains.
+    pub grains: B,
     /// The surface that grains touch.
     pub surface: SolidSurface,
     pub(super) transfer: Transfer,
@@ -79,14 +79,28 @@ impl State {
 }
 
 impl Work {
-    /// Scratch memory and the factor of the solid's window matrix.
+    /// Scratch memory and the factor of the solid's window matrix; the grains' steps are computed by [`dem::Work`].
+    ///
+    /// # Errors
+    /// As [`Work::with_back_end`].
+    pub fn new(model: &Model<'_>, state: &State, surface: SolidSurface) -> Result<Work, SolveError> {
+        Work::with_back_end(model, state, surface)
+    }
+}
+
+impl<B: dem::BackEnd> Work<B> {
+    /// Scratch memory, the factor of the solid's window matrix, and what computes the grains' steps.
     ///
     /// # Errors
     /// The matrix cannot be factored, or the solid is plastic and the scheme needs a constant matrix.
-    pub fn new(model: &Model<'_>, state: &State, surface: SolidSurface) -> Result<Work, SolveError> {
+    pub fn with_back_end(
+        model: &Model<'_>,
+        state: &State,
+        surface: SolidSurface,
+    ) -> Result<Work<B>, SolveError> {
         let n = 3 * model.solid.mesh().node_count();
         Ok(Work {
-            grains: dem::Work::new(&model.grains, &state.grains),
+            grains: B::new(&model.grains, &state.grains),
             transfer: Transfer::new(&surface),
             surface,
             solver: SolidSolver::new(model, state.solid.points.is_empty())?,

@@ -8,7 +8,7 @@ use super::stiffened::Held;
 use crate::scheme::Scheme;
 use crate::surface::Motion;
 use trackbed_dem as dem;
-use trackbed_dem::stability;
+use trackbed_dem::{BackEnd, stability};
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
@@ -21,10 +21,10 @@ const STILL: f64 = 1e-12;
 ///
 /// # Errors
 /// The grains or the solid cannot make the step; `state` is then not fit to go on from.
-pub fn step(
+pub fn step<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
-    work: &mut Work,
+    work: &mut Work<B>,
     mut applied: impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
     solid_load: impl Fn(f64, &mut [f64]),
 ) -> Result<(), StepError> {
@@ -56,10 +56,10 @@ pub fn step(
 }
 
 /// A window of the stiffened scheme.
-fn stiffened(
+fn stiffened<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
-    work: &mut Work,
+    work: &mut Work<B>,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<StepAudit, StepError> {
     // The contacts of the start are not known: the first window goes on with the present velocity.
@@ -74,10 +74,10 @@ fn stiffened(
 }
 
 /// A window of the lagged scheme, with its account.
-fn lagged(
+fn lagged<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
-    work: &mut Work,
+    work: &mut Work<B>,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<(), StepError> {
     let n = work.contact_load.len();
@@ -99,10 +99,10 @@ fn lagged(
 
 /// A window of the iterated scheme: passes until the velocity of the surface is that of the solid, `most` at most. A window
 /// that does not come there ends with the motion of the pass that came nearest. Returns the passes made.
-fn iterated(
+fn iterated<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
-    work: &mut Work,
+    work: &mut Work<B>,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
     tolerance: f64,
     most: u32,
@@ -142,7 +142,7 @@ fn iterated(
         copy(&work.before, &mut state.solid);
         state.solid.points.clone_from(&work.before.points);
         (state.grains, state.audit) = start.clone();
-        work.grains.follow(&model.grains, &state.grains);
+        work.grains.upload(&model.grains, &state.grains);
         passes += 1;
     }
 }
@@ -157,14 +157,14 @@ fn copy(from: &fem::state::State, to: &mut fem::state::State) {
 }
 
 /// The mean velocity of the window just made by the solid.
-fn mean_velocity(solid: &fem::state::State, work: &mut Work, window: f64) {
+fn mean_velocity<B>(solid: &fem::state::State, work: &mut Work<B>, window: f64) {
     for ((rate, u), before) in work.rate.iter_mut().zip(&solid.u).zip(&work.before.u) {
         *rate = (u - before) / window;
     }
 }
 
 /// Puts the surface at the start of the window, to move with [`Work::rate`].
-fn begin(model: &Model<'_>, state: &State, work: &mut Work) -> Result<(), StepError> {
+fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), StepError> {
     let velocity =
         (model.scheme == Scheme::Lagged).then_some([work.before.v.as_slice(), state.solid.v.as_slice()]);
     let motion = Motion {
@@ -186,10 +186,10 @@ fn begin(model: &Model<'_>, state: &State, work: &mut Work) -> Result<(), StepEr
 }
 
 /// The grains' steps of a window; their mean load on the solid is then in [`Work::contact_load`].
-fn grains(
+fn grains<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
-    work: &mut Work,
+    work: &mut Work<B>,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<(), StepError> {
     let substeps = stability::divide(&model.grains, &mut state.grains, model.window(), model.substeps);
@@ -202,9 +202,10 @@ fn grains(
         applied(state.grains.time, &state.grains, &mut work.applied);
         // The solid gets what the grains get, also in the step in which their length changes.
         let kick = state.grains.kick();
-        dem::step(&model.grains, &mut state.grains, &mut work.grains, &work.surface, &work.applied)?;
+        work.grains.step(&model.grains, &mut state.grains, &work.surface, &work.applied)?;
         work.transfer.add(&work.surface, work.grains.surface_contacts(), kick, &mut state.audit);
     }
+    work.grains.download(&model.grains, &mut state.grains);
     work.contact_load.fill(0.0);
     work.transfer.add_mean_load(&work.surface, model.window(), &mut work.contact_load);
     work.transfer.audit_spread(&work.surface, model.window(), &work.contact_load, &mut state.audit);
@@ -212,7 +213,7 @@ fn grains(
 }
 
 /// The solid's step of a window, under [`Work::contact_load`], the other loads and its weight.
-fn solid(model: &Model<'_>, state: &mut State, work: &mut Work) -> Result<StepAudit, StepError> {
+fn solid<B>(model: &Model<'_>, state: &mut State, work: &mut Work<B>) -> Result<StepAudit, StepError> {
     let loads = work.contact_load.iter().zip(&work.other_load).zip(&model.dead_load);
     for (load, ((contact, other), dead)) in work.load.iter_mut().zip(loads) {
         *load = other + (contact + dead);
@@ -224,7 +225,7 @@ fn solid(model: &Model<'_>, state: &mut State, work: &mut Work) -> Result<StepAu
 }
 
 /// The velocity that the surface goes on with in the stiffened scheme.
-fn predict(model: &Model<'_>, state: &State, work: &mut Work) -> Result<u32, StepError> {
+fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u32, StepError> {
     let time = state.solid.time;
     let SolidSolver::Elastic(solver) = &mut work.solver else {
         return Err(StepError::Solid { time, source: not_constant(model) });
@@ -250,10 +251,10 @@ fn predict(model: &Model<'_>, state: &State, work: &mut Work) -> Result<u32, Ste
 ///
 /// # Errors
 /// A grain that cannot leave or come.
-pub fn exchange(
+pub fn exchange<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
-    work: &mut Work,
+    work: &mut Work<B>,
     leave: &[usize],
     arrive: &[dem::flow::Arrival],
 ) -> Result<(), dem::flow::FlowError> {

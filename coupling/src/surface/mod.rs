@@ -122,7 +122,7 @@ impl SolidSurface {
             .filter(|f| {
                 let area = twice_the_area(f.shape, |k| mesh.coordinates[f.nodes[k] as usize]);
                 let norm = face::dot(area, area).sqrt();
-                face::dot(area, direction) >= max_angle.cos() * norm * length
+                face::dot(area, direction) >= libm::cos(max_angle) * norm * length
             })
             .collect()
     }

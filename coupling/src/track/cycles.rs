@@ -15,6 +15,8 @@ pub struct Cycle {
     pub simulated: u32,
     /// Lowering of the sleeper since the first cycle began, at the end of this cycle [m].
     pub settlement: f64,
+    /// The same since seating began [m].
+    pub total_settlement: f64,
     /// Increase of settlement per cycle since the last row [m].
     pub rate: f64,
     /// Rise of the sleeper from its lowest place in this cycle to the cycle's end [m].
@@ -46,6 +48,9 @@ pub struct BedColumn {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CycleRecorder {
     begin: f64,
+    /// When the pulses that seat the sleeper begin [s], and its height then [m].
+    seating_begins: f64,
+    unseated: f64,
     period: f64,
     total: u32,
     /// Loads between which the stiffness of the bed is evaluated [N].
@@ -83,6 +88,8 @@ impl CycleRecorder {
     pub fn new(load: &CyclicLoad, between: [f64; 2], column: BedColumn) -> CycleRecorder {
         CycleRecorder {
             begin: load.cycles_begin(),
+            seating_begins: load.seating_begins(),
+            unseated: 0.0,
             period: load.period(),
             total: load.cycles(),
             between,
@@ -121,6 +128,11 @@ impl CycleRecorder {
         self.simulated
     }
 
+    /// Lowering of the sleeper by the pulses before the first cycle [m].
+    pub fn seating(&self) -> f64 {
+        self.unseated - self.datum
+    }
+
     /// Whether the last cycle is over.
     pub fn over(&self) -> bool {
         self.number() >= self.total
@@ -146,6 +158,9 @@ impl CycleRecorder {
     ) -> Option<Cycle> {
         // A step belongs to the cycle that holds its middle, so that rounding of t does not matter.
         if t - 0.5 * dt < self.begin {
+            if t - 0.5 * dt < self.seating_begins {
+                self.unseated = height;
+            }
             self.datum = height;
             self.lowest = height;
             self.work_before = work;
@@ -170,12 +185,13 @@ impl CycleRecorder {
         let measured = self.datum - height;
         // Grains that are moved are as old as the account says; those that are not, only as old as they are.
         let moved = self.slope == 0.0;
-        let settlement = measured + if moved { 0.0 } else { self.slope * (f64::from(number) / age).ln() };
+        let settlement = measured + if moved { 0.0 } else { self.slope * libm::log(f64::from(number) / age) };
         let before = self.done.last().map_or((0, 0.0), |c| (c.number, c.settlement));
         let cycle = Cycle {
             number,
             simulated: self.simulated,
             settlement,
+            total_settlement: settlement + self.seating(),
             rate: (settlement - before.1) / f64::from(number - before.0),
             resilient_deflection: resilient,
             secant_stiffness: over(range),
@@ -222,11 +238,11 @@ impl CycleRecorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::track::load::Waveform;
+    use crate::track::load::{Seating, Waveform};
 
     fn load(sine: bool) -> CyclicLoad {
         let waveform = Waveform::Wave { sine, minimum: 0.0, maximum: 100.0, frequency: 10.0 };
-        CyclicLoad { waveform, cycles: 3, rest: 0.1, ramp: 0.1, places: vec![0.0] }
+        CyclicLoad { waveform, cycles: 3, rest: 0.1, ramp: 0.1, seating: None, places: vec![0.0] }
     }
 
     #[test]
@@ -295,5 +311,28 @@ mod tests {
         let before = recorder.done[1];
         assert_eq!(jump.number - before.number, 501);
         assert!((jump.rate - (jump.settlement - before.settlement) / 501.0).abs() < 1e-15);
+    }
+
+    /// Two pulses of three times the load, in which the sleeper sinks 5 mm, do not count.
+    #[test]
+    fn seating_is_stated_apart() {
+        let seating = Seating { cycles: 2, maximum: 300.0, frequency: 20.0 };
+        let load = CyclicLoad { seating: Some(seating), ..load(false) };
+        assert!((load.cycles_begin() - 0.3).abs() < 1e-12 && (load.end() - 0.6).abs() < 1e-12);
+        assert!((load.on(0, 0.225) - 300.0).abs() < 1e-9 && load.on(0, 0.25).abs() < 1e-9);
+        assert!((load.on(0, 0.35) - 100.0).abs() < 1e-9);
+        let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], BedColumn::default());
+        let dt = 1e-4;
+        for step in 1..=6000 {
+            let t = f64::from(step) * dt;
+            let height = 1.0 - 0.05 * (t - 0.2).clamp(0.0, 0.1) - 0.01 * (t - 0.3).max(0.0);
+            recorder.record(t, dt, height, load.on(0, t), 0.0, 0.0);
+        }
+        assert!((recorder.seating() - 5e-3).abs() < 1e-5, "{}", recorder.seating());
+        for (i, c) in recorder.done.iter().enumerate() {
+            assert!((c.settlement - 1e-3 * (i + 1) as f64).abs() < 3e-6, "{c:?}");
+            assert!((c.total_settlement - c.settlement - recorder.seating()).abs() < 1e-15, "{c:?}");
+        }
+        assert_eq!(recorder.done.len(), 3);
     }
 }

@@ -17,13 +17,13 @@ impl Winkler {
     /// Of a rail with bending stiffness `ei` [N m²] on sleepers `spacing` apart [m], each a spring `foundation` [N/m]
     /// under the rail: k = foundation/spacing per length.
     pub fn new(ei: f64, foundation: f64, spacing: f64) -> Winkler {
-        Winkler { beta: (foundation / spacing / (4.0 * ei)).powf(0.25), spacing }
+        Winkler { beta: libm::pow(foundation / spacing / (4.0 * ei), 0.25), spacing }
     }
 
     /// Shape of the deflection under a unit force, 1 at the force: e^(−β|x|) (cos β|x| + sin β|x|).
     pub fn shape(&self, x: f64) -> f64 {
         let b = self.beta * x.abs();
-        (-b).exp() * (b.cos() + b.sin())
+        libm::exp(-b) * (libm::cos(b) + libm::sin(b))
     }
 
     /// Share of an axle's load on a sleeper at distance `x` [m]: k s w(x)/P = β s/2 · shape.
@@ -39,7 +39,7 @@ impl Winkler {
 
 /// Gaussian pulse, 1 at the load: exp(−(x/ℓ)²).
 pub fn gauss(x: f64, width: f64) -> f64 {
-    (-(x / width).powi(2)).exp()
+    libm::exp(-(x / width).powi(2))
 }
 
 /// Widths beyond which a Gaussian pulse is below 2e-4.

@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use trackbed_dem as dem;
 use trackbed_dem::Partner;
+use trackbed_dem::integrate::rotation;
 
 /// First jump over the largest one.
 const START: f64 = 0.25;
@@ -182,16 +183,16 @@ impl Jumper {
     /// Compares a stretch with the prediction.
     fn judge(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder) {
         let (now, Some([age, settlement, slope])) = (cycles.latest, self.predicted) else { return };
-        let measured = (now[1] - self.begun[1]) / (now[0] / self.begun[0]).ln();
+        let measured = (now[1] - self.begun[1]) / libm::log(now[0] / self.begun[0]);
         let Some(last) = self.jumps.last_mut() else { return };
         last.measured_slope = Some(measured);
         // Error of the jump: in settlement where the grains were moved, by the slope where they were not.
         let found = if plan.grains {
-            last.error = (now[1] - settlement - slope * (now[0] / age).ln()).abs();
+            last.error = (now[1] - settlement - slope * libm::log(now[0] / age)).abs();
             cycles.jump_error += last.error;
             last.error
         } else {
-            (measured - slope).abs() * (f64::from(last.cycles) / f64::from(last.from)).ln_1p()
+            (measured - slope).abs() * libm::log1p(f64::from(last.cycles) / f64::from(last.from))
         };
         let good = found <= plan.tolerance * cycles.done.last().map_or(0.0, |c| c.settlement.abs());
         self.growth = if good { (2.0 * self.growth).min(plan.largest) } else { 0.5 * self.growth };
@@ -212,16 +213,16 @@ impl Jumper {
         let mut moves = Vec::new();
         if plan.grains {
             let Some(drift) = Drift::of(&self.places, system) else { return false };
-            let own = (settlement - self.begun[1]) / (age / self.begun[0]).ln();
+            let own = (settlement - self.begun[1]) / libm::log(age / self.begun[0]);
             // Drift of a stretch that went up, or hardly down, has no reliable direction.
             if own < 0.25 * fit.slope {
                 return false;
             }
             let whole =
-                |n: u32| fit.slope * (1.0 + f64::from(n) / number).ln() / (settlement - self.begun[1]);
+                |n: u32| fit.slope * libm::log(1.0 + f64::from(n) / number) / (settlement - self.begun[1]);
             let most = plan.overlap / drift.overlap_change;
             if whole(skipped) > most {
-                let ratio = (most * (settlement - self.begun[1]) / fit.slope).exp_m1();
+                let ratio = libm::expm1(most * (settlement - self.begun[1]) / fit.slope);
                 skipped = skipped.min((ratio * number) as u32);
             }
             change = Some(whole(skipped) * drift.overlap_change);
@@ -232,7 +233,7 @@ impl Jumper {
         }
         let mut error = 0.0;
         if !plan.grains {
-            let beyond = ((number + f64::from(skipped)) / age).ln();
+            let beyond = libm::log((number + f64::from(skipped)) / age);
             error = (2.0 * fit.error + self.slope_error()) * beyond;
             cycles.jump_error = error;
         }
@@ -295,7 +296,7 @@ impl Drift {
             .enumerate()
             .map(|(b, (x, q))| {
                 let turn = g.state.orientation(g.model, b) * q.inverse();
-                (g.state.position(b) - x, turn.scaled_axis())
+                (g.state.position(b) - x, rotation::vector(&turn))
             })
             .collect();
         let at =
@@ -329,7 +330,7 @@ impl Drift {
     /// Each body moved on by so many times the stretch.
     fn moves(&self, factor: f64) -> Vec<(usize, dem::Vec3, UnitQuaternion<f64>)> {
         let on = |(b, (shift, turn)): (usize, &(dem::Vec3, dem::Vec3))| {
-            (b, shift * factor, UnitQuaternion::from_scaled_axis(turn * factor))
+            (b, shift * factor, rotation::by(&(turn * factor)))
         };
         self.motion.iter().enumerate().map(on).collect()
     }

@@ -53,7 +53,8 @@ fn corner() -> Grains {
 /// jumped over, and how far sphere and rattler were moved.
 fn jumps_of(plan: &JumpPlan, cycles: u32, law: impl Fn(f64) -> f64) -> (Jumper, Vec<[f64; 4]>) {
     let wave = Waveform::Wave { sine: false, minimum: 0.0, maximum: 1.0, frequency: 1.0 };
-    let load = CyclicLoad { waveform: wave, cycles: 10_000, rest: 0.0, ramp: 0.0, places: vec![0.0] };
+    let load =
+        CyclicLoad { waveform: wave, cycles: 10_000, rest: 0.0, ramp: 0.0, seating: None, places: vec![0.0] };
     let mut recorder = CycleRecorder::new(&load, [0.2, 0.8], BedColumn::default());
     let (mut system, mut jumper) = (corner(), Jumper::new(plan));
     let mut settled = 0.0;

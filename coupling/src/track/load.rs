@@ -1,6 +1,7 @@
 //! The load on a row of sleepers as a function of time.
 //!
-//! Rest without load, a smooth ramp to the load of the first instant, then whole cycles. A cycle is a period of a force
+//! Rest without load, a smooth ramp to the load of the first instant, pulses that seat the sleepers where a scene has them, then
+//! whole cycles. A cycle is a period of a force
 //! that acts on all sleepers at once, or a pass of wheels or pulses that reach one sleeper after the other.
 //!
 //! Sources: an axle is shared among the sleepers by the laws of [`influence`](super::influence) or by a [rail with
@@ -23,8 +24,34 @@ pub struct CyclicLoad {
     pub rest: f64,
     /// Time of the ramp [s].
     pub ramp: f64,
+    /// Pulses before the first cycle, which do not count.
+    pub seating: Option<Seating>,
     /// Places of the sleepers along the track, the first at 0 [m].
     pub places: Vec<f64>,
+}
+
+/// Pulses that press the sleepers into the bed before the cycles: each from the load of the first instant to `maximum` and back,
+/// a whole cosine, on all sleepers at once. What settles meanwhile is a result of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Seating {
+    /// Number of pulses.
+    pub cycles: u32,
+    /// Largest force on a sleeper [N].
+    pub maximum: f64,
+    /// Pulses per second [Hz].
+    pub frequency: f64,
+}
+
+impl Seating {
+    /// Time that all pulses take [s].
+    pub fn duration(&self) -> f64 {
+        f64::from(self.cycles) / self.frequency
+    }
+
+    /// Force at a time since the first pulse began, from `base` up [N].
+    fn force(&self, base: f64, since: f64) -> f64 {
+        base + 0.5 * (self.maximum - base) * (1.0 - libm::cos(TAU * since * self.frequency))
+    }
 }
 
 /// What happens in a cycle.
@@ -144,7 +171,7 @@ impl Pass {
             + self
                 .waves
                 .iter()
-                .map(|[amplitude, length]| amplitude * (TAU * place / length).sin())
+                .map(|[amplitude, length]| amplitude * libm::sin(TAU * place / length))
                 .sum::<f64>()
     }
 
@@ -172,7 +199,10 @@ impl CyclicLoad {
         } else if since < self.ramp {
             self.in_cycles(k, 0.0) * self.applied_share(t)
         } else {
-            self.in_cycles(k, since - self.ramp)
+            match &self.seating {
+                Some(s) if t < self.cycles_begin() => s.force(self.in_cycles(k, 0.0), since - self.ramp),
+                _ => self.in_cycles(k, t - self.cycles_begin()),
+            }
         }
     }
 
@@ -182,7 +212,7 @@ impl CyclicLoad {
         if since <= 0.0 {
             0.0
         } else if since < self.ramp {
-            0.5 * (1.0 - (PI * since / self.ramp).cos())
+            0.5 * (1.0 - libm::cos(PI * since / self.ramp))
         } else {
             1.0
         }
@@ -210,7 +240,7 @@ impl CyclicLoad {
             let at = pass.place(*behind, t);
             let inside = (at - ends[0]).min(ends[1] - at);
             if inside > 0.0 {
-                let share = if inside < taper { 0.5 * (1.0 - (PI * inside / taper).cos()) } else { 1.0 };
+                let share = if inside < taper { 0.5 * (1.0 - libm::cos(PI * inside / taper)) } else { 1.0 };
                 out.push(Wheel { at, force: share * axle(pass, *force, at) / rails as f64 });
             }
         }
@@ -223,19 +253,19 @@ impl CyclicLoad {
             &Waveform::Wave { sine, minimum, maximum, frequency } => {
                 let (range, phase) = (maximum - minimum, since * frequency);
                 if sine {
-                    minimum + 0.5 * range * (1.0 + (TAU * phase).sin())
+                    minimum + 0.5 * range * (1.0 + libm::sin(TAU * phase))
                 } else {
-                    minimum + 0.5 * range * (1.0 - (TAU * phase).cos())
+                    minimum + 0.5 * range * (1.0 - libm::cos(TAU * phase))
                 }
             }
             &Waveform::Ramp { minimum, maximum, rise, hold, fall } => {
                 let t = self.in_cycle(since);
                 let part = if t < rise {
-                    0.5 * (1.0 - (PI * t / rise).cos())
+                    0.5 * (1.0 - libm::cos(PI * t / rise))
                 } else if t <= rise + hold {
                     1.0
                 } else {
-                    fall.map_or(1.0, |fall| 0.5 * (1.0 + (PI * ((t - rise - hold) / fall).min(1.0)).cos()))
+                    fall.map_or(1.0, |fall| 0.5 * (1.0 + libm::cos(PI * ((t - rise - hold) / fall).min(1.0))))
                 };
                 minimum + (maximum - minimum) * part
             }
@@ -255,9 +285,14 @@ impl CyclicLoad {
         (since - number * period).max(0.0)
     }
 
+    /// Time at which the load of the first instant is there, and seating begins [s].
+    pub fn seating_begins(&self) -> f64 {
+        self.rest + self.ramp
+    }
+
     /// Time at which the first cycle begins [s].
     pub fn cycles_begin(&self) -> f64 {
-        self.rest + self.ramp
+        self.seating_begins() + self.seating.map_or(0.0, |s| s.duration())
     }
 
     /// Time at which the last cycle ends [s].

@@ -1,7 +1,7 @@
 use super::*;
 
 fn load(waveform: Waveform) -> CyclicLoad {
-    CyclicLoad { waveform, cycles: 3, rest: 0.1, ramp: 0.2, places: vec![0.0, 0.6, 1.2] }
+    CyclicLoad { waveform, cycles: 3, rest: 0.1, ramp: 0.2, seating: None, places: vec![0.0, 0.6, 1.2] }
 }
 
 fn wave(sine: bool) -> CyclicLoad {

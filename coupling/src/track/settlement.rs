@@ -53,35 +53,35 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
         return Vec::new();
     }
     let data = Data { used: &used, spread };
-    let (one, log): (Term, Term) = (&|_| 1.0, &|n| n.log10());
+    let (one, log): (Term, Term) = (&|_| 1.0, &|n| libm::log10(n));
     let mut out = Vec::new();
     if let Some((c, rest)) = data.linear(&[one, log]) {
         let form = "s1 (1 + C log10 N)";
         out.push(data.fit("Alva-Hurtado & Selig", form, vec![("s1", c[0]), ("C", c[1] / c[0])], rest));
         // r in millimetres per kN^1.6, as the author has it.
-        let r = 1e3 * c[0] / (1e-3 * load).powf(1.6);
+        let r = 1e3 * c[0] / libm::pow(1e-3 * load, 1.6);
         let parameters = vec![("r [mm/kN^1.6]", r), ("C", c[1] / c[0] / std::f64::consts::LN_10)];
         out.push(data.fit("Hettler", "r F^1.6 (1 + C ln N)", parameters, rest));
     }
-    if let Some((c, rest)) = data.linear(&[&|n| 1.0 + 0.2 * n.log10()]) {
+    if let Some((c, rest)) = data.linear(&[&|n| 1.0 + 0.2 * libm::log10(n)]) {
         out.push(data.fit("ORE D71", "s1 (1 + 0.2 log10 N)", vec![("s1", c[0])], rest));
     }
-    if let Some((c, rest)) = data.linear(&[one, log, &|n| n.log10().powi(2)]) {
+    if let Some((c, rest)) = data.linear(&[one, log, &|n| libm::log10(n).powi(2)]) {
         let form = "s1 (1 + a log10 N + b/2 (log10 N)^2)";
         let parameters = vec![("s1", c[0]), ("a", c[1] / c[0]), ("b", 2.0 * c[2] / c[0])];
         out.push(data.fit("Indraratna", form, parameters, rest));
     }
-    if let Some((b, c, rest)) = search(-4.0, 2.0, |b| data.linear(&[&|n| n.powf(b)])) {
+    if let Some((b, c, rest)) = search(-4.0, 2.0, |b| data.linear(&[&|n| libm::pow(n, b)])) {
         out.push(data.fit("power", "a N^b", vec![("a", c[0]), ("b", b)], rest));
     }
-    if let Some((c, rest)) = data.linear(&[&|n| n.powf(0.2), &|n| n]) {
+    if let Some((c, rest)) = data.linear(&[&|n| libm::pow(n, 0.2), &|n| n]) {
         out.push(data.fit("Shenton", "a N^0.2 + b N", vec![("a", c[0]), ("b", c[1])], rest));
     }
     // alpha in a range in which the exponential is neither straight nor over.
-    let range = [(0.05 / used[used.len() - 1][0]).ln(), (5.0 / used[0][0]).ln()];
-    let sato = |ln: f64| data.linear(&[&|n| -(-ln.exp() * n).exp_m1(), &|n| n]);
+    let range = [libm::log(0.05 / used[used.len() - 1][0]), libm::log(5.0 / used[0][0])];
+    let sato = |ln: f64| data.linear(&[&|n| -libm::expm1(-libm::exp(ln) * n), &|n| n]);
     if let Some((ln, c, rest)) = search(range[0], range[1], sato) {
-        let parameters = vec![("gamma", c[0]), ("alpha", ln.exp()), ("beta", c[1])];
+        let parameters = vec![("gamma", c[0]), ("alpha", libm::exp(ln)), ("beta", c[1])];
         out.push(data.fit("Sato", "gamma (1 - exp(-alpha N)) + beta N", parameters, rest));
     }
     out.retain(|f| f.parameters.iter().all(|p| p.1.is_finite()));
@@ -99,7 +99,8 @@ pub struct Slope {
 
 /// The slope of the cycles from `from` on; none when they are fewer than three.
 pub fn slope(cycles: &[[f64; 2]], from: f64) -> Option<Slope> {
-    let used: Vec<[f64; 2]> = cycles.iter().filter(|c| c[0] >= from).map(|c| [c[0].ln(), c[1]]).collect();
+    let used: Vec<[f64; 2]> =
+        cycles.iter().filter(|c| c[0] >= from).map(|c| [libm::log(c[0]), c[1]]).collect();
     if used.len() < 3 {
         return None;
     }

@@ -258,7 +258,7 @@ impl<'a> Track<'a> {
         let g = system.grains()?;
         let x = g.state.position(self.body(k));
         let up = g.state.orientation(g.model, self.body(k)) * nalgebra::Vector3::z();
-        let tilt = up.z.clamp(-1.0, 1.0).acos();
+        let tilt = libm::acos(up.z.clamp(-1.0, 1.0));
         Some(SleeperSample { place: x.into(), tilt, height: x.z, load, meshed: None })
     }
 

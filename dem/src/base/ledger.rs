@@ -50,6 +50,8 @@ pub struct Ledger {
     pub dissipated_local_damping: f64,
     /// Work of applied forces [J].
     pub work_applied: f64,
+    /// Work of body forces, gravity excepted [J].
+    pub work_body_forces: f64,
     /// Work of planes and walls with prescribed motion on the bodies [J].
     pub work_walls: f64,
     /// Work of walls that are driven by a force on the bodies [J].
@@ -73,6 +75,8 @@ pub struct Ledger {
     pub surface: Impulse,
     /// Impulse of applied forces.
     pub applied: Impulse,
+    /// Impulse of body forces, gravity excepted.
+    pub body_forces: Impulse,
     /// Impulse of what keeps fixed motions at their speed.
     pub constraints: Impulse,
     /// Angular impulse of periodic borders: of contacts across them, whose two forces do not act at one point, and of
@@ -102,6 +106,7 @@ impl Ledger {
     /// All work received from outside, gravity excepted (it has a potential) [J].
     pub fn work(&self) -> f64 {
         self.work_applied
+            + self.work_body_forces
             + self.work_walls
             + self.work_servo
             + self.work_surface
@@ -113,7 +118,7 @@ impl Ledger {
     /// Sum of all impulses: the change of momentum since the start.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
-        let own = [self.walls, self.surface, self.applied, self.constraints];
+        let own = [self.walls, self.surface, self.applied, self.body_forces, self.constraints];
         for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps, self.flow]) {
             sum += &part;
         }
@@ -129,6 +134,7 @@ impl AddAssign<&Ledger> for Ledger {
         self.dissipated_bonds += other.dissipated_bonds;
         self.released_by_breaks += other.released_by_breaks;
         self.work_applied += other.work_applied;
+        self.work_body_forces += other.work_body_forces;
         self.work_walls += other.work_walls;
         self.work_servo += other.work_servo;
         self.work_surface += other.work_surface;
@@ -139,6 +145,7 @@ impl AddAssign<&Ledger> for Ledger {
         self.walls += &other.walls;
         self.surface += &other.surface;
         self.applied += &other.applied;
+        self.body_forces += &other.body_forces;
         self.constraints += &other.constraints;
         self.periodic += &other.periodic;
         self.local_damping += &other.local_damping;

@@ -37,6 +37,11 @@ impl Random {
     pub fn orientation(&mut self) -> UnitQuaternion<f64> {
         let (u, a, b) = (self.uniform(), TAU * self.uniform(), TAU * self.uniform());
         let (s, c) = ((1.0 - u).sqrt(), u.sqrt());
-        UnitQuaternion::from_quaternion(Quaternion::new(c * b.cos(), s * a.sin(), s * a.cos(), c * b.sin()))
+        UnitQuaternion::from_quaternion(Quaternion::new(
+            c * libm::cos(b),
+            s * libm::sin(a),
+            s * libm::cos(a),
+            c * libm::sin(b),
+        ))
     }
 }

@@ -90,9 +90,9 @@ pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, d
     let (ma, mb) = (a.motion(i, &g.point), b.motion(j, &g.point));
     // In this order: the last bits of broken stones hang on it.
     let relative = ma.at_point() - xyz(&mb.velocity) - mb.spin().cross(&mb.arm);
-    let mass = 1.0 / (ma.inverse_mass() + mb.inverse_mass());
+    let inverse_mass = ma.inverse_mass() + mb.inverse_mass();
     let spin = ma.spin() - mb.spin();
-    let f = single::evaluate(laws, materials, mass, &g, &relative, &spin, &mut r.history, dt);
+    let f = single::evaluate(laws, materials, inverse_mass, &g, &relative, &spin, &mut r.history, dt);
     let bound = a.centre[i][3].min(b.centre[j][3]);
     let failure = (overlap > bound).then(|| Failure::Overlap {
         body: a.bodies[i],

@@ -35,14 +35,14 @@ pub fn factors(spread: Spread, seed: u64, purpose: u64, count: usize) -> Vec<f64
         .map(|_| match spread {
             Spread::Constant => 1.0,
             Spread::Normal { deviation } => loop {
-                let radius = (-2.0 * (1.0 - random.uniform()).ln()).sqrt();
-                let x = 1.0 + deviation * radius * (TAU * random.uniform()).cos();
+                let radius = (-2.0 * libm::log(1.0 - random.uniform())).sqrt();
+                let x = 1.0 + deviation * radius * libm::cos(TAU * random.uniform());
                 if x > 0.0 {
                     break x;
                 }
             },
             Spread::Weibull { modulus } => loop {
-                let x = (-(1.0 - random.uniform()).ln()).powf(1.0 / modulus);
+                let x = libm::pow(-libm::log(1.0 - random.uniform()), 1.0 / modulus);
                 if x > 0.0 {
                     break x;
                 }

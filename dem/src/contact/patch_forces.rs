@@ -120,7 +120,7 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
             let [ox, oy, oz, other] = R::columns(R::rows(|l| &of(l).spin));
             let spin = V3::new(wx, wy, wz);
             let touch = LawInput {
-                mass: R::splat(1.0) / (inverse_mass + wall_inverse_mass),
+                inverse_mass: inverse_mass + wall_inverse_mass,
                 radius,
                 overlap,
                 normal: V3::new(nx, ny, nz),

@@ -98,8 +98,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
             let arm = arm_to::<R, RIGID>(&body, position, to_point);
             let wall = V3::new(vx, vy, vz);
             let velocity = V3::new(ux, uy, uz) + spin.cross(arm) - wall;
-            let mass = R::splat(1.0) / inverse_mass;
-            let touch = LawInput { mass, radius: r, overlap: r - height, normal, velocity, spin };
+            let touch = LawInput { inverse_mass, radius: r, overlap: r - height, normal, velocity, spin };
             let LawOutput { force, moment, dashpot, friction, .. } =
                 L::evaluate::<R, ROLL>(&law, &touch, &mut memory, on, dt);
             remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);

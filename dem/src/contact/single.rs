@@ -38,9 +38,9 @@ pub(crate) fn between(
     history: &mut History,
     dt: f64,
 ) -> PairForce {
-    let mass = 1.0 / (a.inverse_mass() + b.inverse_mass());
+    let inverse_mass = a.inverse_mass() + b.inverse_mass();
     let (velocity, spin) = (a.at_point() - b.at_point(), a.spin() - b.spin());
-    let f = evaluate(laws, materials, mass, geometry, &velocity, &spin, history, dt);
+    let f = evaluate(laws, materials, inverse_mass, geometry, &velocity, &spin, history, dt);
     PairForce {
         force: f.force,
         torque_a: a.arm.cross(&f.force) + f.moment,
@@ -55,14 +55,14 @@ pub(crate) fn between(
 pub(crate) fn evaluate(
     laws: &Laws,
     [a, b]: [u32; 2],
-    mass: f64,
+    inverse_mass: f64,
     geometry: &ContactGeometry,
     velocity: &Vec3,
     spin: &Vec3,
     history: &mut History,
     dt: f64,
 ) -> ContactForce {
-    with_law!(laws, laws => laws.get(a, b).evaluate_one(mass, geometry, velocity, spin, history, dt))
+    with_law!(laws, laws => laws.get(a, b).evaluate_one(inverse_mass, geometry, velocity, spin, history, dt))
 }
 
 /// Ends a contact, if it had begun: returns the energy left in its springs [J].

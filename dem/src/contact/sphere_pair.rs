@@ -92,8 +92,8 @@ impl<R: Pack> Approach<R> {
         } else {
             translation + normal.cross(wa * la + wb * lb)
         };
-        let mass = R::splat(1.0) / inverse_mass;
-        let input = LawInput { mass, radius: ra * rb / reach, overlap, normal, velocity, spin: wa - wb };
+        let input =
+            LawInput { inverse_mass, radius: ra * rb / reach, overlap, normal, velocity, spin: wa - wb };
         Approach { input, materials: (ma, mb), radii: (ra, rb), levers: (la, lb), arms: (arm_a, arm_b) }
     }
 }

@@ -57,6 +57,9 @@ impl Work {
         for ((members, w), block) in self.members.iter_mut().zip(&mut self.blocks).zip(&state.blocks) {
             members.arrange(&model.bodies, &model.shapes, block);
             w.tally.sums = Vec::new();
+            if !model.body_forces.is_empty() {
+                w.body_forces.arrange(block, |b| model.volume(b));
+            }
             w.patches.turning = model.laws.rolls_among(&place::materials(block), &model.patch_materials);
         }
         // A block without a body or with several materials has none of its own.

@@ -2,6 +2,7 @@
 
 use crate::base::held::held;
 use crate::bodies::sums::Tally;
+use crate::body_force::ForceWork;
 use crate::bond::pass::ListWork;
 use crate::contact::patches::PatchWork;
 use crate::pairs::cross::{ImageName, Shares};
@@ -36,6 +37,7 @@ pub(crate) struct BlockWork {
     pub tally: Tally,
     pub patches: PatchWork,
     pub bonds: ListWork,
+    pub body_forces: ForceWork,
 }
 
 impl BlockWork {
@@ -50,6 +52,7 @@ impl BlockWork {
         // Where the spheres were at the last search.
         let reference = c.reference.len() * size_of::<[f32; 3]>();
         let patches = held(&c.walls) + held(&c.surface);
-        spheres + patches + reference + held(&self.shares.list) + held(&self.tally.sums) + self.bonds.bytes()
+        let forces = held(&self.tally.sums) + self.body_forces.bytes();
+        spheres + patches + reference + held(&self.shares.list) + forces + self.bonds.bytes()
     }
 }

@@ -209,6 +209,9 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
     if let Some(skin) = input.skin.filter(|&s| !positive(s)) {
         return error("skin", skin, POSITIVE);
     }
+    if let Some((quantity, value, requirement)) = input.body_forces.iter().find_map(|f| f.fault()) {
+        return error(quantity, value, requirement);
+    }
     if let Some(d) = input.damping.filter(|d| !(d.factor >= 0.0 && d.factor < 1.0)) {
         return error("local damping factor", d.factor, "lie in [0, 1)");
     }

@@ -8,7 +8,6 @@
 use super::input::ModelInput;
 use crate::bodies::table::Bodies;
 use crate::law::Laws;
-use crate::law::restitution::restitution;
 
 /// ω dt of collisions that lose much, and of those that lose nothing.
 const LARGEST: f64 = 0.2;
@@ -20,10 +19,9 @@ pub(crate) const PACKED: f64 = 4.0;
 /// Growth of the energy in a collision without a dashpot over (ω dt)³.
 const HEATING: f64 = 0.0063;
 
-/// ω dt that a collision with damping ratio `zeta` allows.
-fn collision(zeta: f64) -> f64 {
-    let e = restitution(zeta);
-    (0.01 * (1.0 - e * e) / HEATING).cbrt().clamp(SMALLEST, LARGEST)
+/// ω dt of a collision that takes the share `loss` of its energy.
+fn collision(loss: f64) -> f64 {
+    libm::cbrt(0.01 * loss / HEATING).clamp(SMALLEST, LARGEST)
 }
 
 /// Longest step [s] that the collisions of the lightest bodies of each material allow; infinite where nothing can collide.
@@ -50,7 +48,7 @@ pub(crate) fn longest(
             let together = 1.0 / (1.0 / mass + 1.0 / lightest[b].0);
             let stiffness = laws.stiffness(a as u32, b as u32, expected * radius, radius);
             if stiffness.is_finite() && stiffness > 0.0 {
-                let x = collision(laws.damping_ratio(a as u32, b as u32));
+                let x = collision(laws.loss(a as u32, b as u32));
                 longest = longest.min(x * (together / stiffness).sqrt());
             }
         }
@@ -65,8 +63,8 @@ mod tests {
     #[test]
     fn undamped_collisions_need_many_steps() {
         assert_eq!(collision(0.0), SMALLEST);
-        assert_eq!(collision(0.3), LARGEST);
-        let between = collision(0.0005);
+        assert_eq!(collision(0.75), LARGEST);
+        let between = collision(0.002);
         assert!(SMALLEST < between && between < LARGEST, "{between}");
     }
 }

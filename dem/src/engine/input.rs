@@ -2,6 +2,7 @@
 
 use crate::base::Vec3;
 use crate::bodies::input::BodyInput;
+use crate::body_force::BodyForce;
 use crate::bond::{Bond, BondInput};
 use crate::law::material::{Material, PairOverride};
 use crate::shape::Shape;
@@ -31,6 +32,11 @@ pub enum TimeStep {
     Fixed(f64),
     /// This many seconds, whatever the limit.
     FixedAboveLimit(f64),
+}
+
+impl TimeStep {
+    /// Share of what the contacts allow that is usually taken.
+    pub const SHARE: f64 = 0.8;
 }
 
 /// Damping proportional to the unbalanced force (Cundall & Strack 1979, sec. 2.4, as used in later codes):
@@ -77,6 +83,8 @@ pub struct ModelInput {
     pub other_surface: Option<(u32, usize)>,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
+    /// Body forces beside gravity.
+    pub body_forces: Vec<BodyForce>,
     /// Time step.
     pub time_step: TimeStep,
     /// Largest speed at which two bodies are expected to meet [m/s]: sets the overlap at which contacts after Hertz are
@@ -108,6 +116,7 @@ impl Default for ModelInput {
             surface_material: None,
             other_surface: None,
             gravity: Vec3::new(0.0, 0.0, -9.81),
+            body_forces: Vec::new(),
             time_step: TimeStep::Auto { fraction: 0.1 },
             impact_speed: None,
             skin: None,

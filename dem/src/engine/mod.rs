@@ -2,6 +2,7 @@
 
 mod applied;
 mod arrange;
+pub mod back_end;
 mod block_work;
 pub(crate) mod bonds;
 pub(crate) mod candidates;

@@ -8,6 +8,7 @@ use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
+use crate::body_force::BodyForce;
 use crate::law::Laws;
 use crate::shape::Shape;
 use crate::shape::plane::Plane;
@@ -32,6 +33,7 @@ pub struct Model {
     pub(crate) expected: f64,
     pub(crate) gravity: Vec3,
     pub(crate) damping: f64,
+    pub(crate) body_forces: Vec<BodyForce>,
     pub(crate) skin: f64,
     /// Smallest and largest sphere radius [m].
     pub(crate) radii: (f64, f64),
@@ -120,6 +122,7 @@ impl Model {
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
+            body_forces: input.body_forces,
             skin,
             periodic,
             bonds,
@@ -241,6 +244,11 @@ impl Model {
     /// Planes, with unit normals.
     pub fn planes(&self) -> &[Plane] {
         &self.planes
+    }
+
+    /// Body forces beside gravity.
+    pub fn body_forces(&self) -> &[BodyForce] {
+        &self.body_forces
     }
 
     /// Acceleration of gravity [m/s²].

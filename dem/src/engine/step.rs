@@ -1,5 +1,6 @@
 //! One step of the grains: search when due, contacts, integration.
 
+use super::block_work::BlockWork;
 use super::bonds;
 use super::input::AppliedForce;
 use super::model::Model;
@@ -10,7 +11,7 @@ use super::{applied, neighbours, order, walls};
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
-use crate::bodies::sums::Sums;
+use crate::bodies::sums::{Sums, Tally};
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
 use crate::contact::kind::{self, Now};
@@ -109,8 +110,16 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         one.work.tally.sums = buffers.take();
         shared.forces(b, &mut one, slots, next);
         let One { block, members, work, .. } = one;
+        let BlockWork { tally, body_forces, .. } = work;
+        if !model.body_forces.is_empty() {
+            let (forces, Tally { sums, ledger, .. }) = (&model.body_forces, &mut *tally);
+            body_forces.act(setting.simd, forces, block, sums, ledger, dt);
+        }
         let applied = applied::of_block(applied, b);
-        leapfrog::advance(setting.simd, &shared.drive, block, members, &mut work.tally, applied);
+        leapfrog::advance(setting.simd, &shared.drive, block, members, tally, applied);
+        if !model.body_forces.is_empty() {
+            body_forces.book(block, &mut tally.ledger, dt);
+        }
         if !keep {
             buffers.give_back(std::mem::take(&mut work.tally.sums));
         }

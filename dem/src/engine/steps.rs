@@ -31,6 +31,9 @@ impl Steps {
             TimeStep::Auto { fraction } => steps(fraction * limit.dt),
             TimeStep::Measured { share, longest, collisions } => {
                 let longest = longest.min(rigid);
+                // Who asks for shorter steps than usual has them in collisions too.
+                let shorter = (share / TimeStep::SHARE).min(1.0);
+                let [collision, lasting] = [collision, lasting].map(|dt| shorter * dt);
                 let collision = if collisions { collision } else { lasting };
                 let first = (share * limit.dt).min(longest).min(collision);
                 Steps { first, share: Some(share), longest, collision, lasting }

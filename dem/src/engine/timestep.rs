@@ -226,7 +226,7 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
             for (c, r) in &clump.spheres {
                 for k in 0..3 {
                     let (p, q) = (c[(k + 1) % 3], c[(k + 2) % 3]);
-                    reach2[k] = reach2[k].max((p.hypot(q) + r).powi(2));
+                    reach2[k] = reach2[k].max((libm::hypot(p, q) + r).powi(2));
                 }
             }
         }

@@ -10,6 +10,7 @@ use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
 use crate::contact::patches::WallSum;
+use crate::integrate::rotation;
 use crate::shape::plane::PlaneMotion;
 use crate::wall::body::{self, Ground};
 use crate::wall::state::WallState;
@@ -72,7 +73,7 @@ pub(crate) fn advance(
                 own.offset = next;
                 let spin = wall.motion.angular_velocity;
                 if spin != Vec3::zeros() {
-                    own.orientation = UnitQuaternion::from_scaled_axis(spin * (state.time + dt));
+                    own.orientation = rotation::by(&(spin * (state.time + dt)));
                     own.turned = true;
                 }
                 let mean = (before + own.velocity) * 0.5;

@@ -9,12 +9,12 @@
 use crate::base::Vec3;
 use crate::bodies::block::Rotation;
 use crate::bodies::table::Kind;
+use crate::engine::back_end::BackEnd;
 use crate::engine::model::Model;
 use crate::engine::order::Turnover;
 use crate::engine::place::Row;
 use crate::engine::start::half_a_step_ago;
 use crate::engine::state::State;
-use crate::engine::work::Work;
 use crate::measure;
 use nalgebra::UnitQuaternion;
 use std::collections::BTreeMap;
@@ -61,7 +61,7 @@ pub enum FlowError {
 pub fn exchange(
     model: &Model,
     state: &mut State,
-    work: &mut Work,
+    work: &mut impl BackEnd,
     leave: &[usize],
     arrive: &[Arrival],
 ) -> Result<(), FlowError> {
@@ -117,7 +117,7 @@ pub fn exchange(
         let momentum = measure::momentum_of(model, state, come);
         state.ledger.flow += &momentum;
     }
-    work.arrange(model, state);
+    work.upload(model, state);
     Ok(())
 }
 

@@ -2,6 +2,7 @@ use super::*;
 use crate::base::error::Partner;
 use crate::bodies::input::BodyInput;
 use crate::engine::input::ModelInput;
+use crate::engine::work::Work;
 use crate::insert::room::{Places, Room};
 use crate::law::material::Material;
 use crate::measure::{BoxRegion, contacts};

@@ -165,7 +165,7 @@ impl Gradation {
         if k == self.sizes.len() {
             return 1.0;
         }
-        let t = (size / self.sizes[k - 1]).ln() / (self.sizes[k] / self.sizes[k - 1]).ln();
+        let t = libm::log(size / self.sizes[k - 1]) / libm::log(self.sizes[k] / self.sizes[k - 1]);
         self.passing[k - 1] + t * (self.passing[k] - self.passing[k - 1])
     }
 
@@ -178,7 +178,7 @@ impl Gradation {
     fn number_weights(&self) -> Vec<f64> {
         let class = |k: usize| {
             let (a, b) = (self.sizes[k], self.sizes[k + 1]);
-            (self.passing[k + 1] - self.passing[k]) * (a.powi(-3) - b.powi(-3)) / (3.0 * (b / a).ln())
+            (self.passing[k + 1] - self.passing[k]) * (a.powi(-3) - b.powi(-3)) / (3.0 * libm::log(b / a))
         };
         (0..self.sizes.len() - 1).map(class).collect()
     }
@@ -199,7 +199,7 @@ impl Gradation {
             }
             let (a, b) = (self.sizes[class].powi(-3), self.sizes[class + 1].powi(-3));
             let share = ((at - below) / weights[class]).clamp(0.0, 1.0);
-            sorted.push((a - share * (a - b)).powf(-1.0 / 3.0));
+            sorted.push(libm::pow(a - share * (a - b), -1.0 / 3.0));
         }
         random.permutation(n).into_iter().map(|i| sorted[i]).collect()
     }

@@ -179,11 +179,11 @@ fn sides(container: &Container) -> (Vec<Plane>, Vec<TriangleSurface>) {
             let u = axis.cross(&helper).normalize();
             let v = axis.cross(&u);
             // Strips that touch the cone from outside, in the middle of each.
-            let reach = 1.0 / (PI / STRIPS as f64).cos();
+            let reach = 1.0 / libm::cos(PI / STRIPS as f64);
             let ring = |end: &Vec3, radius: f64| {
                 let at = move |k: usize| {
                     let a = 2.0 * PI * k as f64 / STRIPS as f64;
-                    (u * a.cos() + v * a.sin()) * (radius * reach)
+                    (u * libm::cos(a) + v * libm::sin(a)) * (radius * reach)
                 };
                 (0..STRIPS).map(|k| end + at(k)).collect::<Vec<_>>()
             };

@@ -126,7 +126,7 @@ impl SizeLaw {
                 [(low - mean) / deviation, (high - mean) / deviation]
             }
             SizeLaw::LogNormal { median, deviation, low, high } => {
-                [(low / median).ln() / deviation, (high / median).ln() / deviation]
+                [libm::log(low / median) / deviation, libm::log(high / median) / deviation]
             }
             _ => [0.0; 2],
         }
@@ -144,13 +144,13 @@ impl SizeLaw {
             SizeLaw::ByNumber { low, high } => low + q * (high - low),
             // dn ∝ d⁻³ dd: n(d) ∝ low⁻² − d⁻².
             SizeLaw::ByVolume { low, high } => {
-                (low.powi(-2) + q * (high.powi(-2) - low.powi(-2))).powf(-0.5).clamp(low, high)
+                libm::pow(low.powi(-2) + q * (high.powi(-2) - low.powi(-2)), -0.5).clamp(low, high)
             }
             SizeLaw::Normal { mean, deviation, low, high } => {
                 (mean + deviation * self.cut_quantile(q)).clamp(low, high)
             }
             SizeLaw::LogNormal { median, deviation, low, high } => {
-                (median * (deviation * self.cut_quantile(q)).exp()).clamp(low, high)
+                (median * libm::exp(deviation * self.cut_quantile(q))).clamp(low, high)
             }
         }
     }
@@ -189,7 +189,7 @@ impl SizeLaw {
 
 /// Standard normal density.
 fn density(x: f64) -> f64 {
-    (-0.5 * x * x).exp() / TAU.sqrt()
+    libm::exp(-0.5 * x * x) / TAU.sqrt()
 }
 
 /// Standard normal distribution function.

@@ -88,6 +88,24 @@ pub fn steady(orientation: &UnitQuaternion<f64>, spin: &Vec3, dt: f64) -> UnitQu
     normalised(Quaternion::from_parts(1.0, spin * (0.5 * dt)) * orientation.quaternion())
 }
 
+/// The turn by the angle |v| [rad] about v.
+pub fn by(v: &Vec3) -> UnitQuaternion<f64> {
+    let half = 0.5 * v.norm();
+    let (sin, cos) = libm::sincos(half);
+    // Near zero sin(half)/2 half is ½.
+    let scale = if half > 1e-8 { 0.5 * sin / half } else { 0.5 };
+    normalised(Quaternion::from_parts(cos, v * scale))
+}
+
+/// The vector of a turn by at most half a circle: angle [rad] times axis.
+pub fn vector(turn: &UnitQuaternion<f64>) -> Vec3 {
+    let (v, s) = (turn.imag(), turn.w);
+    let length = v.norm();
+    let angle = 2.0 * libm::atan2(length, s.abs());
+    let scale = if length > 1e-8 { angle / length } else { 2.0 };
+    v * if s < 0.0 { -scale } else { scale }
+}
+
 #[inline(always)]
 fn normalised(q: Quaternion<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(q)
@@ -96,6 +114,19 @@ fn normalised(q: Quaternion<f64>) -> UnitQuaternion<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn turns_and_their_vectors() {
+        for v in
+            [Vec3::zeros(), Vec3::new(1e-12, 0.0, 2e-12), Vec3::new(0.3, -0.2, 0.7), Vec3::new(0.0, 3.0, 0.1)]
+        {
+            let q = by(&v);
+            let error = q.angle_to(&UnitQuaternion::from_scaled_axis(v));
+            assert!(error < 1e-7 && (vector(&q) - v).norm() < 1e-14 + 1e-14 * v.norm(), "{v} {error}");
+            let same = UnitQuaternion::new_unchecked(-q.into_inner());
+            assert!((vector(&same) - v).norm() < 1e-14 + 1e-14 * v.norm());
+        }
+    }
 
     fn spin(q: &UnitQuaternion<f64>, momentum: &Vec3, inertia: &Vec3) -> Vec3 {
         q * q.inverse_transform_vector(momentum).component_div(inertia)

@@ -2,10 +2,8 @@
 //! and twisting resistance, adhesion. What they have in common is written here once.
 //!
 //! What a contact loses is right to second order in spite of the leapfrog's velocities at half steps (the phase of a damped
-//! swing to first). The dashpot sees the approach speed of half a
-//! step ago, which acts as if the mass were smaller by the factor 1 − C dt/2m*, so that the damping ratio is larger by its
-//! root; with C/√(1 + C dt/2m*) in place of C it is what it should be, and so is the restitution. (The speed extrapolated to
-//! the full step, 3/2 ḋ(n−½) − 1/2 ḋ(n−3/2), takes steps up to a half shorter and errs five times as much; a speed at the full
+//! swing to first). The dashpot sees the approach speed of half a step ago, with a coefficient that makes up for it
+//! (`lag.rs`). (The speed extrapolated to the full step, 3/2 ḋ(n−½) − 1/2 ḋ(n−3/2), takes steps up to a half shorter and errs five times as much; a speed at the full
 //! step predicted from the contact alone softens the springs of contacts at rest: `docs/guide.md`, "Time integration".) What
 //! the dashpot takes is booked with the extrapolated speed.
 //!
@@ -165,12 +163,11 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let Onset { now, time, weight } =
             onset::<R>(approach, memory.rate, overlap, fresh, on, dt, N::JUMPS || ROLL);
 
-        let own = N::respond(&law.normal, touch.mass, touch.radius, overlap, memory.rate, fresh);
+        let own =
+            N::respond(&law.normal, touch.inverse_mass, touch.radius, overlap, memory.rate, fresh, step);
         let (elastic, c) = (own.elastic, own.damping);
         let (mut normal, mut dashpot, mut cs) = (elastic, own.lost, R::zero());
         if N::DASHPOT {
-            let twice = touch.mass + touch.mass;
-            let c = c * (twice / (twice + c * step)).sqrt();
             let viscous = if N::JUMPS { weight * c * approach } else { c * approach };
             normal = (elastic + viscous).max(R::zero());
             dashpot = (normal - elastic) * now * step;
@@ -253,7 +250,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
 
     fn linearised(&self, mass: f64, radius: f64, overlap: f64, history: &History) -> Linearised {
         let law = self.normal.splat::<f64>();
-        let own = N::respond(&law, mass, radius, overlap, history.rate, history.is_fresh());
+        let own = N::respond(&law, 1.0 / mass, radius, overlap, history.rate, history.is_fresh(), 0.0);
         let damping = if N::DASHPOT { own.damping } else { 0.0 };
         let tangential = self.tangential.stiffness((radius * overlap).sqrt());
         let (c, turn) = (&self.common, tangential * radius * radius);
@@ -275,6 +272,10 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
 
     fn damping_ratio(&self) -> f64 {
         self.normal.damping_ratio()
+    }
+
+    fn loss(&self) -> f64 {
+        self.normal.loss()
     }
 
     fn expected_overlap(&self, expected: &Expected) -> f64 {

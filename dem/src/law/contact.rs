@@ -92,8 +92,8 @@ pub struct Linearised {
 /// Contacts as a law sees them, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct LawInput<R> {
-    /// Effective mass m₁m₂/(m₁ + m₂) of the bodies [kg].
-    pub mass: R,
+    /// Sum of the inverse masses of the bodies, 1/m* = 1/m₁ + 1/m₂ [1/kg].
+    pub inverse_mass: R,
     /// Effective radius [m].
     pub radius: R,
     /// Overlap [m].

@@ -47,6 +47,9 @@ pub trait ContactLaw: Constants {
     /// Damping ratio ζ of the contact [-].
     fn damping_ratio(&self) -> f64;
 
+    /// Share 1 − e² of its energy that a collision takes [-].
+    fn loss(&self) -> f64;
+
     /// Largest overlap expected, over the effective radius [-]; zero where the stiffness does not depend on it.
     fn expected_overlap(&self, expected: &Expected) -> f64;
 
@@ -62,13 +65,13 @@ pub trait ContactLaw: Constants {
     /// Sources of the parts in use.
     fn sources(&self) -> Vec<&'static str>;
 
-    /// The force on one contact, given the effective mass m* = m₁m₂/(m₁ + m₂) of the bodies [kg], the velocity of a
+    /// The force on one contact, given the sum 1/m₁ + 1/m₂ of the inverse masses of the bodies [1/kg], the velocity of a
     /// relative to b at the contact point and the spin of a less that of b, both half a step ago [m/s, rad/s], and
     /// the step [s]. Advances the contact's memory.
     #[inline(always)]
     fn evaluate_one(
         &self,
-        mass: f64,
+        inverse_mass: f64,
         geometry: &ContactGeometry,
         velocity: &Vec3,
         spin: &Vec3,
@@ -76,7 +79,7 @@ pub trait ContactLaw: Constants {
         dt: f64,
     ) -> ContactForce {
         let touch = LawInput {
-            mass,
+            inverse_mass,
             radius: geometry.radius,
             overlap: geometry.overlap,
             normal: V3::from_vec(&geometry.normal),

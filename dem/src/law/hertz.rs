@@ -18,6 +18,7 @@
 //! Limits: smooth elastic spheres, contact circle small against the radii.
 
 use super::constants::constants;
+use super::lag;
 use super::material::{Material, Pair};
 use super::normal::{Expected, NormalLaw, Response};
 use crate::lanes::Real;
@@ -53,17 +54,21 @@ impl NormalLaw for Hertz {
     #[inline(always)]
     fn respond<R: Real>(
         law: &Hertz<R>,
-        mass: R,
+        inverse_mass: R,
         radius: R,
         overlap: R,
         remembered: R,
         _: R::Mask,
+        step: R,
     ) -> Response<R> {
         let circle = (radius * overlap).sqrt();
         let tangent = R::splat(2.0) * law.modulus * circle;
+        // C = DASHPOT ζ √(S m*): with 1/m* it is C/m* that comes first.
+        let rate = R::splat(DASHPOT) * law.damping_ratio * (tangent * inverse_mass).sqrt();
+        let (numerator, denominator) = lag::share(R::splat(0.5) * step * rate);
         Response {
             elastic: R::splat(2.0 / 3.0) * tangent * overlap,
-            damping: R::splat(DASHPOT) * law.damping_ratio * (tangent * mass).sqrt(),
+            damping: rate * numerator / (inverse_mass * denominator),
             circle,
             remembered,
             lost: R::zero(),
@@ -94,8 +99,8 @@ impl NormalLaw for Hertz {
 
     fn expected_overlap(&self, e: &Expected) -> f64 {
         let modulus = self.modulus;
-        let impact = (1.25 * std::f64::consts::PI * e.density * e.speed * e.speed / modulus).powf(0.4);
-        let rest = (3.0 * e.density * e.gravity * e.height / modulus).powf(2.0 / 3.0);
+        let impact = libm::pow(1.25 * std::f64::consts::PI * e.density * e.speed * e.speed / modulus, 0.4);
+        let rest = libm::pow(3.0 * e.density * e.gravity * e.height / modulus, 2.0 / 3.0);
         // A floor for bodies at rest without weight: no spring may be without stiffness.
         impact.max(rest).clamp(1e-9, 1.0)
     }

@@ -134,6 +134,11 @@ impl Laws {
         with_law!(self, t => t.get(a, b).damping_ratio())
     }
 
+    /// Share 1 − e² of its energy that a collision takes [-].
+    pub fn loss(&self, a: u32, b: u32) -> f64 {
+        with_law!(self, t => t.get(a, b).loss())
+    }
+
     /// Largest overlap expected over the effective radius; zero where no stiffness depends on it.
     pub fn expected_overlap(&self, expected: &Expected) -> f64 {
         with_law!(self, t => t.expected_overlap(expected))

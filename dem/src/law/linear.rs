@@ -7,6 +7,7 @@
 //! The dashpot's force jumps from zero at first touch, see `composed.rs`. Limits: overlaps small against the radii.
 
 use super::constants::constants;
+use super::lag;
 use super::material::Pair;
 use super::normal::{ConstantStiffness, NormalLaw, Response};
 use crate::lanes::Real;
@@ -40,15 +41,18 @@ impl NormalLaw for Linear {
     #[inline(always)]
     fn respond<R: Real>(
         law: &Linear<R>,
-        mass: R,
+        inverse_mass: R,
         radius: R,
         overlap: R,
         remembered: R,
         _: R::Mask,
+        step: R,
     ) -> Response<R> {
+        let root = inverse_mass.sqrt();
+        let (numerator, denominator) = lag::share(R::splat(0.5) * law.damping * step * root);
         Response {
             elastic: law.stiffness * overlap,
-            damping: law.damping * mass.sqrt(),
+            damping: law.damping * numerator / (root * denominator),
             circle: (radius * overlap).sqrt(),
             remembered,
             lost: R::zero(),

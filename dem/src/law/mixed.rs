@@ -119,6 +119,7 @@ macro_rules! combinations {
                 linearised(mass: f64, radius: f64, overlap: f64, history: &$crate::law::contact::History) -> $crate::law::contact::Linearised, (mass, radius, overlap, history);
                 tangential_ratio() -> f64, ();
                 damping_ratio() -> f64, ();
+                loss() -> f64, ();
                 expected_overlap(expected: &$crate::law::normal::Expected) -> f64, (expected);
                 begun(approach: f64) -> f64, (approach);
                 rolls() -> bool, ();

@@ -14,6 +14,7 @@ mod contact;
 mod contact_law;
 pub mod damping;
 pub mod hertz;
+pub(crate) mod lag;
 mod laws;
 pub mod linear;
 pub mod material;

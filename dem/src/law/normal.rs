@@ -2,6 +2,7 @@
 
 use super::constants::Constants;
 use super::material::Pair;
+use super::restitution::restitution;
 use crate::lanes::Real;
 
 /// What a normal law makes of contacts, in lanes.
@@ -9,7 +10,8 @@ use crate::lanes::Real;
 pub struct Response<R> {
     /// Force of the spring [N].
     pub elastic: R,
-    /// Coefficient C of the dashpot [N s/m]; without meaning where the law has none.
+    /// Coefficient of the dashpot that acts in a step of the given length [N s/m] (`lag.rs`): C itself in one of none;
+    /// without meaning where the law has no dashpot.
     pub damping: R,
     /// Radius of the contact circle √(R d) [m]. Who does not use it does not pay for it: the root is then left out.
     pub circle: R,
@@ -51,14 +53,16 @@ pub trait NormalLaw: Constants {
     /// Mixes the constants of two materials; `zeta` is the damping ratio of the pair.
     fn mix(pair: &Pair<'_>, zeta: f64) -> Self;
 
-    /// Force and dashpot. `remembered` is the number of the memory, which has no meaning where `fresh`.
+    /// Force and dashpot in a step [s] of two bodies whose inverse masses [1/kg] add up to `inverse_mass`. `remembered` is
+    /// the number of the memory, which has no meaning where `fresh`.
     fn respond<R: Real>(
         law: &Self::Lanes<R>,
-        mass: R,
+        inverse_mass: R,
         radius: R,
         overlap: R,
         remembered: R,
         fresh: R::Mask,
+        step: R,
     ) -> Response<R>;
 
     /// Force of the spring [N], with the number of its memory.
@@ -75,6 +79,11 @@ pub trait NormalLaw: Constants {
 
     /// Damping ratio ζ [-].
     fn damping_ratio(&self) -> f64;
+
+    /// Share 1 − e² of its energy that a collision takes [-].
+    fn loss(&self) -> f64 {
+        1.0 - restitution(self.damping_ratio()).powi(2)
+    }
 
     /// Largest overlap expected, over the effective radius; zero where the stiffness does not depend on it.
     fn expected_overlap(&self, _: &Expected) -> f64 {

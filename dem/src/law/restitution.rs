@@ -19,13 +19,13 @@ pub fn restitution(zeta: f64) -> f64 {
     let gap = 1.0 - zeta * zeta;
     // Near ζ = 1 both forms lose digits; their common series is exp(−2 − (4/3)(ζ − 1) + …).
     if gap.abs() < 1e-8 {
-        (-2.0 - 4.0 / 3.0 * (zeta - 1.0)).exp()
+        libm::exp(-2.0 - 4.0 / 3.0 * (zeta - 1.0))
     } else if gap > 0.0 {
         let w = gap.sqrt();
-        (-(zeta / w) * (std::f64::consts::PI - (2.0 * zeta * w).atan2(1.0 - 2.0 * zeta * zeta))).exp()
+        libm::exp(-(zeta / w) * (std::f64::consts::PI - libm::atan2(2.0 * zeta * w, 1.0 - 2.0 * zeta * zeta)))
     } else {
         let s = (-gap).sqrt();
-        (-(2.0 * zeta / s) * (zeta + s).ln()).exp()
+        libm::exp(-(2.0 * zeta / s) * libm::log(zeta + s))
     }
 }
 

@@ -52,6 +52,7 @@ impl NormalLaw for WaltonBraun {
         overlap: R,
         remembered: R,
         fresh: R::Mask,
+        _: R,
     ) -> Response<R> {
         let before = R::select(fresh, R::zero(), remembered);
         let most = before.max(overlap);
@@ -86,6 +87,10 @@ impl NormalLaw for WaltonBraun {
 
     fn damping_ratio(&self) -> f64 {
         0.0
+    }
+
+    fn loss(&self) -> f64 {
+        1.0 - self.loading / self.unloading
     }
 }
 

@@ -80,7 +80,7 @@ fn octant(a: f64, b: f64, c: f64) -> f64 {
     let r = [a, b, c].map(|h| (1.0 - h * h).sqrt());
     // Angle and area of the side at height h on a disc of radius r cut at u and v.
     let side = |r: f64, u: f64, v: f64| {
-        let arc = (angle(u / r) - (v / r).min(1.0).asin()).max(0.0);
+        let arc = (angle(u / r) - libm::asin((v / r).min(1.0))).max(0.0);
         let chord = |p: f64, q: f64| p * ((r * r - p * p).max(0.0).sqrt() - q);
         (arc, 0.5 * (r * r * arc - chord(u, v) - chord(v, u)))
     };
@@ -93,7 +93,7 @@ fn octant(a: f64, b: f64, c: f64) -> f64 {
 }
 
 fn angle(cosine: f64) -> f64 {
-    cosine.clamp(-1.0, 1.0).acos()
+    libm::acos(cosine.clamp(-1.0, 1.0))
 }
 
 /// Exterior angle where the circles at heights a and b (radii ra and rb) meet.

@@ -12,8 +12,9 @@ pub fn kernels(model: &Model) -> String {
     let shapes = if model.clumps { "spheres of rigid bodies" } else { "single spheres" };
     let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
     let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };
+    let drag = if model.body_forces.is_empty() { "" } else { ", body forces" };
     let lanes = Simd::best().name();
-    format!("{law}, {shapes}{rolling}{bonds}, {lanes}")
+    format!("{law}, {shapes}{rolling}{bonds}{drag}, {lanes}")
 }
 
 /// Bytes that bodies, contacts, bonds, neighbours and forces hold now; constants of the model are not counted.

@@ -84,7 +84,7 @@ impl<'a> Grid<'a> {
     fn new(points: &'a [Vec3], region: &BoxRegion, around: [bool; 3], reach: f64) -> Grid<'a> {
         let side = region.high - region.low;
         // No more cells than points need.
-        let most = (points.len() as f64).cbrt().ceil().max(1.0);
+        let most = libm::cbrt(points.len() as f64).ceil().max(1.0);
         let counts = std::array::from_fn(|d| (side[d] / reach).floor().clamp(1.0, most) as usize);
         let mut grid =
             Grid { points, low: region.low, side, around, counts, first: Vec::new(), order: Vec::new() };

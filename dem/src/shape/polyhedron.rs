@@ -120,7 +120,7 @@ impl Polyhedron {
 
 /// Wadell's sphericity of a body of volume `volume` [m³] with surface `area` [m²].
 pub fn sphericity(volume: f64, area: f64) -> f64 {
-    std::f64::consts::PI.cbrt() * (6.0 * volume).powf(2.0 / 3.0) / area
+    libm::cbrt(std::f64::consts::PI) * libm::pow(6.0 * volume, 2.0 / 3.0) / area
 }
 
 #[cfg(test)]

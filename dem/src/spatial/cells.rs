@@ -47,7 +47,7 @@ impl Cells {
     /// Sorts `points` (centre and radius) for searches that reach `skin` beyond touch.
     pub fn build(&mut self, points: &[Record], radii: (f64, f64), skin: f64) {
         let wide = radii.1 > 3.0 * radii.0;
-        let class_of = |r: f64| if wide { ((radii.1 / r).log2() as usize).min(CLASSES - 1) } else { 0 };
+        let class_of = |r: f64| if wide { (libm::log2(radii.1 / r) as usize).min(CLASSES - 1) } else { 0 };
         self.class.clear();
         self.class.extend(points.iter().map(|p| class_of(p[3]) as u8));
         self.grids.resize_with(if wide { CLASSES } else { 1 }, Grid::default);

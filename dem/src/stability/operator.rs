@@ -6,6 +6,7 @@ use crate::bodies::table::Kind;
 use crate::bond::kernel;
 use crate::engine::model::Model;
 use crate::engine::state::State;
+use crate::law::lag;
 use crate::measure;
 use nalgebra::Matrix3;
 
@@ -76,11 +77,12 @@ impl Operator {
         let links = &mut self.links;
         measure::visit(model, state, 0.0, |c| {
             // Two that are both held.
-            if !c.mass.is_finite() {
+            if c.inverse_mass == 0.0 {
                 return;
             }
             let g = &c.geometry;
-            let law = model.laws.linearised(c.materials, c.mass, g.radius, g.overlap, c.history);
+            let law =
+                model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
             let other = if let Partner::Body(b) = c.partner { Some(b) } else { None };
             let arm = |b: usize, shift: Vec3| g.point - shift - state.position(b);
             let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
@@ -93,7 +95,7 @@ impl Operator {
                 normal: g.normal,
                 stiffness: [pair(law.normal, law.tangential), pair(law.twisting, law.rolling)],
                 damping: [pair(law.damping, law.tangential_damping), Pair::default()],
-                lag: 0.5 * law.damping / c.mass,
+                lag: 0.5 * law.damping * c.inverse_mass,
                 now: [Pair::default(); 2],
             });
         });
@@ -126,7 +128,8 @@ impl Operator {
     /// The operator for steps of `dt` [s].
     pub fn at(&mut self, dt: f64) -> &mut Operator {
         for link in &mut self.links {
-            let share = 1.0 / (1.0 + link.lag * dt).sqrt();
+            let (numerator, denominator) = lag::share(link.lag * dt);
+            let share = numerator / denominator;
             link.now = std::array::from_fn(|m| {
                 let (k, c) = (&link.stiffness[m], &link.damping[m]);
                 let at = |k: f64, c: f64| dt * dt * k + 2.0 * dt * c * share;

@@ -321,10 +321,9 @@ pub(crate) fn stand(
     let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
     let mut old = std::mem::take(&mut state.feet);
     let x = body.centre + state.offset;
-    let mass = if body.inverse_mass > 0.0 { body.mass } else { f64::INFINITY };
     for (p, (plane, wall)) in planes.iter().zip(motions).enumerate() {
         let origin = plane.point + wall.offset;
-        if wall.open || mass.is_infinite() || (x - origin).dot(&plane.normal) > body.reach {
+        if wall.open || body.inverse_mass == 0.0 || (x - origin).dot(&plane.normal) > body.reach {
             continue;
         }
         let materials = [material, plane.material as u32];
@@ -336,8 +335,16 @@ pub(crate) fn stand(
                 foot.history = std::mem::replace(&mut known.history, History::NONE);
             }
             let relative = state.velocity_at(&body.centre, &g.point) - wall.velocity;
-            let f =
-                single::evaluate(laws, materials, mass, &g, &relative, &state.spin, &mut foot.history, dt);
+            let f = single::evaluate(
+                laws,
+                materials,
+                body.inverse_mass,
+                &g,
+                &relative,
+                &state.spin,
+                &mut foot.history,
+                dt,
+            );
             ledger.dissipated_dashpot += f.dashpot;
             ledger.dissipated_friction += f.friction;
             ledger.work_walls += f.force.dot(&wall.velocity) * dt;

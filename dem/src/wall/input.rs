@@ -87,7 +87,7 @@ impl Oscillation {
     /// Displacement at a time [m].
     pub fn at(&self, time: f64) -> Vec3 {
         let turn = std::f64::consts::TAU * self.frequency * time;
-        self.amplitude * ((turn + self.phase).sin() - self.phase.sin())
+        self.amplitude * (libm::sin(turn + self.phase) - libm::sin(self.phase))
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod adhesion;
 mod balance;
+mod body_forces;
 mod bonds;
 mod bonds_block;
 mod bonds_many;

@@ -6,7 +6,7 @@ use super::{quad4, quad8, tri3, tri6};
 /// Points inside the element that no symmetry singles out: convex combinations of the nodes.
 fn interior<const D: usize, const N: usize>(natural: &[[f64; D]; N]) -> [[f64; D]; 4] {
     [1.0, 2.3, 4.1, 5.6].map(|phase: f64| {
-        let weights: [f64; N] = std::array::from_fn(|a| 1.2 + (phase * (a + 1) as f64).sin());
+        let weights: [f64; N] = std::array::from_fn(|a| 1.2 + libm::sin(phase * (a + 1) as f64));
         let sum: f64 = weights.iter().sum();
         std::array::from_fn(|k| (0..N).map(|a| weights[a] * natural[a][k]).sum::<f64>() / sum)
     })
@@ -67,7 +67,7 @@ pub fn complete<const D: usize, const N: usize>(
 ) {
     let affine = |xi: [f64; D]| -> [f64; 3] {
         std::array::from_fn(|i| {
-            let sum: f64 = (0..D).map(|k| (1.0 + 0.37 * ((i + 2 * k) as f64).cos()) * xi[k]).sum();
+            let sum: f64 = (0..D).map(|k| (1.0 + 0.37 * libm::cos((i + 2 * k) as f64)) * xi[k]).sum();
             0.2 + 0.1 * i as f64 + 0.3 * sum + if i < D { 0.4 * xi[i] } else { 0.0 }
         })
     };
@@ -178,8 +178,8 @@ pub fn volume<const N: usize>(
 ) {
     let distorted: [[f64; 3]; N] = std::array::from_fn(|a| {
         std::array::from_fn(|k| {
-            let shear: f64 = (0..3).map(|m| 0.2 * ((2 * k + m) as f64).sin() * natural[a][m]).sum();
-            natural[a][k] + shear + 0.05 * (1.7 * ((a + 1) * (k + 1)) as f64).sin() + 0.3
+            let shear: f64 = (0..3).map(|m| 0.2 * libm::sin((2 * k + m) as f64) * natural[a][m]).sum();
+            natural[a][k] + shear + 0.05 * libm::sin(1.7 * ((a + 1) * (k + 1)) as f64) + 0.3
         })
     });
     for (x, tolerance) in [(natural, 1e-13), (&distorted, tolerance)] {

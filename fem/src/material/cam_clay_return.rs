@@ -94,8 +94,8 @@ fn mean_exponential(t: f64) -> (f64, f64) {
         let value = 1.0 + t / 2.0 * (1.0 + t / 3.0 * (1.0 + t / 4.0 * (1.0 + t / 5.0)));
         (value, 0.5 + t / 3.0 * (1.0 + 3.0 * t / 8.0 * (1.0 + 4.0 * t / 15.0)))
     } else {
-        let value = t.exp_m1() / t;
-        (value, (t.exp() - value) / t)
+        let value = libm::expm1(t) / t;
+        (value, (libm::exp(t) - value) / t)
     }
 }
 
@@ -114,21 +114,21 @@ impl Clay {
     /// Elastic volume strain from the pressure `start` to `end`: logarithmic above the minimum, linear below.
     fn elastic_strain(&self, start: f64, end: f64) -> f64 {
         let floor = self.floor;
-        let from_floor = |p: f64| if p >= floor { (p / floor).ln() } else { p / floor - 1.0 };
+        let from_floor = |p: f64| if p >= floor { libm::log(p / floor) } else { p / floor - 1.0 };
         self.swelling * (from_floor(end) - from_floor(start))
     }
 
     fn bulk(&self, start: f64, x: f64) -> Bulk {
         let (slope, floor) = (self.swelling, self.floor);
         let t = x / slope;
-        let grown = start * t.exp();
+        let grown = start * libm::exp(t);
         if start >= floor && grown >= floor {
             let (mean, rate) = mean_exponential(t);
             let secant_rate = start / (slope * slope) * rate;
             return Bulk { p: grown, tangent: grown / slope, secant: start / slope * mean, secant_rate };
         }
         let to = t - self.elastic_strain(start, floor) / slope;
-        let p = floor * if to >= 0.0 { to.exp() } else { 1.0 + to };
+        let p = floor * if to >= 0.0 { libm::exp(to) } else { 1.0 + to };
         let tangent = p.max(floor) / slope;
         if start <= floor && p <= floor {
             return Bulk { p, tangent, secant: floor / slope, secant_rate: 0.0 };
@@ -142,7 +142,7 @@ impl Step<'_> {
     pub fn at(&self, x: f64, multiplier: f64) -> Trial {
         let (clay, m2) = (self.clay, self.clay.square);
         let bulk = clay.bulk(self.p, x);
-        let grown = self.pc * ((self.volume - x) / clay.plastic_slope).exp();
+        let grown = self.pc * libm::exp((self.volume - x) / clay.plastic_slope);
         let floor = clay.floor.min(self.pc);
         let (pc, hardening) = if grown > floor { (grown, grown / clay.plastic_slope) } else { (floor, 0.0) };
         let (g, by_bulk) = clay.shear_modulus(bulk.secant);

@@ -29,7 +29,7 @@ pub enum Cone {
 impl Cone {
     /// `eta` and `xi` of an angle [rad], then their derivatives by the angle.
     pub fn coefficients(self, angle: f64) -> [f64; 4] {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         match self {
             Cone::PlaneStrain => {
                 let square = 9.0 + 3.0 * sin * sin;

@@ -228,8 +228,8 @@ impl ConstitutiveLaw for ModifiedCamClay {
 
     /// The friction angle of triaxial compression, `sin(phi) = 3 M / (6 + M)`, with its tangent divided by the factor.
     fn reduced(&self, factor: f64) -> ModifiedCamClay {
-        let phi = (3.0 * self.critical_ratio / (6.0 + self.critical_ratio)).asin();
-        let sin = (phi.tan() / factor).atan().sin();
+        let phi = libm::asin(3.0 * self.critical_ratio / (6.0 + self.critical_ratio));
+        let sin = libm::sin(libm::atan(libm::tan(phi) / factor));
         ModifiedCamClay { critical_ratio: 6.0 * sin / (3.0 - sin), ..*self }
     }
 }

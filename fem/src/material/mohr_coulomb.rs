@@ -50,7 +50,7 @@ impl MohrCoulomb {
         let (low, high) = self.friction.range();
         let mut most = 0.0_f64;
         for phi in [low, high] {
-            let strength = Strength::new((1.0, 1.0), (phi, 0.0), self.dilation.sin(), None);
+            let strength = Strength::new((1.0, 1.0), (phi, 0.0), libm::sin(self.dilation), None);
             for region in [
                 Region::Plane,
                 Region::EdgeCompression,
@@ -78,7 +78,12 @@ impl MohrCoulomb {
     }
 
     fn strength(&self, kappa: f64) -> Strength {
-        Strength::new(self.cohesion.at(kappa), self.friction.at(kappa), self.dilation.sin(), self.tension)
+        Strength::new(
+            self.cohesion.at(kappa),
+            self.friction.at(kappa),
+            libm::sin(self.dilation),
+            self.tension,
+        )
     }
 
     fn shared(&self) -> strength::Strength<'_> {

@@ -64,7 +64,7 @@ pub(super) struct Strength {
 impl Strength {
     pub fn new(cohesion: (f64, f64), friction: (f64, f64), sin_psi: f64, tension: Option<f64>) -> Strength {
         let ((c, c_rate), (phi, phi_rate)) = (cohesion, friction);
-        let (sin, cos) = phi.sin_cos();
+        let (sin, cos) = libm::sincos(phi);
         let k = 2.0 * c * cos;
         Strength {
             sin,

@@ -27,7 +27,7 @@ impl Strength<'_> {
     /// The strength divided by `factor`: `c / F`, `tan(phi) / F`, tension cut-off `/ F`. The dilation angle is kept, but
     /// never above the reduced friction angle. Source: Griffiths and Lane, Géotechnique 49(3), 1999, equations 1 and 2.
     pub fn reduced(&self, factor: f64) -> Reduced {
-        let friction = self.friction.map(|phi| (phi.tan() / factor).atan());
+        let friction = self.friction.map(|phi| libm::atan(libm::tan(phi) / factor));
         Reduced {
             cohesion: self.cohesion.map(|c| c / factor),
             dilation: self.dilation.min(friction.range().0),
@@ -66,7 +66,7 @@ impl Strength<'_> {
                 return Some(("tension cut-off", t, "a finite number, 0 or above"));
             }
             let (c, phi) = (cohesion.at(0.0).0, friction.at(0.0).0);
-            if t * phi.sin() > c * phi.cos() {
+            if t * libm::sin(phi) > c * libm::cos(phi) {
                 return Some(("tension cut-off", t, "at most c cot(phi), where the apex lies"));
             }
         }

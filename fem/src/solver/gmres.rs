@@ -144,7 +144,7 @@ impl Gmres {
             column[i + 1] = self.cosine[i] * b - self.sine[i] * a;
         }
         let (a, b) = (column[j], if grows { length } else { 0.0 });
-        let r = a.hypot(b);
+        let r = libm::hypot(a, b);
         // A column of zeros happens for singular matrices only; it is left out of the correction.
         (self.cosine[j], self.sine[j]) = if r > 0.0 { (a / r, b / r) } else { (1.0, 0.0) };
         column[j] = r;

@@ -12,7 +12,7 @@ use trackbed_coupling::surface::SolidSurface;
 const PASSES: u32 = 20;
 
 /// Tolerance of the iterated scheme, unless the scene says otherwise.
-const TOLERANCE: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-4;
 
 /// Resolves `[coupling]`.
 ///

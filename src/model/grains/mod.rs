@@ -17,6 +17,7 @@ mod sources;
 mod steps;
 mod track;
 mod walls;
+mod wind;
 
 use crate::failure::Failure;
 use crate::scene::{Document, Scene};
@@ -53,6 +54,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
     let deposition = scene.deposition.as_ref().map(|d| deposition::build(document, d)).transpose()?;
     let settling = deposition.as_ref();
     let compaction = compaction::build(document, scene, settling, &walls, &mut groups)?;
+    let body_forces = wind::build(document, scene)?;
     let measures = measure::build(document, scene)?;
     bonds::rules(document, scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
     let fixed = match (bonds.is_empty(), periodic.iter().any(Option::is_some)) {
@@ -68,6 +70,7 @@ pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<Gr
         walls,
         surface: SurfaceMaterials { ground, sleepers: None },
         gravity,
+        body_forces,
         steps,
         periodic,
         packing: PackingPlan { deposition, compaction },

@@ -11,7 +11,7 @@ use super::periodic::Borders;
 use super::steps::StepPlan;
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
-use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
+use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
 
 /// The grains, ready to build models of.
 #[derive(Clone)]
@@ -28,6 +28,8 @@ pub struct GrainsPart {
     pub surface: SurfaceMaterials,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
+    /// Body forces of the run proper.
+    pub body_forces: Vec<BodyForce>,
     /// Steps in time.
     pub steps: StepPlan,
     /// Periodic borders.
@@ -66,7 +68,11 @@ impl GrainsPart {
         let contacts = self.materials.pairs_with(plan.friction);
         let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
         // Sleepers are not there yet.
-        let alone = ModelInput { other_surface: None, ..self.input(self.groups.bodies.clone()) };
+        let alone = ModelInput {
+            other_surface: None,
+            body_forces: Vec::new(),
+            ..self.input(self.groups.bodies.clone())
+        };
         let mut input = ModelInput { contacts, damping, ..alone };
         // How grains bounce on their way into the bed does not matter.
         if let TimeStep::Measured { longest, collisions, .. } = &mut input.time_step {
@@ -119,6 +125,7 @@ impl GrainsPart {
             surface_material: self.surface.ground,
             other_surface: self.surface.sleepers,
             gravity: self.gravity,
+            body_forces: self.body_forces.clone(),
             time_step: self.time_step(),
             impact_speed: self.steps.impact_speed,
             skin: None,

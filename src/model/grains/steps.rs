@@ -6,9 +6,6 @@ use super::materials::MaterialsPart;
 use crate::scene::{Document, Scene, SceneError, TimeControl};
 use trackbed_dem::TimeStep;
 
-/// Share of what the contacts allow that is taken for the step.
-const SHARE: f64 = 0.8;
-
 /// How the step of the grains is found.
 #[derive(Clone, Copy, Debug)]
 pub struct StepPlan {
@@ -49,7 +46,7 @@ pub(super) fn time_step(document: &Document, time: &TimeControl) -> Result<TimeS
                 let key = "time.accept_step_above_limit";
                 return Err(document.error(key, "true", "a `grain_step` that it accepts"));
             }
-            let share = fraction.unwrap_or(SHARE);
+            let share = fraction.unwrap_or(TimeStep::SHARE);
             check(
                 document,
                 "time.grain_step_fraction",

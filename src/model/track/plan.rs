@@ -3,10 +3,10 @@
 use super::trains;
 use crate::failure::Failure;
 use crate::model::tables;
-use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, TrackTable};
+use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, SeatingTable, TrackTable};
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::track::influence::Winkler;
-use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Waveform};
+use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Seating, Waveform};
 use trackbed_coupling::track::rail::RailInput;
 use trackbed_coupling::track::train;
 
@@ -139,7 +139,22 @@ pub fn load(
             Waveform::Pass(Pass::over(&places, speed.unwrap_or(1.0), axles, rail.spread(&places), waves))
         }
     };
-    Ok(CyclicLoad { waveform, cycles, rest: l.rest.si, ramp: l.ramp.si, places })
+    let mut load = CyclicLoad { waveform, cycles, rest: l.rest.si, ramp: l.ramp.si, seating: None, places };
+    load.seating = l.seating.as_ref().map(|s| seating(document, s, &load)).transpose()?;
+    Ok(load)
+}
+
+/// The pulses before the first cycle of `load`.
+fn seating(document: &Document, s: &SeatingTable, load: &CyclicLoad) -> Result<Seating, SceneError> {
+    let key = |name: &str| format!("track.load.seating.{name}");
+    check(document, &key("cycles"), f64::from(s.cycles), |n| (1.0..=1e6).contains(&n), "1 to 1000000")?;
+    let base = (0..load.places.len()).map(|k| load.on(k, load.seating_begins())).fold(0.0, f64::max);
+    let expected = format!("more than the {base} N that the load begins with");
+    Ok(Seating {
+        cycles: s.cycles,
+        maximum: check(document, &key("maximum"), s.maximum.si, |f| f > base, &expected)?,
+        frequency: check(document, &key("frequency"), s.frequency.si, |f| f > 0.0, "above 0")?,
+    })
 }
 
 /// Refuses keys of other kinds and asks for those that are needed.

@@ -25,6 +25,11 @@ pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRec
     CycleRecorder::new(load, between, column)
 }
 
+/// The load of a scene on its sleepers.
+fn load_of(job: &Job) -> Option<&CyclicLoad> {
+    job.grains.as_ref()?.track.load.as_ref()
+}
+
 /// The row of a cycle.
 pub fn record(job: &Job, c: &Cycle, row: &mut Row) {
     row.put("cycle", "", f64::from(c.number));
@@ -35,6 +40,9 @@ pub fn record(job: &Job, c: &Cycle, row: &mut Row) {
     row.put("peak_formation_pressure", "Pa", c.peak_formation_pressure);
     row.put("rate", "m", c.rate);
     row.put("bed_stiffness", "N/m", c.bed_stiffness);
+    if load_of(job).is_some_and(|l| l.seating.is_some()) {
+        row.put("total_settlement", "m", c.total_settlement);
+    }
     if job.solid.is_none() {
         row.put("resilient_modulus", "Pa", c.resilient_modulus);
     }

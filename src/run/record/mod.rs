@@ -205,6 +205,11 @@ impl<'a> Results<'a> {
         self.course.cycles.as_ref().map(|c| (c.number(), c.total()))
     }
 
+    /// Settlement by the pulses that seat the sleeper [m].
+    pub fn seating(&self) -> f64 {
+        self.course.cycles.as_ref().map_or(0.0, CycleRecorder::seating)
+    }
+
     /// Settlement laws fitted to the cycles.
     pub fn fits(&self) -> Vec<settlement::Fit> {
         let load = self.job.grains.as_ref().and_then(|g| g.track.load.as_ref());

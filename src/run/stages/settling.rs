@@ -12,7 +12,7 @@ use crate::run::context::Run;
 use crate::run::summary::StageRecord;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
-use trackbed_dem::BodyInput;
+use trackbed_dem::{BackEnd, BodyInput};
 
 /// Time between two looks at the speed [s].
 const LOOK: f64 = 1e-3;
@@ -81,12 +81,13 @@ fn settle(
     while going {
         dem::stability::follow(&model, &mut state);
         match surface {
-            Some(s) => dem::step(&model, &mut state, &mut work, s, &[]),
-            None => dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]),
+            Some(s) => work.step(&model, &mut state, s, &[]),
+            None => work.step(&model, &mut state, &dem::surface::NoSurface, &[]),
         }
         .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
         // Look at the speed every millisecond.
         if bed::passed(&state, LOOK) {
+            work.download(&model, &mut state);
             let speed = bed::rms_speed(&model, &state);
             // Everything starts at rest: free fall has to be under way before slowness means anything.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);

@@ -98,7 +98,7 @@ pub fn with_grains<S: System>(
     let ledger = &system.grains().expect("a system with grains").state.ledger;
     let impulse = ledger.impulse();
     let (mut linear, mut angular) = (0.0, 0.0);
-    let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied];
+    let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.body_forces];
     for part in outside.into_iter().chain([&ledger.constraints, &ledger.flow]) {
         linear += part.linear.norm();
         angular += part.angular.norm();
@@ -347,5 +347,7 @@ fn settlement(
         mean_of_last_ten: mean(&last),
     });
     let (fits, jump) = (recorder.fits(), recorder.jumps());
-    Some(SettlementRecord { per_cycle, increments, slowing, fits, bed_stiffness, jump })
+    let seated = grains.and_then(|g| g.track.load.as_ref()).is_some_and(|l| l.seating.is_some());
+    let seating = seated.then(|| recorder.seating());
+    Some(SettlementRecord { seating, per_cycle, increments, slowing, fits, bed_stiffness, jump })
 }

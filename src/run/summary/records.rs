@@ -216,6 +216,9 @@ pub struct TrialRecord {
 /// Settlement under a cyclic load.
 #[derive(Debug, Serialize)]
 pub struct SettlementRecord {
+    /// Settlement of the sleeper by the pulses that seat it, which the other figures leave out [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seating: Option<f64>,
     /// Settlement of the sleeper after each cycle [m].
     pub per_cycle: Vec<f64>,
     /// Increase of settlement in each cycle [m].

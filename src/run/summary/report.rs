@@ -130,6 +130,12 @@ impl Summary {
     /// Settlement under cycles, its laws, jumps.
     fn report_settlement(&self, lines: &mut Vec<String>) {
         if let Some(s) = &self.track.settlement {
+            if let Some(seating) = s.seating {
+                lines.push(format!(
+                    "settlement while the sleeper was seated, not counted [mm]: {:.3}",
+                    1e3 * seating
+                ));
+            }
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
             if list.len() <= 20 {
                 lines.push(format!("settlement after each cycle [mm]: {}", list.join(" ")));

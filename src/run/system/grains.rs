@@ -8,6 +8,7 @@ use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
+use trackbed_dem::BackEnd;
 
 /// Grains alone.
 pub struct GrainsSystem {
@@ -85,9 +86,11 @@ impl System for GrainsSystem {
         for _ in 0..dem::stability::divide(&self.model, &mut self.state, self.window, 1) {
             self.applied.clear();
             applied(self.state.time, &self.model, &self.state, &mut self.applied);
-            dem::step(&self.model, &mut self.state, &mut self.work, none, &self.applied)
+            self.work
+                .step(&self.model, &mut self.state, none, &self.applied)
                 .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
         }
+        self.work.download(&self.model, &mut self.state);
         Ok(())
     }
 

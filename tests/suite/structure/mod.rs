@@ -8,7 +8,7 @@ mod words;
 
 use graph::{Circle, circles, files_in_circles, graph};
 use source::{functions, read_crate};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -77,6 +77,27 @@ fn no_circles_between_folders_and_none_of_more_than_three_files() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Elementary functions whose last bits hang on the system's library and on the processor that it picks its code for; those of
+/// the crate `libm` do not.
+const ELEMENTARY: &str = "sin cos tan asin acos atan atan2 sin_cos exp exp2 exp_m1 ln ln_1p log log2 log10 powf cbrt sinh cosh \
+                          tanh asinh acosh atanh hypot mul_add scaled_axis from_scaled_axis from_axis_angle from_euler_angles";
+
+#[test]
+fn elementary_functions_have_the_same_bits_everywhere() {
+    let mut found = Vec::new();
+    for root in CRATES {
+        for scope in read_crate(repository(), root).values() {
+            let of_types = scope.paths.iter().filter(|path| path.first().is_none_or(|first| first != "libm"));
+            let last = of_types.filter_map(|path| path.last());
+            let names: BTreeSet<&String> = scope.calls.iter().chain(last).collect();
+            let own = ELEMENTARY.split_whitespace().filter(|name| names.iter().any(|n| n == name));
+            found.extend(own.map(|name| format!("{}: {name}", scope.file)));
+        }
+    }
+    found.iter().for_each(|use_| println!("{use_}"));
+    assert!(found.is_empty(), "{} uses", found.len());
 }
 
 #[test]

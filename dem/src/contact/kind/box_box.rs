@@ -184,7 +184,7 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
     let count = polygon.len();
     let length = |k: usize| {
         let (p, q) = (&polygon[k % count], &polygon[(k + 1) % count]);
-        (p.at[0] - q.at[0]).hypot(p.at[1] - q.at[1])
+        libm::hypot(p.at[0] - q.at[0], p.at[1] - q.at[1])
     };
     let around: f64 = (0..count).map(length).sum();
     for (k, corner) in polygon.iter().enumerate().filter(|(_, c)| c.height < 0.0) {

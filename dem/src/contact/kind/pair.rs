@@ -56,8 +56,8 @@ pub(crate) struct Visited<'a> {
     pub weight: f64,
     /// Velocity of the body relative to the partner at the contact point [m/s].
     pub velocity: Vec3,
-    /// Effective mass [kg].
-    pub mass: f64,
+    /// Sum of the inverse masses of both [1/kg].
+    pub inverse_mass: f64,
     pub history: &'a crate::law::History,
     /// Spin of the body less that of its partner [rad/s].
     pub spin: Vec3,

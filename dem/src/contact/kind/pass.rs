@@ -180,7 +180,7 @@ impl<K: PairKind> Kind for Of<K> {
                     geometry: touch.geometry,
                     weight: touch.weight,
                     velocity: own.at_point() - its.at_point(),
-                    mass: 1.0 / (own.inverse_mass() + its.inverse_mass()),
+                    inverse_mass: own.inverse_mass() + its.inverse_mass(),
                     history: &memory.copied().unwrap_or(PointMemory::NONE).history,
                     spin: own.spin() - its.spin(),
                     materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],

@@ -54,7 +54,7 @@ impl<L: ContactLaw> Led<L> {
             let overlap = from_d + (d - from_d) * part;
             let g = ContactGeometry { point: Vec3::zeros(), normal: Vec3::z(), overlap, radius: RADIUS };
             let velocity = Vec3::new(rate.1, 0.0, -rate.0);
-            let f = self.law.evaluate_one(0.1, &g, &velocity, &Vec3::zeros(), &mut self.history, dt);
+            let f = self.law.evaluate_one(10.0, &g, &velocity, &Vec3::zeros(), &mut self.history, dt);
             // Work that the path does on the contact, by the trapezoidal rule.
             self.work -= 0.5 * (f.force + self.last.force).dot(&velocity) * dt;
             self.booked += f.friction + f.dashpot;

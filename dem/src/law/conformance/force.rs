@@ -15,7 +15,7 @@ pub fn no_force_at_zero_overlap<L: ContactLaw>(material: &Material) {
     let still = Vec3::zeros();
     for rate in [FRESH, law.begun(0.0)] {
         let mut history = History { rate, ..History::NONE };
-        let f = law.evaluate_one(MASS, &touch(0.0), &still, &still, &mut history, 1e-5);
+        let f = law.evaluate_one(1.0 / MASS, &touch(0.0), &still, &still, &mut history, 1e-5);
         assert_eq!(f.force.norm(), 0.0, "{f:?}");
         assert_eq!((f.dashpot, f.friction), (0.0, 0.0));
         assert!(history.spring.norm() == 0.0 && history.rate.is_finite());
@@ -42,7 +42,7 @@ pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
             let mut history = History::NONE;
             while d > 0.0 {
                 let velocity = Vec3::new(0.0, 0.0, -v);
-                let f = law.evaluate_one(MASS, &touch(d), &velocity, &Vec3::zeros(), &mut history, dt);
+                let f = law.evaluate_one(1.0 / MASS, &touch(d), &velocity, &Vec3::zeros(), &mut history, dt);
                 v -= f.force.z / MASS * dt;
                 d += v * dt;
                 if f.normal == 0.0 && v < 0.0 {
@@ -68,7 +68,7 @@ pub fn partners_are_alike<L: ContactLaw>(material: &Material) {
     for m in path.moments() {
         let (force, geometry) = (m.evaluate(&law, &mut a, path.dt()), m.geometry);
         let turned = ContactGeometry { normal: -geometry.normal, ..geometry };
-        let other = law.evaluate_one(MASS, &turned, &-m.velocity, &-m.spin, &mut b, path.dt());
+        let other = law.evaluate_one(1.0 / MASS, &turned, &-m.velocity, &-m.spin, &mut b, path.dt());
         assert_eq!(other.force, -force.force);
         assert_eq!(other.moment, -force.moment);
         assert_eq!((other.normal, other.dashpot), (force.normal, force.dashpot));
@@ -86,7 +86,7 @@ pub fn rotation_of_everything_rotates_the_force<L: ContactLaw>(material: &Materi
         let force = m.evaluate(&law, &mut a, path.dt());
         let turned = ContactGeometry { normal: q * m.geometry.normal, ..m.geometry };
         let (velocity, spin) = (q * m.velocity, q * m.spin);
-        let other = law.evaluate_one(MASS, &turned, &velocity, &spin, &mut b, path.dt());
+        let other = law.evaluate_one(1.0 / MASS, &turned, &velocity, &spin, &mut b, path.dt());
         largest = largest.max(force.force.norm());
         assert!((other.force - q * force.force).norm() < 1e-9 * largest);
         assert!((other.moment - q * force.moment).norm() < 1e-9 * largest * RADIUS);
@@ -120,7 +120,7 @@ pub fn stiffness_is_the_slope_of_the_force<L: ContactLaw>(material: &Material) {
     for d in [1e-6, 3e-5, 2e-4] {
         let evaluated = |d: f64| {
             let mut history = History { rate: law.begun(0.0), ..History::NONE };
-            law.evaluate_one(MASS, &touch(d), &still, &still, &mut history, 1e-6).normal
+            law.evaluate_one(1.0 / MASS, &touch(d), &still, &still, &mut history, 1e-6).normal
         };
         let (force, stiffness) = law.loading(d, RADIUS);
         assert!((evaluated(d) / force - 1.0).abs() < 1e-12, "{} against {force}", evaluated(d));

@@ -34,7 +34,7 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
         };
         let law = L::mixed(cases.each_ref().map(|c| &c.law), R::of);
         let touch = LawInput {
-            mass: R::splat(MASS),
+            inverse_mass: R::splat(1.0 / MASS),
             radius: of(|c| c.geometry.radius),
             overlap: of(|c| c.geometry.overlap),
             normal: vector(|c| c.geometry.normal),
@@ -75,7 +75,7 @@ fn bits(numbers: &[f64; 8], lanes: usize) -> [u64; 8] {
 fn alone<L: ContactLaw>(cases: &[Case<L>; 8], lanes: usize) -> Vec<[u64; 8]> {
     let each = cases.each_ref().map(|c| {
         let mut h = c.history;
-        let f = c.law.evaluate_one(MASS, &c.geometry, &c.velocity, &c.spin, &mut h, c.dt);
+        let f = c.law.evaluate_one(1.0 / MASS, &c.geometry, &c.velocity, &c.spin, &mut h, c.dt);
         let left = c.law.release(&mut h.clone());
         let ([x, y, z], [a, b, d]) = (f.force.into(), f.moment.into());
         let [s, t, u] = h.spring.into();

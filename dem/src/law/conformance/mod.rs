@@ -163,6 +163,6 @@ impl Path {
 
 impl Moment {
     fn evaluate<L: ContactLaw>(&self, law: &L, history: &mut History, dt: f64) -> ContactForce {
-        law.evaluate_one(MASS, &self.geometry, &self.velocity, &self.spin, history, dt)
+        law.evaluate_one(1.0 / MASS, &self.geometry, &self.velocity, &self.spin, history, dt)
     }
 }

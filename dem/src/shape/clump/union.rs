@@ -141,7 +141,7 @@ fn slice_moments(
         covered.clear();
         for (j, &(xj, yj, rj)) in discs.iter().enumerate() {
             let (dx, dy) = (xj - xi, yj - yi);
-            let d = dx.hypot(dy);
+            let d = libm::hypot(dx, dy);
             if i == j || d >= ri + rj {
                 continue;
             }
@@ -152,8 +152,8 @@ fn slice_moments(
             if d <= ri - rj {
                 continue;
             }
-            let half = ((d * d + ri * ri - rj * rj) / (2.0 * d * ri)).clamp(-1.0, 1.0).acos();
-            let start = (dy.atan2(dx) - half).rem_euclid(TAU);
+            let half = libm::acos(((d * d + ri * ri - rj * rj) / (2.0 * d * ri)).clamp(-1.0, 1.0));
+            let start = (libm::atan2(dy, dx) - half).rem_euclid(TAU);
             let end = start + 2.0 * half;
             covered.push((start, end.min(TAU)));
             if end > TAU {
@@ -177,7 +177,7 @@ fn slice_moments(
 
 /// Adds the contour integrals of one arc, x = p + r cos θ, y = q + r sin θ, θ from `a` to `b`.
 fn add_arc(sum: &mut [f64; 6], (p, q, r): (f64, f64, f64), a: f64, b: f64) {
-    let ((sa, ca), (sb, cb)) = (a.sin_cos(), b.sin_cos());
+    let ((sa, ca), (sb, cb)) = (libm::sincos(a), libm::sincos(b));
     let t = b - a;
     // Integrals of products of cosines (c) and sines (s) over the arc.
     let c1 = sb - sa;

@@ -169,7 +169,7 @@ impl Surface {
             let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
             let volume = a.dot(&b.cross(&c));
             let base = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-            2.0 * volume.atan2(base)
+            2.0 * libm::atan2(volume, base)
         };
         (0..self.triangles.len()).map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
     }

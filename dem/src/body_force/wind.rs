@@ -1,0 +1,47 @@
+//! Drag of a fluid that moves with one velocity everywhere: wind, or the draught of a train.
+//!
+//! F = ½ ρ C_d π r² |u| u, u the velocity of the fluid less that of the body's centre, r the radius of the sphere of the body's
+//! volume. C_d belongs to that radius and does not change with the speed: crushed stone of sphericity 0.8 has about 1.4, of 0.9
+//! 0.9, and a smooth sphere 0.45, at Reynolds numbers of 10⁴ to 10⁵ (Haider & Levenspiel, Powder Technology 58, 1989,
+//! eq. 11). No lift, no shelter behind other bodies, no torque.
+
+use super::{Act, Seen};
+use crate::base::Vec3;
+use crate::lanes::{Real, V3};
+
+/// Where it is published.
+pub(super) const SOURCE: &str = "drag: Haider & Levenspiel, Powder Technology 58, 1989";
+
+/// A fluid that moves with one velocity everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wind {
+    /// Velocity [m/s].
+    pub velocity: Vec3,
+    /// Density of the fluid [kg/m³].
+    pub density: f64,
+    /// Drag coefficient [-], of the sphere of a body's volume.
+    pub drag: f64,
+}
+
+impl Wind {
+    pub(super) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
+        let good = |x: f64| x >= 0.0 && x.is_finite();
+        if let Some(&v) = self.velocity.iter().find(|v| !v.is_finite()) {
+            return Some(("velocity", v, "be finite"));
+        }
+        [("density", self.density), ("drag coefficient", self.drag)]
+            .into_iter()
+            .find(|&(_, x)| !good(x))
+            .map(|(what, x)| (what, x, "be zero or positive, and finite"))
+    }
+}
+
+impl Act for Wind {
+    #[inline(always)]
+    fn act<R: Real>(&self, on: &Seen<R>) -> (V3<R>, V3<R>) {
+        let v = &self.velocity;
+        let past = V3::new(R::splat(v.x), R::splat(v.y), R::splat(v.z)) - on.velocity;
+        let share = R::splat(0.5 * std::f64::consts::PI * self.density * self.drag);
+        (past * (share * on.radius * on.radius * past.norm2().sqrt()), V3::zero())
+    }
+}
