@@ -17,6 +17,7 @@ pub mod material;
 mod output;
 pub mod periodic;
 pub mod solid;
+mod table;
 pub mod track;
 pub mod units;
 pub mod walls;
@@ -25,6 +26,7 @@ pub mod walls;
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 pub use output::{Chains, Output};
+pub use table::{Number, Table};
 
 use serde::Deserialize;
 use units::{Acceleration, Length, Quantity, Time, Velocity};
