@@ -20,7 +20,9 @@ pub mod solid;
 mod table;
 pub mod track;
 pub mod units;
+mod value;
 pub mod walls;
+mod wording;
 
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
