@@ -5,17 +5,17 @@ mod boundary;
 mod common;
 mod conditioning;
 mod geometry;
+mod initial_stress;
 mod load;
 mod locking;
 mod material;
+mod motion;
 mod selection;
 mod sleepers;
 
-pub use analysis::{
-    Analysis, InitialStressKind, InitialStressPlan, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan,
-    TimeMethod,
-};
+pub use analysis::{Analysis, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan, TimeMethod};
 pub use geometry::{Geometry, geometry};
+pub use initial_stress::{InitialStressKind, InitialStressPlan};
 pub use load::NodalLoad;
 pub use selection::find_node;
 pub use sleepers::SleeperBodies;
@@ -25,7 +25,7 @@ use crate::mesh_tools;
 use crate::model::track::sleeper::MeshedSleepers;
 use crate::read::MeshFile;
 use crate::scene::history::TimeFunction;
-use crate::scene::solid::{Integration, Mass, Rayleigh, ReductionKind, Solid};
+use crate::scene::solid::{Integration, Mass, Solid};
 use crate::scene::{Document, SceneError, Table};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -188,7 +188,7 @@ pub fn build(
     let boundaries = boundary::absorbing(solid, &geometry, &materials.constants)?;
     let linear = materials.constants.values().all(|m| m.is_linear());
     let plans = analysis::plans(solid, &materials, linear, coupled)?;
-    analysis::check_overburden(solid, &plans, &geometry.mesh, &materials)?;
+    initial_stress::check_overburden(solid, plans.initial_stress.as_ref(), &geometry.mesh, &materials)?;
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
@@ -213,7 +213,7 @@ pub fn build(
         constraints: supports.constraints,
         boundaries,
         gravity: weight,
-        rayleigh: rayleigh(solid.optional("rayleigh", &solid.rayleigh))?,
+        rayleigh: motion::rayleigh(solid.optional("rayleigh", &solid.rayleigh))?,
     })
     .map_err(|e| refused(&element_file, &e))?;
     let position = |dof: u32| {
@@ -229,7 +229,7 @@ pub fn build(
         analysis: plans.analysis,
         initial_stress: plans.initial_stress,
         newton: plans.newton,
-        reduction: reduction(solid, linear, coupled)?,
+        reduction: motion::reduction(solid, linear, coupled)?,
         material_names: materials.names,
         warnings,
         sleepers,
@@ -242,34 +242,6 @@ fn quadrature(integration: Integration) -> fem::Quadrature {
         Integration::Reduced => fem::Quadrature::Gauss2,
         Integration::Irons14 => fem::Quadrature::Irons14,
         Integration::Full => fem::Quadrature::Gauss3,
-    }
-}
-
-/// The reduction of a solid, refused where it would not be one, or would not be used.
-fn reduction(
-    solid: &Table<Solid>,
-    linear: bool,
-    coupled: bool,
-) -> Result<Option<fem::reduction::Reduction>, SceneError> {
-    let Some(r) = solid.reduction else { return Ok(None) };
-    let refuse = |found: &str, expected: &str| Err(solid.error("reduction", found, expected));
-    if !linear {
-        return refuse("a material with plasticity", "no such key unless every material is linear elastic");
-    }
-    if solid.initial_stress.is_some() {
-        return refuse("initial stress", "no such key beside solid.initial_stress");
-    }
-    if !coupled {
-        return refuse("a value", "no such key without [[grains]]");
-    }
-    match (r.kind, r.modes) {
-        (ReductionKind::Surface, modes) => {
-            Ok(Some(fem::reduction::Reduction::Surface { modes: modes.unwrap_or(0) }))
-        }
-        (ReductionKind::Modes, Some(0)) => Err(solid.error("reduction.modes", "0", "1 or more")),
-        (ReductionKind::Modes, modes) => {
-            Ok(Some(fem::reduction::Reduction::Modes { modes: modes.unwrap_or(60) }))
-        }
     }
 }
 
@@ -298,36 +270,4 @@ fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
         other => ("mesh".into(), other.to_string(), "a mesh that makes a model"),
     };
     SceneError { file: elements.to_path_buf(), line: None, key, found, expected: expected.into() }
-}
-
-fn rayleigh(rayleigh: Option<Table<Rayleigh>>) -> Result<fem::damping::Rayleigh, SceneError> {
-    let Some(r) = rayleigh else { return Ok(fem::damping::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
-    let result = match (r.alpha_m, r.beta_k, r.damping_ratio, r.frequencies) {
-        (alpha, beta, None, None) => {
-            r.check("alpha_m", alpha, |a| a >= 0.0, "0 or more")?;
-            r.check("beta_k", beta, |b| b >= 0.0, "0 or more")?;
-            fem::damping::Rayleigh {
-                alpha_m: alpha.map_or(0.0, |a| a.si),
-                beta_k: beta.map_or(0.0, |b| b.si),
-            }
-        }
-        (None, None, Some(ratio), Some([f1, f2])) => {
-            r.check("damping_ratio", ratio, |z| (0.0..1.0).contains(&z), "0 or more, below 1")?;
-            let good = f1.si > 0.0 && f2.si > f1.si;
-            if !good {
-                let found = format!("{} and {} Hz", f1.si, f2.si);
-                return Err(r.error("frequencies", found, "two rising positive frequencies"));
-            }
-            fem::damping::Rayleigh::from_frequencies([f1.si, f2.si], [ratio, ratio])
-                .map_err(|e| r.here(e.to_string(), "other frequencies"))?
-        }
-        _ => {
-            return Err(
-                r.here("a mixture of keys", "either alpha_m and beta_k, or damping_ratio and frequencies")
-            );
-        }
-    };
-    r.check("alpha_m", result.alpha_m, |a| a >= 0.0, "0 or more")?;
-    r.check("beta_k", result.beta_k, |b| b >= 0.0, "0 or more")?;
-    Ok(result)
 }
