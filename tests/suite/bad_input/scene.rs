@@ -69,7 +69,9 @@ fn vector_of_four() {
 /// The parser would take the values of a list for those of the table's keys, in their order.
 #[test]
 fn list_in_the_place_of_a_table() {
-    grains_scene().set("deposition=[1.0]").refused("--set: deposition: found a list, expected a table");
+    grains_scene()
+        .set("deposition=[1.0, 0.005, 0.5, 1, 0.3, 0.0, 1.0]")
+        .refused("--set: deposition: found a list, expected a table");
 }
 
 #[test]
