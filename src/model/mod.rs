@@ -13,7 +13,7 @@ pub use output::OutputPlan;
 use crate::failure::Failure;
 use crate::message::shown;
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Document, Probe, Scene, SceneError, Table};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
 
@@ -46,15 +46,15 @@ impl Job {
     /// # Errors
     /// Bad input: one sentence with file, line, key, found and expected.
     pub fn new(document: &Document, scene: &Scene) -> Result<Job, Failure> {
+        let scene = &Table::root(document, scene);
         if scene.solid.is_none() && scene.grains.is_empty() {
-            return Err(document
-                .error("scene", "neither [solid] nor [[grains]]", "at least one of them")
-                .into());
+            let error = scene.error("scene", "neither [solid] nor [[grains]]", "at least one of them");
+            return Err(error.into());
         }
-        refuse_idle_keys(document, scene)?;
+        refuse_idle_keys(scene)?;
         let gravity = vector(&scene.gravity);
         let coupled = !scene.grains.is_empty();
-        let mut sleepers = track::sleeper::meshed(document, scene, gravity)?;
+        let mut sleepers = track::sleeper::meshed(scene, gravity)?;
         let build = |s| solid::build(document, s, gravity, coupled, sleepers.take());
         let solid = scene.solid.as_ref().map(build).transpose()?;
         // A static solve stands at the start of every run but that of an elastic moving solid alone.
@@ -64,38 +64,16 @@ impl Job {
             let ground = part.ground().expect("a part of a model that was made");
             fem::statics::check_held(ground.as_ref().unwrap_or(&part.model)).map_err(|e| part.failure(&e))?;
         }
-        let mut grains =
-            if scene.grains.is_empty() { None } else { Some(grains::build(document, scene, gravity)?) };
+        let mut grains = if scene.grains.is_empty() { None } else { Some(grains::build(scene, gravity)?) };
         if grains.is_none() {
-            for (key, present) in [
-                ("material", !scene.material.is_empty()),
-                ("contact", !scene.contact.is_empty()),
-                ("walls", !scene.walls.is_empty()),
-                ("periodic", scene.periodic.is_some()),
-                ("outlet", !scene.outlet.is_empty()),
-                ("deposition", scene.deposition.is_some()),
-                ("compaction", !scene.compaction.is_empty()),
-                ("measure", !scene.measure.is_empty()),
-                ("track", scene.track.is_some()),
-            ] {
-                if present {
-                    return Err(document
-                        .error(key, "a table for grains", "[[grains]] beside it, or no such table")
-                        .into());
-                }
-            }
+            refuse_tables_of_grains(scene)?;
         }
-        let coupling = match (&scene.coupling, &solid, &grains) {
-            (Some(c), Some(s), Some(_)) => Some(exchange::build(document, c, s)?),
-            (Some(_), _, _) => {
-                return Err(document
-                    .error("coupling", "only one side", "both [solid] and [[grains]]")
-                    .into());
-            }
+        let coupling = match (scene.optional("coupling", &scene.coupling), &solid, &grains) {
+            (Some(c), Some(s), Some(_)) => Some(exchange::build(&c, s)?),
+            (Some(c), _, _) => return Err(c.here("only one side", "both [solid] and [[grains]]").into()),
             (None, Some(_), Some(_)) => {
-                return Err(document
-                    .error("coupling", "nothing", "[coupling], since the scene has [solid] and [[grains]]")
-                    .into());
+                let expected = "[coupling], since the scene has [solid] and [[grains]]";
+                return Err(scene.missing("coupling", expected).into());
             }
             (None, _, _) => None,
         };
@@ -105,17 +83,15 @@ impl Job {
         let jumps = grains.as_ref().and_then(|g| g.track.after.jump).is_some_and(|j| j.grains);
         if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
             let expected = "\"account\": the state of a plastic solid is not extrapolated";
-            return Err(document.error("track.jump.method", "\"grains\"", expected).into());
+            return Err(scene.error("track.jump.method", "\"grains\"", expected).into());
         }
-        let end = end_time(document, scene, grains.as_ref())?;
-        let solid_step = solid_step(document, scene, end)?;
+        let end = end_time(scene, grains.as_ref())?;
+        let solid_step = solid_step(scene, end)?;
         let probes = scene
-            .probe
-            .iter()
-            .enumerate()
-            .map(|(i, p)| probe(document, i, p, solid.as_ref()))
+            .rows("probe", &scene.probe)
+            .map(|p| probe(&p, solid.as_ref()))
             .collect::<Result<Vec<_>, _>>()?;
-        let output = OutputPlan::new(document, scene, end)?;
+        let output = OutputPlan::new(scene, end)?;
         let title = if scene.title.is_empty() {
             document.file().display().to_string()
         } else {
@@ -126,48 +102,56 @@ impl Job {
 }
 
 /// Refuses keys that would have no effect beside the other parts of the scene.
-fn refuse_idle_keys(document: &Document, scene: &Scene) -> Result<(), SceneError> {
+fn refuse_idle_keys(scene: &Table<Scene>) -> Result<(), SceneError> {
     if scene.grains.is_empty() {
-        if scene.wind.is_some() {
-            return Err(document.error("wind", "a table", "no such table without [[grains]]"));
-        }
-        let time = &scene.time;
-        for (key, present) in [
-            ("time.grain_step", time.grain_step.is_some()),
-            ("time.grain_step_fraction", time.grain_step_fraction.is_some()),
-            ("time.accept_step_above_limit", time.accept_step_above_limit),
-            ("time.impact_speed", time.impact_speed.is_some()),
-            ("time.flow_interval", time.flow_interval.is_some()),
-        ] {
-            if present {
-                return Err(document.error(key, "a value", "no such key without [[grains]]"));
-            }
-        }
-    } else if let Some(solid) = &scene.solid {
+        scene.refuse([("wind", scene.wind.is_some())], "no such table without [[grains]]")?;
+        let time = scene.below("time", &scene.time);
+        let idle = [
+            ("grain_step", time.grain_step.is_some()),
+            ("grain_step_fraction", time.grain_step_fraction.is_some()),
+            ("accept_step_above_limit", time.accept_step_above_limit),
+            ("impact_speed", time.impact_speed.is_some()),
+            ("flow_interval", time.flow_interval.is_some()),
+        ];
+        time.refuse(idle, "no such key without [[grains]]")?;
+    } else if let Some(solid) = scene.optional("solid", &scene.solid) {
         let expected = "no such key beside [[grains]]: coupling.theta tells how the solid is integrated";
-        for (key, present) in [
-            ("solid.dynamics", solid.dynamics.is_some()),
-            ("solid.quasi_static", solid.quasi_static.is_some()),
-            ("solid.strength_reduction", solid.strength_reduction.is_some()),
-        ] {
-            if present {
-                return Err(document.error(key, "a value", expected));
-            }
-        }
-        if let Some(i) = solid.support.iter().position(|s| s.history.is_some()) {
-            let key = format!("solid.support.{i}.history");
+        let idle = [
+            ("dynamics", solid.dynamics.is_some()),
+            ("quasi_static", solid.quasi_static.is_some()),
+            ("strength_reduction", solid.strength_reduction.is_some()),
+        ];
+        solid.refuse(idle, expected)?;
+        for support in solid.rows("support", &solid.support) {
             let expected = "no such key beside [[grains]]: supports of a coupled solid stand still";
-            return Err(document.error(&key, "a value", expected));
+            support.refuse([("history", support.history.is_some())], expected)?;
         }
     }
     Ok(())
 }
 
-fn end_time(
-    document: &Document,
-    scene: &Scene,
-    grains: Option<&grains::GrainsPart>,
-) -> Result<f64, SceneError> {
+/// Refuses tables that have no effect without grains.
+fn refuse_tables_of_grains(scene: &Table<Scene>) -> Result<(), SceneError> {
+    let tables = [
+        ("material", !scene.material.is_empty()),
+        ("contact", !scene.contact.is_empty()),
+        ("walls", !scene.walls.is_empty()),
+        ("periodic", scene.periodic.is_some()),
+        ("outlet", !scene.outlet.is_empty()),
+        ("deposition", scene.deposition.is_some()),
+        ("compaction", !scene.compaction.is_empty()),
+        ("measure", !scene.measure.is_empty()),
+        ("track", scene.track.is_some()),
+    ];
+    match tables.into_iter().find(|(_, there)| *there) {
+        Some((key, _)) => {
+            Err(scene.error(key, "a table for grains", "[[grains]] beside it, or no such table"))
+        }
+        None => Ok(()),
+    }
+}
+
+fn end_time(scene: &Table<Scene>, grains: Option<&grains::GrainsPart>) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.track.load.as_ref()).map(CyclicLoad::end);
     // A push comes after the cycles, or stands for itself.
     let push = grains.and_then(|g| g.track.after.push).map(|p| p.duration());
@@ -177,26 +161,25 @@ fn end_time(
     };
     let steps = |s: &crate::scene::solid::Solid| s.dynamics.is_some() || s.quasi_static.is_some();
     let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
-    match (scene.time.end, counted, dynamic) {
-        (Some(end), _, _) if end.si <= 0.0 => {
-            Err(document.error("time.end", end.si.to_string(), "a time above 0"))
-        }
-        (Some(end), Some(counted), _) if end.si < counted => Err(document.error(
-            "time.end",
+    let time = scene.below("time", &scene.time);
+    match (time.end, counted, dynamic) {
+        (Some(end), _, _) if end.si <= 0.0 => Err(time.error("end", end.si.to_string(), "a time above 0")),
+        (Some(end), Some(counted), _) if end.si < counted => Err(time.error(
+            "end",
             format!("{} s", end.si),
             format!(
                 "at least {counted} s, when the {} ends",
                 if push.is_some() { "push" } else { "last load cycle" }
             ),
         )),
-        (Some(_), None, false) => Err(document.error(
-            "time.end",
+        (Some(_), None, false) => Err(time.error(
+            "end",
             "a time",
             "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]",
         )),
         (Some(end), _, true) => Ok(end.si),
         (None, Some(counted), _) => Ok(counted),
-        (None, None, true) => Err(document.error("time.end", "nothing", "the time to simulate")),
+        (None, None, true) => Err(time.missing("end", "the time to simulate")),
         (_, _, false) => Ok(0.0),
     }
 }
@@ -204,53 +187,40 @@ fn end_time(
 /// Most steps of a solid that runs alone: at a thousand steps a second they take twelve days.
 const MOST_STEPS: f64 = 1e9;
 
-fn solid_step(document: &Document, scene: &Scene, end: f64) -> Result<Option<f64>, SceneError> {
+fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneError> {
     let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
-    match (scene.time.solid_step, alone_and_dynamic) {
+    let time = scene.below("time", &scene.time);
+    match (time.solid_step, alone_and_dynamic) {
         (Some(step), true) if step.si > 0.0 && step.si <= end && end / step.si <= MOST_STEPS => {
             Ok(Some(step.si))
         }
         (Some(step), true) if step.si > 0.0 && step.si <= end => {
             let found = format!("{} s, of which the run has {:.1e}", step.si, end / step.si);
-            Err(document.error("time.solid_step", found, format!("at most {MOST_STEPS:.0e} steps")))
+            Err(time.error("solid_step", found, format!("at most {MOST_STEPS:.0e} steps")))
         }
-        (Some(step), true) => Err(document.error(
-            "time.solid_step",
-            format!("{} s", step.si),
-            format!("above 0, at most {end} s"),
-        )),
-        (Some(_), false) if !scene.grains.is_empty() => Err(document.error(
-            "time.solid_step",
+        (Some(step), true) => {
+            Err(time.error("solid_step", format!("{} s", step.si), format!("above 0, at most {end} s")))
+        }
+        (Some(_), false) if !scene.grains.is_empty() => Err(time.error(
+            "solid_step",
             "a time",
             "no such key: the solid's step is coupling.substeps grain steps",
         )),
-        (Some(_), false) => {
-            Err(document.error("time.solid_step", "a time", "no such key for a static solid"))
-        }
-        (None, true) => Err(document.error("time.solid_step", "nothing", "the step of the solid")),
+        (Some(_), false) => Err(time.error("solid_step", "a time", "no such key for a static solid")),
+        (None, true) => Err(time.missing("solid_step", "the step of the solid")),
         (None, false) => Ok(None),
     }
 }
 
-fn probe(
-    document: &Document,
-    index: usize,
-    probe: &crate::scene::Probe,
-    solid: Option<&solid::SolidPart>,
-) -> Result<(String, usize), SceneError> {
-    let key = |k: &str| format!("probe.{index}.{k}");
+fn probe(probe: &Table<Probe>, solid: Option<&solid::SolidPart>) -> Result<(String, usize), SceneError> {
     let Some(solid) = solid else {
-        return Err(document.error(
-            &format!("probe.{index}"),
-            "a probe",
-            "a [solid] whose nodes it can observe",
-        ));
+        return Err(probe.here("a probe", "a [solid] whose nodes it can observe"));
     };
     let mesh = solid.model.mesh();
     // Sleepers are elsewhere until they are set down.
     let ground = solid.sleepers.as_ref().map_or(mesh.node_count(), |s| s.ground_nodes());
     let node = match (probe.node, probe.at) {
-        (Some(id), None) => solid::find_node(document, mesh, &key("node"), id)?,
+        (Some(id), None) => solid::find_node(probe, mesh, id)?,
         (None, Some(at)) => {
             let at = vector(&at);
             let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
@@ -260,11 +230,11 @@ fn probe(
                 .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
             nearest.map_or(0, |(i, _)| i)
         }
-        _ => return Err(document.error(&key("node"), "both or none of `node` and `at`", "one of them")),
+        _ => return Err(probe.error("node", "both or none of `node` and `at`", "one of them")),
     };
     let name = probe.name.clone().unwrap_or_else(|| format!("n{}", mesh.node_ids[node]));
     if name.is_empty() || name.contains([',', '"', '\n']) {
-        return Err(document.error(&key("name"), format!("\"{name}\""), "a name without commas or quotes"));
+        return Err(probe.error("name", format!("\"{name}\""), "a name without commas or quotes"));
     }
     Ok((name, node))
 }

@@ -1,6 +1,6 @@
 //! What a run writes, resolved.
 
-use crate::scene::{Chains, Document, Scene, SceneError};
+use crate::scene::{Chains, Output, Scene, SceneError, Table};
 use crate::write::{FORMATS, Format, Part};
 use std::time::Duration;
 
@@ -31,21 +31,21 @@ impl OutputPlan {
     ///
     /// # Errors
     /// A key that would have no effect in this scene, or a value out of its range.
-    pub fn new(document: &Document, scene: &Scene, end: f64) -> Result<OutputPlan, SceneError> {
-        refuse_idle_keys(document, scene, end)?;
-        let o = &scene.output;
+    pub fn new(scene: &Table<Scene>, end: f64) -> Result<OutputPlan, SceneError> {
+        let o = scene.below("output", &scene.output);
+        refuse_idle_keys(scene, &o, end)?;
         let frames = o.frames.unwrap_or(20);
         if frames > 100_000 {
-            return Err(document.error("output.frames", frames.to_string(), "at most 100000"));
+            return Err(o.error("frames", frames.to_string(), "at most 100000"));
         }
         let history_interval = o.history_interval.map_or(end / 1000.0, |i| i.si);
         if o.history_interval.is_some() && (history_interval <= 0.0 || !history_interval.is_finite()) {
             let found = history_interval.to_string();
-            return Err(document.error("output.history_interval", found, "a time above 0"));
+            return Err(o.error("history_interval", found, "a time above 0"));
         }
         let checkpoint = o.checkpoint.map_or(CHECKPOINT, |c| c.si);
         let Some(checkpoint) = Duration::try_from_secs_f64(checkpoint).ok().filter(|c| !c.is_zero()) else {
-            return Err(document.error("output.checkpoint", format!("{checkpoint} s"), "a time above 0"));
+            return Err(o.error("checkpoint", format!("{checkpoint} s"), "a time above 0"));
         };
         let selected = |format: &&'static Format| {
             let shown = scene.solid.is_some() || !of_solid_alone(format);
@@ -69,8 +69,7 @@ fn of_solid_alone(format: &Format) -> bool {
 }
 
 /// Refuses keys that would have no effect.
-fn refuse_idle_keys(document: &Document, scene: &Scene, end: f64) -> Result<(), SceneError> {
-    let o = &scene.output;
+fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), SceneError> {
     let formats = FORMATS.into_iter().filter(|format| of_solid_alone(format));
     let mut of_solid: Vec<(&str, bool)> =
         formats.map(|format| (format.key, o.formats.contains_key(format.key))).collect();
@@ -89,7 +88,7 @@ fn refuse_idle_keys(document: &Document, scene: &Scene, end: f64) -> Result<(), 
         None => Ok(()),
         Some((key, _, needs)) => {
             let expected = format!("no such key without {needs}");
-            Err(document.error(&format!("output.{key}"), "a value", expected))
+            Err(o.error(key, "a value", expected))
         }
     }
 }

@@ -1,9 +1,10 @@
 //! The scene file as a tree with the line of every key, so that each message can name its place.
 
 use super::SceneError;
+use super::value::Value;
+use super::wording::explain;
 use crate::read::source;
 use serde::Deserialize;
-use serde::de::IntoDeserializer;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -120,14 +121,11 @@ impl Document {
     /// # Errors
     /// A key is unknown, missing or of the wrong type or unit.
     pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<T, SceneError> {
-        T::deserialize(self.tree().into_deserializer()).map_err(|e: toml::de::Error| {
-            let span = e.span().unwrap_or(0..0);
-            let mut path = Vec::new();
-            deepest(self.tree().get_ref(), &span, &mut path);
-            let (key, found, expected) = explain(e.message(), &path);
-            let overridden = span.start >= self.text.len();
-            let file = if overridden { PathBuf::from("--set") } else { self.file.clone() };
-            SceneError { file, line: self.line(&span), key, found, expected }
+        T::deserialize(Value::root(self.tree())).map_err(|fault| {
+            let tree = self.tree();
+            let value = value_at(tree.get_ref(), &fault.path);
+            let (key, found, expected) = explain(&fault.message, &fault.path, value);
+            self.error(&key, found, expected)
         })
     }
 
@@ -209,104 +207,18 @@ fn override_error(key: &str, found: &str, expected: &str) -> SceneError {
     }
 }
 
-/// Keys on the way to the innermost value whose text holds `span`.
-fn deepest(table: &DeTable<'_>, span: &Range<usize>, path: &mut Vec<String>) {
-    for (key, value) in table {
-        let within = |outer: Range<usize>| outer.start <= span.start && span.end <= outer.end;
-        if within(key.span()) || within(value.span()) {
-            path.push(key.get_ref().to_string());
-            descend(value.get_ref(), span, path);
-            return;
-        }
-        // The span of a `[table]` header does not reach over its keys: look inside in any case.
-        let before = path.len();
-        path.push(key.get_ref().to_string());
-        let inner = path.len();
-        descend(value.get_ref(), span, path);
-        if path.len() > inner {
-            return;
-        }
-        path.truncate(before);
-    }
-}
-
-fn descend(value: &DeValue<'_>, span: &Range<usize>, path: &mut Vec<String>) {
-    if let Some(table) = value.as_table() {
-        deepest(table, span, path);
-    } else if let Some(array) = value.as_array() {
-        for (i, item) in array.iter().enumerate() {
-            let before = path.len();
-            path.push(i.to_string());
-            let inner = path.len();
-            descend(item.get_ref(), span, path);
-            let outer = item.span();
-            if path.len() > inner || (outer.start <= span.start && span.end <= outer.end) {
-                return;
-            }
-            path.truncate(before);
-        }
-    }
-}
-
-/// Key, what was found and what was expected, from a message of serde.
-fn explain(message: &str, path: &[String]) -> (String, String, String) {
-    let here = path.join(".");
-    let quoted = |text: &str| text.split('`').nth(1).unwrap_or_default().to_string();
-    if let Some(rest) = message.strip_prefix("unknown field ") {
-        let unknown = quoted(rest);
-        let known: Vec<&str> = rest
-            .split_once("expected")
-            .map(|(_, e)| e.split('`').skip(1).step_by(2).collect())
-            .unwrap_or_default();
-        let key = if path.last() == Some(&unknown) { here } else { join(&here, &unknown) };
-        let nearest = known.iter().min_by_key(|k| edit_distance(k, &unknown));
-        let expected = match nearest {
-            Some(k) if edit_distance(k, &unknown) <= 1 + k.len() / 3 => format!("`{k}`"),
-            _ => format!("one of {}", known.join(", ")),
+/// The value at the end of `path`, if it is there.
+fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'t>> {
+    let (first, rest) = path.split_first()?;
+    let mut value = table.get(first.as_str())?.get_ref();
+    for key in rest {
+        value = match value {
+            DeValue::Table(t) => t.get(key.as_str())?.get_ref(),
+            DeValue::Array(a) => a.get(key.parse::<usize>().ok()?)?.get_ref(),
+            _ => return None,
         };
-        return (key, format!("the unknown key `{unknown}`"), expected);
     }
-    if let Some(rest) = message.strip_prefix("missing field ") {
-        return (join(&here, &quoted(rest)), "nothing".into(), "a value for this key".into());
-    }
-    if let Some(rest) = message.strip_prefix("unknown variant ") {
-        let expected = rest.split_once("expected ").map_or("another word", |(_, e)| e);
-        return (here, format!("\"{}\"", quoted(rest)), expected.replace('`', "\""));
-    }
-    for prefix in ["invalid value: ", "invalid type: ", "invalid length "] {
-        if let Some((found, expected)) =
-            message.strip_prefix(prefix).and_then(|r| r.split_once(", expected "))
-        {
-            let expected = match expected {
-                "u8" | "u32" | "u64" | "usize" => "a whole number of 0 or more",
-                "f64" => "a number",
-                "a boolean" => "true or false",
-                other => other,
-            };
-            return (here, found.replace('`', ""), expected.to_string());
-        }
-    }
-    (here, message.lines().collect::<Vec<_>>().join(", "), "a valid value".into())
-}
-
-fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
-}
-
-/// Levenshtein distance, for suggestions.
-pub(super) fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for j in 0..b.len() {
-            let substitute = diagonal + usize::from(ca != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = substitute.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
+    Some(value)
 }
 
 /// Line number (from 1) of byte `offset` of `text`.

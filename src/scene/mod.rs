@@ -17,15 +17,19 @@ pub mod material;
 mod output;
 pub mod periodic;
 pub mod solid;
+mod table;
 pub mod track;
 pub mod units;
+mod value;
 pub mod walls;
 mod wind;
+mod wording;
 
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 pub use output::{Chains, Output};
+pub use table::{Number, Table};
 pub use wind::Wind;
 
 use serde::Deserialize;

@@ -72,7 +72,7 @@ impl<'de> Deserialize<'de> for Output {
         impl<'de> Visitor<'de> for OutputVisitor {
             type Value = Output;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("struct Output")
+                f.write_str("a table")
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Output, A::Error> {
                 let mut output = Output::default();

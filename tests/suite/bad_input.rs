@@ -16,6 +16,7 @@ mod materials;
 mod scene;
 mod solid;
 mod track;
+mod types;
 mod walls;
 
 const SCENE: &str = "scene.toml";

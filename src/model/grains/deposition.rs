@@ -1,8 +1,7 @@
 //! `[deposition]` resolved.
 
-use super::check::check;
 use crate::scene::deposition::Deposition;
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::Model;
 
 /// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
@@ -39,27 +38,14 @@ impl DepositionPlan {
 }
 
 /// `[deposition]` resolved.
-pub(super) fn build(document: &Document, d: &Deposition) -> Result<DepositionPlan, SceneError> {
-    check(document, "deposition.max_time", Some(d.max_time.si), |t| t > 0.0, "a time above 0")?;
-    check(
-        document,
-        "deposition.settled_speed",
-        d.settled_speed.map(|v| v.si),
-        |v| v > 0.0,
-        "a speed above 0",
-    )?;
-    let ratio = d.unbalanced_ratio;
-    check(document, "deposition.unbalanced_ratio", ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
-    let layers = Some(f64::from(d.layers));
-    check(document, "deposition.layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
-    check(document, "deposition.friction", d.friction, |f| f >= 0.0, "0 or more")?;
-    check(
-        document,
-        "deposition.local_damping",
-        Some(d.local_damping),
-        |a| (0.0..1.0).contains(&a),
-        "0 or more, below 1",
-    )?;
+pub(super) fn build(d: &Table<Deposition>) -> Result<DepositionPlan, SceneError> {
+    d.check("max_time", d.max_time, |t| t > 0.0, "a time above 0")?;
+    d.check("settled_speed", d.settled_speed, |v| v > 0.0, "a speed above 0")?;
+    let ratio =
+        d.check("unbalanced_ratio", d.unbalanced_ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
+    d.check("layers", d.layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    d.check("friction", d.friction, |f| f >= 0.0, "0 or more")?;
+    d.check("local_damping", d.local_damping, |a| (0.0..1.0).contains(&a), "0 or more, below 1")?;
     Ok(DepositionPlan {
         max_time: d.max_time.si,
         // With a ratio of forces alone, speed does not matter.

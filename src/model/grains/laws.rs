@@ -1,14 +1,13 @@
 //! Laws of the contacts that materials and pairs select, and constants that none of them uses.
 
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::law::table::{Combination, combination};
 use trackbed_dem::material::Pair;
 use trackbed_dem::{Material, PairOverride};
 
 /// Refuses pairs without a law, and constants that no law uses.
 pub(super) fn check_laws(
-    document: &Document,
-    scene: &Scene,
+    scene: &Table<Scene>,
     materials: &[Material],
     contacts: &[PairOverride],
 ) -> Result<(), SceneError> {
@@ -23,70 +22,65 @@ pub(super) fn check_laws(
                 Ok(law) => laws.extend(law),
                 Err(problem) => {
                     let entry = given(i, j).filter(|&c| contacts[c].normal.is_some());
-                    let key = entry.map_or(format!("material.{j}"), |c| format!("contact.{c}.normal"));
                     let expected =
                         "a law for each pair of materials, from both or from `normal` of their [[contact]]";
                     let found = format!("for \"{}\" and \"{}\" {problem}", name(i), name(j));
-                    return Err(document.error(&key, found, expected));
+                    return Err(match entry {
+                        Some(c) => scene.row("contact", &scene.contact, c).error("normal", found, expected),
+                        None => scene.row("material", &scene.material, j).here(found, expected),
+                    });
                 }
             }
         }
-        check_constants(document, scene, i, &laws)?;
+        check_constants(scene, i, &laws)?;
         if let (Some(normal), Ok(Some(own))) = (materials[i].normal, law(i, i)) {
-            let m = &scene.material[i];
+            let m = scene.row("material", &scene.material, i);
             let there = [("stiffness", m.stiffness.is_some()), ("young", m.young.is_some())];
             if let Some((key, _)) = there.iter().find(|(key, there)| own.normal_keys.contains(key) && !there)
             {
                 let expected =
                     format!("a value for this key, which `normal = \"{}\"` needs", normal.as_str());
-                return Err(document.error(&format!("material.{i}.{key}"), "nothing", expected));
+                return Err(m.missing(key, expected));
             }
         }
     }
-    for (i, c) in contacts.iter().enumerate() {
-        let Ok(Some(own)) = law(c.a, c.b) else { continue };
-        let key = |k: &str| format!("contact.{i}.{k}");
+    for (pair, c) in contacts.iter().zip(scene.rows("contact", &scene.contact)) {
+        let Ok(Some(own)) = law(pair.a, pair.b) else { continue };
         if c.stiffness.is_some() && !own.uses("stiffness") {
             let expected = "no stiffness where materials have a Young's modulus";
-            return Err(document.error(&key("stiffness"), "a stiffness", expected));
+            return Err(c.error("stiffness", "a stiffness", expected));
         }
         if c.damping.is_some() && !own.dashpot {
             let expected = format!("no such key, as normal law \"{}\" has no dashpot", own.normal);
-            return Err(document.error(&key("damping"), "a value", expected));
+            return Err(c.error("damping", "a value", expected));
         }
     }
     Ok(())
 }
 
 /// Refuses constants of material `i` that none of the laws of its contacts uses.
-fn check_constants(
-    document: &Document,
-    scene: &Scene,
-    i: usize,
-    laws: &[&Combination],
-) -> Result<(), SceneError> {
-    let m = &scene.material[i];
+fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Result<(), SceneError> {
+    let m = scene.row("material", &scene.material, i);
     let unused = |key: &str| !laws.is_empty() && !laws.iter().any(|law| law.uses(key));
-    let key = |k: &str| format!("material.{i}.{k}");
     if m.stiffness.is_some() && unused("stiffness") {
         let young = scene.material.iter().find(|other| other.young.is_some());
         let expected = match young {
             Some(other) => format!("no stiffness, as \"{}\" has a Young's modulus", other.name),
             None => "no stiffness, as no law of its contacts uses one".to_string(),
         };
-        return Err(document.error(&key("stiffness"), "a stiffness", expected));
+        return Err(m.error("stiffness", "a stiffness", expected));
     }
     if m.young.is_some() && unused("young") {
         let expected = "no modulus, as no law of its contacts uses one";
-        return Err(document.error(&key("young"), "a modulus", expected));
+        return Err(m.error("young", "a modulus", expected));
     }
     if m.tangential_damping_ratio > 0.0 && !laws.is_empty() && !laws.iter().any(|law| law.dashpot) {
         let expected = "no such key, as no law of its contacts has a dashpot";
-        return Err(document.error(&key("tangential_damping_ratio"), "a value", expected));
+        return Err(m.error("tangential_damping_ratio", "a value", expected));
     }
     if m.tangential_ratio.is_some() && unused("tangential_ratio") {
         let expected = "no such key beside `young`: Poisson's ratio sets it";
-        return Err(document.error(&key("tangential_ratio"), "a value", expected));
+        return Err(m.error("tangential_ratio", "a value", expected));
     }
     Ok(())
 }

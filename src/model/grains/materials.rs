@@ -1,10 +1,10 @@
 //! `[[material]]` and `[[contact]]` resolved.
 
-use super::check::{check, find};
+use super::check::find;
 use super::laws;
 use super::sources;
 use crate::scene::material::{DampingKind, GrainMaterial, PairContact, Resistance};
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::law::damping::Damping;
 use trackbed_dem::law::table;
 use trackbed_dem::material::LawName;
@@ -57,53 +57,39 @@ impl MaterialsPart {
 }
 
 /// Resolves `[[material]]` and `[[contact]]`; no material is one of grains yet.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<MaterialsPart, SceneError> {
-    let all = materials(document, scene)?;
-    let pairs = pairs(document, scene)?;
-    laws::check_laws(document, scene, &all, &pairs)?;
+pub(super) fn build(scene: &Table<Scene>) -> Result<MaterialsPart, SceneError> {
+    let all = materials(scene)?;
+    let pairs = pairs(scene)?;
+    laws::check_laws(scene, &all, &pairs)?;
     let names = scene.material.iter().map(|m| m.name.clone()).collect();
     Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names })
 }
 
 /// Checks the materials, in the order of the scene.
-fn materials(document: &Document, scene: &Scene) -> Result<Vec<Material>, SceneError> {
+fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
     let mut out = Vec::new();
-    for (i, m) in scene.material.iter().enumerate() {
-        let key = |k: &str| format!("material.{i}.{k}");
+    for (i, m) in scene.rows("material", &scene.material).enumerate() {
         if scene.material[..i].iter().any(|other| other.name == m.name) {
-            return Err(document.error(&key("name"), format!("\"{}\" again", m.name), "each name once"));
+            return Err(m.error("name", format!("\"{}\" again", m.name), "each name once"));
         }
-        check(document, &key("density"), m.density.map(|d| d.si), |d| d > 0.0, "a density above 0")?;
-        check(document, &key("stiffness"), m.stiffness.map(|s| s.si), |k| k > 0.0, "a stiffness above 0")?;
-        check(document, &key("young"), m.young.map(|y| y.si), |y| y > 0.0, "a modulus above 0")?;
-        check(document, &key("poisson"), m.poisson, |p| p > -1.0 && p <= 0.5, "above -1, at most 0.5")?;
-        poisson_beside_young(document, i, m)?;
-        check(
-            document,
-            &key("tangential_ratio"),
-            m.tangential_ratio,
+        m.check("density", m.density, |d| d > 0.0, "a density above 0")?;
+        m.check("stiffness", m.stiffness, |k| k > 0.0, "a stiffness above 0")?;
+        m.check("young", m.young, |y| y > 0.0, "a modulus above 0")?;
+        m.check("poisson", m.poisson, |p| p > -1.0 && p <= 0.5, "above -1, at most 0.5")?;
+        poisson_beside_young(&m)?;
+        m.check("tangential_ratio", m.tangential_ratio, |r| (0.0..=1.0).contains(&r), "0 to 1")?;
+        m.check(
+            "tangential_damping_ratio",
+            m.tangential_damping_ratio,
             |r| (0.0..=1.0).contains(&r),
             "0 to 1",
         )?;
-        check(
-            document,
-            &key("tangential_damping_ratio"),
-            Some(m.tangential_damping_ratio),
-            |r| (0.0..=1.0).contains(&r),
-            "0 to 1",
-        )?;
-        check(document, &key("friction"), Some(m.friction), |f| f >= 0.0, "0 or more")?;
-        check(
-            document,
-            &key("restitution"),
-            Some(m.restitution),
-            |e| (LEAST_RESTITUTION..=1.0).contains(&e),
-            "0.0001 to 1",
-        )?;
+        m.check("friction", m.friction, |f| f >= 0.0, "0 or more")?;
+        m.check("restitution", m.restitution, |e| (LEAST_RESTITUTION..=1.0).contains(&e), "0.0001 to 1")?;
         for (k, value) in
             [("rolling_friction", m.rolling_friction), ("twisting_friction", m.twisting_friction)]
         {
-            check(document, &key(k), Some(value), |f| f >= 0.0, "0 or more")?;
+            m.check(k, Some(value), |f| f >= 0.0, "0 or more")?;
         }
         out.push(Material {
             // Bodies need a density and say so; walls never use it.
@@ -117,71 +103,65 @@ fn materials(document: &Document, scene: &Scene) -> Result<Vec<Material>, SceneE
             poisson: m.poisson.unwrap_or(0.0),
             rolling_friction: m.rolling_friction,
             twisting_friction: m.twisting_friction,
-            normal: normal(document, &key("normal"), m.normal.as_deref())?,
+            normal: normal(&m, m.normal.as_deref())?,
         });
     }
     Ok(out)
 }
 
-fn poisson_beside_young(document: &Document, i: usize, m: &GrainMaterial) -> Result<(), SceneError> {
-    let key = format!("material.{i}.poisson");
+fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     match (&m.young, m.poisson) {
-        (Some(_), None) => Err(document.error(&key, "nothing", "Poisson's ratio beside `young`")),
-        (None, Some(_)) => Err(document.error(&key, "a value", "no such key without `young`")),
+        (Some(_), None) => Err(m.missing("poisson", "Poisson's ratio beside `young`")),
+        (None, Some(_)) => Err(m.error("poisson", "a value", "no such key without `young`")),
         _ => Ok(()),
     }
 }
 
-fn normal(document: &Document, key: &str, name: Option<&str>) -> Result<Option<LawName>, SceneError> {
+fn normal<T>(table: &Table<T>, name: Option<&str>) -> Result<Option<LawName>, SceneError> {
     let Some(name) = name else { return Ok(None) };
     let expected = || format!("one of {}", table::normals().join(", "));
-    table::normal_named(name).map(Some).ok_or_else(|| document.error(key, format!("\"{name}\""), expected()))
+    table::normal_named(name)
+        .map(Some)
+        .ok_or_else(|| table.error("normal", format!("\"{name}\""), expected()))
 }
 
-fn tangential(document: &Document, key: &str, name: Option<&str>) -> Result<Option<LawName>, SceneError> {
-    let Some(name) = name else { return Ok(None) };
+fn tangential(c: &Table<PairContact>) -> Result<Option<LawName>, SceneError> {
+    let Some(name) = c.tangential.as_deref() else { return Ok(None) };
     let expected = || format!("one of {}", table::tangentials().join(", "));
     table::tangential_named(name)
         .map(Some)
-        .ok_or_else(|| document.error(key, format!("\"{name}\""), expected()))
+        .ok_or_else(|| c.error("tangential", format!("\"{name}\""), expected()))
 }
 
 /// Checks the pairs, in the order of the scene.
-fn pairs(document: &Document, scene: &Scene) -> Result<Vec<PairOverride>, SceneError> {
+fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
     let mut out = Vec::new();
-    for (i, c) in scene.contact.iter().enumerate() {
-        let key = |k: &str| format!("contact.{i}.{k}");
-        check(document, &key("friction"), c.friction, |f| f >= 0.0, "0 or more")?;
-        check(
-            document,
-            &key("restitution"),
-            c.restitution,
-            |e| (LEAST_RESTITUTION..=1.0).contains(&e),
-            "0.0001 to 1",
-        )?;
-        check(document, &key("stiffness"), c.stiffness.map(|s| s.si), |k| k > 0.0, "above 0")?;
-        check(document, &key("adhesion"), c.adhesion.map(|w| w.si), |w| w >= 0.0, "0 or more")?;
+    for c in scene.rows("contact", &scene.contact) {
+        c.check("friction", c.friction, |f| f >= 0.0, "0 or more")?;
+        c.check("restitution", c.restitution, |e| (LEAST_RESTITUTION..=1.0).contains(&e), "0.0001 to 1")?;
+        c.check("stiffness", c.stiffness, |k| k > 0.0, "above 0")?;
+        c.check("adhesion", c.adhesion, |w| w >= 0.0, "0 or more")?;
         let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| {
-            check(document, &key(k), value, |f| f >= 0.0, "0 or more")?;
+            c.check(k, value, |f| f >= 0.0, "0 or more")?;
             match (kind, value) {
                 (Some(Resistance::None), Some(_)) => {
                     let expected = "no such key without the resistance";
-                    Err(document.error(&key(k), "a value", expected))
+                    Err(c.error(k, "a value", expected))
                 }
                 (Some(Resistance::None), None) => Ok(Some(0.0)),
                 (Some(Resistance::Spring) | None, value) => Ok(value),
             }
         };
         out.push(PairOverride {
-            a: find(document, scene, &key("between"), &c.between[0])?,
-            b: find(document, scene, &key("between"), &c.between[1])?,
+            a: find(scene, &c, "between", &c.between[0])?,
+            b: find(scene, &c, "between", &c.between[1])?,
             friction: c.friction,
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
             adhesion: c.adhesion.map(|w| w.si),
-            normal: normal(document, &key("normal"), c.normal.as_deref())?,
-            tangential: tangential(document, &key("tangential"), c.tangential.as_deref())?,
-            damping: damping(document, i, c)?,
+            normal: normal(&c, c.normal.as_deref())?,
+            tangential: tangential(&c)?,
+            damping: damping(&c)?,
             rolling_friction: resist("rolling_friction", c.rolling, c.rolling_friction)?,
             twisting_friction: resist("twisting_friction", c.twisting, c.twisting_friction)?,
         });
@@ -189,21 +169,18 @@ fn pairs(document: &Document, scene: &Scene) -> Result<Vec<PairOverride>, SceneE
     Ok(out)
 }
 
-fn damping(document: &Document, i: usize, c: &PairContact) -> Result<Option<Damping>, SceneError> {
-    let key = |k: &str| format!("contact.{i}.{k}");
-    check(document, &key("damping_ratio"), c.damping_ratio, |z| z >= 0.0, "0 or more")?;
+fn damping(c: &Table<PairContact>) -> Result<Option<Damping>, SceneError> {
+    c.check("damping_ratio", c.damping_ratio, |z| z >= 0.0, "0 or more")?;
     match (c.damping, c.damping_ratio) {
         (Some(DampingKind::Ratio), Some(zeta)) => Ok(Some(Damping::Ratio(zeta))),
-        (Some(DampingKind::Ratio), None) => {
-            Err(document.error(&key("damping_ratio"), "nothing", "the damping ratio"))
-        }
+        (Some(DampingKind::Ratio), None) => Err(c.missing("damping_ratio", "the damping ratio")),
         (_, Some(_)) => {
             let expected = "no such key without `damping = \"ratio\"`";
-            Err(document.error(&key("damping_ratio"), "a value", expected))
+            Err(c.error("damping_ratio", "a value", expected))
         }
         (Some(_), None) if c.restitution.is_some() && c.damping == Some(DampingKind::None) => {
             let expected = "no such key beside `damping = \"none\"`";
-            Err(document.error(&key("restitution"), "a value", expected))
+            Err(c.error("restitution", "a value", expected))
         }
         (Some(DampingKind::None), None) => Ok(Some(Damping::None)),
         (Some(DampingKind::Restitution), None) => Ok(Some(Damping::Restitution)),

@@ -2,7 +2,7 @@
 
 use super::check::region;
 use crate::scene::compaction as scene;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::measure::BoxRegion;
 
 /// A box in which the packing is measured.
@@ -26,36 +26,30 @@ pub struct RadialPlan {
 }
 
 /// The boxes of a scene.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<Vec<MeasurePlan>, SceneError> {
+pub(super) fn build(scene: &Table<Scene>) -> Result<Vec<MeasurePlan>, SceneError> {
     let mut measures = Vec::new();
-    for (i, m) in scene.measure.iter().enumerate() {
+    for (i, m) in scene.rows("measure", &scene.measure).enumerate() {
         if scene.measure[..i].iter().any(|other| other.name == m.name) {
-            let key = format!("measure.{i}.name");
-            return Err(document.error(&key, format!("\"{}\" again", m.name), "each name once"));
+            return Err(m.error("name", format!("\"{}\" again", m.name), "each name once"));
         }
-        let region = region(document, &format!("measure.{i}.box"), &m.region)?;
-        let radial = radial(document, i, m, &region)?;
+        let region = region(&m, "box", &m.region)?;
+        let radial = m.optional("radial", &m.radial);
+        let radial = radial.map(|r| shells(&r, &region)).transpose()?;
         measures.push(MeasurePlan { name: m.name.clone(), region, radial });
     }
     Ok(measures)
 }
 
 /// Checks that the reach finds room about at least one point of the box.
-fn radial(
-    document: &Document,
-    i: usize,
-    measure: &scene::Measure,
-    region: &BoxRegion,
-) -> Result<Option<RadialPlan>, SceneError> {
-    let Some(r) = &measure.radial else { return Ok(None) };
+fn shells(r: &Table<scene::Radial>, region: &BoxRegion) -> Result<RadialPlan, SceneError> {
     let least = (region.high - region.low).min();
     let reach = r.reach.si;
     if !(reach > 0.0 && 2.0 * reach <= least) {
         let expected = format!("above 0, at most half the shortest side of the box, {}", 0.5 * least);
-        return Err(document.error(&format!("measure.{i}.radial.reach"), reach.to_string(), expected));
+        return Err(r.error("reach", reach.to_string(), expected));
     }
     if !(1..=100_000).contains(&r.bins) {
-        return Err(document.error(&format!("measure.{i}.radial.bins"), r.bins.to_string(), "1 to 100000"));
+        return Err(r.error("bins", r.bins.to_string(), "1 to 100000"));
     }
-    Ok(Some(RadialPlan { reach, bins: r.bins }))
+    Ok(RadialPlan { reach, bins: r.bins })
 }

@@ -20,7 +20,7 @@ mod walls;
 mod wind;
 
 use crate::failure::Failure;
-use crate::scene::{Document, Scene};
+use crate::scene::{Scene, Table};
 use check::find;
 use steps::StepPlan;
 use trackbed_dem::Vec3;
@@ -39,30 +39,31 @@ pub use refused::refused;
 ///
 /// # Errors
 /// Bad input in the scene or in the tables it names.
-pub fn build(document: &Document, scene: &Scene, gravity: [f64; 3]) -> Result<GrainsPart, Failure> {
+pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Failure> {
     let gravity = Vec3::from(gravity);
-    let mut materials = materials::build(document, scene)?;
-    let impact_speed = steps::impact_speed(document, scene, &materials)?;
-    let of_coupling = scene.coupling.as_ref();
-    let ground = of_coupling.map(|c| find(document, scene, "coupling.material", &c.material)).transpose()?;
-    let steps = StepPlan { step: steps::time_step(document, &scene.time)?, impact_speed };
-    let mut bonds = bonds::kinds(document, scene)?;
-    let mut groups = groups::build(document, scene, &mut materials, &mut bonds)?;
-    let periodic = periodic::build(document, scene, &groups)?;
-    let flow = flow::build(document, scene, &groups, &periodic)?;
-    let walls = walls::build(document, scene)?;
-    let deposition = scene.deposition.as_ref().map(|d| deposition::build(document, d)).transpose()?;
+    let mut materials = materials::build(scene)?;
+    let impact_speed = steps::impact_speed(scene, &materials)?;
+    let of_coupling = scene.optional("coupling", &scene.coupling);
+    let ground = of_coupling.map(|c| find(scene, &c, "material", &c.material)).transpose()?;
+    let steps = StepPlan { step: steps::time_step(&scene.below("time", &scene.time))?, impact_speed };
+    let mut bonds = bonds::kinds(scene)?;
+    let mut groups = groups::build(scene, &mut materials, &mut bonds)?;
+    let periodic = periodic::build(scene, &groups)?;
+    let flow = flow::build(scene, &groups, &periodic)?;
+    let walls = walls::build(scene)?;
+    let deposition = scene.optional("deposition", &scene.deposition);
+    let deposition = deposition.map(|d| deposition::build(&d)).transpose()?;
     let settling = deposition.as_ref();
-    let compaction = compaction::build(document, scene, settling, &walls, &mut groups)?;
-    let body_forces = wind::build(document, scene)?;
-    let measures = measure::build(document, scene)?;
-    bonds::rules(document, scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
+    let compaction = compaction::build(scene, settling, &walls, &mut groups)?;
+    let body_forces = wind::build(scene)?;
+    let measures = measure::build(scene)?;
+    bonds::rules(scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
     let fixed = match (bonds.is_empty(), periodic.iter().any(Option::is_some)) {
         (false, _) => Some("are bonded"),
         (true, true) => Some("cross a periodic border"),
         (true, false) => None,
     };
-    let track = track::build(document, scene, &gravity, fixed, &mut groups)?;
+    let track = track::build(scene, &gravity, fixed, &mut groups)?;
     Ok(GrainsPart {
         materials,
         groups,

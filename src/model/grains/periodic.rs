@@ -1,7 +1,7 @@
 //! `[periodic]` resolved: borders, and the grains that must lie between them.
 
 use super::groups::GroupsPart;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -9,22 +9,18 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub type Borders = [Option<[f64; 2]>; 3];
 
 /// The borders; grains that are placed by the program may not stick out, others must have their centre inside.
-pub(super) fn build(document: &Document, scene: &Scene, groups: &GroupsPart) -> Result<Borders, SceneError> {
+pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Borders, SceneError> {
     let mut borders = Borders::default();
-    let Some(table) = &scene.periodic else { return Ok(borders) };
+    let Some(table) = scene.optional("periodic", &scene.periodic) else { return Ok(borders) };
     let sides = [&table.x, &table.y, &table.z];
     if sides.iter().all(|s| s.is_none()) {
-        return Err(document.error("periodic", "no axis", "`x`, `y` or `z` with its two borders"));
+        return Err(table.here("no axis", "`x`, `y` or `z` with its two borders"));
     }
     for (d, side) in sides.into_iter().enumerate() {
         let Some([low, high]) = side.as_ref().map(|s| [s[0].si, s[1].si]) else { continue };
         if !(low.is_finite() && high.is_finite() && low < high) {
-            let key = format!("periodic.{}", AXES[d]);
-            return Err(document.error(
-                &key,
-                format!("[{low}, {high}]"),
-                "two lengths, the second the larger",
-            ));
+            let expected = "two lengths, the second the larger";
+            return Err(table.error(AXES[d], format!("[{low}, {high}]"), expected));
         }
         borders[d] = Some([low, high]);
         let slack = 1e-9 * (high - low);
@@ -36,7 +32,7 @@ pub(super) fn build(document: &Document, scene: &Scene, groups: &GroupsPart) -> 
             if x - reach < low - slack || x + reach > high + slack {
                 let found = format!("a grain from {} = {} to {}", AXES[d], x - reach, x + reach);
                 let expected = format!("grains between the borders {low} and {high} of `periodic`");
-                return Err(document.error(&format!("grains.{}", body.part), found, expected));
+                return Err(scene.row("grains", &scene.grains, body.part as usize).here(found, expected));
             }
         }
     }

@@ -1,16 +1,10 @@
 //! How the solid is solved, resolved.
 
-use super::common::check;
+use super::initial_stress::{InitialStressKind, InitialStressPlan, initial_stress};
 use super::material::Materials;
-use crate::scene::solid::{
-    Dynamics, InitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant, QuasiStatic, Solid,
-    StrengthReduction,
-};
-use crate::scene::{Document, SceneError};
-use std::collections::BTreeMap;
-use trackbed_fem::Mesh;
+use crate::scene::solid::{Dynamics, LinearSolver, NewtonVariant, QuasiStatic, Solid, StrengthReduction};
+use crate::scene::{SceneError, Table};
 use trackbed_fem::newmark::Newmark;
-use trackbed_fem::nonlinear::initial_stress::Overburden;
 use trackbed_fem::nonlinear::strength_reduction::ReductionOptions;
 use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Variant};
 
@@ -52,33 +46,6 @@ pub struct QuasiStaticPlan {
 /// Search for the factor of safety.
 pub type StrengthReductionPlan = ReductionOptions;
 
-/// Stress before the run.
-#[derive(Clone, Debug)]
-pub struct InitialStressPlan {
-    /// How it is found.
-    pub kind: InitialStressKind,
-    /// Steps in which equilibrium is sought.
-    pub steps: u32,
-    /// Whether the loads at time 0 take part in the equilibrium.
-    pub loads: bool,
-}
-
-/// How the initial stress is found.
-#[derive(Clone, Debug)]
-pub enum InitialStressKind {
-    /// Weight above times K₀ sideways.
-    K0 {
-        /// K₀ of each material.
-        k0: BTreeMap<u32, f64>,
-        /// What lies above a point; none: level ground up to the top of the mesh.
-        overburden: Option<Overburden>,
-    },
-    /// Gravity turned on in steps.
-    Gravity,
-    /// The same stress everywhere [Pa].
-    Uniform([f64; 6]),
-}
-
 /// Options of the iteration.
 pub type NewtonPlan = NewtonOptions;
 
@@ -98,8 +65,7 @@ pub struct Plans {
 /// # Errors
 /// Tables that exclude each other, a value out of range, or a plastic solid without steps.
 pub fn plans(
-    document: &Document,
-    solid: &Solid,
+    solid: &Table<Solid>,
     materials: &Materials,
     linear: bool,
     coupled: bool,
@@ -111,53 +77,48 @@ pub fn plans(
     ];
     let mut present = chosen.iter().filter(|(_, present)| *present).map(|(name, _)| *name);
     if let (Some(first), Some(second)) = (present.next(), present.next()) {
-        let key = format!("solid.{second}");
-        return Err(document.error(&key, format!("it beside `{first}`"), "one way to solve the solid"));
+        return Err(solid.error(second, format!("it beside `{first}`"), "one way to solve the solid"));
     }
     let analysis = match (&solid.dynamics, &solid.quasi_static, &solid.strength_reduction) {
-        (Some(d), _, _) => Analysis::Dynamic(time_method(document, d)?),
-        (_, Some(q), _) => Analysis::QuasiStatic(quasi_static(document, q)?),
+        (Some(d), _, _) => Analysis::Dynamic(time_method(&solid.below("dynamics", d))?),
+        (_, Some(q), _) => Analysis::QuasiStatic(quasi_static(&solid.below("quasi_static", q))?),
         (_, _, Some(s)) => {
+            let s = solid.below("strength_reduction", s);
             if linear {
-                let expected = "a material that yields";
-                return Err(document.error("solid.strength_reduction", "elastic materials only", expected));
+                return Err(s.here("elastic materials only", "a material that yields"));
             }
-            Analysis::StrengthReduction(strength_reduction(
-                document,
-                s,
-                newton(document, solid.newton.as_ref())?,
-            )?)
+            Analysis::StrengthReduction(strength_reduction(&s, newton(solid)?)?)
         }
         _ => Analysis::Static,
     };
     if matches!(analysis, Analysis::Static) && !coupled {
         let expected = "[solid.quasi_static], [solid.dynamics] or [solid.strength_reduction]";
         if !linear {
-            return Err(document.error("solid", "a material that yields, and one static solve", expected));
+            return Err(solid.here("a material that yields, and one static solve", expected));
         }
         if solid.initial_stress.is_some() {
             let found = "a table, and one static solve";
-            return Err(document.error("solid.initial_stress", found, expected));
+            return Err(solid.error("initial_stress", found, expected));
         }
     }
     if solid.newton.is_some() && linear && solid.initial_stress.is_none() {
         let expected = "no such table for an elastic solid without initial stress";
-        return Err(document.error("solid.newton", "a table", expected));
+        return Err(solid.error("newton", "a table", expected));
     }
-    let initial_stress =
-        solid.initial_stress.as_ref().map(|i| initial_stress(document, i, materials)).transpose()?;
+    let initial = solid.optional("initial_stress", &solid.initial_stress);
+    let initial_stress = initial.map(|i| initial_stress(&i, materials)).transpose()?;
     if coupled && solid.initial_stress.as_ref().is_some_and(|i| i.loads) {
         let expected = "no such key for a solid under grains, whose loads come after the initial stress";
-        return Err(document.error("solid.initial_stress.loads", "true", expected));
+        return Err(solid.error("initial_stress.loads", "true", expected));
     }
     if let Some(&first) = materials.k0.keys().next()
         && !matches!(initial_stress, Some(InitialStressPlan { kind: InitialStressKind::K0 { .. }, .. }))
     {
         let position = solid.material.iter().position(|m| m.id == first).unwrap_or(0);
         let expected = "no such key without `method = \"k0\"` in [solid.initial_stress]";
-        return Err(document.error(&format!("solid.material.{position}.k0"), "a value", expected));
+        return Err(solid.row("material", &solid.material, position).error("k0", "a value", expected));
     }
-    let mut newton = newton(document, solid.newton.as_ref())?.unwrap_or_default();
+    let mut newton = newton(solid)?.unwrap_or_default();
     let given = solid.newton.as_ref().is_some_and(|n| n.tolerance.is_some());
     if matches!(analysis, Analysis::QuasiStatic(_)) && !given {
         newton.force_tolerance = QUASI_STATIC;
@@ -165,45 +126,36 @@ pub fn plans(
     Ok(Plans { analysis, initial_stress, newton })
 }
 
-fn time_method(document: &Document, d: &Dynamics) -> Result<TimeMethod, SceneError> {
+fn time_method(d: &Table<Dynamics>) -> Result<TimeMethod, SceneError> {
     if let Some(alpha) = d.hht_alpha {
-        for (key, present) in [
+        let idle = [
             ("alpha", d.alpha.is_some()),
             ("delta", d.delta.is_some()),
             ("accept_conditional_stability", d.accept_conditional_stability),
-        ] {
-            if present {
-                let key = format!("solid.dynamics.{key}");
-                return Err(document.error(&key, "a value", "no such key beside `hht_alpha`"));
-            }
-        }
-        let good = (-1.0 / 3.0..=0.0).contains(&alpha);
-        check(document, "solid.dynamics.hht_alpha", alpha, good, "-1/3 to 0")?;
+        ];
+        d.refuse(idle, "no such key beside `hht_alpha`")?;
+        d.check("hht_alpha", alpha, |a| (-1.0 / 3.0..=0.0).contains(&a), "-1/3 to 0")?;
         return Ok(TimeMethod::Hht(alpha));
     }
     let method = Newmark { alpha: d.alpha.unwrap_or(0.25), delta: d.delta.unwrap_or(0.5) };
     let checked = if d.accept_conditional_stability { method.check_range() } else { method.check() };
-    checked.map_err(|e| document.error("solid.dynamics", e.to_string(), "stable constants"))?;
+    checked.map_err(|e| d.here(e.to_string(), "stable constants"))?;
     Ok(TimeMethod::Newmark(method))
 }
 
-fn quasi_static(document: &Document, q: &QuasiStatic) -> Result<QuasiStaticPlan, SceneError> {
+fn quasi_static(q: &Table<QuasiStatic>) -> Result<QuasiStaticPlan, SceneError> {
     let plan = QuasiStaticPlan {
         smallest_step: q.smallest_step.unwrap_or(1.0 / 1024.0),
         target_iterations: q.target_iterations.unwrap_or(40),
     };
     // A step is halved down to this: smaller parts than a double tells apart would never end.
-    let good = (1e-9..=1.0).contains(&plan.smallest_step);
-    check(document, "solid.quasi_static.smallest_step", plan.smallest_step, good, "1e-9 to 1")?;
-    let target = plan.target_iterations;
-    let key = "solid.quasi_static.target_iterations";
-    check(document, key, f64::from(target), (2..=1000).contains(&target), "2 to 1000")?;
+    q.check("smallest_step", plan.smallest_step, |s| (1e-9..=1.0).contains(&s), "1e-9 to 1")?;
+    q.check("target_iterations", plan.target_iterations, |n| (2.0..=1000.0).contains(&n), "2 to 1000")?;
     Ok(plan)
 }
 
 fn strength_reduction(
-    document: &Document,
-    s: &StrengthReduction,
+    s: &Table<StrengthReduction>,
     chosen: Option<NewtonOptions>,
 ) -> Result<StrengthReductionPlan, SceneError> {
     let default = ReductionOptions::default();
@@ -214,116 +166,16 @@ fn strength_reduction(
         newton: chosen.unwrap_or(default.newton),
         ..default
     };
-    let key = |k: &str| format!("solid.strength_reduction.{k}");
-    let good = (1e-3..=1e3).contains(&plan.start);
-    check(document, &key("start"), plan.start, good, "0.001 to 1000")?;
+    s.check("start", plan.start, |f| (1e-3..=1e3).contains(&f), "0.001 to 1000")?;
     // Each halving of the bracket is a search of its own for equilibrium; strength is known to a hundredth at best.
-    let good = (1e-4..=10.0).contains(&plan.tolerance);
-    check(document, &key("tolerance"), plan.tolerance, good, "0.0001 to 10")?;
-    let good = plan.largest <= 1e4 && plan.largest > plan.start.max(plan.start.recip());
-    check(document, &key("largest"), plan.largest, good, "above `start` and its reciprocal, at most 10000")?;
+    s.check("tolerance", plan.tolerance, |f| (1e-4..=10.0).contains(&f), "0.0001 to 10")?;
+    let good = |f| f <= 1e4 && f > plan.start.max(plan.start.recip());
+    s.check("largest", plan.largest, good, "above `start` and its reciprocal, at most 10000")?;
     Ok(plan)
 }
 
-fn initial_stress(
-    document: &Document,
-    i: &InitialStress,
-    materials: &Materials,
-) -> Result<InitialStressPlan, SceneError> {
-    let key = |k: &str| format!("solid.initial_stress.{k}");
-    let method = match i.method {
-        InitialStressMethod::K0 => "k0",
-        InitialStressMethod::Gravity => "gravity",
-        InitialStressMethod::Uniform => "uniform",
-    };
-    for (name, present, of) in [
-        ("k0", i.k0.is_some(), "k0"),
-        ("surface", i.surface.is_some(), "k0"),
-        ("layers", i.layers.is_some(), "k0"),
-        ("stress", i.stress.is_some(), "uniform"),
-    ] {
-        if present && of != method {
-            let expected = format!("no such key for the method \"{method}\"");
-            return Err(document.error(&key(name), "a value", expected));
-        }
-    }
-    let kind = match i.method {
-        InitialStressMethod::Gravity => InitialStressKind::Gravity,
-        InitialStressMethod::Uniform => {
-            let stress =
-                i.stress.ok_or_else(|| document.error(&key("stress"), "nothing", "six components in Pa"))?;
-            InitialStressKind::Uniform(stress.map(|s| s.si))
-        }
-        InitialStressMethod::K0 => {
-            if let Some(k0) = i.k0 {
-                check(document, &key("k0"), k0, k0 >= 0.0 && k0.is_finite(), "0 or more")?;
-            }
-            let mut all = BTreeMap::new();
-            for (&id, name) in &materials.names {
-                let k0 = materials.k0.get(&id).copied().or(i.k0).ok_or_else(|| {
-                    document.error(&key("k0"), "nothing", format!("a value, or one of its own for {name}"))
-                })?;
-                all.insert(id, k0);
-            }
-            InitialStressKind::K0 { k0: all, overburden: overburden(document, i)? }
-        }
-    };
-    let steps = i.steps.unwrap_or(10);
-    check(document, &key("steps"), f64::from(steps), (1..=10_000).contains(&steps), "1 to 10000")?;
-    Ok(InitialStressPlan { kind, steps, loads: i.loads })
-}
-
-fn overburden(document: &Document, i: &InitialStress) -> Result<Option<Overburden>, SceneError> {
-    match (&i.surface, &i.layers) {
-        (None, None) => Ok(None),
-        (Some(surface), None) => Ok(Some(Overburden::Level(surface.si))),
-        (None, Some(layers)) => {
-            let layers: Vec<(f64, f64)> = layers.iter().map(|(top, density)| (top.si, density.si)).collect();
-            let good = !layers.is_empty() && layers.windows(2).all(|w| w[1].0 < w[0].0);
-            if !good || layers.iter().any(|l| l.1 < 0.0) {
-                let expected = "[[height of the top, density], …] from the top down, densities of 0 or more";
-                return Err(document.error("solid.initial_stress.layers", format!("{layers:?}"), expected));
-            }
-            Ok(Some(Overburden::Layers(layers)))
-        }
-        _ => {
-            let expected = "either `surface` or `layers`";
-            Err(document.error("solid.initial_stress.layers", "a list beside `surface`", expected))
-        }
-    }
-}
-
-/// Refuses a K₀ state whose weight above a point is taken from the density at that point, where materials differ in it.
-///
-/// # Errors
-/// Densities that differ, and no layers.
-pub fn check_overburden(
-    document: &Document,
-    plans: &Plans,
-    mesh: &Mesh,
-    materials: &Materials,
-) -> Result<(), SceneError> {
-    let Some(InitialStressPlan { kind: InitialStressKind::K0 { overburden, .. }, .. }) =
-        &plans.initial_stress
-    else {
-        return Ok(());
-    };
-    if matches!(overburden, Some(Overburden::Layers(_))) {
-        return Ok(());
-    }
-    let used = materials.constants.iter().filter(|(number, _)| mesh.materials.contains(number));
-    let densities: Vec<f64> = used.map(|(_, m)| m.elastic.density).collect();
-    let (least, most) = densities.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
-    if most > least * (1.0 + 1e-9) {
-        let found = format!("nothing, and materials of {least} to {most} kg/m3");
-        let expected = "the layers as [[height of the top, density], …]: the density of a point does not tell what lies above it";
-        return Err(document.error("solid.initial_stress.layers", found, expected));
-    }
-    Ok(())
-}
-
-fn newton(document: &Document, newton: Option<&Newton>) -> Result<Option<NewtonPlan>, SceneError> {
-    let Some(n) = newton else { return Ok(None) };
+fn newton(solid: &Table<Solid>) -> Result<Option<NewtonPlan>, SceneError> {
+    let Some(n) = solid.optional("newton", &solid.newton) else { return Ok(None) };
     let mut plan = NewtonOptions::new(match n.variant.unwrap_or(NewtonVariant::Full) {
         NewtonVariant::Full => Variant::Full,
         NewtonVariant::Modified => Variant::Modified(0),
@@ -332,13 +184,12 @@ fn newton(document: &Document, newton: Option<&Newton>) -> Result<Option<NewtonP
     if let Some(l) = n.line_search {
         plan.line_search = l;
     }
-    if let Some(t) = n.tolerance {
-        check(document, "solid.newton.tolerance", t, (1e-12..=1e-2).contains(&t), "1e-12 to 0.01")?;
+    let good = |t| (1e-12..=1e-2).contains(&t);
+    if let Some(t) = n.check("tolerance", n.tolerance, good, "1e-12 to 0.01")? {
         plan.force_tolerance = t;
     }
-    if let Some(m) = n.max_iterations {
-        let good = (1..=10_000).contains(&m);
-        check(document, "solid.newton.max_iterations", f64::from(m), good, "1 to 10000")?;
+    let good = |m| (1.0..=10_000.0).contains(&m);
+    if let Some(m) = n.check("max_iterations", n.max_iterations, good, "1 to 10000")? {
         plan.max_iterations = m;
     }
     if let Some(s) = n.solver {

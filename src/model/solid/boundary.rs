@@ -1,11 +1,11 @@
 //! Supports and absorbing boundaries of the solid, resolved.
 
-use super::common::{check, time_function};
+use super::common::time_function;
 use super::geometry::Geometry;
 use super::selection;
 use crate::scene::history::TimeFunction;
-use crate::scene::solid::Solid;
-use crate::scene::{Document, SceneError};
+use crate::scene::solid::{Solid, Support};
+use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use trackbed_fem::boundary::{BoundaryLayer, SpringFactors};
 use trackbed_fem::material::Material;
@@ -25,22 +25,20 @@ pub struct Supports {
 ///
 /// # Errors
 /// A key is missing or contradictory, or two supports give one dof different displacements.
-pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Result<Supports, SceneError> {
+pub fn supports(solid: &Table<Solid>, geometry: &Geometry) -> Result<Supports, SceneError> {
     let mut all =
         Supports { constraints: geometry.constraints.clone(), moving: BTreeMap::new(), named: Vec::new() };
     // What each dof is given, by which support of the scene; none for the mesh file's.
     let mut given: BTreeMap<u32, (f64, Option<usize>)> =
         all.constraints.iter().map(|c| (3 * c.node + u32::from(c.direction), (c.value, None))).collect();
-    for (i, s) in solid.support.iter().enumerate() {
-        let path = format!("solid.support.{i}");
-        let nodes =
-            selection::nodes(document, geometry, &path, s.side, s.nodes_in, s.set.as_deref(), s.node)?;
-        let directions = directions(document, &format!("{path}.directions"), &s.directions)?;
+    for (i, s) in solid.rows("support", &solid.support).enumerate() {
+        let nodes = selection::nodes(&s, geometry)?;
+        let directions = directions(&s)?;
         let value = s.displacement.map_or(0.0, |d| d.si);
-        let function = time_function(document, &path, s.history.as_ref())?;
+        let function = time_function(s.optional("history", &s.history))?;
         if s.history.is_some() && value == 0.0 {
             let expected = "a displacement beside it that is not 0";
-            return Err(document.error(&format!("{path}.history"), "a course of nothing", expected));
+            return Err(s.error("history", "a course of nothing", expected));
         }
         let mut dofs = Vec::new();
         for &node in &nodes {
@@ -53,9 +51,10 @@ pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Resu
                     if moves || other != value {
                         let id = geometry.mesh.node_ids[node as usize];
                         let axis = ["x", "y", "z"][direction as usize];
-                        let first = by.map_or("the mesh file".into(), |k| format!("solid.support.{k}"));
+                        let first =
+                            by.map_or("the mesh file".into(), |k| solid.path(&format!("support.{k}")));
                         let found = format!("node {id} in {axis}, which {first} holds already");
-                        return Err(document.error(&path, found, "one course for each direction of a node"));
+                        return Err(s.here(found, "one course for each direction of a node"));
                     }
                 } else {
                     given.insert(dof, (value, Some(i)));
@@ -69,7 +68,7 @@ pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Resu
         if let Some(name) = &s.name {
             if name.is_empty() || name.contains([',', '"', '\n']) {
                 let expected = "a name without commas or quotes";
-                return Err(document.error(&format!("{path}.name"), format!("\"{name}\""), expected));
+                return Err(s.error("name", format!("\"{name}\""), expected));
             }
             match all.named.iter_mut().find(|(n, _)| n == name) {
                 Some((_, known)) => {
@@ -84,10 +83,10 @@ pub fn supports(document: &Document, solid: &Solid, geometry: &Geometry) -> Resu
     Ok(all)
 }
 
-fn directions(document: &Document, key: &str, names: &[String]) -> Result<Vec<u8>, SceneError> {
-    let wrong = |found: String| document.error(key, found, "one or more of \"x\", \"y\", \"z\", each once");
+fn directions(s: &Table<Support>) -> Result<Vec<u8>, SceneError> {
+    let wrong = |found: String| s.error("directions", found, "one or more of \"x\", \"y\", \"z\", each once");
     let mut directions = Vec::new();
-    for name in names {
+    for name in &s.directions {
         let direction =
             ["x", "y", "z"].iter().position(|d| d == name).ok_or_else(|| wrong(format!("\"{name}\"")))? as u8;
         if directions.contains(&direction) {
@@ -103,23 +102,18 @@ fn directions(document: &Document, key: &str, names: &[String]) -> Result<Vec<u8
 /// # Errors
 /// No face, or a factor out of range.
 pub fn absorbing(
-    document: &Document,
-    solid: &Solid,
+    solid: &Table<Solid>,
     geometry: &Geometry,
     materials: &BTreeMap<u32, Material>,
 ) -> Result<Vec<BoundaryLayer>, SceneError> {
     let mesh: &Mesh = &geometry.mesh;
     let mut layers = Vec::new();
-    for (i, a) in solid.absorbing.iter().enumerate() {
-        let path = format!("solid.absorbing.{i}");
-        let faces = selection::faces(document, geometry, &path, None, a.faces_in, a.side, a.set.as_deref())?;
+    for a in solid.rows("absorbing", &solid.absorbing) {
+        let faces = selection::faces(&a, geometry, None, a.faces_in, a.side, a.set.as_deref())?;
         for (key, factor) in [("normal", a.normal), ("tangential", a.tangential)] {
-            let good = factor >= 0.0 && factor.is_finite();
-            check(document, &format!("{path}.{key}"), factor, good, "0 or more")?;
+            a.check(key, factor, |f| f >= 0.0, "0 or more")?;
         }
-        if let Some(r) = a.radius {
-            check(document, &format!("{path}.radius"), r.si, r.si > 0.0, "a distance above 0")?;
-        }
+        a.check("radius", a.radius, |r| r > 0.0, "a distance above 0")?;
         let mut by_material: BTreeMap<u32, Vec<_>> = BTreeMap::new();
         for face in faces {
             by_material.entry(mesh.materials[face.element as usize]).or_default().push(face);

@@ -1,11 +1,10 @@
 //! The mesh of a scene's solid: read from files, or made on the spot.
 
-use super::common::check;
 use crate::failure::Failure;
 use crate::machine;
 use crate::read::{self, MeshFile};
 use crate::scene::solid::{Axis, Block, Order, Solid};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use trackbed_fem::mesh::{Constraint, Mesh};
@@ -33,50 +32,48 @@ pub struct Geometry {
 ///
 /// # Errors
 /// No source or several, or a file is missing, unreadable or contradictory.
-pub fn geometry(document: &Document, solid: &Solid) -> Result<Geometry, Failure> {
+pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
+    let of_lists = [("layout", solid.layout.is_some()), ("constraints", solid.constraints.is_some())];
+    let alone = "no such key: it goes with lists alone";
     let mut geometry = match (&solid.mesh, &solid.nodes, &solid.elements, &solid.block) {
         (Some(file), None, None, None) => {
-            refuse(document, "layout", solid.layout.is_some(), "with lists alone")?;
-            refuse(document, "constraints", solid.constraints.is_some(), "with lists alone")?;
-            let path = document.resolve(file);
+            solid.refuse(of_lists, alone)?;
+            let path = solid.locate(file);
             let read = read::read_mesh_file(&path)?;
             from_file(read, path.clone(), path)
         }
         (None, Some(nodes), Some(elements), None) => {
-            let constraints = solid.constraints.as_ref().map(|c| document.resolve(c));
-            let element_file = document.resolve(elements);
+            let constraints = solid.constraints.as_ref().map(|c| solid.locate(c));
+            let element_file = solid.locate(elements);
             let layout = solid.layout.unwrap_or_default();
             let lists =
-                read::read_lists(&document.resolve(nodes), &element_file, constraints.as_deref(), &layout)?;
+                read::read_lists(&solid.locate(nodes), &element_file, constraints.as_deref(), &layout)?;
             let constraint_file = constraints.unwrap_or_else(|| element_file.clone());
             from_file(MeshFile::from(lists), element_file, constraint_file)
         }
         (None, None, None, Some(b)) => {
-            refuse(document, "layout", solid.layout.is_some(), "with lists alone")?;
-            refuse(document, "constraints", solid.constraints.is_some(), "with lists alone")?;
-            let file = document.file().to_path_buf();
+            solid.refuse(of_lists, alone)?;
+            let file = solid.scene_file().to_path_buf();
             Geometry {
-                mesh: block(document, b, solid.order)?,
+                mesh: block(&solid.below("block", b), solid.order)?,
                 element_file: file.clone(),
                 constraint_file: file,
                 ..Geometry::default()
             }
         }
         (None, Some(_), None, None) => {
-            return Err(document
-                .error("solid.elements", "nothing", "the element list beside `nodes`")
-                .into());
+            return Err(solid.missing("elements", "the element list beside `nodes`").into());
         }
         (None, None, Some(_), None) => {
-            return Err(document.error("solid.nodes", "nothing", "the node list beside `elements`").into());
+            return Err(solid.missing("nodes", "the node list beside `elements`").into());
         }
         _ => {
             let found = "none or several of `mesh`, `nodes` with `elements`, and `block`";
-            return Err(document.error("solid", found, "one source of the mesh").into());
+            return Err(solid.here(found, "one source of the mesh").into());
         }
     };
     if !solid.support.is_empty() && solid.constraints.is_none() && geometry.constraints.is_empty() {
-        geometry.constraint_file = document.file().to_path_buf();
+        geometry.constraint_file = solid.scene_file().to_path_buf();
     }
     match solid.order {
         Some(Order::Linear) => reorder(&mut geometry, Mesh::to_linear),
@@ -116,67 +113,55 @@ fn reorder(geometry: &mut Geometry, change: impl Fn(&Mesh) -> Mesh) {
     }
 }
 
-fn refuse(document: &Document, key: &str, present: bool, only: &str) -> Result<(), SceneError> {
-    if present {
-        Err(document.error(&format!("solid.{key}"), "a value", format!("no such key: it goes {only}")))
-    } else {
-        Ok(())
-    }
-}
-
 /// Most elements of a block.
 const MOST_ELEMENTS: u64 = 20_000_000;
 /// Least memory that the model of a block of quadratic and of linear bricks takes for each of them [bytes].
 const ELEMENT_BYTES: [u64; 2] = [30_000, 2_500];
 
 /// Refuses more elements than are planned for, or than the free memory holds, before any is made.
-fn check_counts(document: &Document, block: &Block, order: Option<Order>) -> Result<(), SceneError> {
+fn check_counts(block: &Table<Block>, order: Option<Order>) -> Result<(), SceneError> {
     let bytes = ELEMENT_BYTES[usize::from(matches!(order, Some(Order::Linear)))];
     let along = |axis: &Axis| axis.counts.iter().fold(0_u64, |n, &c| n.saturating_add(c as u64));
     let [x, y, z] = [along(&block.x), along(&block.y), along(&block.z)];
     let elements = x.saturating_mul(y).saturating_mul(z);
     let found = format!("{x} x {y} x {z} elements");
     if elements > MOST_ELEMENTS {
-        return Err(document.error("solid.block", found, format!("at most {MOST_ELEMENTS}")));
+        return Err(block.here(found, format!("at most {MOST_ELEMENTS}")));
     }
     match machine::available() {
         Some(free) if elements * bytes > free => {
             let expected = format!("at most {}, for whose model the free memory may do", free / bytes);
-            Err(document.error("solid.block", found, expected))
+            Err(block.here(found, expected))
         }
         _ => Ok(()),
     }
 }
 
-fn block(document: &Document, block: &Block, order: Option<Order>) -> Result<Mesh, SceneError> {
-    check_counts(document, block, order)?;
+fn block(block: &Table<Block>, order: Option<Order>) -> Result<Mesh, SceneError> {
+    check_counts(block, order)?;
     let planes = [
-        planes(document, "x", &block.x)?,
-        planes(document, "y", &block.y)?,
-        planes(document, "z", &block.z)?,
+        planes(&block.below("x", &block.x))?,
+        planes(&block.below("y", &block.y))?,
+        planes(&block.below("z", &block.z))?,
     ];
     let mut mesh = Mesh::grid(&planes);
     let ends = |p: &[f64]| (p[0], p[p.len() - 1]);
     let (bottom, top) = ends(&planes[2]);
     let mut from = bottom;
-    for (i, layer) in block.layer.iter().enumerate() {
+    for (i, layer) in block.rows("layer", &block.layer).enumerate() {
         let last = i + 1 == block.layer.len();
-        let key = format!("solid.block.layer.{i}.top");
         let to = match layer.top {
             Some(t) => t.si,
             None if last => top,
-            None => return Err(document.error(&key, "nothing", "the top of a layer below others")),
+            None => return Err(layer.missing("top", "the top of a layer below others")),
         };
         if !(to > from && to <= top * (1.0 + 1e-12)) && to != top {
             let expected = format!("above {from} m, at most {top} m");
-            return Err(document.error(&key, format!("{to} m"), expected));
+            return Err(layer.error("top", format!("{to} m"), expected));
         }
         if last && to < top {
-            return Err(document.error(
-                &key,
-                format!("{to} m"),
-                format!("{top} m: the last layer ends at the top"),
-            ));
+            let expected = format!("{top} m: the last layer ends at the top");
+            return Err(layer.error("top", format!("{to} m"), expected));
         }
         for e in 0..mesh.element_count() {
             let height = mesh.element_centre(e)[2];
@@ -188,7 +173,7 @@ fn block(document: &Document, block: &Block, order: Option<Order>) -> Result<Mes
     }
     if let Some([from, to]) = block.crest.map(|c| c.map(|x| x.si)) {
         let (low, high) = ends(&planes[0]);
-        check(document, "solid.block.crest", to, to > from, "an end beyond its beginning")?;
+        block.check("crest", to, |to| to > from, "an end beyond its beginning")?;
         for x in &mut mesh.coordinates {
             let (up, along) = ((x[2] - bottom) / (top - bottom), (x[0] - low) / (high - low));
             x[0] += up * (from + along * (to - from) - x[0]);
@@ -198,21 +183,20 @@ fn block(document: &Document, block: &Block, order: Option<Order>) -> Result<Mes
 }
 
 /// The grid planes of an axis.
-fn planes(document: &Document, name: &str, axis: &Axis) -> Result<Vec<f64>, SceneError> {
-    let key = |k: &str| format!("solid.block.{name}.{k}");
+fn planes(axis: &Table<Axis>) -> Result<Vec<f64>, SceneError> {
     let lines: Vec<f64> = axis.lines.iter().map(|l| l.si).collect();
     if lines.len() < 2 || lines.windows(2).any(|w| w[1] <= w[0]) {
-        return Err(document.error(&key("lines"), format!("{lines:?}"), "two or more ascending coordinates"));
+        return Err(axis.error("lines", format!("{lines:?}"), "two or more ascending coordinates"));
     }
     let intervals = lines.len() - 1;
     if axis.counts.len() != intervals || axis.counts.contains(&0) {
         let expected = format!("{intervals} numbers of 1 or more, one for each interval of `lines`");
-        return Err(document.error(&key("counts"), format!("{:?}", axis.counts), expected));
+        return Err(axis.error("counts", format!("{:?}", axis.counts), expected));
     }
     let ratios = axis.ratios.clone().unwrap_or_else(|| vec![1.0; intervals]);
     if ratios.len() != intervals || ratios.iter().any(|r| !(r.is_finite() && *r > 0.0)) {
         let expected = format!("{intervals} numbers above 0, one for each interval of `lines`");
-        return Err(document.error(&key("ratios"), format!("{ratios:?}"), expected));
+        return Err(axis.error("ratios", format!("{ratios:?}"), expected));
     }
     let mut planes = vec![lines[0]];
     for i in 0..intervals {
@@ -233,6 +217,7 @@ fn planes(document: &Document, name: &str, axis: &Axis) -> Result<Vec<f64>, Scen
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Document;
     use crate::scene::units::Quantity;
 
     #[test]
@@ -243,7 +228,7 @@ mod tests {
             counts: vec![2, 3],
             ratios: Some(vec![1.0, 4.0]),
         };
-        let p = planes(&document, "x", &axis).unwrap();
+        let p = planes(&Table::root(&document, &axis)).unwrap();
         assert_eq!((p.len(), p[0], p[2], p[5]), (6, 0.0, 1.0, 4.0));
         assert!(((p[5] - p[4]) / (p[3] - p[2]) - 4.0).abs() < 1e-12);
         assert_eq!(p[1], 0.5);

@@ -6,7 +6,7 @@ use super::selection;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::{SolidLoad, SolidLoadKind};
 use crate::scene::units::vector;
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Mesh;
@@ -35,70 +35,55 @@ impl NodalLoad {
 ///
 /// # Errors
 /// A key is missing or not one of this kind of load, or it covers no face.
-pub fn nodal_load(
-    document: &Document,
-    geometry: &Geometry,
-    index: usize,
-    load: &SolidLoad,
-) -> Result<NodalLoad, SceneError> {
+pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalLoad, SceneError> {
     let mesh = &geometry.mesh;
-    let path = format!("solid.load.{index}");
-    let key = |k: &str| format!("solid.load.{index}.{k}");
-    let needs =
-        |k: &str, kind: &str| document.error(&key(k), "nothing", format!("a value for a {kind} load"));
-    let refuse = |k: &str, present: bool| {
-        if present {
-            Err(document.error(&key(k), "a value", "no such key for this kind of load"))
-        } else {
-            Ok(())
-        }
-    };
-    let function = time_function(document, &path, load.history.as_ref())?;
+    let foreign = "no such key for this kind of load";
+    let function = time_function(load.optional("history", &load.history))?;
     let mut pattern = vec![0.0; 3 * mesh.node_count()];
     match load.kind {
         SolidLoadKind::Pressure | SolidLoadKind::Traction => {
             let pressure = load.kind == SolidLoadKind::Pressure;
-            refuse(
-                if pressure { "traction" } else { "pressure" },
-                if pressure { load.traction.is_some() } else { load.pressure.is_some() },
-            )?;
-            refuse("node", load.node.is_some())?;
-            refuse("at", load.at.is_some())?;
-            refuse("force", load.force.is_some())?;
+            let idle = [
+                ("traction", pressure && load.traction.is_some()),
+                ("pressure", !pressure && load.pressure.is_some()),
+                ("node", load.node.is_some()),
+                ("at", load.at.is_some()),
+                ("force", load.force.is_some()),
+            ];
+            load.refuse(idle, foreign)?;
             let (list, set) = (load.faces.as_deref(), load.set.as_deref());
-            let faces = selection::faces(document, geometry, &path, list, load.faces_in, load.side, set)?;
+            let faces = selection::faces(load, geometry, list, load.faces_in, load.side, set)?;
             for face in &faces {
                 if pressure {
-                    let p = load.pressure.ok_or_else(|| needs("pressure", "pressure"))?.si;
+                    let p = load.need("pressure", load.pressure, "a value for a pressure load")?.si;
                     fem::loads::face_pressure(mesh, face, p, &mut pattern);
                 } else {
-                    let t = vector(&load.traction.ok_or_else(|| needs("traction", "traction"))?);
+                    let t = vector(&load.need("traction", load.traction, "a value for a traction load")?);
                     fem::loads::face_traction(mesh, face, t, &mut pattern);
                 }
             }
         }
         SolidLoadKind::Point => {
-            refuse("faces", load.faces.is_some())?;
-            refuse("faces_in", load.faces_in.is_some())?;
-            refuse("side", load.side.is_some())?;
-            refuse("set", load.set.is_some())?;
-            refuse("pressure", load.pressure.is_some())?;
-            refuse("traction", load.traction.is_some())?;
-            let force = vector(&load.force.ok_or_else(|| needs("force", "point"))?);
+            let idle = [
+                ("faces", load.faces.is_some()),
+                ("faces_in", load.faces_in.is_some()),
+                ("side", load.side.is_some()),
+                ("set", load.set.is_some()),
+                ("pressure", load.pressure.is_some()),
+                ("traction", load.traction.is_some()),
+            ];
+            load.refuse(idle, foreign)?;
+            let force = vector(&load.need("force", load.force, "a value for a point load")?);
             match (load.node, load.at) {
                 (Some(id), None) => {
-                    let node = selection::find_node(document, mesh, &key("node"), id)?;
+                    let node = selection::find_node(load, mesh, id)?;
                     for d in 0..3 {
                         pattern[3 * node + d] += force[d];
                     }
                 }
-                (None, Some(at)) => point_load(document, mesh, &key("at"), vector(&at), force, &mut pattern)?,
+                (None, Some(at)) => point_load(load, mesh, vector(&at), force, &mut pattern)?,
                 _ => {
-                    return Err(document.error(
-                        &key("node"),
-                        "both or none of `node` and `at`",
-                        "one of them",
-                    ));
+                    return Err(load.error("node", "both or none of `node` and `at`", "one of them"));
                 }
             }
         }
@@ -109,9 +94,8 @@ pub fn nodal_load(
 
 /// Spreads a force at a point of the solid over the nodes of the element that holds the point.
 fn point_load(
-    document: &Document,
+    load: &Table<SolidLoad>,
     mesh: &Mesh,
-    key: &str,
     point: [f64; 3],
     force: [f64; 3],
     pattern: &mut [f64],
@@ -144,5 +128,5 @@ fn point_load(
         }
     }
     let found = format!("({}, {}, {})", point[0], point[1], point[2]);
-    Err(document.error(key, found, "a point of the solid"))
+    Err(load.error("at", found, "a point of the solid"))
 }

@@ -1,7 +1,7 @@
 //! What elements do against locking, and remarks on those that will lock.
 
 use crate::scene::solid::{Dilatation, Solid};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use trackbed_fem::{self as fem, AssumedStrain, ElementKind, Material, Mesh, Quadrature};
 
@@ -12,16 +12,13 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 ///
 /// # Errors
 /// A key that no element of the mesh has a use for.
-pub fn assumed(document: &Document, solid: &Solid, mesh: &Mesh) -> Result<AssumedStrain, SceneError> {
+pub fn assumed(solid: &Table<Solid>, mesh: &Mesh) -> Result<AssumedStrain, SceneError> {
     let kinds = mesh.connectivity.kinds();
-    if solid.dilatation.is_some() && kinds.iter().all(|k| k.is_linear()) {
-        let expected = "no such key for linear elements, whose dilatation is always the mean";
-        return Err(document.error("solid.dilatation", "a value", expected));
-    }
-    if solid.incompatible_modes.is_some() && !kinds.contains(&ElementKind::Hex8) {
-        let expected = "no such key for a mesh without 8-node hexahedra";
-        return Err(document.error("solid.incompatible_modes", "a value", expected));
-    }
+    let idle = solid.dilatation.is_some() && kinds.iter().all(|k| k.is_linear());
+    let expected = "no such key for linear elements, whose dilatation is always the mean";
+    solid.refuse([("dilatation", idle)], expected)?;
+    let idle = solid.incompatible_modes.is_some() && !kinds.contains(&ElementKind::Hex8);
+    solid.refuse([("incompatible_modes", idle)], "no such key for a mesh without 8-node hexahedra")?;
     Ok(AssumedStrain {
         dilatation: match solid.dilatation.unwrap_or_default() {
             Dilatation::Pointwise => fem::Dilatation::Pointwise,

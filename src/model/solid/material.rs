@@ -1,7 +1,7 @@
 //! Materials of the solid, resolved.
 
 use crate::scene::solid::{MaterialFault, Solid};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use trackbed_fem::material::Material;
 
@@ -19,20 +19,17 @@ pub struct Materials {
 ///
 /// # Errors
 /// A constant is missing, out of range, or not one of the model.
-pub fn materials(document: &Document, solid: &Solid) -> Result<Materials, SceneError> {
+pub fn materials(solid: &Table<Solid>) -> Result<Materials, SceneError> {
     let mut materials = Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
-    for (i, m) in solid.material.iter().enumerate() {
-        let key = |k: &str| format!("solid.material.{i}.{k}");
-        let constants = m
-            .resolve()
-            .map_err(|MaterialFault { key: k, found, expected }| document.error(&key(k), found, expected))?;
+    for m in solid.rows("material", &solid.material) {
+        let constants =
+            m.resolve().map_err(|MaterialFault { key, found, expected }| m.error(key, found, expected))?;
         if materials.constants.insert(m.id, constants).is_some() {
-            return Err(document.error(&key("id"), format!("material {} again", m.id), "each number once"));
+            return Err(m.error("id", format!("material {} again", m.id), "each number once"));
         }
         let name = if m.name.is_empty() { format!("material {}", m.id) } else { m.name.clone() };
         materials.names.insert(m.id, name);
-        if let Some(k0) = m.k0 {
-            super::common::check(document, &key("k0"), k0, k0 >= 0.0 && k0.is_finite(), "0 or more")?;
+        if let Some(k0) = m.check("k0", m.k0, |k0| k0 >= 0.0, "0 or more")? {
             materials.k0.insert(m.id, k0);
         }
     }

@@ -5,17 +5,17 @@ mod boundary;
 mod common;
 mod conditioning;
 mod geometry;
+mod initial_stress;
 mod load;
 mod locking;
 mod material;
+mod motion;
 mod selection;
 mod sleepers;
 
-pub use analysis::{
-    Analysis, InitialStressKind, InitialStressPlan, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan,
-    TimeMethod,
-};
+pub use analysis::{Analysis, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan, TimeMethod};
 pub use geometry::{Geometry, geometry};
+pub use initial_stress::{InitialStressKind, InitialStressPlan};
 pub use load::NodalLoad;
 pub use selection::find_node;
 pub use sleepers::SleeperBodies;
@@ -25,9 +25,8 @@ use crate::mesh_tools;
 use crate::model::track::sleeper::MeshedSleepers;
 use crate::read::MeshFile;
 use crate::scene::history::TimeFunction;
-use crate::scene::solid::{Integration, Mass, Rayleigh, ReductionKind, Solid};
-use crate::scene::{Document, SceneError};
-use common::check;
+use crate::scene::solid::{Integration, Mass, Solid};
+use crate::scene::{Document, SceneError, Table};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trackbed_fem as fem;
@@ -170,27 +169,26 @@ pub fn build(
     coupled: bool,
     sleepers: Option<MeshedSleepers>,
 ) -> Result<SolidPart, Failure> {
-    let geometry = geometry(document, solid)?;
-    let mut materials = material::materials(document, solid)?;
+    let solid = &Table::top(document, "solid", solid);
+    let geometry = geometry(solid)?;
+    let mut materials = material::materials(solid)?;
     for (number, element) in geometry.mesh.materials.iter().zip(&geometry.mesh.element_ids) {
         if !materials.constants.contains_key(number) {
             let found = format!("no material {number}, which element {element} has");
-            return Err(document.error("solid.material", found, "an entry with this id").into());
+            return Err(solid.error("material", found, "an entry with this id").into());
         }
     }
     let quadrature = quadrature(solid.integration);
-    let assumed = locking::assumed(document, solid, &geometry.mesh)?;
+    let assumed = locking::assumed(solid, &geometry.mesh)?;
     let loads = solid
-        .load
-        .iter()
-        .enumerate()
-        .map(|(i, l)| load::nodal_load(document, &geometry, i, l))
+        .rows("load", &solid.load)
+        .map(|l| load::nodal_load(&l, &geometry))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut supports = boundary::supports(document, solid, &geometry)?;
-    let boundaries = boundary::absorbing(document, solid, &geometry, &materials.constants)?;
+    let mut supports = boundary::supports(solid, &geometry)?;
+    let boundaries = boundary::absorbing(solid, &geometry, &materials.constants)?;
     let linear = materials.constants.values().all(|m| m.is_linear());
-    let plans = analysis::plans(document, solid, &materials, linear, coupled)?;
-    analysis::check_overburden(document, &plans, &geometry.mesh, &materials)?;
+    let plans = analysis::plans(solid, &materials, linear, coupled)?;
+    initial_stress::check_overburden(solid, plans.initial_stress.as_ref(), &geometry.mesh, &materials)?;
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
@@ -215,7 +213,7 @@ pub fn build(
         constraints: supports.constraints,
         boundaries,
         gravity: weight,
-        rayleigh: rayleigh(document, solid.rayleigh.as_ref())?,
+        rayleigh: motion::rayleigh(solid.optional("rayleigh", &solid.rayleigh))?,
     })
     .map_err(|e| refused(&element_file, &e))?;
     let position = |dof: u32| {
@@ -231,7 +229,7 @@ pub fn build(
         analysis: plans.analysis,
         initial_stress: plans.initial_stress,
         newton: plans.newton,
-        reduction: reduction(document, solid, linear, coupled)?,
+        reduction: motion::reduction(solid, linear, coupled)?,
         material_names: materials.names,
         warnings,
         sleepers,
@@ -247,42 +245,14 @@ fn quadrature(integration: Integration) -> fem::Quadrature {
     }
 }
 
-/// The reduction of a solid, refused where it would not be one, or would not be used.
-fn reduction(
-    document: &Document,
-    solid: &Solid,
-    linear: bool,
-    coupled: bool,
-) -> Result<Option<fem::reduction::Reduction>, SceneError> {
-    let Some(r) = solid.reduction else { return Ok(None) };
-    let refuse = |found: &str, expected: &str| Err(document.error("solid.reduction", found, expected));
-    if !linear {
-        return refuse("a material with plasticity", "no such key unless every material is linear elastic");
-    }
-    if solid.initial_stress.is_some() {
-        return refuse("initial stress", "no such key beside solid.initial_stress");
-    }
-    if !coupled {
-        return refuse("a value", "no such key without [[grains]]");
-    }
-    match (r.kind, r.modes) {
-        (ReductionKind::Surface, modes) => {
-            Ok(Some(fem::reduction::Reduction::Surface { modes: modes.unwrap_or(0) }))
-        }
-        (ReductionKind::Modes, Some(0)) => Err(document.error("solid.reduction.modes", "0", "1 or more")),
-        (ReductionKind::Modes, modes) => {
-            Ok(Some(fem::reduction::Reduction::Modes { modes: modes.unwrap_or(60) }))
-        }
-    }
-}
-
 /// The mesh of a scene's solid with all its constraints, as a mesh file holds it.
 ///
 /// # Errors
 /// As [`geometry`], and supports that contradict each other.
 pub fn mesh_file(document: &Document, solid: &Solid) -> Result<MeshFile, Failure> {
-    let geometry = geometry(document, solid)?;
-    let constraints = boundary::supports(document, solid, &geometry)?.constraints;
+    let solid = &Table::top(document, "solid", solid);
+    let geometry = geometry(solid)?;
+    let constraints = boundary::supports(solid, &geometry)?.constraints;
     let Geometry { mesh, node_sets, element_types, warnings, .. } = geometry;
     Ok(MeshFile { mesh, constraints, node_sets, element_types, warnings, ..MeshFile::default() })
 }
@@ -300,50 +270,4 @@ fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
         other => ("mesh".into(), other.to_string(), "a mesh that makes a model"),
     };
     SceneError { file: elements.to_path_buf(), line: None, key, found, expected: expected.into() }
-}
-
-fn rayleigh(document: &Document, rayleigh: Option<&Rayleigh>) -> Result<fem::damping::Rayleigh, SceneError> {
-    let Some(r) = rayleigh else { return Ok(fem::damping::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
-    let result = match (r.alpha_m, r.beta_k, r.damping_ratio, r.frequencies) {
-        (alpha, beta, None, None) => {
-            for (name, value) in [("alpha_m", alpha.map(|a| a.si)), ("beta_k", beta.map(|b| b.si))] {
-                let value = value.unwrap_or(0.0);
-                check(document, &format!("solid.rayleigh.{name}"), value, value >= 0.0, "0 or more")?;
-            }
-            fem::damping::Rayleigh {
-                alpha_m: alpha.map_or(0.0, |a| a.si),
-                beta_k: beta.map_or(0.0, |b| b.si),
-            }
-        }
-        (None, None, Some(ratio), Some([f1, f2])) => {
-            check(
-                document,
-                "solid.rayleigh.damping_ratio",
-                ratio,
-                (0.0..1.0).contains(&ratio),
-                "0 or more, below 1",
-            )?;
-            let good = f1.si > 0.0 && f2.si > f1.si;
-            if !good {
-                let found = format!("{} and {} Hz", f1.si, f2.si);
-                return Err(document.error(
-                    "solid.rayleigh.frequencies",
-                    found,
-                    "two rising positive frequencies",
-                ));
-            }
-            fem::damping::Rayleigh::from_frequencies([f1.si, f2.si], [ratio, ratio])
-                .map_err(|e| document.error("solid.rayleigh", e.to_string(), "other frequencies"))?
-        }
-        _ => {
-            return Err(document.error(
-                "solid.rayleigh",
-                "a mixture of keys",
-                "either alpha_m and beta_k, or damping_ratio and frequencies",
-            ));
-        }
-    };
-    check(document, "solid.rayleigh.alpha_m", result.alpha_m, result.alpha_m >= 0.0, "0 or more")?;
-    check(document, "solid.rayleigh.beta_k", result.beta_k, result.beta_k >= 0.0, "0 or more")?;
-    Ok(result)
 }

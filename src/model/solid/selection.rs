@@ -1,9 +1,9 @@
 //! Nodes and faces that a scene chooses by side, box, set or number.
 
 use super::geometry::Geometry;
-use crate::scene::solid::Side;
+use crate::scene::solid::{Side, Support};
 use crate::scene::units::{Length, Quantity, vector};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use std::collections::HashMap;
 use trackbed_fem::mesh::{Face, Mesh};
 
@@ -13,34 +13,26 @@ const ON_SIDE: f64 = 1e-6;
 /// A box as a scene writes it, [low, high].
 pub type SceneBox = [[Quantity<Length>; 3]; 2];
 
-/// Index of the node with number `id`.
+/// Index of the node with number `id`, the `node` of a table.
 ///
 /// # Errors
 /// The mesh has no such node.
-pub fn find_node(document: &Document, mesh: &Mesh, key: &str, id: u32) -> Result<usize, SceneError> {
+pub fn find_node<T>(table: &Table<T>, mesh: &Mesh, id: u32) -> Result<usize, SceneError> {
     mesh.node_ids
         .iter()
         .position(|&n| n == id)
-        .ok_or_else(|| document.error(key, format!("node {id}"), "the number of a node of the mesh"))
+        .ok_or_else(|| table.error("node", format!("node {id}"), "the number of a node of the mesh"))
 }
 
-/// Nodes of a support, ascending. `path` is the key of its table.
+/// Nodes of a support, ascending.
 ///
 /// # Errors
 /// None or several of the keys are given, or no node answers to them.
-pub fn nodes(
-    document: &Document,
-    geometry: &Geometry,
-    path: &str,
-    side: Option<Side>,
-    within: Option<SceneBox>,
-    set: Option<&str>,
-    node: Option<u32>,
-) -> Result<Vec<u32>, SceneError> {
+pub fn nodes(support: &Table<Support>, geometry: &Geometry) -> Result<Vec<u32>, SceneError> {
     let mesh = &geometry.mesh;
     let all = 0..mesh.node_count() as u32;
     let x = |n: &u32| mesh.coordinates[*n as usize];
-    match (side, within, set, node) {
+    match (support.side, support.nodes_in, support.set.as_deref(), support.node) {
         (Some(side), None, None, None) => {
             let on = on_side(mesh, side);
             Ok(all.filter(|n| on(x(n))).collect())
@@ -49,33 +41,26 @@ pub fn nodes(
             let inside = in_box(mesh, within);
             let chosen: Vec<u32> = all.filter(|n| inside(x(n))).collect();
             if chosen.is_empty() {
-                return Err(document.error(
-                    &format!("{path}.nodes_in"),
-                    "no node in the box",
-                    "at least one",
-                ));
+                return Err(support.error("nodes_in", "no node in the box", "at least one"));
             }
             Ok(chosen)
         }
-        (None, None, Some(name), None) => node_set(document, geometry, path, name).cloned(),
-        (None, None, None, Some(id)) => {
-            Ok(vec![find_node(document, mesh, &format!("{path}.node"), id)? as u32])
-        }
+        (None, None, Some(name), None) => node_set(support, geometry, name).cloned(),
+        (None, None, None, Some(id)) => Ok(vec![find_node(support, mesh, id)? as u32]),
         _ => {
             let found = "none or several of `side`, `nodes_in`, `set` and `node`";
-            Err(document.error(path, found, "one of them"))
+            Err(support.here(found, "one of them"))
         }
     }
 }
 
-/// Boundary faces that a load or an absorbing boundary covers. `path` is the key of its table.
+/// Boundary faces that a load or an absorbing boundary covers.
 ///
 /// # Errors
 /// None or several of the keys are given, or no face answers to them.
-pub fn faces(
-    document: &Document,
+pub fn faces<T>(
+    table: &Table<T>,
     geometry: &Geometry,
-    path: &str,
     list: Option<&[[u32; 2]]>,
     within: Option<SceneBox>,
     side: Option<Side>,
@@ -85,13 +70,13 @@ pub fn faces(
     let boundary = |key: &str, what: &str, keep: &dyn Fn(&Face) -> bool| {
         let faces: Vec<Face> = mesh.boundary_faces().into_iter().filter(keep).collect();
         if faces.is_empty() {
-            Err(document.error(&format!("{path}.{key}"), format!("no boundary face {what}"), "at least one"))
+            Err(table.error(key, format!("no boundary face {what}"), "at least one"))
         } else {
             Ok(faces)
         }
     };
     match (list, within, side, set) {
-        (Some(list), None, None, None) => listed(document, mesh, &format!("{path}.faces"), list),
+        (Some(list), None, None, None) => listed(table, mesh, list),
         (None, Some(within), None, None) => {
             let inside = in_box(mesh, within);
             boundary("faces_in", "in the box", &|f| inside(f.centre(mesh)))
@@ -101,7 +86,7 @@ pub fn faces(
             boundary("side", "on this side", &|f| f.nodes().iter().all(|n| on(mesh.coordinates[*n as usize])))
         }
         (None, None, None, Some(name)) => {
-            let set = node_set(document, geometry, path, name)?;
+            let set = node_set(table, geometry, name)?;
             let mut member = vec![false; mesh.node_count()];
             set.iter().for_each(|n| member[*n as usize] = true);
             boundary("set", "with all its nodes in the set", &|f| {
@@ -110,17 +95,12 @@ pub fn faces(
         }
         _ => {
             let found = "none or several of `faces`, `faces_in`, `side` and `set`";
-            Err(document.error(path, found, "one of them"))
+            Err(table.here(found, "one of them"))
         }
     }
 }
 
-fn node_set<'g>(
-    document: &Document,
-    geometry: &'g Geometry,
-    path: &str,
-    name: &str,
-) -> Result<&'g Vec<u32>, SceneError> {
+fn node_set<'g, T>(table: &Table<T>, geometry: &'g Geometry, name: &str) -> Result<&'g Vec<u32>, SceneError> {
     geometry.node_sets.get(name).ok_or_else(|| {
         let known: Vec<&str> = geometry.node_sets.keys().map(String::as_str).collect();
         let expected = if known.is_empty() {
@@ -128,16 +108,16 @@ fn node_set<'g>(
         } else {
             format!("a node set of the mesh file: {}", known.join(", "))
         };
-        document.error(&format!("{path}.set"), format!("\"{name}\""), expected)
+        table.error("set", format!("\"{name}\""), expected)
     })
 }
 
-fn listed(document: &Document, mesh: &Mesh, key: &str, list: &[[u32; 2]]) -> Result<Vec<Face>, SceneError> {
+fn listed<T>(table: &Table<T>, mesh: &Mesh, list: &[[u32; 2]]) -> Result<Vec<Face>, SceneError> {
     let elements: HashMap<u32, usize> = mesh.element_ids.iter().enumerate().map(|(i, &id)| (id, i)).collect();
     list.iter()
         .map(|&[element, side]| {
             let e = *elements.get(&element).ok_or_else(|| {
-                document.error(key, format!("element {element}"), "the number of an element of the mesh")
+                table.error("faces", format!("element {element}"), "the number of an element of the mesh")
             })?;
             let faces = mesh.connectivity.kind(e).faces().len();
             if !(1..=faces as u32).contains(&side) {
@@ -146,7 +126,7 @@ fn listed(document: &Document, mesh: &Mesh, key: &str, list: &[[u32; 2]]) -> Res
                 } else {
                     format!("a face of the {}, 1 to {faces}", mesh.connectivity.kind(e).name())
                 };
-                return Err(document.error(key, format!("face {side}"), expected));
+                return Err(table.error("faces", format!("face {side}"), expected));
             }
             Ok(mesh.face(e, side as usize - 1))
         })

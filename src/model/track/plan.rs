@@ -4,7 +4,7 @@ use super::trains;
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, SeatingTable, TrackTable};
-use crate::scene::{Document, SceneError};
+use crate::scene::{Number, SceneError, Table};
 use trackbed_coupling::track::influence::Winkler;
 use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Seating, Waveform};
 use trackbed_coupling::track::rail::RailInput;
@@ -41,87 +41,66 @@ const KEYS: [(&str, &[SeatLoadKind], bool); 21] = {
     ]
 };
 
-fn key(name: &str) -> String {
-    format!("track.load.{name}")
+/// A number of `key` that must be above 0; one that is not there counts as 0.
+fn above_zero<T>(table: &Table<T>, key: &str, value: impl Number) -> Result<f64, SceneError> {
+    table.check(key, value.number().unwrap_or(0.0), |x| x > 0.0, "above 0")
 }
 
-fn check(
-    document: &Document,
-    key: &str,
-    value: f64,
-    good: impl Fn(f64) -> bool,
-    expected: &str,
-) -> Result<f64, SceneError> {
-    if value.is_finite() && good(value) {
-        return Ok(value);
-    }
-    Err(document.error(key, value.to_string(), expected))
+/// A number of `key` that may not be below 0; one that is not there counts as 0.
+fn least_zero<T>(table: &Table<T>, key: &str, value: impl Number) -> Result<f64, SceneError> {
+    table.check(key, value.number().unwrap_or(0.0), |x| x >= 0.0, "0 or more")
 }
 
 /// The load of a scene on sleepers at `places` along the track [m], through `rail` where the scene has one.
 ///
 /// # Errors
 /// Bad input in the scene or in the files it names.
-pub fn load(
-    document: &Document,
-    l: &SeatLoad,
-    places: Vec<f64>,
-    rail: Option<&RailPlan>,
-) -> Result<CyclicLoad, Failure> {
-    which_keys(document, l)?;
-    let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
-    let least_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x >= 0.0, "0 or more");
-    let cycles = l.cycles.unwrap_or(1);
-    check(document, &key("cycles"), f64::from(cycles), |n| n >= 1.0, "1 or more")?;
-    least_zero("rest", l.rest.si)?;
-    least_zero("ramp", l.ramp.si)?;
+pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> Result<CyclicLoad, Failure> {
+    which_keys(l)?;
+    let cycles = l.check("cycles", l.cycles.unwrap_or(1), |n| n >= 1.0, "1 or more")?;
+    let (rest, ramp) = (least_zero(l, "rest", l.rest)?, least_zero(l, "ramp", l.ramp)?);
     let minimum = l.minimum.map_or(0.0, |f| f.si);
-    if let Some(maximum) = l.maximum {
-        check(document, &key("maximum"), maximum.si, |f| f > minimum, "more than the minimum")?;
-    }
-    let maximum = l.maximum.map_or(0.0, |f| f.si);
-    let speed = l.speed.map(|v| above_zero("speed", v.si)).transpose()?;
+    let maximum = l.check("maximum", l.maximum, |f| f > minimum, "more than the minimum")?;
+    let maximum = maximum.map_or(0.0, |f| f.si);
+    let speed = l.speed.map(|v| above_zero(l, "speed", v)).transpose()?;
     if matches!(l.kind, SeatLoadKind::Bogie | SeatLoadKind::Train) != rail.is_some() {
-        let error = match rail {
-            Some(_) => {
-                document.error(&key("kind"), "a load on the sleepers", "\"bogie\" or \"train\" on a rail")
-            }
-            None => document.error(&key("kind"), "wheels", "[track.rail], on which they roll"),
+        let (found, expected) = match rail {
+            Some(_) => ("a load on the sleepers", "\"bogie\" or \"train\" on a rail"),
+            None => ("wheels", "[track.rail], on which they roll"),
         };
-        return Err(error.into());
+        return Err(l.error("kind", found, expected).into());
     }
     let waveform = match l.kind {
         SeatLoadKind::Sine | SeatLoadKind::Haversine => Waveform::Wave {
             sine: l.kind == SeatLoadKind::Sine,
             minimum,
             maximum,
-            frequency: above_zero("frequency", l.frequency.map_or(0.0, |f| f.si))?,
+            frequency: above_zero(l, "frequency", l.frequency)?,
         },
         SeatLoadKind::Ramp => Waveform::Ramp {
             minimum,
             maximum,
-            rise: above_zero("rise", l.rise.map_or(0.0, |t| t.si))?,
-            hold: least_zero("hold", l.hold.map_or(0.0, |t| t.si))?,
-            fall: l.fall.map(|t| above_zero("fall", t.si)).transpose()?,
+            rise: above_zero(l, "rise", l.rise)?,
+            hold: least_zero(l, "hold", l.hold)?,
+            fall: l.fall.map(|t| above_zero(l, "fall", t)).transpose()?,
         },
         SeatLoadKind::History => {
-            let factor =
-                check(document, &key("factor"), l.factor.unwrap_or(1.0), |f| f != 0.0, "other than 0")?;
+            let factor = l.check("factor", l.factor.unwrap_or(1.0), |f| f != 0.0, "other than 0")?;
             let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
-            let rows = tables::history(&document.resolve(file))?;
+            let rows = tables::history(&l.locate(file))?;
             let first = rows[0].0;
             if rows.len() < 2 {
-                return Err(document.error(&key("file"), "one row", "two or more").into());
+                return Err(l.error("file", "one row", "two or more").into());
             }
             let points = rows.iter().map(|(t, f)| (t - first, f * factor)).collect();
             Waveform::Measured { points, speed }
         }
         SeatLoadKind::Gauss => {
-            let width = above_zero("width", l.width.map_or(0.0, |w| w.si))?;
+            let width = above_zero(l, "width", l.width)?;
             let behind: Vec<f64> = l.axles.as_ref().map_or(vec![0.0], |a| a.iter().map(|x| x.si).collect());
             if behind.first() != Some(&0.0) || behind.windows(2).any(|a| a[1] <= a[0]) {
                 let found = format!("{behind:?}");
-                return Err(document.error(&key("axles"), found, "ascending distances, the first 0").into());
+                return Err(l.error("axles", found, "ascending distances, the first 0").into());
             }
             let axles = behind.iter().map(|&b| [b, maximum]).collect();
             Waveform::Pass(Pass::over(
@@ -133,32 +112,30 @@ pub fn load(
             ))
         }
         SeatLoadKind::Bogie | SeatLoadKind::Train => {
-            let axles = axles(document, l)?;
-            let waves = waves(document, l, speed.unwrap_or(0.0))?;
+            let axles = axles(l)?;
+            let waves = waves(l, speed.unwrap_or(0.0))?;
             let rail = rail.expect("checked above");
             Waveform::Pass(Pass::over(&places, speed.unwrap_or(1.0), axles, rail.spread(&places), waves))
         }
     };
-    let mut load = CyclicLoad { waveform, cycles, rest: l.rest.si, ramp: l.ramp.si, seating: None, places };
-    load.seating = l.seating.as_ref().map(|s| seating(document, s, &load)).transpose()?;
+    let mut load = CyclicLoad { waveform, cycles, rest, ramp, seating: None, places };
+    load.seating = l.optional("seating", &l.seating).map(|s| seating(&s, &load)).transpose()?;
     Ok(load)
 }
 
 /// The pulses before the first cycle of `load`.
-fn seating(document: &Document, s: &SeatingTable, load: &CyclicLoad) -> Result<Seating, SceneError> {
-    let key = |name: &str| format!("track.load.seating.{name}");
-    check(document, &key("cycles"), f64::from(s.cycles), |n| (1.0..=1e6).contains(&n), "1 to 1000000")?;
+fn seating(s: &Table<SeatingTable>, load: &CyclicLoad) -> Result<Seating, SceneError> {
     let base = (0..load.places.len()).map(|k| load.on(k, load.seating_begins())).fold(0.0, f64::max);
     let expected = format!("more than the {base} N that the load begins with");
     Ok(Seating {
-        cycles: s.cycles,
-        maximum: check(document, &key("maximum"), s.maximum.si, |f| f > base, &expected)?,
-        frequency: check(document, &key("frequency"), s.frequency.si, |f| f > 0.0, "above 0")?,
+        cycles: s.check("cycles", s.cycles, |n| (1.0..=1e6).contains(&n), "1 to 1000000")?,
+        maximum: s.check("maximum", s.maximum, |f| f > base, &expected)?.si,
+        frequency: above_zero(s, "frequency", s.frequency)?,
     })
 }
 
 /// Refuses keys of other kinds and asks for those that are needed.
-fn which_keys(document: &Document, l: &SeatLoad) -> Result<(), SceneError> {
+fn which_keys(l: &Table<SeatLoad>) -> Result<(), SceneError> {
     let present = |name: &str| match name {
         "minimum" => l.minimum.is_some(),
         "maximum" => l.maximum.is_some(),
@@ -182,10 +159,10 @@ fn which_keys(document: &Document, l: &SeatLoad) -> Result<(), SceneError> {
         let mut allowed = KEYS.iter().filter(|(n, kinds, _)| *n == name && kinds.contains(&l.kind));
         match (allowed.next(), present(name)) {
             (None, true) => {
-                return Err(document.error(&key(name), "a value", "no such key for this kind of load"));
+                return Err(l.error(name, "a value", "no such key for this kind of load"));
             }
             (Some((_, _, true)), false) => {
-                return Err(document.error(&key(name), "nothing", "a value for this kind of load"));
+                return Err(l.missing(name, "a value for this kind of load"));
             }
             _ => {}
         }
@@ -194,28 +171,26 @@ fn which_keys(document: &Document, l: &SeatLoad) -> Result<(), SceneError> {
 }
 
 /// Distance behind the first [m] and force [N] of each axle on the rail.
-fn axles(document: &Document, l: &SeatLoad) -> Result<Vec<[f64; 2]>, SceneError> {
-    let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
-    let given = l.axle_load.map(|f| above_zero("axle_load", f.si)).transpose()?;
+fn axles(l: &Table<SeatLoad>) -> Result<Vec<[f64; 2]>, SceneError> {
+    let given = l.axle_load.map(|f| above_zero(l, "axle_load", f)).transpose()?;
     if l.kind == SeatLoadKind::Bogie {
-        let base = above_zero("wheelbase", l.wheelbase.map_or(0.0, |w| w.si))?;
+        let base = above_zero(l, "wheelbase", l.wheelbase)?;
         let force = given.unwrap_or(0.0);
         return Ok(vec![[0.0, force], [base, force]]);
     }
-    let cars = l.cars.unwrap_or(1);
-    check(document, &key("cars"), f64::from(cars), |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    let cars = l.check("cars", l.cars.unwrap_or(1), |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
     let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
-    let car = trains::car(&document.resolve(file), l.train.as_deref().unwrap_or_default())?;
+    let car = trains::car(&l.locate(file), l.train.as_deref().unwrap_or_default())?;
     let force = given.unwrap_or(car.axle_load.si);
     Ok(car.axles(cars).into_iter().map(|behind| [behind, force]).collect())
 }
 
 /// Force amplitudes [N] and lengths [m] of the waves of an uneven rail.
-fn waves(document: &Document, l: &SeatLoad, speed: f64) -> Result<Vec<[f64; 2]>, SceneError> {
-    let Some(e) = &l.excitation else { return Ok(Vec::new()) };
-    let mass = check(document, &key("excitation.mass"), e.mass.si, |m| m > 0.0, "above 0")?;
+fn waves(l: &Table<SeatLoad>, speed: f64) -> Result<Vec<[f64; 2]>, SceneError> {
+    let Some(e) = l.optional("excitation", &l.excitation) else { return Ok(Vec::new()) };
+    let mass = above_zero(&e, "mass", e.mass)?;
     let wave = |[length, amplitude]: &[crate::scene::units::Quantity<crate::scene::units::Length>; 2]| {
-        let length = check(document, &key("excitation.waves"), length.si, |x| x > 0.0, "lengths above 0")?;
+        let length = e.check("waves", length.si, |x| x > 0.0, "lengths above 0")?;
         Ok(train::excitation(mass, amplitude.si, length, speed))
     };
     e.waves.iter().map(wave).collect()
@@ -248,27 +223,20 @@ impl RailPlan {
 ///
 /// # Errors
 /// Bad input.
-pub fn rail(document: &Document, track: &TrackTable, r: &RailTable) -> Result<RailPlan, SceneError> {
-    let key = |name: &str| format!("track.rail.{name}");
-    let above_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x > 0.0, "above 0");
-    let least_zero = |name: &str, value: f64| check(document, &key(name), value, |x| x >= 0.0, "0 or more");
+pub fn rail(track: &Table<TrackTable>, r: &Table<RailTable>) -> Result<RailPlan, SceneError> {
     let Some(load) = &track.load else {
-        return Err(document.error("track.rail", "a rail", "[track.load] with wheels on it"));
+        return Err(r.here("a rail", "[track.load] with wheels on it"));
     };
     let Some(spacing) = track.sleeper.spacing.map(|s| s.si) else {
-        return Err(document.error(
-            "track.sleeper.spacing",
-            "nothing",
-            "the distance of the sleepers under a rail",
-        ));
+        return Err(track.missing("sleeper.spacing", "the distance of the sleepers under a rail"));
     };
     let axis = track.sleeper.along.axis();
     if let Some(seat) = load.seats.iter().find(|s| s[axis].si != 0.0) {
         let found = format!("({}, {})", seat[0].si, seat[1].si);
-        return Err(document.error("track.load.seats", found, "rails on the line across the track"));
+        return Err(track.error("load.seats", found, "rails on the line across the track"));
     }
-    let bending = above_zero("bending_stiffness", r.bending_stiffness.si)?;
-    let foundation = above_zero("foundation", r.foundation.si)?;
+    let bending = above_zero(r, "bending_stiffness", r.bending_stiffness)?;
+    let foundation = above_zero(r, "foundation", r.foundation)?;
     let beam = r.kind == RailKind::Beam;
     for (name, present, needed) in [
         ("mass", r.mass.is_some(), true),
@@ -279,40 +247,32 @@ pub fn rail(document: &Document, track: &TrackTable, r: &RailTable) -> Result<Ra
         ("elements", r.elements.is_some(), false),
     ] {
         if beam && needed && !present {
-            return Err(document.error(&key(name), "nothing", "a value for a beam"));
+            return Err(r.missing(name, "a value for a beam"));
         }
-        if !beam && present {
-            return Err(document.error(&key(name), "a value", "no such key for this kind of rail"));
-        }
+        r.refuse([(name, present && !beam)], "no such key for this kind of rail")?;
     }
     if !beam {
         return Ok(RailPlan::Winkler(Winkler::new(bending, foundation, spacing)));
     }
-    let extension = above_zero("extension", r.extension.map_or(0.0, |x| x.si))?;
+    let extension = above_zero(r, "extension", r.extension)?;
     let beyond = (extension / spacing).round();
     if !(TAPER + 1.0..=10_000.0).contains(&beyond) {
         let expected = format!("{} to 10000 sleepers of {spacing} m", TAPER + 1.0);
-        return Err(document.error(&key("extension"), extension.to_string(), expected));
+        return Err(r.error("extension", extension.to_string(), expected));
     }
-    let elements = r.elements.unwrap_or(4);
-    check(document, &key("elements"), f64::from(elements), |n| (1.0..=100.0).contains(&n), "1 to 100")?;
+    let good = |n| (1.0..=100.0).contains(&n);
+    let elements = r.check("elements", r.elements.unwrap_or(4), good, "1 to 100")?;
     let rails = load.seats.len().max(1);
     Ok(RailPlan::Beam(Box::new(RailInput {
         elements: elements as usize,
         spacing,
         bending,
-        mass: above_zero("mass", r.mass.map_or(0.0, |m| m.si))?,
-        pad: [
-            above_zero("pad_stiffness", r.pad_stiffness.map_or(0.0, |k| k.si))?,
-            least_zero("pad_damping", r.pad_damping.map_or(0.0, |c| c.si))?,
-        ],
+        mass: above_zero(r, "mass", r.mass)?,
+        pad: [above_zero(r, "pad_stiffness", r.pad_stiffness)?, least_zero(r, "pad_damping", r.pad_damping)?],
         gravity: 0.0,
         sleepers: track.sleeper.count as usize,
         beyond: beyond as usize,
         sleeper_mass: track.sleeper.mass.map_or(0.0, |m| m.si) / rails as f64,
-        foundation: [
-            foundation,
-            least_zero("foundation_damping", r.foundation_damping.map_or(0.0, |c| c.si))?,
-        ],
+        foundation: [foundation, least_zero(r, "foundation_damping", r.foundation_damping)?],
     })))
 }

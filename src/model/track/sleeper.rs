@@ -4,7 +4,7 @@ use crate::scene::after::JumpMethod;
 use crate::scene::solid::Integration;
 use crate::scene::track::{HeldMotion, RailKind, Sleeper, SleeperMesh, TrackTable};
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 use trackbed_fem::Elastic;
 
 /// Length of a rail's foot across the rail [m], unless the scene says otherwise.
@@ -37,10 +37,10 @@ pub struct MeshedSleepers {
 ///
 /// # Errors
 /// A length that is not above 0.
-pub fn half(document: &Document, s: &Sleeper) -> Result<[f64; 3], SceneError> {
+pub fn half(s: &Table<Sleeper>) -> Result<[f64; 3], SceneError> {
     let size = vector(&s.size);
     match size.iter().find(|l| !(l.is_finite() && **l > 0.0)) {
-        Some(l) => Err(document.error("track.sleeper.size", l.to_string(), "lengths above 0")),
+        Some(l) => Err(s.error("size", l.to_string(), "lengths above 0")),
         None => Ok(size.map(|l| 0.5 * l)),
     }
 }
@@ -66,13 +66,14 @@ pub fn held(s: &Sleeper) -> [bool; 6] {
 ///
 /// # Errors
 /// A seat beside the sleeper's top.
-pub fn seats(document: &Document, track: &TrackTable, half: [f64; 3]) -> Result<Vec<[f64; 2]>, SceneError> {
-    let Some(l) = track.load.as_ref().filter(|l| !l.seats.is_empty()) else { return Ok(vec![[0.0; 2]]) };
+pub fn seats(track: &Table<TrackTable>, half: [f64; 3]) -> Result<Vec<[f64; 2]>, SceneError> {
+    let load = track.optional("load", &track.load);
+    let Some(l) = load.filter(|l| !l.seats.is_empty()) else { return Ok(vec![[0.0; 2]]) };
     let seats: Vec<[f64; 2]> = l.seats.iter().map(|p| [p[0].si, p[1].si]).collect();
     match seats.iter().find(|p| p[0].abs() > half[0] || p[1].abs() > half[1]) {
         Some(p) => {
             let found = format!("({}, {})", p[0], p[1]);
-            Err(document.error("track.load.seats", found, "points on the sleeper's top"))
+            Err(l.error("seats", found, "points on the sleeper's top"))
         }
         None => Ok(seats),
     }
@@ -82,18 +83,18 @@ pub fn seats(document: &Document, track: &TrackTable, half: [f64; 3]) -> Result<
 ///
 /// # Errors
 /// A count or a spacing that makes no row.
-pub fn row(document: &Document, s: &Sleeper) -> Result<Vec<[f64; 2]>, SceneError> {
+pub fn row(s: &Table<Sleeper>) -> Result<Vec<[f64; 2]>, SceneError> {
     let (axis, spacing) = (s.along.axis(), s.spacing.map(|l| l.si));
     if !(1..=1000).contains(&s.count) {
-        return Err(document.error("track.sleeper.count", s.count.to_string(), "1 to 1000"));
+        return Err(s.error("count", s.count.to_string(), "1 to 1000"));
     }
     let width = s.size[axis].si;
     if let Some(l) = spacing.filter(|l| !(l.is_finite() && *l > width)) {
         let expected = format!("more than the sleeper's width of {width} m along the track");
-        return Err(document.error("track.sleeper.spacing", l.to_string(), expected));
+        return Err(s.error("spacing", l.to_string(), expected));
     }
     if s.count > 1 && spacing.is_none() {
-        return Err(document.error("track.sleeper.spacing", "nothing", "the distance of the sleepers"));
+        return Err(s.missing("spacing", "the distance of the sleepers"));
     }
     let first = [s.centre[0].si, s.centre[1].si];
     let place = |k: u32| {
@@ -108,92 +109,80 @@ pub fn row(document: &Document, s: &Sleeper) -> Result<Vec<[f64; 2]>, SceneError
 ///
 /// # Errors
 /// Bad input, or something beside them that they cannot be combined with.
-pub fn meshed(
-    document: &Document,
-    scene: &Scene,
-    gravity: [f64; 3],
-) -> Result<Option<MeshedSleepers>, SceneError> {
-    let Some((track, mesh)) = scene.track.as_ref().and_then(|t| Some((t, t.sleeper.mesh.as_ref()?))) else {
-        return Ok(None);
-    };
-    refuse_company(document, scene, track)?;
-    let s = &track.sleeper;
-    let key = |k: &str| format!("track.sleeper.mesh.{k}");
-    let half = half(document, s)?;
+pub fn meshed(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<Option<MeshedSleepers>, SceneError> {
+    let Some(track) = scene.optional("track", &scene.track) else { return Ok(None) };
+    let s = &track.below("sleeper", &track.sleeper);
+    let Some(mesh) = s.optional("mesh", &s.mesh) else { return Ok(None) };
+    refuse_company(scene, &track)?;
+    let half = half(s)?;
     let count: u64 = mesh.elements.iter().map(|&n| u64::from(n)).product();
     if !(1..=MOST_ELEMENTS).contains(&count) {
         let expected = format!("three numbers of 1 or more, {MOST_ELEMENTS} elements at most");
-        return Err(document.error(&key("elements"), format!("{:?}", mesh.elements), expected));
+        return Err(mesh.error("elements", format!("{:?}", mesh.elements), expected));
     }
     let reduced = scene.solid.as_ref().is_some_and(|s| s.integration == Integration::Reduced);
     if reduced && mesh.elements.iter().filter(|n| **n > 1).count() < 2 {
         let expected = "2 or more along two axes, or `solid.integration = \"full\"`: elements in a single row bend in ways that \
                         the reduced rule does not see";
-        return Err(document.error(&key("elements"), format!("{:?}", mesh.elements), expected));
+        return Err(mesh.error("elements", format!("{:?}", mesh.elements), expected));
     }
-    let check = |k: &str, value: f64, good: bool, expected: &str| {
-        if good { Ok(()) } else { Err(document.error(&key(k), value.to_string(), expected)) }
-    };
-    check("young", mesh.young.si, mesh.young.si > 0.0, "a modulus above 0")?;
-    check("poisson", mesh.poisson, mesh.poisson > -1.0 && mesh.poisson < 0.5, "above -1 and below 0.5")?;
+    mesh.check("young", mesh.young, |y| y > 0.0, "a modulus above 0")?;
+    mesh.check("poisson", mesh.poisson, |p| p > -1.0 && p < 0.5, "above -1 and below 0.5")?;
     let volume: f64 = half.iter().map(|h| 2.0 * h).product();
     let density = match (s.mass, mesh.density) {
         (Some(mass), None) if mass.si > 0.0 => mass.si / volume,
         (Some(mass), None) => {
-            return Err(document.error("track.sleeper.mass", mass.si.to_string(), "a mass above 0"));
+            return Err(s.error("mass", mass.si.to_string(), "a mass above 0"));
         }
-        (None, Some(density)) => {
-            check("density", density.si, density.si > 0.0, "a density above 0")?;
-            density.si
-        }
+        (None, Some(density)) => mesh.check("density", density.si, |d| d > 0.0, "a density above 0")?,
         (Some(_), Some(_)) => {
             let expected = "no such key beside track.sleeper.mass";
-            return Err(document.error(&key("density"), "a value", expected));
+            return Err(mesh.error("density", "a value", expected));
         }
         (None, None) => {
             let expected = "it, or the density of a meshed sleeper";
-            return Err(document.error("track.sleeper.mass", "nothing", expected));
+            return Err(s.missing("mass", expected));
         }
     };
-    let seats = seats(document, track, half)?;
-    let feet = feet(document, mesh, &seats, half, s.along.axis())?;
+    let seats = seats(&track, half)?;
+    let feet = feet(&mesh, &seats, half, s.along.axis())?;
     Ok(Some(MeshedSleepers {
         half,
         elements: mesh.elements.map(|n| n as usize),
         elastic: Elastic { young: mesh.young.si, poisson: mesh.poisson, density },
-        centres: row(document, s)?,
+        centres: row(s)?,
         seats,
         feet,
-        symmetric: symmetric(document, s)?,
+        symmetric: symmetric(s)?,
         gravity,
     }))
 }
 
 /// Refuses what meshed sleepers cannot be combined with.
-fn refuse_company(document: &Document, scene: &Scene, track: &TrackTable) -> Result<(), SceneError> {
+fn refuse_company(scene: &Table<Scene>, track: &Table<TrackTable>) -> Result<(), SceneError> {
     let Some(solid) = &scene.solid else {
         let expected = "[solid] beside it, whose equations it joins";
-        return Err(document.error("track.sleeper.mesh", "a meshed sleeper", expected));
+        return Err(track.error("sleeper.mesh", "a meshed sleeper", expected));
     };
     if track.rail.as_ref().is_some_and(|r| r.kind == RailKind::Beam) {
         let expected = "\"winkler\": a rail with mass needs rigid sleepers";
-        return Err(document.error("track.rail.kind", "\"beam\" on meshed sleepers", expected));
+        return Err(track.error("rail.kind", "\"beam\" on meshed sleepers", expected));
     }
     if track.push.is_some() {
-        return Err(document.error("track.push", "a push", "no such table beside meshed sleepers"));
+        return Err(track.error("push", "a push", "no such table beside meshed sleepers"));
     }
     if track.jump.as_ref().is_some_and(|j| j.method == JumpMethod::Grains) {
         let expected = "\"account\": sleepers of elements are not moved";
-        return Err(document.error("track.jump.method", "\"grains\"", expected));
+        return Err(track.error("jump.method", "\"grains\"", expected));
     }
     if solid.reduction.is_some() {
-        return Err(document.error("solid.reduction", "a reduction", "no such table beside meshed sleepers"));
+        return Err(scene.error("solid.reduction", "a reduction", "no such table beside meshed sleepers"));
     }
     Ok(())
 }
 
 /// Planes of symmetry: the motions that one does not allow are held all together, or none of them.
-fn symmetric(document: &Document, s: &Sleeper) -> Result<[bool; 2], SceneError> {
+fn symmetric(s: &Table<Sleeper>) -> Result<[bool; 2], SceneError> {
     let held = held(s);
     let [x, y] = [[0, 4, 5], [1, 3, 5]].map(|plane: [usize; 3]| plane.iter().all(|&k| held[k]));
     let of_planes = [x, y, false, y, x, x || y];
@@ -203,13 +192,12 @@ fn symmetric(document: &Document, s: &Sleeper) -> Result<[bool; 2], SceneError> 
     let names = ["x", "y", "z", "rx", "ry", "rz"];
     let found: Vec<&str> = names.iter().zip(held).filter(|(_, h)| *h).map(|(n, _)| *n).collect();
     let expected = "for a meshed sleeper none, or a plane of symmetry: [\"y\", \"rx\", \"rz\"] or [\"x\", \"ry\", \"rz\"], or both";
-    Err(document.error("track.sleeper.hold", format!("{found:?}"), expected))
+    Err(s.error("hold", format!("{found:?}"), expected))
 }
 
 /// The rectangles of the seats.
 fn feet(
-    document: &Document,
-    mesh: &SleeperMesh,
+    mesh: &Table<SleeperMesh>,
     seats: &[[f64; 2]],
     half: [f64; 3],
     along: usize,
@@ -232,7 +220,7 @@ fn feet(
             let found = format!("[{}, {}]", foot[0], foot[1]);
             let expected =
                 format!("0 to {x} and 0 to {y} m, which the seat at ({}, {}) has room for", seat[0], seat[1]);
-            Err(document.error("track.sleeper.mesh.foot", found, expected))
+            Err(mesh.error("foot", found, expected))
         }
         None => Ok(vec![foot; seats.len()]),
     }

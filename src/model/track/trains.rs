@@ -1,8 +1,7 @@
 //! Trains: cars from a table of axle layouts.
 
-use crate::read::ReadError;
 use crate::scene::units::{Force, Length, Quantity};
-use crate::scene::{Document, SceneError};
+use crate::scene::{self, Document, SceneError};
 use serde::Deserialize;
 use std::path::Path;
 use trackbed_coupling::track::train::CarLayout;
@@ -41,15 +40,11 @@ pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
     let table: Table = document.read()?;
     let names: Vec<&str> = table.train.iter().map(|t| t.name.as_str()).collect();
     let Some(k) = names.iter().position(|n| *n == name) else {
-        return Err(ReadError {
-            file: file.to_path_buf(),
-            line: None,
-            key: "train".into(),
-            found: format!("no train \"{name}\""),
-            expected: format!("one of {}", names.join(", ")),
-        });
+        let (found, expected) = (format!("no train \"{name}\""), format!("one of {}", names.join(", ")));
+        return Err(SceneError::whole(file, "train", found, expected));
     };
-    let car = &table.train[k];
+    let root = scene::Table::root(&document, &table);
+    let car = root.row("train", &table.train, k);
     let lengths = [car.wheelbase.si, car.bogie_spacing.si, car.car_length.si];
     for (key, value, least) in [
         ("axle_load", car.axle_load.si, 0.0),
@@ -58,8 +53,7 @@ pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
         ("car_length", lengths[2], lengths[0] + lengths[1]),
     ] {
         if value <= least {
-            let key = format!("train.{k}.{key}");
-            return Err(document.error(&key, value.to_string(), format!("more than {least}")));
+            return Err(car.error(key, value.to_string(), format!("more than {least}")));
         }
     }
     Ok(car.clone())

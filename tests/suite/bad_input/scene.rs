@@ -55,7 +55,30 @@ fn wrong_type() {
 fn vector_of_two() {
     grains_scene()
         .scene("normal = [0, 0, 1]", "normal = [0, 1]")
-        .refused("scene.toml:19: walls.0.normal: found 2, expected an array of length 3");
+        .refused("scene.toml:19: walls.0.normal: found a list of 2, expected a list of 3");
+}
+
+/// The parser would take the first three.
+#[test]
+fn vector_of_four() {
+    grains_scene()
+        .scene("normal = [0, 0, 1]", "normal = [0, 0, 1, 5]")
+        .refused("scene.toml:19: walls.0.normal: found a list of 4, expected a list of 3");
+}
+
+/// The parser would take the values of a list for those of the table's keys, in their order.
+#[test]
+fn list_in_the_place_of_a_table() {
+    grains_scene()
+        .set("deposition=[1.0, 0.005, 0.5, 1, 0.3, 0.0, 1.0]")
+        .refused("--set: deposition: found a list, expected a table");
+}
+
+#[test]
+fn number_in_the_place_of_a_word() {
+    solid()
+        .set("solid.integration=14")
+        .refused("--set: solid.integration: found a number, expected a word in quotes");
 }
 
 #[test]

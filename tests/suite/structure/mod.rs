@@ -3,6 +3,7 @@
 //! `cargo test --release --test suite structure -- --nocapture` prints what was found.
 
 mod graph;
+mod keys;
 mod source;
 mod words;
 
@@ -115,6 +116,36 @@ fn functions_can_be_read_in_a_sitting() {
     assert!(long.is_empty(), "{} functions of more than {LONGEST} lines", long.len());
 }
 
+/// A key that an error names must be one that a scene, or a table of trains, can hold.
+#[test]
+fn keys_that_errors_name_are_keys_of_a_scene() {
+    let sources = files(&[".rs"]);
+    let tables = ["src/scene/", "src/model/track/trains.rs"];
+    // The scene as a whole.
+    let mut known = BTreeSet::from(["scene".to_string()]);
+    for (_, text) in sources.iter().filter(|(file, _)| tables.iter().any(|t| file.starts_with(t))) {
+        keys::declared(text, &mut known);
+    }
+    // Files beside the scene have keys of their own.
+    let others =
+        ["src/model/tables.rs", "src/scene/document.rs", "src/scene/table.rs", "src/scene/wording.rs"];
+    let of_scene = |file: &str| {
+        (file.starts_with("src/model/") || file.starts_with("src/scene/")) && !others.contains(&file)
+    };
+    let (mut count, mut unknown) = (0, Vec::new());
+    for (file, text) in sources.iter().filter(|(file, _)| of_scene(file)) {
+        for (line, key) in keys::named(text) {
+            count += 1;
+            if !known.contains(&key) {
+                unknown.push(format!("{file}:{line}: {key}"));
+            }
+        }
+    }
+    println!("{count} names of keys, {} keys", known.len());
+    assert!(count > 500 && known.len() > 250, "{count} names of {} keys", known.len());
+    assert!(unknown.is_empty(), "no such key in a scene:\n{}", unknown.join("\n"));
+}
+
 #[test]
 fn replaced_words_are_gone() {
     let page = fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("the page is there");
@@ -138,8 +169,8 @@ fn replaced_words_are_gone() {
 mod the_checks {
     use super::super::support::Folder;
     use super::words::{Ban, uses, words_of};
-    use super::{circles, functions, graph, read_crate};
-    use std::collections::BTreeMap;
+    use super::{circles, functions, graph, keys, read_crate};
+    use std::collections::{BTreeMap, BTreeSet};
     use std::fs;
 
     /// Circles of a crate of these files.
@@ -214,6 +245,20 @@ mod the_checks {
             functions("x.rs", "struct S;\nimpl S {\n    fn f() {\n        g();\n    }\n}\nfn g() {}\n");
         let found: Vec<_> = found.iter().map(|f| (f.lines, f.place.as_str())).collect();
         assert_eq!(found, [(3, "x.rs:3 f"), (1, "x.rs:7 g")]);
+    }
+
+    #[test]
+    fn keys_are_found_in_tables_and_in_errors() {
+        let mut declared = BTreeSet::new();
+        let tables = "struct A { #[serde(default)] mass: f64, #[serde(rename = \"box\")] region: B }\n\
+                      enum C { D { low: f64 } }";
+        keys::declared(tables, &mut declared);
+        assert_eq!(declared.into_iter().collect::<Vec<_>>(), ["box", "low", "mass"]);
+        let code = "fn f(a: T) {\n a.error(\"sleeper.mas\", b, c);\n a.refuse([(\"low\", d.is_some())], e);\n\
+                    find(s, a, \"box\", n);\n a.other(\"no key\");\n g(\"no key\");\n h((\"found\", \"expected\"));\n}";
+        let named: Vec<_> =
+            keys::named(code).into_iter().map(|(line, key)| format!("{line} {key}")).collect();
+        assert_eq!(named, ["2 sleeper", "2 mas", "3 low", "4 box"]);
     }
 
     #[test]

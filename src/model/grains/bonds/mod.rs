@@ -8,47 +8,42 @@ pub use part::BondPart;
 
 use super::deposition::DepositionPlan;
 use crate::failure::Failure;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Document, Scene, SceneError, Table};
 use rule::{Joinable, rule};
 use trackbed_dem::ModelInput;
 use trackbed_dem::bond::BondInput;
 
 /// Resolves the kinds of bonds, so that grains can name them.
-pub(super) fn kinds(document: &Document, scene: &Scene) -> Result<BondPart, Failure> {
+pub(super) fn kinds(scene: &Table<Scene>) -> Result<BondPart, Failure> {
     let mut part = BondPart::default();
-    for (i, table) in scene.bond.iter().enumerate() {
+    for table in scene.rows("bond", &scene.bond) {
         if part.find(&table.name).is_some() {
-            let key = format!("bond.{i}.name");
-            return Err(document.error(&key, format!("\"{}\" again", table.name), "another name").into());
+            return Err(table.error("name", format!("\"{}\" again", table.name), "another name").into());
         }
-        part.add_kind(&table.name, kind::kind(document, i, table)?);
+        part.add_kind(&table.name, kind::kind(&table)?);
     }
     Ok(part)
 }
 
 /// Resolves which of `count` grains in these groups are joined, when all of them are there.
 pub(super) fn rules(
-    document: &Document,
-    scene: &Scene,
+    scene: &Table<Scene>,
     groups: &[String],
     count: usize,
     settling: Option<&DepositionPlan>,
     bonds: &mut BondPart,
 ) -> Result<(), Failure> {
     if bonds.has_stones() {
-        for (key, present) in [
+        let idle = [
             ("deposition.level", settling.is_some_and(|d| d.level.is_some())),
             ("deposition.layers", settling.is_some_and(|d| d.layers > 1)),
-        ] {
-            if present {
-                return Err(document.error(key, "a value", "no such key beside bonded stones").into());
-            }
-        }
+        ];
+        scene.refuse(idle, "no such key beside bonded stones")?;
     }
     let levelled = settling.is_some_and(|d| d.level.is_some());
-    for (i, table) in scene.bond.iter().enumerate() {
-        let bodies = Joinable { bonds, groups, count, levelled };
-        let rule = rule(document, i, table, &bodies)?;
+    for (kind, table) in scene.rows("bond", &scene.bond).enumerate() {
+        let bodies = Joinable { bonds, kind, groups, count, levelled };
+        let rule = rule(&table, &bodies)?;
         bonds.add_rule(rule);
     }
     Ok(())

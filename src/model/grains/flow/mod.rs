@@ -4,12 +4,12 @@ mod plan;
 
 pub use plan::{FlowPlan, InletPlan, InletRate, OutletPlan, OutletRegion};
 
-use super::check::{check, region};
+use super::check::region;
 use super::groups::{GroupsPart, waits};
 use super::periodic::Borders;
 use crate::scene::flow::{Inlet, Outlet};
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::Vec3;
 use trackbed_dem::insert::room::GAP;
 
@@ -18,44 +18,34 @@ const INTERVAL: f64 = 1e-3;
 
 /// The inlets of all groups and the outlets, once all grains are there.
 pub(super) fn build(
-    document: &Document,
-    scene: &Scene,
+    scene: &Table<Scene>,
     groups: &GroupsPart,
     borders: &Borders,
 ) -> Result<Option<FlowPlan>, SceneError> {
-    let inlets = scene.grains.iter().enumerate().filter_map(|(i, g)| Some((i, g.inlet.as_ref()?)));
-    let inlets = inlets
-        .map(|(i, inlet)| self::inlet(document, scene, (groups, borders), i, inlet))
-        .collect::<Result<Vec<_>, _>>()?;
-    let outlets = scene.outlet.iter().enumerate();
-    let outlets = outlets.map(|(i, o)| outlet(document, scene, i, o)).collect::<Result<Vec<_>, _>>()?;
-    let interval = scene.time.flow_interval.map(|t| t.si);
-    if inlets.is_empty() && outlets.is_empty() {
-        return match interval {
-            Some(_) => {
-                let expected = "no such key without an `inlet` or an [[outlet]]";
-                Err(document.error("time.flow_interval", "a value", expected))
-            }
-            None => Ok(None),
-        };
-    }
-    check(document, "time.flow_interval", interval, |t| t > 0.0, "a time above 0")?;
-    // A group that is there from the start needs an outlet that sends its grains to the inlet.
-    for (i, group) in scene.grains.iter().enumerate().filter(|(_, g)| g.inlet.is_some()) {
-        let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
-        if !waits(group) && !fed {
-            let expected = "an [[outlet]] with `again = true` for this group, or no grains at the start";
-            return Err(document.error(
-                &format!("grains.{i}.inlet"),
-                "an inlet that nothing comes to",
-                expected,
-            ));
+    let mut inlets = Vec::new();
+    for (i, group) in scene.rows("grains", &scene.grains).enumerate() {
+        if let Some(inlet) = group.optional("inlet", &group.inlet) {
+            inlets.push(self::inlet(scene, (groups, borders), i, &inlet)?);
         }
     }
-    let first = match scene.grains.iter().position(|g| g.inlet.is_some()) {
-        Some(i) => format!("grains.{i}.inlet"),
-        None => "outlet.0".into(),
-    };
+    let outlets = scene.rows("outlet", &scene.outlet).enumerate();
+    let outlets = outlets.map(|(i, o)| outlet(scene, i, &o)).collect::<Result<Vec<_>, _>>()?;
+    let time = scene.below("time", &scene.time);
+    let interval = time.flow_interval.map(|t| t.si);
+    if inlets.is_empty() && outlets.is_empty() {
+        let expected = "no such key without an `inlet` or an [[outlet]]";
+        time.refuse([("flow_interval", interval.is_some())], expected)?;
+        return Ok(None);
+    }
+    time.check("flow_interval", interval, |t| t > 0.0, "a time above 0")?;
+    // A group that is there from the start needs an outlet that sends its grains to the inlet.
+    for (i, group) in scene.rows("grains", &scene.grains).enumerate().filter(|(_, g)| g.inlet.is_some()) {
+        let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
+        if !waits(&group) && !fed {
+            let expected = "an [[outlet]] with `again = true` for this group, or no grains at the start";
+            return Err(group.error("inlet", "an inlet that nothing comes to", expected));
+        }
+    }
     for (other, present) in [
         ("[[bond]]: bonded grains neither come nor go", !scene.bond.is_empty()),
         (
@@ -66,33 +56,36 @@ pub(super) fn build(
         if present {
             let (with, why) = other.split_once(": ").unwrap_or((other, ""));
             let expected = format!("no inlet or outlet beside {with}: {why}");
-            return Err(document.error(&first, "grains that come or go", expected));
+            let (first, found) =
+                (scene.rows("grains", &scene.grains).find(|g| g.inlet.is_some()), "grains that come or go");
+            return Err(match first {
+                Some(group) => group.error("inlet", found, expected),
+                None => scene.row("outlet", &scene.outlet, 0).here(found, expected),
+            });
         }
     }
     Ok(Some(FlowPlan { interval: interval.unwrap_or(INTERVAL), inlets, outlets }))
 }
 
 fn inlet(
-    document: &Document,
-    scene: &Scene,
+    scene: &Table<Scene>,
     (groups, borders): (&GroupsPart, &Borders),
     index: usize,
-    inlet: &Inlet,
+    inlet: &Table<Inlet>,
 ) -> Result<InletPlan, SceneError> {
     let group = &scene.grains[index];
-    let key = |k: &str| format!("grains.{index}.inlet{k}");
     if group.motion.is_some() {
         let expected = "no inlet for a group with `motion`";
-        return Err(document.error(&key(""), "an inlet", expected));
+        return Err(inlet.here("an inlet", expected));
     }
-    let region = region(document, &key(".box"), &inlet.region)?;
+    let region = region(inlet, "box", &inlet.region)?;
     let own = groups.bodies.iter().filter(|b| b.part == index as u32);
     let reach = own.map(|b| groups.reach(b)).fold(0.0, f64::max);
     let (width, needed) = ((region.high - region.low).min(), 2.0 * reach * (1.0 + 2.0 * GAP));
     if width < needed {
         let found = format!("a box {width:.4} m wide");
         let expected = format!("at least {needed:.4} m, for the largest grain");
-        return Err(document.error(&key(".box"), found, expected));
+        return Err(inlet.error("box", found, expected));
     }
     for (d, borders) in borders.iter().enumerate() {
         let Some([low, high]) = borders else { continue };
@@ -100,29 +93,29 @@ fn inlet(
             let axis = ["x", "y", "z"][d];
             let found = format!("{axis} from {} to {}", region.low[d], region.high[d]);
             let expected = format!("a box between the borders {low} and {high} of `periodic`");
-            return Err(document.error(&key(".box"), found, expected));
+            return Err(inlet.error("box", found, expected));
         }
     }
     let rate = match (inlet.rate, inlet.grains_per_second) {
         (Some(rate), None) => {
-            check(document, &key(".rate"), Some(rate.si), |r| r > 0.0, "above 0")?;
+            inlet.check("rate", rate, |r| r > 0.0, "above 0")?;
             InletRate::Mass(rate.si)
         }
         (None, Some(rate)) => {
-            check(document, &key(".grains_per_second"), Some(rate.si), |r| r > 0.0, "above 0")?;
+            inlet.check("grains_per_second", rate, |r| r > 0.0, "above 0")?;
             InletRate::Number(rate.si)
         }
         _ => {
             let found = "both or none of `rate` and `grains_per_second`";
-            return Err(document.error(&key(".rate"), found, "one of them"));
+            return Err(inlet.error("rate", found, "one of them"));
         }
     };
     let (start, stop) = (inlet.start.map_or(0.0, |t| t.si), inlet.stop.map(|t| t.si));
-    check(document, &key(".start"), Some(start), |t| t >= 0.0, "0 or more")?;
-    check(document, &key(".stop"), stop, |t| t > start, "a time after the start")?;
+    inlet.check("start", start, |t| t >= 0.0, "0 or more")?;
+    inlet.check("stop", stop, |t| t > start, "a time after the start")?;
     if let Some(end) = scene.time.end.map(|t| t.si).filter(|end| start >= *end) {
         let expected = format!("a time before the end at {end} s");
-        return Err(document.error(&key(".start"), format!("{start} s"), expected));
+        return Err(inlet.error("start", format!("{start} s"), expected));
     }
     Ok(InletPlan {
         part: index as u32,
@@ -136,29 +129,23 @@ fn inlet(
     })
 }
 
-fn outlet(
-    document: &Document,
-    scene: &Scene,
-    index: usize,
-    outlet: &Outlet,
-) -> Result<OutletPlan, SceneError> {
-    let key = |k: &str| format!("outlet.{index}.{k}");
+fn outlet(scene: &Table<Scene>, index: usize, outlet: &Table<Outlet>) -> Result<OutletPlan, SceneError> {
     let named = |o: &Outlet, i: usize| o.name.clone().unwrap_or_else(|| format!("outlet{i}"));
     let name = named(outlet, index);
     if scene.outlet[..index].iter().enumerate().any(|(i, o)| named(o, i) == name) {
-        return Err(document.error(&key("name"), format!("\"{name}\" again"), "each name once"));
+        return Err(outlet.error("name", format!("\"{name}\" again"), "each name once"));
     }
     let region = match (&outlet.region, &outlet.point, &outlet.normal) {
-        (Some(corners), None, None) => OutletRegion::Box(region(document, &key("box"), corners)?),
+        (Some(corners), None, None) => OutletRegion::Box(region(outlet, "box", corners)?),
         (None, Some(point), Some(normal)) => {
             let normal = Vec3::from(*normal);
             let length = normal.norm();
-            check(document, &key("normal"), Some(length), |l| l > 0.0, "a vector that is not null")?;
+            outlet.check("normal", length, |l| l > 0.0, "a vector that is not null")?;
             OutletRegion::Beyond { point: Vec3::from(vector(point)), normal: normal / length }
         }
         _ => {
             let expected = "either `box`, or `point` and `normal`";
-            return Err(document.error(&format!("outlet.{index}"), "another choice of keys", expected));
+            return Err(outlet.here("another choice of keys", expected));
         }
     };
     let free: Vec<usize> = (0..scene.grains.len()).filter(|&i| scene.grains[i].motion.is_none()).collect();
@@ -170,19 +157,19 @@ fn outlet(
                 free.iter().copied().find(|&i| scene.grains[i].name == *name).ok_or_else(|| {
                     let free: Vec<&str> = free.iter().map(|&i| scene.grains[i].name.as_str()).collect();
                     let expected = format!("the name of a [[grains]] without `motion`: {}", free.join(", "));
-                    document.error(&key("groups"), format!("\"{name}\""), expected)
+                    outlet.error("groups", format!("\"{name}\""), expected)
                 })
             })
             .collect::<Result<_, _>>()?,
     };
     if parts.is_empty() {
-        return Err(document.error(&key("groups"), "none", "at least one group that moves freely"));
+        return Err(outlet.error("groups", "none", "at least one group that moves freely"));
     }
     if outlet.again
         && let Some(&i) = parts.iter().find(|&&i| scene.grains[i].inlet.is_none())
     {
         let expected = format!("an `inlet` in the group \"{}\", which it takes", scene.grains[i].name);
-        return Err(document.error(&key("again"), "true", expected));
+        return Err(outlet.error("again", "true", expected));
     }
     let parts = parts.into_iter().map(|i| i as u32).collect();
     Ok(OutletPlan { name, region, parts, again: outlet.again })

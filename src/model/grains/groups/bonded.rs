@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::model::grains::bonds::BondPart;
 use crate::model::tables;
 use crate::scene::grains::Grains;
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::cluster::Cluster;
 use trackbed_dem::{BodyInput, Vec3};
@@ -14,23 +14,19 @@ use trackbed_dem::{BodyInput, Vec3};
 /// these bodies, `density` that of their material [kg/m³]; the shapes of the group are the stones of the library in their
 /// order.
 pub(super) fn expand(
-    document: &Document,
-    index: usize,
-    group: &Grains,
+    group: &Table<Grains>,
     first: usize,
     density: f64,
     part: &mut GroupsPart,
     bonds: &mut BondPart,
 ) -> Result<(), Failure> {
-    let first_shape = part.first_shape[index];
-    let clusters = clusters(document, index, group)?;
-    let key = format!("grains.{index}.bond");
-    let name = group.bond.as_ref().ok_or_else(|| {
-        document.error(&key, "nothing", "the name of the [[bond]] that holds the stones together")
-    })?;
+    let first_shape = *part.first_shape.last().expect("the group was begun");
+    let clusters = clusters(group)?;
+    let expected = "the name of the [[bond]] that holds the stones together";
+    let name = group.need("bond", group.bond.as_ref(), expected)?;
     let kind = bonds.find(name).ok_or_else(|| {
         let known = format!("the name of a [[bond]]: {}", bonds.names.join(", "));
-        document.error(&key, format!("\"{name}\""), known)
+        group.error("bond", format!("\"{name}\""), known)
     })?;
     let stones = part.bodies.split_off(first);
     // One unit sphere serves all; the stones' own shapes go.
@@ -61,27 +57,15 @@ pub(super) fn expand(
 }
 
 /// The stones of a group's library as clusters.
-pub(super) fn clusters(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-) -> Result<Vec<Cluster>, SceneError> {
-    let file = group.library.as_ref().ok_or_else(|| {
-        let key = format!("grains.{index}.library");
-        document.error(&key, "nothing", "the library of the bonded stones")
-    })?;
-    tables::clusters(&document.resolve(file))
+pub(super) fn clusters(group: &Table<Grains>) -> Result<Vec<Cluster>, SceneError> {
+    let file = group.need("library", group.library.as_ref(), "the library of the bonded stones")?;
+    tables::clusters(&group.locate(file))
 }
 
 /// Shapes that stand for the stones while places are sought: spheres that hold them. Returns the scale that gives each
 /// a sieve size of 1 m.
-pub(super) fn stand_ins(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-    part: &mut GroupsPart,
-) -> Result<Vec<f64>, SceneError> {
-    let clusters = clusters(document, index, group)?;
+pub(super) fn stand_ins(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec<f64>, SceneError> {
+    let clusters = clusters(group)?;
     part.shapes.extend(clusters.iter().map(|c| Shape::Sphere { radius: c.bounding_radius() }));
     Ok(clusters.iter().map(|c| 1.0 / c.sieve_size()).collect())
 }

@@ -3,7 +3,7 @@
 use super::part::{GroupsPart, bounding_radius};
 use super::shapes::sampled;
 use crate::failure::Failure;
-use crate::scene::Document;
+use crate::scene::Table;
 use crate::scene::grains::{FillBox, Grains};
 use crate::scene::units::vector;
 use trackbed_dem::BodyInput;
@@ -11,22 +11,19 @@ use trackbed_dem::insert::place;
 
 /// Grains of random sizes, places and orientations in a box.
 pub(super) fn filled(
-    document: &Document,
-    index: usize,
-    group: &Grains,
+    group: &Table<Grains>,
     fill: &FillBox,
     model: &BodyInput,
     part: &mut GroupsPart,
 ) -> Result<(), Failure> {
-    let key = |k: &str| format!("grains.{index}.{k}");
-    let grains = sampled(document, index, group, part, "the number of grains to fill in")?;
+    let grains = sampled(group, part, "the number of grains to fill in")?;
     let radii: Vec<f64> = grains.iter().map(|b| b.scale * bounding_radius(&part.shapes[b.shape])).collect();
 
     let mut low = vector(&fill.low);
     let high = [fill.high[0].si, fill.high[1].si];
     low[2] = low[2].max(top_of(part, low, high));
     let placed = place::place_loose(low, high, &radii, group.seed)
-        .map_err(|e| document.error(&key("fill"), e.to_string(), "a box that holds the grains"))?;
+        .map_err(|e| group.error("fill", e.to_string(), "a box that holds the grains"))?;
     part.bodies.extend(placed.iter().zip(&grains).map(|(place, grain)| BodyInput {
         shape: grain.shape,
         scale: grain.scale,

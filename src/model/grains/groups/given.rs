@@ -3,35 +3,27 @@
 use super::part::GroupsPart;
 use super::shapes::shapes;
 use crate::failure::Failure;
-use crate::model::grains::check::check;
 use crate::model::tables;
-use crate::scene::Document;
+use crate::scene::Table;
 use crate::scene::grains::{GrainShape, Grains};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// Grains whose places are given.
-pub(super) fn given(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-    model: &BodyInput,
-    part: &mut GroupsPart,
-) -> Result<(), Failure> {
-    let key = |k: &str| format!("grains.{index}.{k}");
+pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
     if group.shape == GrainShape::Bonded {
         let expected = "`fill`, which bonded stones need";
-        return Err(document.error(&key("shape"), "\"bonded\"", expected).into());
+        return Err(group.error("shape", "\"bonded\"", expected).into());
     }
     if group.shape == GrainShape::Clump {
         let Some(file) = &group.packing else {
             let expected = "`fill`, `region` or `packing`, which clumps need";
-            return Err(document.error(&key("shape"), "\"clump\"", expected).into());
+            return Err(group.error("shape", "\"clump\"", expected).into());
         };
         let first = part.shapes.len();
-        let stones = shapes(document, index, group, part)?.len();
-        let placed = tables::clump_packing(&document.resolve(file), stones)?;
+        let stones = shapes(group, part)?.len();
+        let placed = tables::clump_packing(&group.locate(file), stones)?;
         part.bodies.extend(placed.iter().map(|p| {
             let [w, x, y, z] = p.orientation;
             let q = nalgebra::Quaternion::new(w, x, y, z);
@@ -54,15 +46,15 @@ pub(super) fn given(
     let spheres = match (&group.spheres, &group.packing) {
         (Some(list), _) => {
             for s in list {
-                check(document, &key("spheres"), Some(s[3].si), |r| r > 0.0, "a radius above 0")?;
+                group.check("spheres", s[3], |r| r > 0.0, "a radius above 0")?;
             }
             list.iter().map(|s| ([s[0].si, s[1].si, s[2].si], s[3].si)).collect()
         }
-        (_, Some(file)) => tables::packing(&document.resolve(file))?,
+        (_, Some(file)) => tables::packing(&group.locate(file))?,
         _ => Vec::new(),
     };
     if spheres.is_empty() {
-        return Err(document.error(&key("spheres"), "none", "at least one sphere").into());
+        return Err(group.error("spheres", "none", "at least one sphere").into());
     }
     let shape = part.shapes.len();
     part.shapes.push(Shape::Sphere { radius: 1.0 });

@@ -2,24 +2,20 @@
 
 use super::part::GroupsPart;
 use super::shapes::MOST;
-use crate::model::grains::check::check;
-use crate::scene::grains::{GrainShape, LatticeFill, LatticeKind};
+use crate::scene::grains::{GrainShape, Grains, LatticeFill, LatticeKind};
 use crate::scene::units::vector;
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::insert::lattice::Lattice;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// Equal spheres on a lattice.
 pub(super) fn lattice(
-    document: &Document,
-    index: usize,
-    fill: &LatticeFill,
+    fill: &Table<LatticeFill>,
     model: &BodyInput,
     part: &mut GroupsPart,
 ) -> Result<(), SceneError> {
-    let key = |k: &str| format!("grains.{index}.lattice.{k}");
-    check(document, &key("size"), Some(fill.size.si), |d| d > 0.0, "a diameter above 0")?;
+    fill.check("size", fill.size, |d| d > 0.0, "a diameter above 0")?;
     let (radius, low) = (0.5 * fill.size.si, Vec3::from(vector(&fill.low)));
     let kind = match fill.kind {
         LatticeKind::Loose => Lattice::Simple,
@@ -28,11 +24,7 @@ pub(super) fn lattice(
     };
     let few = |n: f64, k: &str| {
         let expected = "1 to 10000000 spheres";
-        if (1.0..=MOST).contains(&n) {
-            Ok(())
-        } else {
-            Err(document.error(&key(k), format!("{n} spheres"), expected))
-        }
+        if (1.0..=MOST).contains(&n) { Ok(()) } else { Err(fill.error(k, format!("{n} spheres"), expected)) }
     };
     let sites = match (&fill.counts, &fill.high) {
         (Some(counts), None) => {
@@ -52,7 +44,7 @@ pub(super) fn lattice(
         }
         _ => {
             let found = "both or none of `counts` and `high`";
-            return Err(document.error(&format!("grains.{index}.lattice"), found, "one of them"));
+            return Err(fill.here(found, "one of them"));
         }
     };
     let shape = part.shapes.len();
@@ -63,10 +55,9 @@ pub(super) fn lattice(
 }
 
 /// Whether a group of this shape can come from a lattice.
-pub(super) fn spheres_only(document: &Document, index: usize, shape: GrainShape) -> Result<(), SceneError> {
-    if shape == GrainShape::Sphere {
+pub(super) fn spheres_only(group: &Table<Grains>) -> Result<(), SceneError> {
+    if group.shape == GrainShape::Sphere {
         return Ok(());
     }
-    let key = format!("grains.{index}.shape");
-    Err(document.error(&key, "another shape", "\"sphere\", which a lattice consists of"))
+    Err(group.error("shape", "another shape", "\"sphere\", which a lattice consists of"))
 }

@@ -20,24 +20,21 @@ use super::materials::MaterialsPart;
 use crate::failure::Failure;
 use crate::scene::grains::{GrainShape, Grains};
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Scene, SceneError, Table};
 use part::Moving;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// `[[grains]]` resolved; notes the materials that grains consist of, and the bonds within stones.
 pub(super) fn build(
-    document: &Document,
-    scene: &Scene,
+    scene: &Table<Scene>,
     materials: &mut MaterialsPart,
     bonds: &mut BondPart,
 ) -> Result<GroupsPart, Failure> {
     let mut part = GroupsPart::default();
-    for (i, group) in scene.grains.iter().enumerate() {
-        let material = find(document, scene, &format!("grains.{i}.material"), &group.material)?;
-        if scene.material[material].density.is_none() {
-            let key = format!("material.{material}.density");
-            return Err(document.error(&key, "nothing", "the density of a material of grains").into());
-        }
+    for group in scene.rows("grains", &scene.grains) {
+        let material = find(scene, &group, "material", &group.material)?;
+        let of_grains = scene.row("material", &scene.material, material);
+        of_grains.need("density", of_grains.density, "the density of a material of grains")?;
         if !materials.of_grains.contains(&material) {
             materials.of_grains.push(material);
         }
@@ -46,20 +43,18 @@ pub(super) fn build(
         }
         part.names.push(group.name.clone());
         let density = materials.all[material].density;
-        add(document, i, group, (material, density), &mut part, bonds)?;
+        add(&group, (material, density), &mut part, bonds)?;
     }
     if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
         let expected = "a group of grains beside it that is fouled";
-        return Err(document.error("grains.0.fouling", "true for all groups", expected).into());
+        return Err(scene.error("grains.0.fouling", "true for all groups", expected).into());
     }
     Ok(part)
 }
 
-/// Adds the grains of group `index` of the scene, all of one material, given by its number and its density [kg/m³].
+/// Adds the grains of a group, all of one material, given by its number and its density [kg/m³].
 fn add(
-    document: &Document,
-    index: usize,
-    group: &Grains,
+    group: &Table<Grains>,
     (material, density): (usize, f64),
     part: &mut GroupsPart,
     bonds: &mut BondPart,
@@ -72,13 +67,12 @@ fn add(
         group.region.is_some(),
     ];
     if group.inlet.is_some() && group.shape == GrainShape::Bonded {
-        let key = format!("grains.{index}.shape");
-        return Err(document.error(&key, "\"bonded\"", "no inlet for bonded stones").into());
+        return Err(group.error("shape", "\"bonded\"", "no inlet for bonded stones").into());
     }
     let waits = waits(group);
     if sources.iter().filter(|s| **s).count() != 1 && !waits {
         let expected = "exactly one of `spheres`, `packing`, `fill`, `lattice` and `region`";
-        return Err(document.error(&format!("grains.{index}"), "another number of sources", expected).into());
+        return Err(group.here("another number of sources", expected).into());
     }
     let model = BodyInput {
         material,
@@ -87,49 +81,39 @@ fn add(
         spin: group.spin.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
         ..BodyInput::default()
     };
-    refuse_idle_keys(document, index, group)?;
-    prescribed(document, index, group, part)?;
+    refuse_idle_keys(group)?;
+    prescribed(group, part)?;
     part.first_shape.push(part.shapes.len());
     if waits {
-        return waiting::waiting(document, index, group, &model, part);
+        return waiting::waiting(group, &model, part);
     }
     if let Some(fill) = &group.fill {
         let first = part.bodies.len();
-        filled::filled(document, index, group, fill, &model, part)?;
+        filled::filled(group, fill, &model, part)?;
         if group.shape == GrainShape::Bonded {
-            bonded::expand(document, index, group, first, density, part, bonds)?;
+            bonded::expand(group, first, density, part, bonds)?;
         }
         return Ok(());
     }
-    if let Some(fill) = &group.lattice {
-        lattice::spheres_only(document, index, group.shape)?;
-        return Ok(lattice::lattice(document, index, fill, &model, part)?);
+    if let Some(fill) = group.optional("lattice", &group.lattice) {
+        lattice::spheres_only(group)?;
+        return Ok(lattice::lattice(&fill, &model, part)?);
     }
-    if let Some(region) = &group.region {
+    if let Some(region) = group.optional("region", &group.region) {
         if group.shape == GrainShape::Bonded {
-            let key = format!("grains.{index}.shape");
-            return Err(document.error(&key, "\"bonded\"", "`fill`, which bonded stones need").into());
+            return Err(group.error("shape", "\"bonded\"", "`fill`, which bonded stones need").into());
         }
-        return scattered::scattered(document, index, group, region, &model, part);
+        return scattered::scattered(group, &region, &model, part);
     }
-    given::given(document, index, group, &model, part)
+    given::given(group, &model, part)
 }
 
 /// Grips and groups that are recorded.
-fn prescribed(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-    part: &mut GroupsPart,
-) -> Result<(), SceneError> {
+fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneError> {
     let number = part.names.len() as u32 - 1;
     if let Some(motion) = &group.motion {
-        for (k, present) in [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())] {
-            if present {
-                let key = format!("grains.{index}.{k}");
-                return Err(document.error(&key, "a value", "no such key beside `motion`"));
-            }
-        }
+        let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
+        group.refuse(idle, "no such key beside `motion`")?;
         part.moving.push(Moving { part: number, velocity: Vec3::from(vector(motion)) });
     }
     if group.record.unwrap_or(group.motion.is_some()) {
@@ -139,7 +123,7 @@ fn prescribed(
 }
 
 /// Refuses keys that the source of the grains has no use for.
-fn refuse_idle_keys(document: &Document, index: usize, group: &Grains) -> Result<(), SceneError> {
+fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
     let random = group.fill.is_some() || group.region.is_some() || waits(group);
     let shapes = random || (group.packing.is_some() && group.shape == GrainShape::Clump);
     for (k, present, used, needs) in [
@@ -152,10 +136,7 @@ fn refuse_idle_keys(document: &Document, index: usize, group: &Grains) -> Result
         ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),
         ("bond", group.bond.is_some(), group.shape == GrainShape::Bonded, "`shape = \"bonded\"`"),
     ] {
-        if present && !used {
-            let key = format!("grains.{index}.{k}");
-            return Err(document.error(&key, "a value", format!("no such key without {needs}")));
-        }
+        group.refuse([(k, present && !used)], &format!("no such key without {needs}"))?;
     }
     Ok(())
 }

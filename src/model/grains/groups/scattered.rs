@@ -5,9 +5,8 @@ use super::part::{GradedGroup, GroupsPart, GrowthPlan, bounding_radius};
 use super::shapes::{MOST, deal, shapes};
 use super::sizes::SizeSource;
 use crate::failure::Failure;
-use crate::model::grains::check::check;
 use crate::scene::grains::{Grains, GrowthSource, Region};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::insert::scatter;
 use trackbed_dem::shape::Shape;
@@ -19,29 +18,26 @@ const SEEDLINGS: f64 = 0.22;
 
 /// Grains at random places of a container; with growth they get there in small form and grow when the run begins.
 pub(super) fn scattered(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-    region: &Region,
+    group: &Table<Grains>,
+    region: &Table<Region>,
     model: &BodyInput,
     part: &mut GroupsPart,
 ) -> Result<(), Failure> {
-    let key = |k: &str| format!("grains.{index}.{k}");
-    let container = container(document, index, region)?;
+    let container = container(region)?;
     let volume = container.volume();
     let first = part.shapes.len();
-    let unit_scale = shapes(document, index, group, part)?;
+    let unit_scale = shapes(group, part)?;
     // Volume and reach of a grain of sieve size 1 m, by shape.
     let unit = |k: usize| &part.shapes[first + k];
     let unit_volume: Vec<f64> =
         unit_scale.iter().enumerate().map(|(k, s)| s.powi(3) * shape_volume(unit(k))).collect();
     let reach: Vec<f64> = unit_scale.iter().enumerate().map(|(k, s)| s * bounding_radius(unit(k))).collect();
-    let source = SizeSource::of(document, index, group)?;
+    let source = SizeSource::of(group)?;
     let mean_volume = source.mean_cube() * unit_volume.iter().sum::<f64>() / unit_volume.len() as f64;
 
-    let growth = group.growth.as_ref().map(|g| growth(document, index, g)).transpose()?;
+    let growth = group.optional("growth", &group.growth).map(|g| growth(&g)).transpose()?;
     let porosity = growth.as_ref().map(|g| g.0);
-    let count = count(document, index, group, porosity, [volume, mean_volume])?;
+    let count = count(group, porosity, [volume, mean_volume])?;
     let mut sizes = source.sample(count, group.seed);
     let dealt = deal(&sizes, unit_scale.len());
     let (mut start, mut factor) = (1.0, 1.0);
@@ -54,7 +50,7 @@ pub(super) fn scattered(
     }
     let radii: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| start * s * reach[*d]).collect();
     let places = scatter::scatter(&container, &radii, group.seed)
-        .map_err(|e| document.error(&key("region"), e.to_string(), "a container with room for the grains"))?;
+        .map_err(|e| group.error("region", e.to_string(), "a container with room for the grains"))?;
     let turns = scatter::orientations(places.len(), group.seed);
     let begin = part.bodies.len();
     let body = |(i, position): (usize, Vec3)| BodyInput {
@@ -82,57 +78,37 @@ pub(super) fn scattered(
 }
 
 /// Number of grains of a group in a container, whose volume and the mean volume of a grain are `volumes` [m³]; `porosity` is that which they grow to.
-fn count(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-    porosity: Option<f64>,
-    volumes: [f64; 2],
-) -> Result<usize, SceneError> {
-    let key = |k: &str| format!("grains.{index}.{k}");
-    check(document, &key("concentration"), group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
+fn count(group: &Table<Grains>, porosity: Option<f64>, volumes: [f64; 2]) -> Result<usize, SceneError> {
+    group.check("concentration", group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
     let share = match (porosity, group.concentration) {
         (Some(_), Some(_)) => {
-            return Err(document.error(&key("concentration"), "a value", "no such key beside `growth`"));
+            return Err(group.error("concentration", "a value", "no such key beside `growth`"));
         }
         (Some(porosity), None) => Some(1.0 - porosity),
         (None, share) => share,
     };
     let count = match (group.count, share) {
         (Some(_), Some(_)) if porosity.is_none() => {
-            return Err(document.error(&key("count"), "a value", "no such key beside `concentration`"));
+            return Err(group.error("count", "a value", "no such key beside `concentration`"));
         }
         (Some(count), _) => count as f64,
         (None, Some(share)) => (share * volumes[0] / volumes[1]).round(),
         (None, None) => {
             let expected = "`count`, `concentration` or `growth`";
-            return Err(document.error(&key("count"), "nothing", expected));
+            return Err(group.missing("count", expected));
         }
     };
     if !(1.0..=MOST).contains(&count) {
-        return Err(document.error(&key("count"), format!("{count} grains"), "1 to 10000000"));
+        return Err(group.error("count", format!("{count} grains"), "1 to 10000000"));
     }
     Ok(count as usize)
 }
 
-fn growth(document: &Document, index: usize, g: &GrowthSource) -> Result<(f64, Growth), SceneError> {
-    let key = |k: &str| format!("grains.{index}.growth.{k}");
-    check(document, &key("porosity"), Some(g.porosity), |n| n > 0.0 && n < 1.0, "above 0, below 1")?;
-    check(
-        document,
-        &key("rounds"),
-        g.rounds.map(|n| n as f64),
-        |n| (1.0..=1000.0).contains(&n),
-        "1 to 1000",
-    )?;
-    check(document, &key("friction"), g.friction, |f| f >= 0.0, "0 or more")?;
-    check(
-        document,
-        &key("unbalanced_ratio"),
-        g.unbalanced_ratio,
-        |r| r > 0.0 && r < 1.0,
-        "above 0, below 1",
-    )?;
+fn growth(g: &Table<GrowthSource>) -> Result<(f64, Growth), SceneError> {
+    g.check("porosity", g.porosity, |n| n > 0.0 && n < 1.0, "above 0, below 1")?;
+    g.check("rounds", g.rounds, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    g.check("friction", g.friction, |f| f >= 0.0, "0 or more")?;
+    g.check("unbalanced_ratio", g.unbalanced_ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
     let default = Growth::default();
     let how = Growth {
         rounds: g.rounds.unwrap_or(default.rounds),

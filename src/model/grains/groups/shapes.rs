@@ -4,10 +4,9 @@ use super::bonded;
 use super::part::{GradedGroup, GroupsPart};
 use super::sizes::SizeSource;
 use crate::failure::Failure;
-use crate::model::grains::check::check;
 use crate::model::tables;
 use crate::scene::grains::{GrainShape, Grains};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::shape::Shape;
 
 /// Most grains of a group.
@@ -23,24 +22,25 @@ pub(super) struct Sampled {
 /// Adds the shapes of a group of `count` grains and draws their sizes; `expected` says what the count is. A group with a
 /// gradation is noted, so that the run tells how its grains meet the curve.
 pub(super) fn sampled(
-    document: &Document,
-    index: usize,
-    group: &Grains,
+    group: &Table<Grains>,
     part: &mut GroupsPart,
     expected: &str,
 ) -> Result<Vec<Sampled>, Failure> {
-    let key = format!("grains.{index}.count");
-    let count = group.count.ok_or_else(|| document.error(&key, "nothing", expected))?;
-    check(document, &key, Some(count as f64), |n| (1.0..=MOST).contains(&n), "1 to 10000000")?;
+    let count = group.need("count", group.count, expected)?;
+    group.check("count", count, |n| (1.0..=MOST).contains(&n), "1 to 10000000")?;
     let first = part.shapes.len();
-    let unit_scale = shapes(document, index, group, part)?;
-    let source = SizeSource::of(document, index, group)?;
+    let unit_scale = shapes(group, part)?;
+    let source = SizeSource::of(group)?;
     let sizes = source.sample(count, group.seed);
     let dealt = deal(&sizes, unit_scale.len());
     if let SizeSource::Graded(grading) = source
         && group.shape != GrainShape::Bonded
     {
-        part.graded.push(GradedGroup { part: index as u32, name: group.name.clone(), grading });
+        part.graded.push(GradedGroup {
+            part: part.names.len() as u32 - 1,
+            name: group.name.clone(),
+            grading,
+        });
     }
     let grains = sizes.iter().zip(dealt);
     Ok(grains.map(|(size, d)| Sampled { shape: first + d, scale: size * unit_scale[d] }).collect())
@@ -48,22 +48,16 @@ pub(super) fn sampled(
 
 /// Adds the shapes of a filled group; returns the scale that gives each a sieve size of 1 m, so that the scale of a
 /// body is its sieve size.
-pub(super) fn shapes(
-    document: &Document,
-    index: usize,
-    group: &Grains,
-    part: &mut GroupsPart,
-) -> Result<Vec<f64>, SceneError> {
-    let key = format!("grains.{index}.library");
+pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec<f64>, SceneError> {
     match (group.shape, &group.library) {
         (GrainShape::Clump, Some(file)) => {
-            let clumps = tables::stones(&document.resolve(file))?;
+            let clumps = tables::stones(&group.locate(file))?;
             part.shapes.extend(clumps.iter().cloned().map(Shape::Clump));
             Ok(clumps.iter().map(|c| 1.0 / c.sieve_size()).collect())
         }
-        (GrainShape::Clump, None) => Err(document.error(&key, "nothing", "the stone library of the clumps")),
-        (GrainShape::Bonded, _) => bonded::stand_ins(document, index, group, part),
-        (GrainShape::Sphere, Some(_)) => Err(document.error(&key, "a file", "no such key for spheres")),
+        (GrainShape::Clump, None) => Err(group.missing("library", "the stone library of the clumps")),
+        (GrainShape::Bonded, _) => bonded::stand_ins(group, part),
+        (GrainShape::Sphere, Some(_)) => Err(group.error("library", "a file", "no such key for spheres")),
         (GrainShape::Sphere, None) => {
             part.shapes.push(Shape::Sphere { radius: 0.5 });
             Ok(vec![1.0])

@@ -1,10 +1,9 @@
 //! Sizes of filled grains: a sieve curve, a law, or a plain range.
 
-use crate::model::grains::check::check;
 use crate::model::tables::{self, Grading};
 use crate::scene::grains::{Grains, Share, Sizes};
 use crate::scene::units::{Length, Quantity};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::insert::sizes::SizeLaw;
 
 /// Grains whose mean volume stands for that of a law without a closed form.
@@ -22,32 +21,29 @@ pub(super) enum SizeSource {
 
 impl SizeSource {
     /// Reads the one key of a group that tells its sizes.
-    pub fn of(document: &Document, index: usize, group: &Grains) -> Result<SizeSource, SceneError> {
-        let key = |k: &str| format!("grains.{index}.{k}");
+    pub fn of(group: &Table<Grains>) -> Result<SizeSource, SceneError> {
         match (&group.gradation, &group.size, &group.sizes) {
             (Some(g), None, None) => {
-                check(document, &key("gradation.scale"), Some(g.scale), |s| s > 0.0, "above 0")?;
-                let grading = tables::gradation(&document.resolve(&g.file), &g.standard, &g.grade)?;
+                group.check("gradation.scale", g.scale, |s| s > 0.0, "above 0")?;
+                let grading = tables::gradation(&group.locate(&g.file), &g.standard, &g.grade)?;
                 Ok(SizeSource::Graded(grading.scaled(g.scale)))
             }
             (None, Some([low, high]), None) => {
-                check(document, &key("size"), Some(low.si), |s| s > 0.0, "sizes above 0")?;
-                check(document, &key("size"), Some(high.si), |s| s >= low.si, "the larger size last")?;
+                group.check("size", *low, |s| s > 0.0, "sizes above 0")?;
+                group.check("size", *high, |s| s >= low.si, "the larger size last")?;
                 Ok(SizeSource::Range(low.si, high.si))
             }
             (None, None, Some(sizes)) => {
                 let law = law(sizes);
                 let expected = "sizes above 0 in rising order, and positive deviations";
-                law.check().map_err(|e| document.error(&key("sizes"), e.to_string(), expected))?;
+                law.check().map_err(|e| group.error("sizes", e.to_string(), expected))?;
                 Ok(SizeSource::Law(law))
             }
-            (None, None, None) => Err(document.error(
-                &key("gradation"),
-                "none of `gradation`, `size` and `sizes`",
-                "one of them",
-            )),
-            _ => Err(document.error(
-                &key("gradation"),
+            (None, None, None) => {
+                Err(group.error("gradation", "none of `gradation`, `size` and `sizes`", "one of them"))
+            }
+            _ => Err(group.error(
+                "gradation",
                 "more than one of `gradation`, `size` and `sizes`",
                 "one of them",
             )),

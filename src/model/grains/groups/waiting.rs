@@ -3,7 +3,7 @@
 use super::part::GroupsPart;
 use super::shapes::{Sampled, sampled};
 use crate::failure::Failure;
-use crate::scene::Document;
+use crate::scene::Table;
 use crate::scene::grains::Grains;
 use trackbed_dem::BodyInput;
 use trackbed_dem::random::Random;
@@ -13,19 +13,13 @@ const ORDER: u64 = 8;
 
 /// Adds grains that wait for their inlet: `count` of them, in random order.
 pub(super) fn waiting(
-    document: &Document,
-    index: usize,
-    group: &Grains,
+    group: &Table<Grains>,
     model: &BodyInput,
     part: &mut GroupsPart,
 ) -> Result<(), Failure> {
-    for (k, present) in [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())] {
-        if present {
-            let expected = "no such key for grains that wait for their inlet: see `inlet.velocity`";
-            return Err(document.error(&format!("grains.{index}.{k}"), "a value", expected).into());
-        }
-    }
-    let grains = sampled(document, index, group, part, "the number of grains that may come in")?;
+    let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
+    group.refuse(idle, "no such key for grains that wait for their inlet: see `inlet.velocity`")?;
+    let grains = sampled(group, part, "the number of grains that may come in")?;
     // A range gives sizes in rising order: without this the small ones would come first.
     let order = Random::new(group.seed, ORDER).permutation(grains.len());
     part.bodies.extend(order.into_iter().map(|i| {

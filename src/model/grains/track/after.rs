@@ -1,10 +1,9 @@
 //! `[track.jump]`, `[track.push]` and `track.bed_stiffness` resolved.
 
 use super::part::{AfterPlan, TrackPart};
-use crate::model::grains::check::check;
 use crate::scene::after::{CycleJump, JumpMethod, Push};
 use crate::scene::track::TrackTable;
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::jump::JumpPlan;
 use trackbed_coupling::track::push::PushPlan;
@@ -15,24 +14,23 @@ use trackbed_dem::Vec3;
 /// # Errors
 /// Bad input.
 pub(super) fn build(
-    document: &Document,
-    track: &TrackTable,
+    track: &Table<TrackTable>,
     part: &TrackPart,
     fixed: Option<&str>,
 ) -> Result<AfterPlan, SceneError> {
-    let jump = track.jump.as_ref().map(|j| jump(document, j, part, fixed)).transpose()?;
-    let push = track.push.as_ref().map(|p| push(document, p, part)).transpose()?;
+    let jump = track.optional("jump", &track.jump).map(|j| jump(&j, part, fixed)).transpose()?;
+    let push = track.optional("push", &track.push).map(|p| push(&p, part)).transpose()?;
     let range = part.load.as_ref().map(CyclicLoad::range);
     let between = match (track.bed_stiffness, range) {
         (Some(_), None) => {
             let expected = "a [track.load] with cycles, or no such key";
-            return Err(document.error("track.bed_stiffness", "two loads", expected));
+            return Err(track.error("bed_stiffness", "two loads", expected));
         }
         (Some(loads), Some([least, most])) => {
             let [low, high] = loads.map(|f| f.si);
             if !(least <= low && low < high && high <= most) {
                 let expected = format!("two rising loads from {least} to {most}, those of the cycles");
-                return Err(document.error("track.bed_stiffness", format!("{low} and {high}"), expected));
+                return Err(track.error("bed_stiffness", format!("{low} and {high}"), expected));
             }
             Some([low, high])
         }
@@ -41,41 +39,28 @@ pub(super) fn build(
     Ok(AfterPlan { jump, push, between })
 }
 
-fn jump(
-    document: &Document,
-    j: &CycleJump,
-    part: &TrackPart,
-    fixed: Option<&str>,
-) -> Result<JumpPlan, SceneError> {
-    let key = |k: &str| format!("track.jump.{k}");
+fn jump(j: &Table<CycleJump>, part: &TrackPart, fixed: Option<&str>) -> Result<JumpPlan, SceneError> {
     let Some(load) = &part.load else {
-        return Err(document.error("track.jump", "a jump", "a [track.load] with cycles beside it"));
+        return Err(j.here("a jump", "a [track.load] with cycles beside it"));
     };
     let grains = j.method == JumpMethod::Grains;
-    for (name, present) in [("settle", j.settle.is_some()), ("overlap", j.overlap.is_some())] {
-        if present && !grains {
-            return Err(document.error(&key(name), "a value", "no such key without method = \"grains\""));
-        }
+    if !grains {
+        let idle = [("settle", j.settle.is_some()), ("overlap", j.overlap.is_some())];
+        j.refuse(idle, "no such key without method = \"grains\"")?;
     }
     if let Some(why) = fixed.filter(|_| grains) {
         let expected = format!("\"account\": grains that {why} are not moved");
-        return Err(document.error(&key("method"), "\"grains\"", expected));
+        return Err(j.error("method", "\"grains\"", expected));
     }
-    check(document, &key("measure"), Some(f64::from(j.measure)), |n| n >= 2.0, "2 or more")?;
+    j.check("measure", j.measure, |n| n >= 2.0, "2 or more")?;
     let least = f64::from(j.measure) + 2.0;
-    check(
-        document,
-        &key("first"),
-        Some(f64::from(j.first)),
-        |n| n >= least.max(10.0),
-        "10 or more, and more than `measure` by 2",
-    )?;
-    check(document, &key("tolerance"), Some(j.tolerance), |t| t > 0.0 && t <= 10.0, "above 0, at most 10")?;
-    check(document, &key("largest"), Some(j.largest), |g| g > 0.0 && g <= 10.0, "above 0, at most 10")?;
-    check(document, &key("overlap"), j.overlap, |o| o > 0.0 && o <= 2.0, "above 0, at most 2")?;
+    j.check("first", j.first, |n| n >= least.max(10.0), "10 or more, and more than `measure` by 2")?;
+    j.check("tolerance", j.tolerance, |t| t > 0.0 && t <= 10.0, "above 0, at most 10")?;
+    j.check("largest", j.largest, |g| g > 0.0 && g <= 10.0, "above 0, at most 10")?;
+    j.check("overlap", j.overlap, |o| o > 0.0 && o <= 2.0, "above 0, at most 2")?;
     if j.first >= load.cycles() {
         let expected = format!("fewer than the {} cycles of the load", load.cycles());
-        return Err(document.error(&key("first"), j.first.to_string(), expected));
+        return Err(j.error("first", j.first.to_string(), expected));
     }
     Ok(JumpPlan {
         grains,
@@ -88,30 +73,29 @@ fn jump(
     })
 }
 
-fn push(document: &Document, p: &Push, part: &TrackPart) -> Result<PushPlan, SceneError> {
-    let key = |k: &str| format!("track.push.{k}");
+fn push(p: &Table<Push>, part: &TrackPart) -> Result<PushPlan, SceneError> {
     let direction = Vec3::new(p.direction[0], p.direction[1], 0.0);
     let found = format!("({}, {})", p.direction[0], p.direction[1]);
     let Some(direction) = direction.try_normalize(0.0).filter(|d| d.iter().all(|x| x.is_finite())) else {
-        return Err(document.error(&key("direction"), found, "a direction"));
+        return Err(p.error("direction", found, "a direction"));
     };
     if part.rail.is_some() {
-        return Err(document.error("track.push", "a push", "no such table beside a rail with mass"));
+        return Err(p.here("a push", "no such table beside a rail with mass"));
     }
     if part.sleeper.as_ref().is_some_and(|s| s.row.centres.len() > 1) {
-        return Err(document.error("track.push", "a push", "no such table beside several sleepers"));
+        return Err(p.here("a push", "no such table beside several sleepers"));
     }
     let held = part.sleeper.as_ref().map_or([false; 6], |s| s.row.held);
     if let Some(d) = (0..2).find(|&d| held[d] && direction[d] != 0.0) {
         let expected = format!("a direction that track.sleeper.hold leaves free, not {}", ["x", "y"][d]);
-        return Err(document.error(&key("direction"), found, expected));
+        return Err(p.error("direction", found, expected));
     }
-    check(document, &key("speed"), Some(p.speed.si), |v| v > 0.0, "above 0")?;
-    check(document, &key("displacement"), Some(p.displacement.si), |l| l > 0.0, "above 0")?;
-    check(document, &key("load"), Some(p.load.si), |f| f >= 0.0, "0 or more")?;
-    check(document, &key("rest"), Some(p.rest.si), |t| t >= 0.0, "0 or more")?;
-    check(document, &key("height"), Some(p.height.si), |_| true, "a length")?;
-    check(document, &key("stiffness"), Some(p.stiffness.si), |k| k > 0.0, "above 0")?;
+    p.check("speed", p.speed, |v| v > 0.0, "above 0")?;
+    p.check("displacement", p.displacement, |l| l > 0.0, "above 0")?;
+    p.check("load", p.load, |f| f >= 0.0, "0 or more")?;
+    p.check("rest", p.rest, |t| t >= 0.0, "0 or more")?;
+    p.check("height", p.height, |_| true, "a length")?;
+    p.check("stiffness", p.stiffness, |k| k > 0.0, "above 0")?;
     Ok(PushPlan {
         direction,
         speed: p.speed.si,

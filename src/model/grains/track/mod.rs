@@ -5,12 +5,12 @@ mod part;
 
 pub use part::{SleeperPlan, TrackPart};
 
-use super::check::{check, find};
+use super::check::find;
 use super::groups::GroupsPart;
 use crate::failure::Failure;
 use crate::model::track::plan::{self, RailPlan};
 use crate::model::track::sleeper;
-use crate::scene::{Document, Scene};
+use crate::scene::{Scene, Table};
 use trackbed_coupling::track::SleeperRow;
 use trackbed_coupling::track::rail::RailInput;
 use trackbed_dem::Vec3;
@@ -19,37 +19,36 @@ use trackbed_dem::shape::Shape;
 /// Sleepers, their load, and what goes on about it. The shape of rigid sleepers is added to those of the groups, and so is
 /// their name; `fixed` is why grains cannot be moved by a jump, if they cannot.
 pub(super) fn build(
-    document: &Document,
-    scene: &Scene,
+    scene: &Table<Scene>,
     gravity: &Vec3,
     fixed: Option<&str>,
     groups: &mut GroupsPart,
 ) -> Result<TrackPart, Failure> {
     let mut part = TrackPart::default();
-    let Some(track) = &scene.track else { return Ok(part) };
-    let material = find(document, scene, "track.sleeper.material", &track.sleeper.material)?;
-    let s = &track.sleeper;
-    let half = sleeper::half(document, s)?;
+    let Some(track) = &scene.optional("track", &scene.track) else { return Ok(part) };
+    let s = &track.below("sleeper", &track.sleeper);
+    let material = find(scene, s, "material", &s.material)?;
+    let half = sleeper::half(s)?;
     let meshed = s.mesh.is_some();
     let mass = match s.mass {
         Some(mass) => mass.si,
         // Its elements have one.
         None if meshed => 0.0,
-        None => return Err(document.error("track.sleeper.mass", "nothing", "the mass of a sleeper").into()),
+        None => return Err(s.missing("mass", "the mass of a sleeper").into()),
     };
     let shape = groups.shapes.len();
     if !meshed {
-        check(document, "track.sleeper.mass", Some(mass), |m| m > 0.0, "a mass above 0")?;
+        s.check("mass", mass, |m| m > 0.0, "a mass above 0")?;
         groups.add_shape(Shape::Box { half });
         groups.names.push("sleeper".into());
     }
-    let seats = sleeper::seats(document, track, half)?.iter().map(|s| [s[0], s[1], half[2]]).collect();
-    let centres = sleeper::row(document, s)?;
-    let rail = track.rail.as_ref().map(|r| plan::rail(document, track, r)).transpose()?;
-    if let Some(l) = &track.load {
+    let seats = sleeper::seats(track, half)?.iter().map(|s| [s[0], s[1], half[2]]).collect();
+    let centres = sleeper::row(s)?;
+    let rail = track.optional("rail", &track.rail).map(|r| plan::rail(track, &r)).transpose()?;
+    if let Some(l) = track.optional("load", &track.load) {
         let axis = s.along.axis();
         let places = centres.iter().map(|c| c[axis] - centres[0][axis]).collect();
-        part.load = Some(plan::load(document, l, places, rail.as_ref())?);
+        part.load = Some(plan::load(&l, places, rail.as_ref())?);
     }
     if let Some(RailPlan::Beam(input)) = rail {
         part.rail = Some(RailInput { gravity: -gravity.z, ..*input });
@@ -57,6 +56,6 @@ pub(super) fn build(
     let (held, axis) = (sleeper::held(s), s.along.axis());
     let row = SleeperRow { meshed, mass, held, half, axis, centres, seats };
     part.sleeper = Some(SleeperPlan { shape, material, row });
-    part.after = after::build(document, track, &part, fixed)?;
+    part.after = after::build(track, &part, fixed)?;
     Ok(part)
 }

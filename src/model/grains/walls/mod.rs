@@ -6,7 +6,7 @@ mod shape;
 use super::check::find;
 use crate::failure::Failure;
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{Document, Scene};
+use crate::scene::{Scene, Table};
 use motion::{body, motion, servo};
 use shape::shape;
 use trackbed_dem::{Plane, Vec3, WallInput, WallShape};
@@ -32,7 +32,7 @@ pub struct Recorded {
 }
 
 /// The keys that only some kinds of wall have.
-const SPECIAL: [(&str, &[WallKind]); 12] = [
+const SPECIAL: [(&str, &[WallKind]); 13] = [
     ("point", &[WallKind::Plane]),
     ("normal", &[WallKind::Plane]),
     ("vertices", &[WallKind::Triangles]),
@@ -45,34 +45,28 @@ const SPECIAL: [(&str, &[WallKind]); 12] = [
     ("height", &[WallKind::Cylinder, WallKind::Cone]),
     ("radius", &[WallKind::Cylinder, WallKind::Sphere]),
     ("radii", &[WallKind::Cone]),
+    ("caps", &[WallKind::Cylinder, WallKind::Cone]),
 ];
 
 /// `[[walls]]` resolved.
-pub(super) fn build(document: &Document, scene: &Scene) -> Result<WallsPart, Failure> {
+pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
     let mut part = WallsPart::default();
-    for (i, wall) in scene.walls.iter().enumerate() {
-        let material = find(document, scene, &format!("walls.{i}.material"), &wall.material)?;
+    for (i, wall) in scene.rows("walls", &scene.walls).enumerate() {
+        let material = find(scene, &wall, "material", &wall.material)?;
         let before = part.others.len();
-        add(document, i, wall, material, &mut part)?;
+        add(&wall, i, material, &mut part)?;
         let new = part.others.get(before).map(|w| &w.shape);
         if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
             let expected =
                 "a plane without `record` and motions other than `velocity`: a sleeper touches no other";
-            return Err(document.error(&format!("walls.{i}"), "a plane that is more", expected).into());
+            return Err(wall.here("a plane that is more", expected).into());
         }
     }
     Ok(part)
 }
 
-/// Adds a wall.
-fn add(
-    document: &Document,
-    index: usize,
-    wall: &Wall,
-    material: usize,
-    part: &mut WallsPart,
-) -> Result<(), Failure> {
-    let key = |k: &str| format!("walls.{index}.{k}");
+/// Adds wall `index`.
+fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) -> Result<(), Failure> {
     let present = |k: &str| match k {
         "point" => wall.point.is_some(),
         "normal" => wall.normal.is_some(),
@@ -85,20 +79,16 @@ fn add(
         "axis" => wall.axis.is_some(),
         "height" => wall.height.is_some(),
         "radius" => wall.radius.is_some(),
-        _ => wall.radii.is_some(),
+        "radii" => wall.radii.is_some(),
+        _ => wall.caps.is_some(),
     };
-    let foreign = |(k, kinds): &&(&str, &[WallKind])| present(k) && !kinds.contains(&wall.kind);
-    if let Some((k, _)) = SPECIAL.iter().find(foreign) {
-        return Err(document.error(&key(k), "a value", "no such key for this kind of wall").into());
-    }
-    if wall.caps.is_some() && !matches!(wall.kind, WallKind::Cylinder | WallKind::Cone) {
-        return Err(document.error(&key("caps"), "a value", "no such key for this kind of wall").into());
-    }
-    let shape = shape(document, index, wall)?;
-    let motion = motion(document, index, wall)?;
+    let foreign = SPECIAL.map(|(k, kinds)| (k, present(k) && !kinds.contains(&wall.kind)));
+    wall.refuse(foreign, "no such key for this kind of wall")?;
+    let shape = shape(wall)?;
+    let motion = motion(wall)?;
     let name = wall.name.clone().unwrap_or_else(|| format!("wall{index}"));
     if wall.record && part.recorded.iter().any(|r| r.name == name) {
-        return Err(document.error(&key("name"), format!("\"{name}\""), "a name of its own").into());
+        return Err(wall.error("name", format!("\"{name}\""), "a name of its own").into());
     }
     let plain = motion.angular_velocity == Vec3::zeros()
         && motion.oscillation.is_none()
@@ -109,8 +99,8 @@ fn add(
         part.planes.push(Plane { point: *point, normal: *normal, material, velocity: motion.velocity });
         return Ok(());
     }
-    let servo = servo(document, index, wall)?;
-    let body = body(document, index, wall)?;
+    let servo = servo(wall)?;
+    let body = body(wall)?;
     if wall.record {
         part.recorded.push(Recorded { name, wall: part.others.len() });
     }

@@ -1,16 +1,14 @@
 //! How walls move: prescribed, pressed with a force, or as rigid bodies.
 
 use super::shape::direction;
-use crate::model::grains::check::check;
 use crate::scene::track::HeldMotion;
 use crate::scene::units::vector;
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::{Motion, Oscillation, RigidBody, Servo, Vec3};
 
-/// The prescribed motion of wall `index`.
-pub(super) fn motion(document: &Document, index: usize, wall: &Wall) -> Result<Motion, SceneError> {
-    let key = |k: &str| format!("walls.{index}.{k}");
+/// The prescribed motion of a wall.
+pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
     let mut motion = Motion {
         velocity: wall.velocity.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
         angular_velocity: wall.angular_velocity.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
@@ -18,7 +16,7 @@ pub(super) fn motion(document: &Document, index: usize, wall: &Wall) -> Result<M
         oscillation: None,
     };
     if motion.centre.is_some() && wall.angular_velocity.is_none() {
-        return Err(document.error(&key("centre"), "a value", "no such key without `angular_velocity`"));
+        return Err(wall.error("centre", "a value", "no such key without `angular_velocity`"));
     }
     if let (WallKind::Plane, Some(normal)) = (wall.kind, wall.normal) {
         let (spin, normal) = (motion.angular_velocity, Vec3::from(normal));
@@ -26,19 +24,13 @@ pub(super) fn motion(document: &Document, index: usize, wall: &Wall) -> Result<M
             let expected =
                 "an angular velocity along the plane's normal, or triangles for a floor that tilts";
             let found = format!("({}, {}, {}) rad/s", spin.x, spin.y, spin.z);
-            return Err(document.error(&key("angular_velocity"), found, expected));
+            return Err(wall.error("angular_velocity", found, expected));
         }
     }
-    if let Some(o) = &wall.oscillation {
-        check(document, &key("oscillation.frequency"), Some(o.frequency.si), |f| f > 0.0, "above 0")?;
-        check(
-            document,
-            &key("oscillation.amplitude"),
-            Some(o.amplitude.si),
-            |a| a > 0.0,
-            "a length above 0",
-        )?;
-        let along = direction(document, &key("oscillation.direction"), o.direction)?;
+    if let Some(o) = wall.optional("oscillation", &wall.oscillation) {
+        o.check("frequency", o.frequency, |f| f > 0.0, "above 0")?;
+        o.check("amplitude", o.amplitude, |a| a > 0.0, "a length above 0")?;
+        let along = direction(&o, "direction", o.direction)?;
         motion.oscillation = Some(Oscillation {
             amplitude: along * o.amplitude.si,
             frequency: o.frequency.si,
@@ -51,54 +43,44 @@ pub(super) fn motion(document: &Document, index: usize, wall: &Wall) -> Result<M
         ("oscillation", wall.oscillation.is_some()),
     ];
     for (owner, there) in [("servo", wall.servo.is_some()), ("body", wall.body.is_some())] {
-        if let Some((k, _)) = moves.iter().find(|(_, given)| there && *given) {
-            return Err(document.error(&key(k), "a value", format!("no such key beside `{owner}`")));
-        }
+        let idle = moves.map(|(k, given)| (k, there && given));
+        wall.refuse(idle, &format!("no such key beside `{owner}`"))?;
     }
     if wall.servo.is_some() && wall.body.is_some() {
-        return Err(document.error(&key("servo"), "a value", "no such key beside `body`"));
+        return Err(wall.error("servo", "a value", "no such key beside `body`"));
     }
     Ok(motion)
 }
 
-/// The force that wall `index` presses with, where it does.
-pub(super) fn servo(document: &Document, index: usize, wall: &Wall) -> Result<Option<Servo>, SceneError> {
-    let Some(s) = &wall.servo else { return Ok(None) };
-    let key = |k: &str| format!("walls.{index}.servo.{k}");
+/// The force that a wall presses with, where it does.
+pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
+    let Some(s) = wall.optional("servo", &wall.servo) else { return Ok(None) };
     let along = match (s.direction, wall.normal) {
-        (Some(d), _) => direction(document, &key("direction"), d)?,
-        (None, Some(n)) => direction(document, &key("direction"), n)?,
+        (Some(d), _) => direction(&s, "direction", d)?,
+        (None, Some(n)) => direction(&s, "direction", n)?,
         _ => {
-            return Err(document.error(
-                &key("direction"),
-                "nothing",
-                "the direction in which the wall presses",
-            ));
+            return Err(s.error("direction", "nothing", "the direction in which the wall presses"));
         }
     };
     let force = match (s.force, s.pressure, s.area) {
         (Some(f), None, None) => f.si,
         (None, Some(p), Some(area)) => {
-            check(document, &key("area"), Some(area), |a| a > 0.0, "an area above 0")?;
+            s.check("area", area, |a| a > 0.0, "an area above 0")?;
             p.si * area
         }
         (None, Some(_), None) => {
-            return Err(document.error(&key("area"), "nothing", "the area that the pressure acts on"));
+            return Err(s.missing("area", "the area that the pressure acts on"));
         }
         (Some(_), None, Some(_)) => {
-            return Err(document.error(&key("area"), "a value", "no such key beside `force`"));
+            return Err(s.error("area", "a value", "no such key beside `force`"));
         }
         _ => {
-            return Err(document.error(
-                &key("force"),
-                "both or none of `force` and `pressure`",
-                "one of them",
-            ));
+            return Err(s.error("force", "both or none of `force` and `pressure`", "one of them"));
         }
     };
-    check(document, &key("max_speed"), Some(s.max_speed.si), |v| v > 0.0, "a speed above 0")?;
+    s.check("max_speed", s.max_speed, |v| v > 0.0, "a speed above 0")?;
     let gain = s.gain.unwrap_or(0.5);
-    check(document, &key("gain"), Some(gain), |g| g > 0.0 && g <= 1.0, "above 0, at most 1")?;
+    s.check("gain", gain, |g| g > 0.0 && g <= 1.0, "above 0, at most 1")?;
     let points = match &s.history {
         None => vec![[0.0, force]],
         Some(points) => points.iter().map(|(t, f)| [t.si, f * force]).collect(),
@@ -107,19 +89,19 @@ pub(super) fn servo(document: &Document, index: usize, wall: &Wall) -> Result<Op
         || !points.is_sorted_by(|a, b| a[0] < b[0])
         || !points.iter().flatten().all(|x| x.is_finite())
     {
-        return Err(document.error(&key("history"), "times that do not rise", "points with rising times"));
+        return Err(s.error("history", "times that do not rise", "points with rising times"));
     }
     Ok(Some(Servo { direction: along, force: points, max_speed: s.max_speed.si, gain }))
 }
 
-/// The body that wall `index` is, where it is one.
-pub(super) fn body(document: &Document, index: usize, wall: &Wall) -> Result<Option<RigidBody>, SceneError> {
-    let Some(b) = &wall.body else { return Ok(None) };
+/// The body that a wall is, where it is one.
+pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> {
+    let Some(b) = wall.optional("body", &wall.body) else { return Ok(None) };
     if !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh) {
         let expected = "no such key for this kind of wall: only triangles make a body";
-        return Err(document.error(&format!("walls.{index}.body"), "a value", expected));
+        return Err(b.here("a value", expected));
     }
-    check(document, &format!("walls.{index}.body.mass"), Some(b.mass.si), |m| m > 0.0, "a mass above 0")?;
+    b.check("mass", b.mass, |m| m > 0.0, "a mass above 0")?;
     let mut fixed = [false; 6];
     for motion in &b.hold {
         let k = match motion {

@@ -1,50 +1,43 @@
 //! Shapes of walls.
 
 use crate::failure::Failure;
-use crate::model::grains::check::check;
 use crate::read::read_surface;
 use crate::scene::units::vector;
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{Document, SceneError};
+use crate::scene::{SceneError, Table};
 use trackbed_dem::{Vec3, WallShape};
 
-/// The shape of wall `index`.
-pub(super) fn shape(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, Failure> {
-    let key = |k: &str| format!("walls.{index}.{k}");
-    let missing = |k: &str, expected: &str| document.error(&key(k), "nothing", expected);
-    let above = |k: &str, x: f64| check(document, &key(k), Some(x), |x| x > 0.0, "a length above 0");
-    let axis = || -> Result<Vec3, SceneError> {
-        direction(document, &key("axis"), wall.axis.unwrap_or([0.0, 0.0, 1.0]))
-    };
+/// The shape of a wall.
+pub(super) fn shape(wall: &Table<Wall>) -> Result<WallShape, Failure> {
+    let axis =
+        || -> Result<Vec3, SceneError> { direction(wall, "axis", wall.axis.unwrap_or([0.0, 0.0, 1.0])) };
     let base = || {
         wall.base
             .map(|b| Vec3::from(vector(&b)))
-            .ok_or_else(|| missing("base", "the middle of the first end, or of a sphere"))
+            .ok_or_else(|| wall.missing("base", "the middle of the first end, or of a sphere"))
     };
-    let height =
-        || wall.height.map(|h| h.si).ok_or_else(|| missing("height", "the distance of the two ends"));
-    let radius = || wall.radius.map(|r| r.si).ok_or_else(|| missing("radius", "the radius"));
+    let height = || wall.need("height", wall.height.map(|h| h.si), "the distance of the two ends");
+    let radius = || wall.need("radius", wall.radius.map(|r| r.si), "the radius");
     Ok(match wall.kind {
         WallKind::Plane => {
-            let point = wall.point.ok_or_else(|| missing("point", "a point of the plane"))?;
-            let normal = wall.normal.ok_or_else(|| missing("normal", "the plane's normal"))?;
-            direction(document, &key("normal"), normal)?;
+            let point = wall.need("point", wall.point, "a point of the plane")?;
+            let normal = wall.need("normal", wall.normal, "the plane's normal")?;
+            direction(wall, "normal", normal)?;
             WallShape::Plane { point: Vec3::from(vector(&point)), normal: Vec3::from(normal) }
         }
-        WallKind::Triangles => triangles(document, index, wall)?,
-        WallKind::Mesh => mesh(document, index, wall)?,
+        WallKind::Triangles => triangles(wall)?,
+        WallKind::Mesh => mesh(wall)?,
         WallKind::Cylinder => {
             let (radius, height) = (radius()?, height()?);
-            above("radius", radius)?;
-            above("height", height)?;
+            wall.check("radius", radius, |x| x > 0.0, "a length above 0")?;
+            wall.check("height", height, |x| x > 0.0, "a length above 0")?;
             let caps = wall.caps.unwrap_or_default();
             WallShape::Frustum { base: base()?, axis: axis()?, height, radii: [radius; 2], caps }
         }
         WallKind::Cone => {
-            let radii =
-                wall.radii.ok_or_else(|| missing("radii", "the radii of the two ends"))?.map(|r| r.si);
+            let radii = wall.need("radii", wall.radii, "the radii of the two ends")?.map(|r| r.si);
             let height = height()?;
-            check_cone(document, index, radii, height)?;
+            check_cone(wall, radii, height)?;
             WallShape::Frustum {
                 base: base()?,
                 axis: axis()?,
@@ -55,56 +48,53 @@ pub(super) fn shape(document: &Document, index: usize, wall: &Wall) -> Result<Wa
         }
         WallKind::Sphere => {
             let radius = radius()?;
-            above("radius", radius)?;
+            wall.check("radius", radius, |x| x > 0.0, "a length above 0")?;
             WallShape::Sphere { centre: base()?, radius }
         }
     })
 }
 
 /// A wall of triangles in the scene.
-fn triangles(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, SceneError> {
-    let key = |k: &str| format!("walls.{index}.{k}");
-    let missing = |k: &str| document.error(&key(k), "nothing", "the vertices and triangles of the wall");
-    let vertices = wall.vertices.as_ref().ok_or_else(|| missing("vertices"))?;
-    let triangles = wall.triangles.clone().ok_or_else(|| missing("triangles"))?;
+fn triangles(wall: &Table<Wall>) -> Result<WallShape, SceneError> {
+    let expected = "the vertices and triangles of the wall";
+    let vertices = wall.need("vertices", wall.vertices.as_ref(), expected)?;
+    let triangles = wall.need("triangles", wall.triangles.clone(), expected)?;
     if let Some(bad) = triangles.iter().flatten().find(|v| **v as usize >= vertices.len()) {
         let expected = format!("0 to {}", vertices.len().max(1) - 1);
-        return Err(document.error(&key("triangles"), format!("vertex {bad}"), expected));
+        return Err(wall.error("triangles", format!("vertex {bad}"), expected));
     }
     Ok(WallShape::Triangles { vertices: vertices.iter().map(|v| Vec3::from(vector(v))).collect(), triangles })
 }
 
 /// A wall from a file.
-fn mesh(document: &Document, index: usize, wall: &Wall) -> Result<WallShape, Failure> {
-    let key = |k: &str| format!("walls.{index}.{k}");
+fn mesh(wall: &Table<Wall>) -> Result<WallShape, Failure> {
     let Some(file) = &wall.file else {
         let expected = "a surface file: .stl, .obj, or a plain list";
-        return Err(document.error(&key("file"), "nothing", expected).into());
+        return Err(wall.missing("file", expected).into());
     };
     let scale = wall.scale.unwrap_or(1.0);
-    check(document, &key("scale"), Some(scale), |s| s > 0.0, "above 0")?;
+    wall.check("scale", scale, |s| s > 0.0, "above 0")?;
     let shift = wall.translation.map_or(Vec3::zeros(), |t| Vec3::from(vector(&t)));
-    let surface = read_surface(&document.resolve(file))?;
+    let surface = read_surface(&wall.locate(file))?;
     let vertices: Vec<Vec3> = surface.vertices.iter().map(|v| Vec3::from(*v) * scale + shift).collect();
     let triangles = with_area(&vertices, surface.triangles);
     if triangles.is_empty() {
-        return Err(document.error(&key("file"), "no triangle with an area", "at least one").into());
+        return Err(wall.error("file", "no triangle with an area", "at least one").into());
     }
     Ok(WallShape::Triangles { vertices, triangles })
 }
 
 /// Refuses a cone without an area.
-fn check_cone(document: &Document, index: usize, radii: [f64; 2], height: f64) -> Result<(), SceneError> {
-    let key = |k: &str| format!("walls.{index}.{k}");
-    check(document, &key("height"), Some(height), |h| h >= 0.0, "0 or more")?;
+fn check_cone(wall: &Table<Wall>, radii: [f64; 2], height: f64) -> Result<(), SceneError> {
+    wall.check("height", height, |h| h >= 0.0, "0 or more")?;
     for r in radii {
-        check(document, &key("radii"), Some(r), |r| r >= 0.0, "0 or more")?;
+        wall.check("radii", r, |r| r >= 0.0, "0 or more")?;
     }
     if radii[0].max(radii[1]) > 0.0 && (height > 0.0 || radii[0] != radii[1]) {
         return Ok(());
     }
     let found = format!("[{}, {}]", radii[0], radii[1]);
-    Err(document.error(&key("radii"), found, "radii that give the cone an area"))
+    Err(wall.error("radii", found, "radii that give the cone an area"))
 }
 
 /// Triangles that have an area; files hold some without, which nothing can touch that does not touch their neighbours.
@@ -118,8 +108,8 @@ fn with_area(vertices: &[Vec3], mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
 }
 
 /// A vector with a length.
-pub(super) fn direction(document: &Document, key: &str, v: [f64; 3]) -> Result<Vec3, SceneError> {
+pub(super) fn direction<T>(table: &Table<T>, key: &str, v: [f64; 3]) -> Result<Vec3, SceneError> {
     let length = Vec3::from(v).norm();
-    check(document, key, Some(length), |l| l > 0.0 && l.is_finite(), "a vector that is not null")?;
+    table.check(key, length, |l| l > 0.0 && l.is_finite(), "a vector that is not null")?;
     Ok(Vec3::from(v) / length)
 }

@@ -1,4 +1,6 @@
+use super::form::{CHECKSUM, FORM, MAGIC, read};
 use super::*;
+use crate::run::hash::Hash;
 use crate::write::sample::folder;
 use trackbed_dem as dem;
 

@@ -1,0 +1,123 @@
+//! Stress of the solid before the run, resolved.
+
+use super::material::Materials;
+use crate::scene::solid::{InitialStress, InitialStressMethod, Solid};
+use crate::scene::{SceneError, Table};
+use std::collections::BTreeMap;
+use trackbed_fem::Mesh;
+use trackbed_fem::nonlinear::initial_stress::Overburden;
+
+/// Stress before the run.
+#[derive(Clone, Debug)]
+pub struct InitialStressPlan {
+    /// How it is found.
+    pub kind: InitialStressKind,
+    /// Steps in which equilibrium is sought.
+    pub steps: u32,
+    /// Whether the loads at time 0 take part in the equilibrium.
+    pub loads: bool,
+}
+
+/// How the initial stress is found.
+#[derive(Clone, Debug)]
+pub enum InitialStressKind {
+    /// Weight above times K₀ sideways.
+    K0 {
+        /// K₀ of each material.
+        k0: BTreeMap<u32, f64>,
+        /// What lies above a point; none: level ground up to the top of the mesh.
+        overburden: Option<Overburden>,
+    },
+    /// Gravity turned on in steps.
+    Gravity,
+    /// The same stress everywhere [Pa].
+    Uniform([f64; 6]),
+}
+
+/// Resolves `[solid.initial_stress]`.
+pub(super) fn initial_stress(
+    i: &Table<InitialStress>,
+    materials: &Materials,
+) -> Result<InitialStressPlan, SceneError> {
+    let method = match i.method {
+        InitialStressMethod::K0 => "k0",
+        InitialStressMethod::Gravity => "gravity",
+        InitialStressMethod::Uniform => "uniform",
+    };
+    for (name, present, of) in [
+        ("k0", i.k0.is_some(), "k0"),
+        ("surface", i.surface.is_some(), "k0"),
+        ("layers", i.layers.is_some(), "k0"),
+        ("stress", i.stress.is_some(), "uniform"),
+    ] {
+        let expected = format!("no such key for the method \"{method}\"");
+        i.refuse([(name, present && of != method)], &expected)?;
+    }
+    let kind = match i.method {
+        InitialStressMethod::Gravity => InitialStressKind::Gravity,
+        InitialStressMethod::Uniform => {
+            let stress = i.need("stress", i.stress, "six components in Pa")?;
+            InitialStressKind::Uniform(stress.map(|s| s.si))
+        }
+        InitialStressMethod::K0 => {
+            i.check("k0", i.k0, |k0| k0 >= 0.0, "0 or more")?;
+            let mut all = BTreeMap::new();
+            for (&id, name) in &materials.names {
+                let k0 = materials.k0.get(&id).copied().or(i.k0);
+                let expected = format!("a value, or one of its own for {name}");
+                all.insert(id, i.need("k0", k0, &expected)?);
+            }
+            InitialStressKind::K0 { k0: all, overburden: overburden(i)? }
+        }
+    };
+    let good = |n| (1.0..=10_000.0).contains(&n);
+    let steps = i.check("steps", i.steps.unwrap_or(10), good, "1 to 10000")?;
+    Ok(InitialStressPlan { kind, steps, loads: i.loads })
+}
+
+fn overburden(i: &Table<InitialStress>) -> Result<Option<Overburden>, SceneError> {
+    match (&i.surface, &i.layers) {
+        (None, None) => Ok(None),
+        (Some(surface), None) => Ok(Some(Overburden::Level(surface.si))),
+        (None, Some(layers)) => {
+            let layers: Vec<(f64, f64)> = layers.iter().map(|(top, density)| (top.si, density.si)).collect();
+            let good = !layers.is_empty() && layers.windows(2).all(|w| w[1].0 < w[0].0);
+            if !good || layers.iter().any(|l| l.1 < 0.0) {
+                let expected = "[[height of the top, density], …] from the top down, densities of 0 or more";
+                return Err(i.error("layers", format!("{layers:?}"), expected));
+            }
+            Ok(Some(Overburden::Layers(layers)))
+        }
+        _ => {
+            let expected = "either `surface` or `layers`";
+            Err(i.error("layers", "a list beside `surface`", expected))
+        }
+    }
+}
+
+/// Refuses a K₀ state whose weight above a point is taken from the density at that point, where materials differ in it.
+///
+/// # Errors
+/// Densities that differ, and no layers.
+pub fn check_overburden(
+    solid: &Table<Solid>,
+    plan: Option<&InitialStressPlan>,
+    mesh: &Mesh,
+    materials: &Materials,
+) -> Result<(), SceneError> {
+    let Some(InitialStressPlan { kind: InitialStressKind::K0 { overburden, .. }, .. }) = plan else {
+        return Ok(());
+    };
+    if matches!(overburden, Some(Overburden::Layers(_))) {
+        return Ok(());
+    }
+    let used = materials.constants.iter().filter(|(number, _)| mesh.materials.contains(number));
+    let densities: Vec<f64> = used.map(|(_, m)| m.elastic.density).collect();
+    let (least, most) = densities.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
+    if most > least * (1.0 + 1e-9) {
+        let found = format!("nothing, and materials of {least} to {most} kg/m3");
+        let expected = "the layers as [[height of the top, density], …]: the density of a point does not tell what lies above it";
+        return Err(solid.error("initial_stress.layers", found, expected));
+    }
+    Ok(())
+}

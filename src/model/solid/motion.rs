@@ -1,0 +1,66 @@
+//! Damping and reduction of a solid in motion, resolved.
+
+use crate::scene::solid::{Rayleigh, ReductionKind, Solid};
+use crate::scene::{SceneError, Table};
+use trackbed_fem as fem;
+
+/// The reduction of a solid, refused where it would not be one, or would not be used.
+pub(super) fn reduction(
+    solid: &Table<Solid>,
+    linear: bool,
+    coupled: bool,
+) -> Result<Option<fem::reduction::Reduction>, SceneError> {
+    let Some(r) = solid.reduction else { return Ok(None) };
+    let refuse = |found: &str, expected: &str| Err(solid.error("reduction", found, expected));
+    if !linear {
+        return refuse("a material with plasticity", "no such key unless every material is linear elastic");
+    }
+    if solid.initial_stress.is_some() {
+        return refuse("initial stress", "no such key beside solid.initial_stress");
+    }
+    if !coupled {
+        return refuse("a value", "no such key without [[grains]]");
+    }
+    match (r.kind, r.modes) {
+        (ReductionKind::Surface, modes) => {
+            Ok(Some(fem::reduction::Reduction::Surface { modes: modes.unwrap_or(0) }))
+        }
+        (ReductionKind::Modes, Some(0)) => Err(solid.error("reduction.modes", "0", "1 or more")),
+        (ReductionKind::Modes, modes) => {
+            Ok(Some(fem::reduction::Reduction::Modes { modes: modes.unwrap_or(60) }))
+        }
+    }
+}
+
+/// The constants of Rayleigh damping; 0 where the scene has none.
+pub(super) fn rayleigh(rayleigh: Option<Table<Rayleigh>>) -> Result<fem::damping::Rayleigh, SceneError> {
+    let Some(r) = rayleigh else { return Ok(fem::damping::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
+    let result = match (r.alpha_m, r.beta_k, r.damping_ratio, r.frequencies) {
+        (alpha, beta, None, None) => {
+            r.check("alpha_m", alpha, |a| a >= 0.0, "0 or more")?;
+            r.check("beta_k", beta, |b| b >= 0.0, "0 or more")?;
+            fem::damping::Rayleigh {
+                alpha_m: alpha.map_or(0.0, |a| a.si),
+                beta_k: beta.map_or(0.0, |b| b.si),
+            }
+        }
+        (None, None, Some(ratio), Some([f1, f2])) => {
+            r.check("damping_ratio", ratio, |z| (0.0..1.0).contains(&z), "0 or more, below 1")?;
+            let good = f1.si > 0.0 && f2.si > f1.si;
+            if !good {
+                let found = format!("{} and {} Hz", f1.si, f2.si);
+                return Err(r.error("frequencies", found, "two rising positive frequencies"));
+            }
+            fem::damping::Rayleigh::from_frequencies([f1.si, f2.si], [ratio, ratio])
+                .map_err(|e| r.here(e.to_string(), "other frequencies"))?
+        }
+        _ => {
+            return Err(
+                r.here("a mixture of keys", "either alpha_m and beta_k, or damping_ratio and frequencies")
+            );
+        }
+    };
+    r.check("alpha_m", result.alpha_m, |a| a >= 0.0, "0 or more")?;
+    r.check("beta_k", result.beta_k, |b| b >= 0.0, "0 or more")?;
+    Ok(result)
+}

@@ -1,0 +1,80 @@
+//! Sieve limits of a grade, from a table in CSV.
+
+use super::{fault, rows, text};
+use crate::read::ReadError;
+use std::path::Path;
+use trackbed_dem::insert::gradation::Gradation;
+
+/// Sieve limits and the curve in their middle.
+#[derive(Clone, Debug)]
+pub struct Grading {
+    /// The curve that stones are drawn to.
+    pub curve: Gradation,
+    /// Rows of the table, by rising sieve: size [m], least and largest mass fraction passing [-].
+    pub limits: Vec<[f64; 3]>,
+}
+
+impl Grading {
+    /// The same for stones `s` times as large.
+    pub fn scaled(&self, s: f64) -> Grading {
+        let limits = self.limits.iter().map(|[size, low, high]| [size * s, *low, *high]).collect();
+        Grading { curve: self.curve.scaled(s), limits }
+    }
+}
+
+/// The limits of one grade of a sieve table and the curve in their middle.
+///
+/// # Errors
+/// The file is missing, has no such grade, or its limits make no curve.
+pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, ReadError> {
+    let content = text(file, "gradation")?;
+    let mut columns: Option<[usize; 5]> = None;
+    let mut table: Vec<[f64; 3]> = Vec::new();
+    for (line, fields) in rows(&content) {
+        let Some([s, g, size, low, high]) = columns else {
+            let names = ["standard", "grade", "sieve_mm", "passing_lo_pct", "passing_hi_pct"];
+            let mut found = [0; 5];
+            for (k, name) in names.into_iter().enumerate() {
+                found[k] = fields.iter().position(|f| *f == name).ok_or_else(|| {
+                    fault(file, Some(line), name, "no such column", format!("columns {}", names.join(", ")))
+                })?;
+            }
+            columns = Some(found);
+            continue;
+        };
+        let field = |k: usize| fields.get(k).copied().unwrap_or_default();
+        if field(s) != standard || field(g) != grade {
+            continue;
+        }
+        let number = |k: usize, name: &str| {
+            field(k)
+                .parse::<f64>()
+                .ok()
+                .filter(|v| v.is_finite())
+                .ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", field(k)), "a number"))
+        };
+        table.push([
+            1e-3 * number(size, "sieve_mm")?,
+            1e-2 * number(low, "passing_lo_pct")?,
+            1e-2 * number(high, "passing_hi_pct")?,
+        ]);
+    }
+    if table.is_empty() {
+        return Err(fault(
+            file,
+            None,
+            "gradation",
+            format!("no row of {standard} {grade}"),
+            "rows of this grade",
+        ));
+    }
+    table.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let limits = table.clone();
+    // Sieves that everything passes carry no information beyond the first of them.
+    let full = table.iter().position(|r| r[1] + r[2] >= 2.0).unwrap_or(table.len() - 1);
+    table.truncate(full + 1);
+    let column = |k: usize| table.iter().map(|r| r[k]).collect::<Vec<_>>();
+    let curve = Gradation::from_limits(&column(0), &column(1), &column(2), None)
+        .map_err(|e| fault(file, None, "gradation", e.to_string(), "limits that make a curve"))?;
+    Ok(Grading { curve, limits })
+}

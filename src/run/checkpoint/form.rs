@@ -1,0 +1,169 @@
+//! The file of a checkpoint.
+//!
+//! ```text
+//! trackbed checkpoint 4\n        the form of the file
+//! { header }\n                   JSON: program, scene, stage, step, time
+//! body                           binary: every number with all its bits
+//! 8 bytes                        64-bit FNV-1a checksum of all before, low byte first
+//! ```
+//!
+//! The body is a sequence of parts in the form of the crate `postcard` (little endian, integers of variable length), read in the
+//! order that they were written in; which parts they are is up to the stage that wrote them. Fields have no names there, so
+//! no type in a checkpoint may leave a field out (`skip_serializing_if`).
+
+use super::origin::Origin;
+use crate::failure::Failure;
+use crate::run::hash::Hash;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// First line of a checkpoint, with the number of its form.
+pub(super) const MAGIC: &str = "trackbed checkpoint ";
+/// The form that this program writes and reads.
+pub(super) const FORM: u32 = 5;
+/// Bytes of the checksum at the end.
+pub(super) const CHECKSUM: usize = 8;
+/// Bytes that are gathered before they are summed and written.
+const BUFFER: usize = 1 << 18;
+
+/// Where in the run a checkpoint was written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moment {
+    /// Stage, such as `run`.
+    pub stage: String,
+    /// Steps or windows of the stage that were done.
+    pub step: u64,
+    /// Simulated time of the stage [s].
+    pub time: f64,
+}
+
+/// What is known of a checkpoint before its body is read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Header {
+    /// Number of this checkpoint in its run; the higher one of two slots is the later.
+    pub(super) number: u64,
+    pub(super) moment: Moment,
+    pub(super) origin: Origin,
+}
+
+/// Why a file is refused.
+pub(super) enum Unfit {
+    /// It has the form of another program.
+    Form(String),
+    /// It is not what was written.
+    Damaged(String),
+}
+
+/// Whether the checksum is that of the content. A form of another program has its checksum too; one digit that flipped in the
+/// number of the form has not.
+fn is_whole(bytes: &[u8]) -> bool {
+    let end = bytes.len().saturating_sub(CHECKSUM);
+    let mut hash = Hash::default();
+    hash.add(&bytes[..end]);
+    bytes[end..] == hash.value().to_le_bytes()
+}
+
+/// Header and body of a checkpoint, from the bytes of its file.
+pub(super) fn read(bytes: Vec<u8>) -> Result<(Header, Loaded), Unfit> {
+    let damaged = |text: &str| Unfit::Damaged(text.to_string());
+    let line = |from: usize| bytes[from..].iter().position(|b| *b == b'\n').map(|n| from + n);
+    let first = line(0).ok_or_else(|| damaged("it has no first line"))?;
+    let form = std::str::from_utf8(&bytes[..first]).ok().and_then(|l| l.strip_prefix(MAGIC));
+    match form.and_then(|f| f.parse::<u32>().ok()) {
+        Some(other) if other != FORM && is_whole(&bytes) => {
+            return Err(Unfit::Form(format!("found form {other} of a checkpoint, expected {FORM}")));
+        }
+        Some(_) => {}
+        None => return Err(damaged("it does not begin as a checkpoint")),
+    }
+    if !is_whole(&bytes) {
+        return Err(damaged("its checksum is not that of its content"));
+    }
+    let end = bytes.len().saturating_sub(CHECKSUM);
+    let second = line(first + 1).ok_or_else(|| damaged("it has no header"))?;
+    let header: Header =
+        serde_json::from_slice(&bytes[first + 1..second]).map_err(|e| Unfit::Damaged(e.to_string()))?;
+    let moment = header.moment.clone();
+    Ok((header, Loaded { moment, at: second + 1, end, bytes }))
+}
+
+/// Writes a checkpoint whose parts `fill` puts in.
+pub(super) fn write(
+    out: &mut dyn Write,
+    header: &Header,
+    fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
+) -> io::Result<()> {
+    let header = serde_json::to_string(header).map_err(io::Error::other)?;
+    let mut body = Body { out, hash: Hash::default(), buffer: Vec::with_capacity(BUFFER) };
+    body.write_all(format!("{MAGIC}{FORM}\n{header}\n").as_bytes())?;
+    fill(&mut body)?;
+    body.finish()
+}
+
+/// Takes the parts of a checkpoint in.
+pub struct Body<'a> {
+    out: &'a mut dyn Write,
+    hash: Hash,
+    buffer: Vec<u8>,
+}
+
+impl Body<'_> {
+    /// Adds a part.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn put<T: Serialize + ?Sized>(&mut self, part: &T) -> io::Result<()> {
+        postcard::to_io(part, self).map(|_| ()).map_err(io::Error::other)
+    }
+
+    fn pass(&mut self) -> io::Result<()> {
+        self.hash.add(&self.buffer);
+        self.out.write_all(&self.buffer)?;
+        self.buffer.clear();
+        Ok(())
+    }
+
+    fn finish(mut self) -> io::Result<()> {
+        self.pass()?;
+        self.out.write_all(&self.hash.value().to_le_bytes())
+    }
+}
+
+impl Write for Body<'_> {
+    #[inline]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.buffer.extend_from_slice(bytes);
+        if self.buffer.len() >= BUFFER {
+            self.pass()?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A checkpoint that was read.
+pub struct Loaded {
+    /// Where in the run it was written.
+    pub moment: Moment,
+    bytes: Vec<u8>,
+    at: usize,
+    end: usize,
+}
+
+impl Loaded {
+    /// The next part.
+    ///
+    /// # Errors
+    /// The part is not of this type: the program that wrote it was another one of the same version.
+    pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, Failure> {
+        let (part, rest) = postcard::take_from_bytes(&self.bytes[self.at..self.end]).map_err(|e| {
+            Failure::Input(format!("--resume: the checkpoint was not written by this program: {e}"))
+        })?;
+        self.at = self.end - rest.len();
+        Ok(part)
+    }
+}

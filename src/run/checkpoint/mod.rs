@@ -1,0 +1,152 @@
+//! Checkpoints of a run: files that a later start of the program goes on from, bit for bit.
+//!
+//! There are two slots. A checkpoint goes to the one that the last did not go to, beside the old file first and in its
+//! place when it is whole and on the disk. So at any moment one good checkpoint exists.
+
+mod form;
+mod origin;
+
+pub use form::{Body, Loaded, Moment};
+pub use origin::Origin;
+
+use crate::failure::Failure;
+use crate::read::source::{self, Refusal};
+use crate::scene::Document;
+use crate::write::{WriteError, atomic};
+use form::{Header, Unfit};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The folder of the checkpoints of a run.
+pub struct Slots {
+    dir: PathBuf,
+    origin: Origin,
+    /// Number of the next checkpoint.
+    next: u64,
+    /// Whether the slots hold checkpoints of this run, or none.
+    own: bool,
+}
+
+/// Name of the folder in the folder of the results.
+pub const FOLDER: &str = "checkpoint";
+const SLOTS: [&str; 2] = ["a.checkpoint", "b.checkpoint"];
+
+impl Slots {
+    /// The slots of a run that begins. What an earlier run left there stays until the first checkpoint is written, or the
+    /// results of that run are cleared away.
+    pub fn new(results: &Path, origin: Origin) -> Slots {
+        Slots { dir: results.join(FOLDER), origin, next: 0, own: false }
+    }
+
+    /// The folder.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// Whether there is a checkpoint, good or not, of whatever run.
+    pub fn any(&self) -> bool {
+        SLOTS.iter().any(|slot| self.dir.join(slot).exists())
+    }
+
+    /// Whether this run has a checkpoint.
+    pub fn has_one(&self) -> bool {
+        self.own && self.next > 0
+    }
+
+    /// Writes a checkpoint whose parts `fill` puts in.
+    ///
+    /// # Errors
+    /// What the system refuses; the last good checkpoint is left.
+    pub fn save(
+        &mut self,
+        moment: Moment,
+        fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        self.clear_others()?;
+        fs::create_dir_all(&self.dir).map_err(|e| failure(&self.dir, &e))?;
+        let header = Header { number: self.next, moment, origin: self.origin.clone() };
+        let file = self.dir.join(SLOTS[(self.next % 2) as usize]);
+        atomic::write(&file, |out| {
+            form::write(out, &header, fill).map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+        self.own = true;
+        self.next += 1;
+        Ok(())
+    }
+
+    /// Removes the checkpoints that another run left.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn clear_others(&mut self) -> Result<(), Failure> {
+        if self.own { Ok(()) } else { self.clear() }
+    }
+
+    /// Removes all checkpoints and their folder, if nothing else is in it.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn clear(&mut self) -> Result<(), Failure> {
+        for slot in SLOTS {
+            for name in [slot.to_string(), format!("{slot}.part")] {
+                let file = self.dir.join(name);
+                match fs::remove_file(&file) {
+                    Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(failure(&file, &e)),
+                    _ => {}
+                }
+            }
+        }
+        // Files of a user keep the folder; so does its absence.
+        let _ = fs::remove_dir(&self.dir);
+        (self.own, self.next) = (true, 0);
+        Ok(())
+    }
+
+    /// The latest good checkpoint in the slots, which later ones then follow, and a remark on a damaged one.
+    ///
+    /// # Errors
+    /// Bad input: there is none, all are damaged, or it is of another program or scene.
+    pub fn load(&mut self, document: &Document) -> Result<(Loaded, Option<String>), Failure> {
+        let refuse = |text: String| Failure::Input(format!("--resume: {text}"));
+        let (mut found, mut damaged, mut forms) = (Vec::new(), Vec::new(), Vec::new());
+        for slot in SLOTS {
+            let file = self.dir.join(slot);
+            let bytes = match source::bytes(&file, source::LARGEST) {
+                Err(Refusal::System(e)) if e.kind() == io::ErrorKind::NotFound => continue,
+                bytes => bytes.map_err(|refusal| {
+                    let (found, expected) = refusal.words(|e| format!("that it cannot be read ({e})"));
+                    refuse(format!("{}: found {found}, expected {expected}", file.display()))
+                })?,
+            };
+            match form::read(bytes) {
+                Ok(loaded) => found.push((file, loaded)),
+                Err(Unfit::Form(text)) => forms.push(format!("{}: {text}", file.display())),
+                Err(Unfit::Damaged(text)) => damaged.push(format!("{} is damaged: {text}", file.display())),
+            }
+        }
+        found.sort_by_key(|(_, (header, _))| header.number);
+        let Some((file, (header, loaded))) = found.pop() else {
+            let folder = self.dir.display();
+            return Err(refuse(match (forms.is_empty(), damaged.is_empty()) {
+                (false, _) => forms.join("; "),
+                (_, true) => format!("no checkpoint in {folder}, expected one of an interrupted run"),
+                (_, false) => damaged.join("; "),
+            }));
+        };
+        if let Some(text) = self.origin.difference(&header.origin, document) {
+            return Err(refuse(format!("{}: {text}", file.display())));
+        }
+        damaged.extend(forms);
+        let remark = damaged.first().map(|text| format!("{text}; the run goes on from {}", file.display()));
+        (self.own, self.next) = (true, header.number + 1);
+        Ok((loaded, remark))
+    }
+}
+
+fn failure(file: &Path, error: &io::Error) -> Failure {
+    Failure::Other(format!("{}: {error}", file.display()))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,74 @@
+//! What a checkpoint is of, and what makes a scene another one.
+
+use crate::scene::Document;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// What a checkpoint is of.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// Version of the program.
+    pub version: String,
+    /// Hash of the scene, its overrides and its files.
+    pub scene_hash: String,
+    /// Text of the scene file.
+    pub scene: String,
+    /// Keys overridden on the command line, as key=value.
+    pub overrides: Vec<String>,
+    /// The files that the scene names, with the hash of each.
+    pub files: Vec<(PathBuf, String)>,
+}
+
+impl Origin {
+    /// One sentence on what makes this scene another than the one that `old` is of; none when it is the same.
+    pub fn difference(&self, old: &Origin, document: &Document) -> Option<String> {
+        if old.version != self.version {
+            return Some(format!("is of version {} of the program, this is {}", old.version, self.version));
+        }
+        if old.scene_hash == self.scene_hash {
+            return None;
+        }
+        let wrong = "the scene is not the one of the checkpoint";
+        let before = Document::parse(document.file(), old.scene.clone()).ok().and_then(|mut d| {
+            old.overrides.iter().try_for_each(|o| d.set(o)).ok()?;
+            Some(keys(&d))
+        });
+        if let Some(before) = before {
+            let now = keys(document);
+            let changed = before.keys().chain(now.keys()).find(|k| before.get(*k) != now.get(*k));
+            if let Some(key) = changed {
+                let text =
+                    |keys: &BTreeMap<String, String>| keys.get(key).map_or("absent", |v| v).to_string();
+                return Some(format!("{wrong}: {key} was {}, now {}", text(&before), text(&now)));
+            }
+        }
+        let changed = self.files.iter().find(|f| !old.files.contains(f));
+        Some(match changed {
+            Some((file, _)) => format!("{wrong}: {} has changed", file.display()),
+            None => format!("{wrong}: its text or its overrides have changed, though no key has"),
+        })
+    }
+}
+
+/// Every key of a scene with its value, overrides applied.
+fn keys(document: &Document) -> BTreeMap<String, String> {
+    fn visit(path: &str, value: &toml::Value, out: &mut BTreeMap<String, String>) {
+        let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+        match value {
+            toml::Value::Table(t) => t.iter().for_each(|(k, v)| visit(&below(k), v, out)),
+            toml::Value::Array(a) if a.iter().any(toml::Value::is_table) => {
+                a.iter().enumerate().for_each(|(i, v)| visit(&below(&i.to_string()), v, out));
+            }
+            other => {
+                out.insert(path.to_string(), other.to_string());
+            }
+        }
+    }
+    let mut out = BTreeMap::new();
+    // A tree that cannot be read shows no keys; the hash still distinguishes the scenes.
+    if let Ok(tree) = document.read::<toml::Table>() {
+        visit("", &toml::Value::Table(tree), &mut out);
+    }
+    out
+}

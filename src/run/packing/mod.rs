@@ -1,0 +1,117 @@
+//! What the grains are like at the end of a run: porosity, coordination, fabric, stress, sieve curves; and the files that
+//! hold it: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
+
+mod files;
+mod records;
+mod report;
+mod sieves;
+
+pub use records::{CompactionRecord, FoulingRecord, GrowthRecord, MeasureRecord, PackingRecord};
+pub(super) use report::report;
+
+use super::system::GrainsView;
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::model::grains::{GrainsPart, MeasurePlan};
+use std::path::Path;
+use trackbed_dem as dem;
+use trackbed_dem::measure::{self, BoxRegion, ContactRecord};
+
+/// Measures the grains at the end and writes their files.
+///
+/// # Errors
+/// The disk refuses.
+pub fn record(
+    job: &Job,
+    dir: &Path,
+    view: GrainsView<'_>,
+    grains: &GrainsPart,
+) -> Result<PackingRecord, Failure> {
+    let GrainsView { model, state } = view;
+    let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);
+    // Those that are not there at the end do not count.
+    let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
+    let contacts = measure::contacts(model, state);
+    let stress = measure::mean_stress_of(model, state, &contacts);
+    let all = measure::coordination_of(model, state, &contacts, is_grain);
+    let strong = measure::strong_network(&contacts);
+    let ratio = measure::unbalanced_ratio(model, state, &contacts);
+    let between = |c: &ContactRecord| matches!(c.b, dem::Partner::Body(b) if is_grain(b)) && is_grain(c.a);
+    let measures = grains.measures.iter().map(|MeasurePlan { name, region, .. }| {
+        let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
+        let own = measure::coordination_of(model, state, &contacts, inside);
+        MeasureRecord {
+            name: name.clone(),
+            porosity: porosity(view, region, is_grain),
+            grains: (0..model.body_count()).filter(|&b| inside(b)).count(),
+            coordination: own.mean,
+            mechanical_coordination: own.mechanical,
+            fabric: measure::fabric(&contacts, |c| between(c) && region.holds(&c.point)),
+            stress: measure::region_stress(model, state, &stress, region),
+        }
+    });
+    let gradations = grains.groups.graded.iter().map(|g| sieves::graded(view, g)).collect::<Vec<_>>();
+    if !gradations.is_empty() {
+        sieves::write(dir, &job.title, view, &grains.groups.graded)?;
+    }
+    if grains.measures.iter().any(|m| m.radial.is_some()) {
+        files::write_radial(dir, view, &grains.measures, is_grain)?;
+    }
+    if job.output.packing {
+        files::write_packings(dir, view, grains)?;
+    }
+    Ok(PackingRecord {
+        coordination: all.mean,
+        mechanical_coordination: all.mechanical,
+        rattlers: all.rattlers,
+        neighbours: all.distribution,
+        fabric: measure::fabric(&contacts, between),
+        mean_contact_force: strong.mean_force,
+        strong_contacts: strong.contacts,
+        strong_load: strong.load,
+        unbalanced_ratio: ratio.is_finite().then_some(ratio),
+        measures: measures.collect(),
+        fouling: fouling(view, grains, is_grain),
+        gradations,
+    })
+}
+
+/// How much of the fouling groups is in the bed.
+fn fouling(
+    view: GrainsView<'_>,
+    grains: &GrainsPart,
+    is_grain: impl Fn(usize) -> bool,
+) -> Option<FoulingRecord> {
+    if grains.groups.fouling.is_empty() {
+        return None;
+    }
+    let model = view.model;
+    let fine = |b: usize| grains.groups.fouling.contains(&model.part(b));
+    let sum = |of: fn(&dem::Model, usize) -> f64, fines: bool| -> f64 {
+        (0..model.body_count()).filter(|&b| is_grain(b) && fine(b) == fines).map(|b| of(model, b)).sum()
+    };
+    let [stones, fines] = [false, true].map(|f| sum(dem::Model::mass, f));
+    let boxes = grains.measures.iter().map(|MeasurePlan { name, region, .. }| {
+        let skeleton = porosity(view, region, |b| is_grain(b) && !fine(b));
+        let both = porosity(view, region, &is_grain);
+        let share = if skeleton > 0.0 { (skeleton - both) / skeleton } else { 0.0 };
+        (name.clone(), skeleton, share)
+    });
+    Some(FoulingRecord {
+        fouling_index: share_of(fines, stones + fines),
+        relative_fouling_ratio: share_of(sum(dem::Model::volume, true), sum(dem::Model::volume, false)),
+        boxes: boxes.collect(),
+    })
+}
+
+/// A ratio; zero where there is nothing to compare with.
+fn share_of(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
+/// Share of a box that grains leave.
+fn porosity(view: GrainsView<'_>, region: &BoxRegion, is_grain: impl Fn(usize) -> bool) -> f64 {
+    let grains = (0..view.model.body_count()).filter(|&b| is_grain(b));
+    let solid: f64 = grains.map(|b| measure::body_volume_in(view.model, view.state, b, region)).sum();
+    1.0 - solid / region.volume()
+}

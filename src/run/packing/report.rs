@@ -1,0 +1,62 @@
+//! Lines of the report about grains.
+
+use super::records::{CompactionRecord, GrowthRecord, PackingRecord};
+
+/// Lines of the report about grains.
+pub fn report(
+    growth: &[GrowthRecord],
+    compaction: &[CompactionRecord],
+    packing: Option<&PackingRecord>,
+) -> Vec<String> {
+    let mut lines = Vec::new();
+    for g in growth {
+        lines.push(format!(
+            "growth of {}: porosity {:.4}, largest overlap {:.2e} of the radius, unbalanced force {:.1e}",
+            g.group, g.porosity, g.largest_overlap, g.unbalanced_ratio
+        ));
+    }
+    for (i, c) in compaction.iter().enumerate() {
+        let force = c.wall_force.map_or(String::new(), |f| format!(", force on the plane {f:.3e} N"));
+        lines.push(format!(
+            "compaction {} ({}): porosity {:.4} to {:.4}{force}",
+            i + 1,
+            c.kind,
+            c.porosity_before,
+            c.porosity_after
+        ));
+    }
+    let Some(p) = packing else { return lines };
+    lines.push(format!(
+        "grains: {:.2} neighbours, {:.2} without rattlers ({:.1} % of the grains); {:.0} % of the contacts carry {:.0} % of \
+         the normal forces",
+        p.coordination,
+        p.mechanical_coordination,
+        100.0 * p.rattlers,
+        100.0 * p.strong_contacts,
+        100.0 * p.strong_load
+    ));
+    for m in &p.measures {
+        let pressure = -(m.stress[0] + m.stress[1] + m.stress[2]) / 3.0;
+        lines.push(format!(
+            "{}: porosity {:.4}, {} grains, {:.2} neighbours, mean pressure {pressure:.3e} Pa",
+            m.name, m.porosity, m.grains, m.coordination
+        ));
+    }
+    if let Some(f) = &p.fouling {
+        let boxes: Vec<String> = f
+            .boxes
+            .iter()
+            .map(|(name, _, share)| format!(", {:.1} % of the voids of {name}", 100.0 * share))
+            .collect();
+        lines.push(format!("fines: {:.2} % of the mass{}", 100.0 * f.fouling_index, boxes.concat()));
+    }
+    for g in &p.gradations {
+        lines.push(format!(
+            "sieve curve of {}: {} stones, within {:.2} % passing of the curve asked for",
+            g.group,
+            g.stones,
+            100.0 * g.largest_deviation
+        ));
+    }
+    lines
+}

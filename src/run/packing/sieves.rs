@@ -1,0 +1,97 @@
+//! Sieve curves of the groups that were filled by one: how well they are met, `gradation.csv` and `gradation.svg`.
+
+use super::records::GradationRecord;
+use crate::failure::Failure;
+use crate::model::grains::GradedGroup;
+use crate::run::system::GrainsView;
+use crate::write::csv::{Field, write_table};
+use crate::write::svg::{LinePlot, Series};
+use std::path::Path;
+use trackbed_dem::insert::gradation::achieved_passing;
+use trackbed_dem::measure;
+
+/// Sizes at which a plotted sieve curve is evaluated.
+const CURVE_POINTS: usize = 120;
+
+/// How well a group meets its sieve curve.
+pub(super) fn graded(view: GrainsView<'_>, group: &GradedGroup) -> GradationRecord {
+    let stones = stones(view, group);
+    let curve = &group.grading.curve;
+    let sieves = curve.sizes().to_vec();
+    let points = curve_sizes(group);
+    let far = points.iter().zip(achieved_passing(&points, &stones));
+    GradationRecord {
+        group: group.name.clone(),
+        stones: stones.len(),
+        target: curve.passing().to_vec(),
+        achieved: achieved_passing(&sieves, &stones),
+        largest_deviation: far.map(|(d, a)| (a - curve.passing_at(*d)).abs()).fold(0.0, f64::max),
+        sieves,
+    }
+}
+
+/// Sieve size [m] and mass [kg] of the stones of a group that are there.
+fn stones(view: GrainsView<'_>, group: &GradedGroup) -> Vec<(f64, f64)> {
+    measure::stones(view.model, |b| view.state.present(b) && view.model.part(b) == group.part)
+}
+
+/// Sizes from the smallest sieve to the largest, evenly on the logarithmic scale, a little beyond at both ends [m].
+fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
+    let sizes = group.grading.curve.sizes();
+    let (low, high) = (sizes[0] * 0.999, sizes[sizes.len() - 1] * 1.001);
+    (0..=CURVE_POINTS).map(|k| low * (high / low).powf(k as f64 / CURVE_POINTS as f64)).collect()
+}
+
+/// A row of `gradation.csv`.
+type Sieve = [f64; 6];
+
+/// Its columns.
+const SIEVES: [Field<Sieve>; 6] = [
+    ("group", "", |r| r[0]),
+    ("sieve", "m", |r| r[1]),
+    ("lower_limit", "", |r| r[2]),
+    ("upper_limit", "", |r| r[3]),
+    ("target", "", |r| r[4]),
+    ("achieved", "", |r| r[5]),
+];
+
+/// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
+/// same drawn.
+pub(super) fn write(
+    dir: &Path,
+    title: &str,
+    view: GrainsView<'_>,
+    groups: &[GradedGroup],
+) -> Result<(), Failure> {
+    let mut rows: Vec<Sieve> = Vec::new();
+    let mut series = Vec::new();
+    for group in groups {
+        let stones = stones(view, group);
+        let limits = &group.grading.limits;
+        let sieves: Vec<f64> = limits.iter().map(|l| l[0]).collect();
+        for (&[size, low, high], achieved) in limits.iter().zip(achieved_passing(&sieves, &stones)) {
+            let target = group.grading.curve.passing_at(size);
+            rows.push([f64::from(group.part), size, low, high, target, achieved]);
+        }
+        let mut add = |name: &str, points: Vec<[f64; 2]>| {
+            let name = if groups.len() > 1 { format!("{}: {name}", group.name) } else { name.to_string() };
+            let points = points.into_iter().map(|[size, passing]| [1e3 * size, 100.0 * passing]).collect();
+            series.push(Series { name, points });
+        };
+        let points = curve_sizes(group);
+        let curve = &group.grading.curve;
+        add("asked for", points.iter().map(|&d| [d, curve.passing_at(d)]).collect());
+        let achieved = achieved_passing(&points, &stones);
+        add("stones", points.iter().zip(achieved).map(|(&d, a)| [d, a]).collect());
+        add("upper limit", limits.iter().map(|l| [l[0], l[2]]).collect());
+        add("lower limit", limits.iter().map(|l| [l[0], l[1]]).collect());
+    }
+    write_table(&dir.join("gradation.csv"), &SIEVES, rows)?;
+    let plot = LinePlot {
+        title: format!("{title}: sieve curve"),
+        x_label: "sieve [mm]".into(),
+        y_label: "passing by mass [%]".into(),
+        series,
+    };
+    Ok(plot.write(&dir.join("gradation.svg"))?)
+}

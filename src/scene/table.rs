@@ -1,0 +1,248 @@
+//! A table of a scene with its place in the file: what resolves a table names keys of this table alone, and need not know
+//! where in the file the table stands.
+
+use super::units::Quantity;
+use super::{Document, SceneError};
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+
+/// A table of a scene, and where it stands. It can be read like the table itself.
+pub struct Table<'a, T> {
+    document: &'a Document,
+    /// Keys from the root of the file to the table, with points between them; empty for the root.
+    place: String,
+    value: &'a T,
+}
+
+impl<T> Deref for Table<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.value
+    }
+}
+
+impl<'a, T> Table<'a, T> {
+    /// The whole scene, `value`, as it was read from `document`.
+    pub fn root(document: &'a Document, value: &'a T) -> Table<'a, T> {
+        Table { document, place: String::new(), value }
+    }
+
+    /// The table under `key` of the whole scene.
+    pub fn top(document: &'a Document, key: &str, value: &'a T) -> Table<'a, T> {
+        Table { document, place: key.to_string(), value }
+    }
+
+    /// The table under `key` of this one.
+    pub fn below<'b, U>(&'b self, key: &str, value: &'b U) -> Table<'b, U> {
+        Table { document: self.document, place: self.path(key), value }
+    }
+
+    /// The table under `key`, where there is one.
+    pub fn optional<'b, U>(&'b self, key: &str, value: &'b Option<U>) -> Option<Table<'b, U>> {
+        value.as_ref().map(|value| self.below(key, value))
+    }
+
+    /// Table `index`, counted from 0, of the list of tables under `key`.
+    pub fn row<'b, U>(&'b self, key: &str, list: &'b [U], index: usize) -> Table<'b, U> {
+        self.below(&format!("{key}.{index}"), &list[index])
+    }
+
+    /// The tables of the list under `key`.
+    pub fn rows<'b, U>(&'b self, key: &str, list: &'b [U]) -> impl Iterator<Item = Table<'b, U>> {
+        (0..list.len()).map(move |index| self.row(key, list, index))
+    }
+
+    /// `key` of this table with all keys on the way to it.
+    pub fn path(&self, key: &str) -> String {
+        if self.place.is_empty() { key.to_string() } else { format!("{}.{key}", self.place) }
+    }
+
+    /// A file that the scene names; its path there is relative to the folder of the scene file.
+    pub fn locate(&self, file: &Path) -> PathBuf {
+        self.document.resolve(file)
+    }
+
+    /// The scene file.
+    pub fn scene_file(&self) -> &'a Path {
+        self.document.file()
+    }
+
+    /// An error about `key` of this table, or about a key of a table below: `key.below`.
+    pub fn error(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
+        self.document.error(&self.path(key), found, expected)
+    }
+
+    /// An error about the table itself.
+    pub fn here(&self, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
+        self.document.error(&self.place, found, expected)
+    }
+
+    /// An error about a key that is not there.
+    pub fn missing(&self, key: &str, expected: impl Into<String>) -> SceneError {
+        self.error(key, "nothing", expected)
+    }
+
+    /// The value of `key`.
+    ///
+    /// # Errors
+    /// It is not there.
+    pub fn need<V>(&self, key: &str, value: Option<V>, expected: &str) -> Result<V, SceneError> {
+        value.ok_or_else(|| self.missing(key, expected))
+    }
+
+    /// The value of `key`, where it is there.
+    ///
+    /// # Errors
+    /// It is not finite, or not `good`.
+    pub fn check<N: Number>(
+        &self,
+        key: &str,
+        value: N,
+        good: impl Fn(f64) -> bool,
+        expected: &str,
+    ) -> Result<N, SceneError> {
+        match value.number() {
+            Some(v) if !(v.is_finite() && good(v)) => Err(self.error(key, v.to_string(), expected)),
+            _ => Ok(value),
+        }
+    }
+
+    /// Refuses the first of the keys that is there; each comes with whether it is.
+    ///
+    /// # Errors
+    /// One is there.
+    pub fn refuse<'k>(
+        &self,
+        keys: impl IntoIterator<Item = (&'k str, bool)>,
+        expected: &str,
+    ) -> Result<(), SceneError> {
+        match keys.into_iter().find(|(_, there)| *there) {
+            Some((key, _)) => Err(self.error(key, "a value", expected)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A number of a scene, in SI units, or one that may not be there.
+pub trait Number: Copy {
+    /// The number; none where it is not there.
+    fn number(self) -> Option<f64>;
+}
+
+impl Number for f64 {
+    fn number(self) -> Option<f64> {
+        Some(self)
+    }
+}
+
+impl Number for u32 {
+    fn number(self) -> Option<f64> {
+        Some(f64::from(self))
+    }
+}
+
+impl Number for usize {
+    fn number(self) -> Option<f64> {
+        Some(self as f64)
+    }
+}
+
+impl<D> Number for Quantity<D> {
+    fn number(self) -> Option<f64> {
+        Some(self.si)
+    }
+}
+
+impl<N: Number> Number for Option<N> {
+    fn number(self) -> Option<f64> {
+        self.and_then(N::number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::units::Length;
+
+    struct Scene {
+        walls: Vec<Wall>,
+        periodic: Option<Wall>,
+    }
+
+    struct Wall {
+        radius: Option<Quantity<Length>>,
+        shape: Shape,
+    }
+
+    struct Shape {
+        count: u32,
+    }
+
+    const TEXT: &str = "[[walls]]\nradius = 1\n[[walls]]\nradius = 2\nshape.count = 0\n";
+
+    fn with_scene(act: impl Fn(&Table<Scene>)) {
+        let document = Document::parse(Path::new("folder/x.toml"), TEXT.into()).unwrap();
+        let wall = |radius, count| Wall { radius: Some(Quantity::new(radius)), shape: Shape { count } };
+        let scene = Scene { walls: vec![wall(1.0, 7), wall(2.0, 0)], periodic: None };
+        act(&Table::root(&document, &scene));
+    }
+
+    /// Keys and lines of a table in a list, of one below it, and of the root.
+    #[test]
+    fn errors_name_the_place() {
+        with_scene(|scene| {
+            assert_eq!(
+                scene.error("walls", "a", "b").to_string(),
+                "folder/x.toml:1: walls: found a, expected b"
+            );
+            let walls: Vec<_> = scene.rows("walls", &scene.walls).collect();
+            assert_eq!(walls.len(), 2);
+            let shape = walls[1].below("shape", &walls[1].shape);
+            for (error, line, key) in [
+                (walls[0].error("radius", "a", "b"), 2, "walls.0.radius"),
+                (walls[1].error("shape.count", "a", "b"), 5, "walls.1.shape.count"),
+                (shape.error("count", "a", "b"), 5, "walls.1.shape.count"),
+                (shape.here("a", "b"), 5, "walls.1.shape"),
+            ] {
+                assert_eq!((error.line, error.key.as_str()), (Some(line), key));
+            }
+            let missing = walls[0].need("height", None::<f64>, "the height").unwrap_err();
+            assert_eq!(
+                (missing.key.as_str(), missing.found.as_str(), missing.expected.as_str()),
+                ("walls.0.height", "nothing", "the height")
+            );
+            assert!(scene.optional("periodic", &scene.periodic).is_none());
+            assert_eq!(scene.locate(Path::new("mesh.inp")), Path::new("folder/mesh.inp"));
+        });
+    }
+
+    /// A table is read like its value, and a check hands on what it has checked.
+    #[test]
+    fn values_are_checked() {
+        with_scene(|scene| {
+            let wall = scene.row("walls", &scene.walls, 1);
+            let above = |x: f64| x > 0.0;
+            let radius = wall.check("radius", wall.radius, above, "above 0").unwrap();
+            assert_eq!(radius.map(|r| r.si), Some(2.0));
+            assert_eq!(wall.check("scale", None::<f64>, above, "above 0").unwrap(), None);
+            for (error, found) in [
+                (wall.check("shape.count", wall.shape.count, above, "above 0").unwrap_err(), "0"),
+                (wall.check("radius", -0.5, above, "above 0").unwrap_err(), "-0.5"),
+                (wall.check("radius", f64::INFINITY, above, "above 0").unwrap_err(), "inf"),
+                (wall.check("radius", Some(f64::NAN), |_| true, "a length").unwrap_err(), "NaN"),
+            ] {
+                assert_eq!(error.found, found);
+            }
+        });
+    }
+
+    #[test]
+    fn the_first_key_that_is_there_is_refused() {
+        with_scene(|scene| {
+            assert!(scene.refuse([("walls", false), ("periodic", false)], "none").is_ok());
+            let error = scene.refuse([("periodic", false), ("walls", true)], "no such key").unwrap_err();
+            assert_eq!((error.key.as_str(), error.found.as_str()), ("walls", "a value"));
+        });
+    }
+}

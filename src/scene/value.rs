@@ -1,0 +1,168 @@
+//! Values of a file on their way into the types of a scene. What is wrong comes with the keys that lead to it. The parser's
+//! own way in would cut a list that is too long, and take a list for a table.
+
+use serde::de::value::StrDeserializer;
+use serde::de::{
+    self, DeserializeSeed, Deserializer, Error as _, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
+    Visitor,
+};
+use serde::forward_to_deserialize_any;
+use std::fmt;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Message about a value that is not one of the words that are to choose from.
+pub(super) const NO_WORD: &str = "no word";
+
+/// What is wrong with a value, in words of the parser.
+#[derive(Debug)]
+pub(super) struct Fault {
+    /// The words.
+    pub message: String,
+    /// Keys from the root of the file to the value.
+    pub path: Vec<String>,
+}
+
+impl Fault {
+    /// The fault of a value as one of the table or list that holds it under `key`.
+    fn below(mut self, key: impl fmt::Display) -> Fault {
+        self.path.insert(0, key.to_string());
+        self
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.path.join("."), self.message)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl de::Error for Fault {
+    fn custom<T: fmt::Display>(message: T) -> Fault {
+        Fault { message: message.to_string(), path: Vec::new() }
+    }
+}
+
+impl From<toml::de::Error> for Fault {
+    fn from(error: toml::de::Error) -> Fault {
+        Fault::custom(error.message())
+    }
+}
+
+/// A value of the file.
+pub(super) struct Value<'i>(Spanned<DeValue<'i>>);
+
+impl<'i> Value<'i> {
+    /// The whole file.
+    pub fn root(tree: Spanned<DeTable<'i>>) -> Value<'i> {
+        let span = tree.span();
+        Value(Spanned::new(span, DeValue::Table(tree.into_inner())))
+    }
+}
+
+impl<'de> Deserializer<'de> for Value<'de> {
+    type Error = Fault;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        let span = self.0.span();
+        match self.0.into_inner() {
+            DeValue::Array(items) => visitor.visit_seq(Items(items.into_iter().enumerate())),
+            DeValue::Table(entries) => visitor.visit_map(Entries(entries.into_iter(), None)),
+            DeValue::Datetime(_) => Err(Fault::invalid_type(Unexpected::Other("a date"), &visitor)),
+            single => {
+                Spanned::new(span, single).into_deserializer().deserialize_any(visitor).map_err(Fault::from)
+            }
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::Array(items) if items.len() != length => {
+                Err(Fault::invalid_length(items.len(), &visitor))
+            }
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::Array(_) => Err(Fault::invalid_type(Unexpected::Seq, &visitor)),
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        match self.0.get_ref() {
+            DeValue::String(word) => visitor.visit_enum(StrDeserializer::new(word)),
+            _ => Err(Fault::custom(NO_WORD)),
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq
+        tuple_struct map identifier ignored_any
+    }
+}
+
+/// The items of a list.
+struct Items<I>(I);
+
+impl<'de, I: Iterator<Item = (usize, Spanned<DeValue<'de>>)>> SeqAccess<'de> for Items<I> {
+    type Error = Fault;
+
+    fn next_element_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, Fault> {
+        let Some((index, item)) = self.0.next() else { return Ok(None) };
+        seed.deserialize(Value(item)).map(Some).map_err(|fault| fault.below(index))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.0.size_hint().0)
+    }
+}
+
+/// The entries of a table, and the one whose key was handed out.
+struct Entries<'de, I>(I, Option<(String, Spanned<DeValue<'de>>)>);
+
+impl<'de, K: AsRef<str>, I: Iterator<Item = (Spanned<K>, Spanned<DeValue<'de>>)>> MapAccess<'de>
+    for Entries<'de, I>
+{
+    type Error = Fault;
+
+    fn next_key_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, Fault> {
+        let Some((key, value)) = self.0.next() else { return Ok(None) };
+        let key = key.get_ref().as_ref().to_string();
+        let read =
+            seed.deserialize(StrDeserializer::<Fault>::new(&key)).map_err(|fault| fault.below(&key))?;
+        self.1 = Some((key, value));
+        Ok(Some(read))
+    }
+
+    fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Fault> {
+        let (key, value) = self.1.take().ok_or_else(|| Fault::custom("a value without a key"))?;
+        seed.deserialize(Value(value)).map_err(|fault| fault.below(key))
+    }
+}
