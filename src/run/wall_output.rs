@@ -65,7 +65,7 @@ fn picture(
             let ring = |end: usize| {
                 let (middle, r) = (base + k * (*height * end as f64), radii[end]);
                 (0..AROUND).map(move |i| {
-                    let (sin, cos) = (f64::from(i) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
+                    let (sin, cos) = libm::sincos(f64::from(i) / f64::from(AROUND) * std::f64::consts::TAU);
                     middle + (u * cos + v * sin) * r
                 })
             };
@@ -86,9 +86,9 @@ fn picture(
             let rings = AROUND / 2 - 1;
             let mut points = Vec::new();
             for j in 1..=rings {
-                let (sin, cos) = (f64::from(j) / f64::from(rings + 1) * std::f64::consts::PI).sin_cos();
+                let (sin, cos) = libm::sincos(f64::from(j) / f64::from(rings + 1) * std::f64::consts::PI);
                 for i in 0..AROUND {
-                    let (s, c) = (f64::from(i) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
+                    let (s, c) = libm::sincos(f64::from(i) / f64::from(AROUND) * std::f64::consts::TAU);
                     points.push(place(centre + Vec3::new(c * sin, s * sin, cos) * *radius));
                 }
             }

@@ -172,8 +172,8 @@ impl TimeFunction {
         match self.kind {
             HistoryKind::Constant => 1.0,
             HistoryKind::Ramp => phase.min(1.0),
-            HistoryKind::Sine => (TAU * phase).sin(),
-            HistoryKind::Haversine => 0.5 * (1.0 - (TAU * phase).cos()),
+            HistoryKind::Sine => libm::sin(TAU * phase),
+            HistoryKind::Haversine => 0.5 * (1.0 - libm::cos(TAU * phase)),
             HistoryKind::Table => self.between(t - self.start),
         }
     }

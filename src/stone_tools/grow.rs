@@ -73,7 +73,7 @@ pub fn grow(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) ->
     let cubes: f64 = ratio.iter().map(|s| s.powi(3)).sum();
 
     // From a fifth of the volume on.
-    let mut size = (0.2 * volume / (ball * cubes)).cbrt();
+    let mut size = libm::cbrt(0.2 * volume / (ball * cubes));
     let mut jammed = Jam { distance, radii: vec![0.0; n], pairs: Vec::new(), mean: 0.0 };
     while !jammed.relax(&mut centres, &ratio, size) {
         size *= 0.8;

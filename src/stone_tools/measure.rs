@@ -114,7 +114,7 @@ fn exposed(spheres: &[Ball]) -> Vec<([f64; 3], f64)> {
         let area = 4.0 * std::f64::consts::PI * r * r / SPHERE_POINTS as f64;
         for k in 0..SPHERE_POINTS {
             let z = 1.0 - (2 * k + 1) as f64 / SPHERE_POINTS as f64;
-            let (sin, cos) = (golden * k as f64).sin_cos();
+            let (sin, cos) = libm::sincos(golden * k as f64);
             let rim = (1.0 - z * z).sqrt();
             let p = Vector3::from(*c) + Vector3::new(rim * cos, rim * sin, z) * *r;
             let covered = |(j, (d, s)): (usize, &Ball)| j != i && (p - Vector3::from(*d)).norm() < *s;

@@ -33,7 +33,7 @@ pub fn stone(seed: u64, index: u64, form: &Form) -> Polyhedron {
     let mut draw = |[lo, hi]: [f64; 2]| lo + (hi - lo) * random.uniform();
     let (elongation, flatness, angularity) =
         (draw(form.elongation), draw(form.flatness), draw(form.angularity));
-    let count = (POINTS[0] * POINTS[1].powf(1.0 - angularity)).round() as usize;
+    let count = (POINTS[0] * libm::pow(POINTS[1], 1.0 - angularity)).round() as usize;
     // A hull that spans no volume would take chance to the extreme; then the next draw decides.
     let body = loop {
         let points = points(&mut random, count, [1.0, elongation, elongation * flatness]);

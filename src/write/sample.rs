@@ -47,9 +47,9 @@ pub fn straight_block(n: [usize; 3]) -> Mesh {
 pub fn block(n: [usize; 3]) -> Mesh {
     mapped_block(n, |[x, y, z]| {
         [
-            x + 0.11 * (1.3 * y + 0.4).sin() + 0.07 * z * z / (1.0 + z),
-            1.2 * y + 0.09 * (1.7 * x + 0.8 * z).cos(),
-            0.8 * z + 0.05 * x * y / (1.0 + x) + 0.06 * (2.1 * x - y).sin(),
+            x + 0.11 * libm::sin(1.3 * y + 0.4) + 0.07 * z * z / (1.0 + z),
+            1.2 * y + 0.09 * libm::cos(1.7 * x + 0.8 * z),
+            0.8 * z + 0.05 * x * y / (1.0 + x) + 0.06 * libm::sin(2.1 * x - y),
         ]
     })
 }

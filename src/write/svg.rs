@@ -191,12 +191,13 @@ impl Axis {
 
     fn labels(&self) -> Vec<String> {
         let largest = self.ticks().into_iter().fold(0.0, |m: f64, t| m.max(t.abs()));
-        let digits = (-self.step.log10().floor()).max(0.0) as usize;
+        let digits = (-libm::log10(self.step).floor()).max(0.0) as usize;
         let scientific = largest >= 1e6 || self.step < 1e-4;
         let label = |t: f64| match (scientific, t == 0.0) {
             (true, true) => "0".to_string(),
             (true, false) => {
-                let decimals = (largest.log10().floor() - self.step.log10().floor()).max(0.0) as usize;
+                let decimals =
+                    (libm::log10(largest).floor() - libm::log10(self.step).floor()).max(0.0) as usize;
                 minus(&format!("{t:.decimals$e}"))
             }
             (false, _) => minus(&format!("{:.digits$}", t + 0.0)),
@@ -212,7 +213,7 @@ fn minus(text: &str) -> String {
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
 fn nice_step(least: f64) -> f64 {
-    let power = 10.0_f64.powf(least.log10().floor());
+    let power = libm::pow(10.0, libm::log10(least).floor());
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power)
 }
 

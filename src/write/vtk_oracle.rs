@@ -64,7 +64,7 @@ fn write_solid(file: &Path, mesh: &Mesh) {
 }
 
 fn grains(count: usize) -> GrainFrame {
-    let vector = |i: usize| [i as f64, (i as f64).sin(), -0.5];
+    let vector = |i: usize| [i as f64, libm::sin(i as f64), -0.5];
     GrainFrame {
         position: (0..count).map(vector).collect(),
         radius: vec![0.02; count],

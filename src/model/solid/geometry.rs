@@ -202,7 +202,7 @@ fn planes(axis: &Table<Axis>) -> Result<Vec<f64>, SceneError> {
     for i in 0..intervals {
         let (low, high, count) = (lines[i], lines[i + 1], axis.counts[i]);
         // Element lengths are a geometric row whose last is `ratio` times its first.
-        let growth = if count > 1 { ratios[i].powf(1.0 / (count - 1) as f64) } else { 1.0 };
+        let growth = if count > 1 { libm::pow(ratios[i], 1.0 / (count - 1) as f64) } else { 1.0 };
         let total: f64 = (0..count).map(|k| growth.powi(k as i32)).sum();
         let mut sum = 0.0;
         for k in 0..count - 1 {

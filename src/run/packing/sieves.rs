@@ -39,7 +39,7 @@ fn stones(view: GrainsView<'_>, group: &GradedGroup) -> Vec<(f64, f64)> {
 fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
     let sizes = group.grading.curve.sizes();
     let (low, high) = (sizes[0] * 0.999, sizes[sizes.len() - 1] * 1.001);
-    (0..=CURVE_POINTS).map(|k| low * (high / low).powf(k as f64 / CURVE_POINTS as f64)).collect()
+    (0..=CURVE_POINTS).map(|k| low * libm::pow(high / low, k as f64 / CURVE_POINTS as f64)).collect()
 }
 
 /// A row of `gradation.csv`.

@@ -168,7 +168,7 @@ fn shake(
     cycles: u32,
 ) -> Result<(), Failure> {
     let (begun, end) = (bed.state.time, f64::from(cycles) / frequency);
-    let at = |t: f64| if t < end { (TAU * frequency * t).sin() } else { 0.0 };
+    let at = |t: f64| if t < end { libm::sin(TAU * frequency * t) } else { 0.0 };
     while bed.state.time - begun < end {
         let (t, dt) = (bed.state.time - begun, bed.dt());
         // The velocity that takes the plane from one place to the next exactly.
@@ -184,7 +184,7 @@ fn shake(
 fn tamp(bed: &mut Bed<'_>, plate: usize, force: f64, frequency: f64, cycles: u32) -> Result<(), Failure> {
     let end = f64::from(cycles) / frequency;
     while bed.state.time < end {
-        let share = (PI * frequency * bed.state.time).sin().powi(2);
+        let share = libm::sin(PI * frequency * bed.state.time).powi(2);
         let force = Vec3::new(0.0, 0.0, -force * share);
         bed.step(&[AppliedForce { body: plate, force, point: bed.state.position(plate) }])?;
     }

@@ -107,7 +107,7 @@ fn parallel(p: &Table<Parallel>) -> Result<ParallelBond, SceneError> {
     let shear = p.shear_strength.map_or(f64::INFINITY, |s| s.si);
     let shear_strength = match angle {
         Some(a) if p.shear_strength.is_some() => {
-            ShearStrength::MohrCoulomb { cohesion: shear, friction: a.tan() }
+            ShearStrength::MohrCoulomb { cohesion: shear, friction: libm::tan(a) }
         }
         Some(_) => {
             return Err(p.error("friction_angle", "a value", "a `shear_strength` beside it"));

@@ -43,10 +43,10 @@ pub(super) fn scattered(
     let (mut start, mut factor) = (1.0, 1.0);
     if let Some((porosity, _)) = &growth {
         let solid: f64 = sizes.iter().zip(&dealt).map(|(s, d)| unit_volume[*d] * s.powi(3)).sum();
-        factor = ((1.0 - porosity) * volume / solid).cbrt();
+        factor = libm::cbrt((1.0 - porosity) * volume / solid);
         sizes.iter_mut().for_each(|s| *s *= factor);
         let bounding: f64 = sizes.iter().zip(&dealt).map(|(s, d)| (reach[*d] * s).powi(3)).sum();
-        start = (SEEDLINGS * volume / (4.0 / 3.0 * std::f64::consts::PI * bounding)).cbrt().min(0.7);
+        start = libm::cbrt(SEEDLINGS * volume / (4.0 / 3.0 * std::f64::consts::PI * bounding)).min(0.7);
     }
     let radii: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| start * s * reach[*d]).collect();
     let places = scatter::scatter(&container, &radii, group.seed)

@@ -165,7 +165,7 @@ impl SleeperBodies {
         let [x, y] = [0, 1].map(|d| self.sum_z(k, u, &self.slopes[d]));
         SleeperMotion {
             way: [0, 1, 2].map(mean),
-            tilt: x.hypot(y).atan(),
+            tilt: libm::atan(libm::hypot(x, y)),
             seats: self.rise_of_seats(k, u),
             bend: self.sum_z(k, u, &self.bend),
         }
