@@ -99,8 +99,8 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         if origin::was_done(&dir, &scene_hash)? {
             return Ok(Outcome::WasDone(dir));
         }
-        let (checkpoint, remark) = slots.load(&document)?;
-        remark.iter().for_each(|remark| message::note(remark));
+        let (checkpoint, remarks) = slots.load(&document)?;
+        remarks.iter().for_each(|remark| message::note(remark));
         loaded = Some(checkpoint);
     }
     pool.install(|| {

@@ -75,6 +75,7 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
         scene: document.text().into(),
         overrides: document.overrides().iter().map(|(k, v)| format!("{k}={v}")).collect(),
         files,
+        processor: checkpoint::processor(),
     }
 }
 

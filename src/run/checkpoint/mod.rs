@@ -7,7 +7,7 @@ mod form;
 mod origin;
 
 pub use form::{Body, Loaded, Moment};
-pub use origin::Origin;
+pub use origin::{Origin, processor};
 
 use crate::failure::Failure;
 use crate::read::source::{self, Refusal};
@@ -103,11 +103,11 @@ impl Slots {
         Ok(())
     }
 
-    /// The latest good checkpoint in the slots, which later ones then follow, and a remark on a damaged one.
+    /// The latest good checkpoint in the slots, which later ones then follow, and remarks on a damaged one and on another processor.
     ///
     /// # Errors
     /// Bad input: there is none, all are damaged, or it is of another program or scene.
-    pub fn load(&mut self, document: &Document) -> Result<(Loaded, Option<String>), Failure> {
+    pub fn load(&mut self, document: &Document) -> Result<(Loaded, Vec<String>), Failure> {
         let refuse = |text: String| Failure::Input(format!("--resume: {text}"));
         let (mut found, mut damaged, mut forms) = (Vec::new(), Vec::new(), Vec::new());
         for slot in SLOTS {
@@ -138,9 +138,11 @@ impl Slots {
             return Err(refuse(format!("{}: {text}", file.display())));
         }
         damaged.extend(forms);
-        let remark = damaged.first().map(|text| format!("{text}; the run goes on from {}", file.display()));
+        let mut remarks: Vec<String> = self.origin.other_processor(&header.origin).into_iter().collect();
+        remarks
+            .extend(damaged.first().map(|text| format!("{text}; the run goes on from {}", file.display())));
         (self.own, self.next) = (true, header.number + 1);
-        Ok((loaded, remark))
+        Ok((loaded, remarks))
     }
 }
 

@@ -18,9 +18,38 @@ pub struct Origin {
     pub overrides: Vec<String>,
     /// The files that the scene names, with the hash of each.
     pub files: Vec<(PathBuf, String)>,
+    /// What of the processor the last bits of the solid depend on.
+    pub processor: String,
+}
+
+/// Architecture of the processor, and its instructions that the solid's kernels choose by: lanes of other widths, and products
+/// fused with sums, round differently. The grains have the same bits with all of them.
+pub fn processor() -> String {
+    let mut words = vec![std::env::consts::ARCH];
+    #[cfg(target_arch = "x86_64")]
+    {
+        let found = [
+            ("avx2", is_x86_feature_detected!("avx2")),
+            ("fma", is_x86_feature_detected!("fma")),
+            ("avx512f", is_x86_feature_detected!("avx512f")),
+        ];
+        words.extend(found.iter().filter(|(_, there)| *there).map(|(name, _)| *name));
+    }
+    words.join(" ")
 }
 
 impl Origin {
+    /// One sentence on how this processor differs from the one of `old`; none where both compute alike.
+    pub fn other_processor(&self, old: &Origin) -> Option<String> {
+        (self.processor != old.processor).then(|| {
+            format!(
+                "the checkpoint is from a processor with {}, this one has {}: the grains go on bit for bit, the last digits of a \
+                 solid may not",
+                old.processor, self.processor
+            )
+        })
+    }
+
     /// One sentence on what makes this scene another than the one that `old` is of; none when it is the same.
     pub fn difference(&self, old: &Origin, document: &Document) -> Option<String> {
         if old.version != self.version {

@@ -39,7 +39,7 @@ fn parts_come_back_with_all_their_bits() {
         })
         .unwrap();
     let (mut loaded, remark) = Slots::new(&dir, origin(SCENE, "5")).load(&document(SCENE)).unwrap();
-    assert_eq!((loaded.moment.clone(), remark), (moment(3), None));
+    assert_eq!((loaded.moment.clone(), remark), (moment(3), vec![]));
     let bits = |v: &[f64]| v.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&loaded.take::<Vec<f64>>().unwrap()), bits(&values));
     let (back, text, number): ([f64; 5], Option<String>, u64) = loaded.take().unwrap();
@@ -71,7 +71,7 @@ fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
         bytes[at] ^= 4;
         fs::write(&a, &bytes).unwrap();
         let (step, remark) = load().unwrap();
-        assert!(step == 3 && remark.unwrap().contains("a.checkpoint is damaged"), "byte {at}");
+        assert!(step == 3 && remark.concat().contains("a.checkpoint is damaged"), "byte {at}");
         fs::write(&a, &whole[..at]).unwrap();
         assert_eq!(load().unwrap().0, 3, "cut at {at}");
     }
@@ -147,6 +147,23 @@ fn another_program_or_scene_is_named() {
     assert!(difference_of(mesh, SCENE, &[]).ends_with("mesh.cdb has changed"));
     let comment = format!("# more\n{SCENE}");
     assert!(difference_of(origin(&comment, "6"), &comment, &[]).ends_with("though no key has"));
+}
+
+/// A checkpoint from another processor is taken, with a remark.
+#[test]
+fn another_processor_is_remarked() {
+    let dir = folder("checkpoint_processor");
+    let of = |processor: &str| Origin { processor: processor.into(), ..origin(SCENE, "5") };
+    Slots::new(&dir, of("x86_64 avx2 fma")).save(moment(1), |body| body.put(&1_u64)).unwrap();
+    let load = |processor| Slots::new(&dir, of(processor)).load(&document(SCENE)).unwrap().1;
+    assert!(load("x86_64 avx2 fma").is_empty());
+    let remarks = load("aarch64");
+    assert!(
+        remarks.len() == 1 && remarks[0].contains("x86_64 avx2 fma") && remarks[0].contains("aarch64"),
+        "{remarks:?}"
+    );
+    assert!(processor().starts_with(std::env::consts::ARCH));
+    fs::remove_dir_all(&dir).unwrap();
 }
 
 #[test]
