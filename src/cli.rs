@@ -21,6 +21,8 @@ pub enum Command {
     Check(CheckArgs),
     /// As `check`, with the stages, the loops, the memory per sphere and, from a short probe, the time a run may take.
     Explain(CheckArgs),
+    /// Run variations of a scene, and compare error and cost of each: the trade of speed against accuracy.
+    Study(StudyArgs),
     /// Natural frequencies and modes of the solid part of a scene.
     Modal(ModalArgs),
     /// Read a mesh: count and measure it, find its faults, or convert it.
@@ -59,6 +61,37 @@ pub struct RunArgs {
     pub resume: bool,
     /// Replace what is in the folder of the results: the checkpoint of an interrupted run, the results of another scene, files
     /// of others.
+    #[arg(long)]
+    pub force: bool,
+    /// Print nothing but errors.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `study`.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// Study file (TOML).
+    pub study: PathBuf,
+    /// Folder of the results; default `results/<name of the study file>`.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads of each run; default as many as there are cores for the runs at a time.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Runs at a time; default `jobs` of the study, else as many as there are cores for.
+    #[arg(long)]
+    pub jobs: Option<usize>,
+    /// Carry out the runs k, k + N, … alone, counted from 1, and make no tables: for arrays of jobs.
+    #[arg(long, value_name = "k/N", conflicts_with = "merge")]
+    pub task: Option<String>,
+    /// Carry out nothing: make the tables from the runs that are there, and name those that are missing.
+    #[arg(long, conflicts_with_all = ["resume", "force", "jobs", "threads"])]
+    pub merge: bool,
+    /// Skip the runs that are done, and go on with those that were interrupted.
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Replace the runs that are there.
     #[arg(long)]
     pub force: bool,
     /// Print nothing but errors.

@@ -6,6 +6,7 @@ mod mesh;
 mod modal;
 mod output;
 mod stone;
+mod study;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
@@ -26,6 +27,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Check(args) => {
             print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
         }
+        Command::Study(args) => study::study(args),
         Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),

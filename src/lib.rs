@@ -19,4 +19,5 @@ pub mod read;
 pub mod run;
 pub mod scene;
 pub mod stone_tools;
+pub mod study;
 pub mod write;

@@ -7,6 +7,21 @@ pub(crate) fn resident() -> Option<u64> {
     field(Path::new("/proc/self/status"), "VmRSS:")
 }
 
+/// Processor time that this process has taken so far, user and system, all threads [s].
+#[cfg(unix)]
+pub(crate) fn cpu_seconds() -> Option<f64> {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the call fills the structure that it is given, and does nothing else.
+    let code = unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) };
+    (code == 0).then_some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+}
+
+/// Not known on this system.
+#[cfg(not(unix))]
+pub(crate) fn cpu_seconds() -> Option<f64> {
+    None
+}
+
 /// Memory that the machine, or the group that this process belongs to, has free [bytes].
 pub(crate) fn available() -> Option<u64> {
     let machine = field(Path::new("/proc/meminfo"), "MemAvailable:");

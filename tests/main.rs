@@ -30,6 +30,7 @@ mod suite {
     mod solid_scenes;
     mod stones;
     mod structure;
+    mod study;
     mod summary;
     pub mod support;
     mod track;

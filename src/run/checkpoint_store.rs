@@ -48,6 +48,11 @@ impl Interrupt {
         Ok(interrupt)
     }
 
+    /// Whether a signal ends the program at once from now on, or waits for what is under way to be kept.
+    pub(crate) fn end_at_once(&self, at_once: bool) {
+        self.at_once.store(at_once, Ordering::Relaxed);
+    }
+
     /// Whether a signal has come.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
@@ -111,12 +116,12 @@ impl CheckpointStore {
 
     /// Begins a stage that calls [`CheckpointStore::step`] after every step.
     pub fn begin(&self) {
-        self.interrupt.at_once.store(false, Ordering::Relaxed);
+        self.interrupt.end_at_once(false);
     }
 
     /// Ends it: from now on a signal ends the program at once.
     pub fn end(&self) {
-        self.interrupt.at_once.store(true, Ordering::Relaxed);
+        self.interrupt.end_at_once(true);
     }
 
     /// After a step: writes a checkpoint if one is due. `moment` is where the run is, `fill` puts its state in.

@@ -27,14 +27,16 @@ mod track_output;
 mod wall_output;
 
 pub use checkpoint_store::Interrupt;
+pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, parse_size, size};
-pub(crate) use origin::default_folder;
+pub(crate) use origin::{default_folder, quoted, scene_hash};
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
 use crate::failure::Failure;
 use crate::guard::guarded;
+use crate::machine;
 use crate::message;
 use crate::model::Job;
 use crate::scene::{Document, Scene};
@@ -156,6 +158,7 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
         summary.verdict.fail();
     }
     summary.run.peak_memory = peak_memory();
+    summary.run.cpu_seconds = machine::cpu_seconds();
     match &result {
         Ok(()) => summary.run.status = "done".into(),
         // Bad input leaves nothing behind, not even a summary.

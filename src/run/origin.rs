@@ -26,17 +26,23 @@ pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
 
 /// The command that continues a run.
 pub fn resume_command(scene: &Path, dir: &Path, set: &[String]) -> String {
-    let quoted = |text: String| match text.chars().all(|c| c.is_alphanumeric() || "/._-=+".contains(c)) {
+    let mut command = format!("trackbed run {} --resume --out {}", quoted(scene), quoted(dir));
+    set.iter().for_each(|s| command += &format!(" --set {}", quoted(Path::new(s))));
+    command
+}
+
+/// A path or text as one word of a shell.
+pub fn quoted(text: &Path) -> String {
+    let text = text.display().to_string();
+    match text.chars().all(|c| c.is_alphanumeric() || "/._-=+".contains(c)) {
         true => text,
         false => format!("'{}'", text.replace('\'', "'\\''")),
-    };
-    let mut command = format!(
-        "trackbed run {} --resume --out {}",
-        quoted(scene.display().to_string()),
-        quoted(dir.display().to_string())
-    );
-    set.iter().for_each(|s| command += &format!(" --set {}", quoted(s.clone())));
-    command
+    }
+}
+
+/// Hash of what the results of a run depend on: equal hashes, equal results.
+pub fn scene_hash(document: &Document, scene: &Scene) -> String {
+    origin(document, scene).scene_hash
 }
 
 /// `results/` and the name of the scene file, or of its folder when the file is just called `scene.toml`.

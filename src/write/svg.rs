@@ -33,18 +33,19 @@ pub struct LinePlot {
     pub series: Vec<Series>,
 }
 
-const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 460.0;
-const TOP: f64 = 48.0;
-const BOTTOM: f64 = 60.0;
-const FONT: f64 = 13.0;
-const TITLE_FONT: f64 = 16.0;
+pub(super) const WIDTH: f64 = 760.0;
+pub(super) const HEIGHT: f64 = 460.0;
+pub(super) const TOP: f64 = 48.0;
+pub(super) const BOTTOM: f64 = 60.0;
+pub(super) const FONT: f64 = 13.0;
+pub(super) const TITLE_FONT: f64 = 16.0;
 /// Width of a character over its font size.
 const CHARACTER: f64 = 0.6;
 /// Line sample and gap of a legend entry [px].
-const SAMPLE: f64 = 34.0;
+pub(super) const SAMPLE: f64 = 34.0;
 
-const COLOURS: [&str; 7] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"];
+pub(super) const COLOURS: [&str; 7] =
+    ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"];
 const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
 
 impl LinePlot {
@@ -207,7 +208,7 @@ impl Axis {
 }
 
 /// A typographic minus, as wide as a digit.
-fn minus(text: &str) -> String {
+pub(super) fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
@@ -217,22 +218,22 @@ fn nice_step(least: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power)
 }
 
-fn text_width(text: &str, font: f64) -> f64 {
+pub(super) fn text_width(text: &str, font: f64) -> f64 {
     CHARACTER * font * text.chars().count() as f64
 }
 
 /// The font size, or the smaller one at which the text takes `space` [px].
-fn fitted(text: &str, font: f64, space: f64) -> f64 {
+pub(super) fn fitted(text: &str, font: f64, space: f64) -> f64 {
     let scale = space / text_width(text, font).max(1.0);
     if scale >= 1.0 { font } else { (10.0 * font * scale).floor() / 10.0 }
 }
 
 /// Pixels to a hundredth: more digits only lengthen the file.
-fn round(value: f64) -> f64 {
+pub(super) fn round(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }
 
-fn text(x: f64, y: f64, anchor: &str, content: &str) -> String {
+pub(super) fn text(x: f64, y: f64, anchor: &str, content: &str) -> String {
     let (x, y, content) = (round(x), round(y), escape(&printable(content)).into_owned());
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{content}</text>\n")
 }

@@ -40,7 +40,7 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     fields.scalar("normal_force", &frame.normal_force)?;
     fields.scalar("tangential_force", &frame.tangential_force)?;
     let parts = frame.normal_force.iter().zip(&frame.tangential_force);
-    let magnitude: Vec<f64> = parts.map(|(normal, tangential)| libm::hypot(normal, *tangential)).collect();
+    let magnitude: Vec<f64> = parts.map(|(normal, tangential)| libm::hypot(*normal, *tangential)).collect();
     fields.scalar("magnitude", &magnitude)?;
     fields.ids("kind", &frame.kind)?;
     fields.ids("strong", &frame.strong)?;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[test]
 fn help_names_every_command_and_option() {
     let help = trackbed(["--help"]).good().stdout;
-    for word in ["run", "check", "explain", "mesh", "stone", "--help", "--version"] {
+    for word in ["run", "check", "explain", "study", "mesh", "stone", "--help", "--version"] {
         assert!(help.contains(word), "{word} is missing in {help}");
     }
     let help = trackbed(["run", "--help"]).good().stdout;

@@ -32,6 +32,7 @@ fn the_summary_of_a_coupled_run_has_every_part() {
         "overrides",
         "threads",
         "peak_memory",
+        "cpu_seconds",
         "stages",
         "model",
         "energy",
@@ -49,6 +50,7 @@ fn the_summary_of_a_coupled_run_has_every_part() {
     assert!(hash.len() == 16 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
     if cfg!(target_os = "linux") {
         assert!(summary["peak_memory"].as_u64().unwrap() > 1_000_000);
+        assert!(summary["cpu_seconds"].as_f64().unwrap() > 0.0);
     }
     assert!(summary["sources"].as_array().unwrap().len() >= 4);
 

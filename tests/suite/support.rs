@@ -135,6 +135,7 @@ pub fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
         serde_json::from_slice(&files.remove("summary.json").unwrap()).unwrap();
     summary["threads"].take();
     summary["peak_memory"].take();
+    summary["cpu_seconds"].take();
     summary["model"]["predicted_memory"].take();
     for seconds in ["assembly_seconds", "factor_seconds", "solve_seconds"] {
         if let Some(newton) = summary.get_mut("newton") {

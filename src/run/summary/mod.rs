@@ -72,6 +72,9 @@ pub struct RunRecord {
     pub threads: usize,
     /// Largest resident memory [bytes], where the system reports it.
     pub peak_memory: Option<u64>,
+    /// Processor time of the process, user and system, all threads [s], where the system reports it; since the last start of a run that
+    /// was resumed.
+    pub cpu_seconds: Option<f64>,
 }
 
 /// How a solid was solved, and what it ended with.

@@ -1,0 +1,61 @@
+//! `trackbed study`: variations of a scene, their errors and costs.
+
+use super::{check, output};
+use crate::cli::StudyArgs;
+use crate::failure::Failure;
+use crate::message;
+use crate::run::Interrupt;
+use crate::study;
+use std::path::Path;
+
+/// Carries out a study, and prints the head of its table and what to take.
+///
+/// # Errors
+/// Bad input, an interrupt, a reference that failed, or what the system refuses.
+pub fn study(args: StudyArgs) -> Result<(), Failure> {
+    let quiet = args.quiet;
+    let options = study::Options {
+        out: args.out,
+        threads: args.threads,
+        jobs: args.jobs,
+        part: args.task.as_deref().map(part).transpose()?,
+        merge: args.merge,
+        resume: args.resume,
+        force: args.force,
+        quiet,
+        interrupt: Interrupt::on_signals()?,
+    };
+    let check = |scene: &Path, set: &[String]| check::check(scene, set, None).map(drop);
+    let text = study::execute(&args.study, &options, &check)?;
+    // The tables are in their folder: nobody need listen.
+    if !quiet && let Err(failure) = output::print(&text) {
+        message::note(&format!("standard output: {failure}"));
+    }
+    Ok(())
+}
+
+/// The part of the runs that `--task` names: k and N.
+fn part(text: &str) -> Result<(usize, usize), Failure> {
+    let numbers = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((k, n)) if (1..=n).contains(&k) => Ok((k, n)),
+        _ => {
+            Err(Failure::Input(format!("--task: found {text}, expected k/N with k from 1 to N, such as 3/8")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::part;
+
+    #[test]
+    fn parts_are_counted_from_one() {
+        assert_eq!(part("3/8").unwrap(), (3, 8));
+        assert_eq!(part("1/1").unwrap(), (1, 1));
+        for bad in ["0/3", "4/3", "3", "a/b", "1/0", "-1/3", ""] {
+            let error = part(bad).unwrap_err().to_string();
+            assert_eq!(error, format!("--task: found {bad}, expected k/N with k from 1 to N, such as 3/8"));
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Names of folders from labels: safe on every file system, distinct, and the same whatever else the study has.
+
+use crate::run::Hash;
+
+/// Longest name [bytes], with room for endings below the 255 of most file systems.
+const LONGEST: usize = 100;
+
+/// The name of the folder of a run.
+///
+/// Labels of plain characters are their own names, with `_` between their parts; where something had to be replaced or cut
+/// off, a hash of the label keeps them distinct.
+pub fn folder_name(label: &str) -> String {
+    let joined = label.replace(", ", "_");
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-=+".contains(c);
+    let safe: String = joined.chars().map(|c| if plain(c) { c } else { '-' }).collect();
+    // Not hidden, not a parent folder, and not distinct by capitals alone, which some file systems take for the same.
+    let kept = safe == joined && safe.len() <= LONGEST && !safe.starts_with('.') && !safe.is_empty();
+    if kept && !joined.chars().any(|c| c.is_ascii_uppercase()) && !label.contains('_') {
+        return safe;
+    }
+    let mut hash = Hash::default();
+    hash.add(label.as_bytes());
+    let start: String = safe.trim_start_matches('.').chars().take(LONGEST).collect();
+    format!("{start}-{:.8}", hash.hex())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_labels_are_their_own_names_and_others_stay_distinct() {
+        assert_eq!(folder_name("step=0.4, count=300"), "step=0.4_count=300");
+        assert_eq!(folder_name("base"), "base");
+        let labels =
+            ["a=b c", "a=b/c", "a=b-c", "a=../c", "a=B", "a=b", "a=b, c", "a=b_c", "..", "", "ü=1", "ä=1"];
+        let mut names: Vec<String> = labels.iter().map(|l| folder_name(l).to_lowercase()).collect();
+        assert!(names.iter().all(|n| !n.starts_with('.') && !n.contains('/') && n.is_ascii()), "{names:?}");
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), labels.len());
+        let long = "x".repeat(400);
+        assert!(folder_name(&long).len() <= LONGEST + 9);
+        assert_ne!(folder_name(&long), folder_name(&long[1..]));
+    }
+}

@@ -1,0 +1,285 @@
+//! Studies: variations of one scene, each run compared with a reference, for the trade of error against cost.
+//!
+//! A study file (`file`) is resolved into settings and runs (`plan`), which are carried out as processes of their own (`schedule`) in
+//! the folder of the study (`store`). Tables are made from what is in that folder alone (`outcome`), so it does not matter which
+//! machine has done which run, and when.
+
+mod axis;
+mod curve;
+mod file;
+mod label;
+mod outcome;
+mod plan;
+mod plot;
+mod process;
+mod quantity;
+mod sample;
+mod schedule;
+mod store;
+mod table;
+mod text;
+
+use crate::failure::Failure;
+use crate::message;
+use crate::run::{self, Interrupt, Lock};
+use crate::scene::{Document, Scene};
+use file::StudyFile;
+use outcome::Outcome;
+use plan::{Plan, Run};
+use schedule::{Schedule, Task};
+use std::path::{Path, PathBuf};
+use store::{Found, Store};
+
+/// Rows of the table that a study prints.
+const PRINTED: usize = 20;
+/// Refused settings that a message spells out.
+const SPELLED_OUT: usize = 3;
+/// Most runs at a time.
+const MOST_JOBS: usize = 1024;
+
+/// How to carry out a study.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Folder of the results; default `results/<name of the study file>`.
+    pub out: Option<PathBuf>,
+    /// Threads of each run.
+    pub threads: Option<usize>,
+    /// Runs at a time.
+    pub jobs: Option<usize>,
+    /// Only the runs k, k + n, k + 2n, … of all, counted from 1, without tables: k and n.
+    pub part: Option<(usize, usize)>,
+    /// Make the tables from the runs that are there.
+    pub merge: bool,
+    /// Skip what is done, go on with what was interrupted.
+    pub resume: bool,
+    /// Replace what is there.
+    pub force: bool,
+    /// Print nothing.
+    pub quiet: bool,
+    /// Request to stop.
+    pub interrupt: Interrupt,
+}
+
+/// Validates a scene with overrides, as `check` does.
+pub type Check<'a> = &'a dyn Fn(&Path, &[String]) -> Result<(), Failure>;
+
+/// Carries out a study; what it prints at its end.
+///
+/// # Errors
+/// Bad input, before anything is written; an interrupt; a reference that failed, after the tables were written.
+pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<String, Failure> {
+    let document = Document::open(file)?;
+    let parsed: StudyFile = document.read()?;
+    let plan = Plan::new(&document, &parsed)?;
+    let dir = options.out.clone().unwrap_or_else(|| run::default_folder(file));
+    let store = Store::new(&dir);
+    if options.merge && !dir.join("runs").is_dir() {
+        let expected = "a folder with runs of the study (--out)";
+        return Err(Failure::Input(format!(
+            "--merge: {}: found no runs, expected {expected}",
+            dir.display()
+        )));
+    }
+    let hashes = prepare(&document, &plan, options, check)?;
+    // Parts of a study share its folder; each run has a lock of its own.
+    let _lock = match options.part {
+        None => Some(Lock::take(&dir)?),
+        Some(_) => None,
+    };
+    if !options.merge {
+        carry_out(file, &plan, &store, &hashes, options)?;
+        if let Some((k, n)) = options.part {
+            return Ok(format!(
+                "{}: runs {k}, {k} + {n}, … are done; `--merge` makes the tables\n",
+                dir.display()
+            ));
+        }
+    }
+    let found = plan.runs.iter().zip(&hashes).map(|(run, hash)| store.look(run, hash));
+    tables(&plan, &store, &found.collect::<Result<Vec<Found>, Failure>>()?)
+}
+
+/// Whether the run with index `k` is to be carried out by this process.
+fn ours(options: &Options, k: usize) -> bool {
+    options.part.is_none_or(|(part, parts)| k % parts == part - 1)
+}
+
+/// Reads and checks the scene of every run that will be carried out; hashes of the scenes of all runs.
+fn prepare(
+    document: &Document,
+    plan: &Plan,
+    options: &Options,
+    check: Check<'_>,
+) -> Result<Vec<String>, Failure> {
+    let mut refused: Vec<(&str, String)> = Vec::new();
+    let mut hashes = Vec::new();
+    let mut checked = None;
+    for (k, run) in plan.runs.iter().enumerate() {
+        let hash = scene_hash(&plan.scene, &run.set);
+        // Of each setting one seed: what is checked does not depend on it.
+        let needed = ours(options, k) && !options.merge && checked != Some(run.setting);
+        let verdict = hash.and_then(|hash| {
+            if needed {
+                checked = Some(run.setting);
+                check(&plan.scene, &run.set)?;
+            }
+            Ok(hash)
+        });
+        match verdict {
+            Ok(hash) => hashes.push(hash),
+            Err(Failure::Input(text)) => refused.push((run.label.as_str(), text)),
+            Err(other) => return Err(other),
+        }
+    }
+    if refused.is_empty() { Ok(hashes) } else { Err(refusal(document, &refused)) }
+}
+
+/// Bad input of one or several runs in one sentence; a fault that all of them have is stated once.
+fn refusal(document: &Document, refused: &[(&str, String)]) -> Failure {
+    let (label, text) = &refused[0];
+    let file = document.file().display();
+    if refused.len() == 1 {
+        return plan::of_setting(document, label, text);
+    }
+    if refused.iter().all(|(_, other)| other == text) {
+        return Failure::Input(format!("{file}: \"{label}\" and {} more: {text}", refused.len() - 1));
+    }
+    let first = refused.iter().take(SPELLED_OUT);
+    let mut texts: Vec<String> = first.map(|(label, text)| format!("\"{label}\": {text}")).collect();
+    let others: Vec<String> = refused.iter().skip(SPELLED_OUT).map(|r| format!("\"{}\"", r.0)).collect();
+    if !others.is_empty() {
+        texts.push(format!("and {}", others.join(", ")));
+    }
+    Failure::Input(format!("{file}: {} runs are refused: {}", refused.len(), texts.join("; ")))
+}
+
+/// Hash of a scene with overrides and of the files that it names.
+fn scene_hash(scene: &Path, set: &[String]) -> Result<String, Failure> {
+    let mut document = Document::open(scene)?;
+    set.iter().try_for_each(|assignment| document.set(assignment))?;
+    let parsed: Scene = document.read()?;
+    Ok(run::scene_hash(&document, &parsed))
+}
+
+/// Carries out what is not done.
+fn carry_out(
+    file: &Path,
+    plan: &Plan,
+    store: &Store,
+    hashes: &[String],
+    options: &Options,
+) -> Result<(), Failure> {
+    let own =
+        || plan.runs.iter().zip(hashes).enumerate().filter(|(k, _)| ours(options, *k)).map(|(_, own)| own);
+    if !options.resume
+        && !options.force
+        && let Some((run, _)) = own().find(|(run, _)| store.has(run))
+    {
+        let found = format!("found the run \"{}\"", run.label);
+        let expected = "--resume to go on, --force to begin anew, or another --out";
+        return Err(Failure::Input(format!("{}: {found}, expected {expected}", store.dir().display())));
+    }
+    let mut tasks = Vec::new();
+    let mut kept = 0;
+    for (run, hash) in own() {
+        let found = if options.force { Found::Nothing } else { store.look(run, hash)? };
+        match found {
+            Found::Done(..) | Found::Failed(_) => kept += 1,
+            found => tasks.push(Task { run, scene_hash: hash, found }),
+        }
+    }
+    let total = kept + tasks.len();
+    let (jobs, threads) = shares(plan, options, tasks.len())?;
+    if kept > 0 && !options.quiet {
+        message::say(&format!("{kept} of {total} runs are there already"));
+    }
+    store.make()?;
+    options.interrupt.end_at_once(false);
+    let (scene, interrupt, quiet) = (plan.scene.as_path(), &options.interrupt, options.quiet);
+    let schedule = Schedule { scene, store, jobs, threads, interrupt, quiet };
+    let result = schedule.carry_out(tasks, |run| first_run(file, plan, store, run));
+    options.interrupt.end_at_once(true);
+    result.map_err(|failure| match failure {
+        Failure::Interrupted(_) => {
+            let part = options.part.map_or(String::new(), |(k, n)| format!(" --task {k}/{n}"));
+            let (study, dir) = (run::quoted(file), run::quoted(store.dir()));
+            Failure::Interrupted(format!(
+                "interrupted; to go on: trackbed study {study} --resume --out {dir}{part}"
+            ))
+        }
+        other => other,
+    })
+}
+
+/// Refuses quantities that the first run which is done has not: all others would be run for nothing.
+fn first_run(file: &Path, plan: &Plan, store: &Store, run: &Run) -> Result<(), Failure> {
+    for (k, quantity) in plan.quantities.iter().enumerate() {
+        if let Err(fault) = sample::read(quantity, &store.results(run)) {
+            let (file, label) = (file.display(), &run.label);
+            return Err(Failure::Input(format!(
+                "{file}: quantity.{k}: found that {fault} (of the run \"{label}\"), expected what runs of the scene leave; the runs \
+                 so far are kept for --resume"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Runs at a time and threads of each: together as many as there are cores, unless both are given.
+fn shares(plan: &Plan, options: &Options, runs: usize) -> Result<(usize, usize), Failure> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = options.jobs.or(plan.jobs);
+    if let Some(jobs) = jobs.filter(|n| !(1..=MOST_JOBS).contains(n)) {
+        return Err(Failure::Input(format!("--jobs: found {jobs}, expected 1 to {MOST_JOBS}")));
+    }
+    if options.threads == Some(0) {
+        return Err(Failure::Input("--threads: found 0, expected at least 1".into()));
+    }
+    let jobs = jobs.unwrap_or_else(|| (cores / options.threads.unwrap_or(1)).max(1)).min(runs.max(1));
+    let threads = options.threads.unwrap_or_else(|| (cores / jobs).max(1));
+    if jobs * threads > cores && !options.quiet {
+        message::note(&format!(
+            "{jobs} runs of {threads} threads on {cores} cores: times by the clock mean little"
+        ));
+    }
+    Ok((jobs, threads))
+}
+
+/// Writes the tables; what is printed at the end.
+fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure> {
+    let outcome = Outcome::of(plan, store, found);
+    let dir = store.dir();
+    let csv = table::csv(plan, &outcome).map_err(|e| Failure::Other(e.to_string()))?;
+    store::write(&dir.join("study.csv"), &csv)?;
+    store::write(&dir.join("study.json"), &table::json(plan, &outcome))?;
+    store::write(&dir.join("study.md"), &text::markdown(plan, &outcome))?;
+    plot::pareto(plan, &outcome).write(&dir.join("pareto.svg"))?;
+    let mut lines = format!("{}\n{}", plan.title, text::printed(plan, &outcome, PRINTED));
+    for remark in text::remarks(plan, &outcome) {
+        lines += &format!("note: {remark}\n");
+    }
+    let missing = outcome::missing(plan, found);
+    if !missing.is_empty() {
+        let labels: Vec<String> = missing.iter().map(|run| format!("\"{}\"", run.label)).collect();
+        lines +=
+            &format!("{} of {} runs are missing: {}\n", labels.len(), plan.runs.len(), labels.join(", "));
+    }
+    lines += &format!(
+        "{}\nThe table is in {}\n",
+        text::recommendation(plan, &outcome),
+        dir.join("study.md").display()
+    );
+    let reference = &outcome.rows[outcome.reference];
+    let failed = plan
+        .runs
+        .iter()
+        .zip(found)
+        .any(|(run, found)| run.setting == outcome.reference && matches!(found, Found::Failed(_)));
+    if failed && reference.done == 0 {
+        let (dir, reasons) = (dir.display(), reference.reasons.join("; "));
+        return Err(Failure::Numerical(format!(
+            "the reference has failed, so the table in {dir} has no errors: {reasons}"
+        )));
+    }
+    Ok(lines)
+}

@@ -1,0 +1,175 @@
+//! What is compared: numbers and curves that runs leave.
+
+use super::file::{Norm, QuantityTable, Take};
+use crate::scene::{Document, SceneError};
+
+/// A quantity, resolved.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Name in the tables.
+    pub name: String,
+    /// Unit, where it is not that of the column.
+    pub unit: Option<String>,
+    /// What values are multiplied by.
+    pub factor: f64,
+    /// Where it is found.
+    pub source: Source,
+    /// What its error is.
+    pub norm: Norm,
+    /// What a relative error is relative to, if not the reference.
+    pub scale: Option<f64>,
+    /// Known value in place of the reference's.
+    pub exact: Option<f64>,
+    /// Largest error that is accepted.
+    pub tolerance: f64,
+}
+
+/// Where a quantity is found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Path of a number in `summary.json`.
+    Summary(String),
+    /// Column of a table, and what is made of it.
+    Column(String, String, Take),
+    /// Column of a table over another one, or over the first.
+    Curve {
+        /// The table.
+        file: String,
+        /// The column.
+        column: String,
+        /// The abscissa.
+        against: Option<String>,
+        /// Whether the logarithm of the abscissa counts.
+        log: bool,
+    },
+}
+
+/// The quantities of a study; `cycles` says whether its scene has load cycles, whose results are compared by default.
+///
+/// # Errors
+/// Bad input.
+pub fn resolve(
+    document: &Document,
+    tables: &[QuantityTable],
+    cycles: bool,
+    tolerance: f64,
+) -> Result<Vec<Quantity>, SceneError> {
+    if tables.is_empty() {
+        let expected = "at least one [[quantity]]: the scene has no load cycles";
+        return if cycles {
+            Ok(of_cycles(tolerance))
+        } else {
+            Err(document.error("quantity", "nothing", expected))
+        };
+    }
+    let all: Vec<Quantity> = tables
+        .iter()
+        .enumerate()
+        .map(|(k, table)| one(document, k, table, tolerance))
+        .collect::<Result<_, _>>()?;
+    for (k, quantity) in all.iter().enumerate() {
+        if all[..k].iter().any(|earlier| earlier.name == quantity.name) {
+            let found = format!("\"{}\" twice", quantity.name);
+            return Err(document.error(&format!("quantity.{k}.name"), found, "distinct names"));
+        }
+    }
+    Ok(all)
+}
+
+/// What load cycles leave, where nothing else is stated.
+fn of_cycles(tolerance: f64) -> Vec<Quantity> {
+    let file = "cycles.csv".to_string();
+    let of = |name: &str, unit: &str, factor: f64, source: Source| Quantity {
+        name: name.into(),
+        unit: Some(unit.into()),
+        factor,
+        source,
+        norm: Norm::Relative,
+        scale: None,
+        exact: None,
+        tolerance,
+    };
+    let column = |name: &str, take| Source::Column(file.clone(), name.into(), take);
+    let curve = Source::Curve { file: file.clone(), column: "settlement".into(), against: None, log: true };
+    vec![
+        of("settlement", "mm", 1e3, column("settlement", Take::Last)),
+        of("settlement over log N", "mm", 1e3, curve),
+        of("secant stiffness", "kN/mm", 1e-6, column("secant_stiffness", Take::Mean)),
+        of("dissipated energy", "J", 1.0, column("dissipated_energy", Take::Mean)),
+    ]
+}
+
+fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> Result<Quantity, SceneError> {
+    let place = |key: &str| format!("quantity.{index}.{key}");
+    let fault = |key: &str, found: String, expected: &str| Err(document.error(&place(key), found, expected));
+    let source = source_of(document, index, table)?;
+    let default = match &source {
+        Source::Summary(path) => path.rsplit('.').next().unwrap_or(path).to_string(),
+        Source::Column(_, column, _) | Source::Curve { column, .. } => column.clone(),
+    };
+    let name = table.name.clone().unwrap_or(default);
+    if name.trim().is_empty() || name.contains(['"', '\n', '|']) {
+        return fault("name", format!("{name:?}"), "a name without quotes or |");
+    }
+    if !table.factor.is_finite() || table.factor == 0.0 {
+        return fault("factor", table.factor.to_string(), "a finite number that is not 0");
+    }
+    let relative = table.norm == Norm::Relative;
+    if let Some(scale) = table.scale.filter(|s| !(s.is_finite() && *s > 0.0 && relative)) {
+        return fault("scale", scale.to_string(), "a number above 0, beside norm = \"relative\"");
+    }
+    let curve = matches!(source, Source::Curve { .. });
+    if let Some(exact) = table.exact.filter(|e| curve || !e.is_finite()) {
+        return fault("exact", exact.to_string(), "a finite number, beside a quantity that is no curve");
+    }
+    if table.exact == Some(0.0) && relative && table.scale.is_none() {
+        return fault("exact", "0".into(), "another value, or norm = \"absolute\", or `scale`");
+    }
+    let tolerance = match table.tolerance {
+        Some(t) if t.is_finite() && t > 0.0 => t,
+        Some(t) => return fault("tolerance", t.to_string(), "a number above 0"),
+        None if relative => study,
+        None => return fault("tolerance", "nothing".into(), "a value, beside norm = \"absolute\""),
+    };
+    let (unit, factor, norm) = (table.unit.clone(), table.factor, table.norm);
+    Ok(Quantity { name, unit, factor, source, norm, scale: table.scale, exact: table.exact, tolerance })
+}
+
+fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result<Source, SceneError> {
+    let place = |key: &str| format!("quantity.{index}.{key}");
+    let fault = |key: &str, found: &str, expected: &str| Err(document.error(&place(key), found, expected));
+    let of_table =
+        [("file", table.file.is_some()), ("column", table.column.is_some()), ("take", table.take.is_some())];
+    if let Some(path) = &table.summary {
+        let other = of_table.iter().find(|(_, given)| *given);
+        return match other {
+            Some((key, _)) => fault(key, "a value", "no such key beside `summary`"),
+            None => Ok(Source::Summary(path.clone())),
+        };
+    }
+    let Some(file) = &table.file else {
+        return fault("file", "nothing", "a table such as \"cycles.csv\", or `summary`");
+    };
+    if !file.ends_with(".csv") || file.contains(['/', '\\']) {
+        return fault(
+            "file",
+            &format!("{file:?}"),
+            "the name of a table in the folder of a run, such as \"cycles.csv\"",
+        );
+    }
+    let Some(column) = table.column.clone() else {
+        return fault("column", "nothing", "a column of the table");
+    };
+    let take = table.take.unwrap_or_default();
+    if take == Take::Curve {
+        let (against, log) = (table.against.clone(), table.log.unwrap_or(false));
+        return Ok(Source::Curve { file: file.clone(), column, against, log });
+    }
+    if table.against.is_some() {
+        return fault("against", "a column", "no such key but beside take = \"curve\"");
+    }
+    if table.log.is_some() {
+        return fault("log", "a value", "no such key but beside take = \"curve\"");
+    }
+    Ok(Source::Column(file.clone(), column, take))
+}

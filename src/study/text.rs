@@ -1,0 +1,184 @@
+//! The table of a study for people: `study.md`, and what is printed.
+
+use super::file::Norm;
+use super::outcome::{Cell, Outcome, Row, cpu};
+use super::plan::Plan;
+use super::quantity::Quantity;
+use super::table::head;
+
+/// The table for people.
+pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
+    let mut text = format!("# {}\n\n", plan.title.replace('\n', " "));
+    text += &format!(
+        "Scene `{}`, {} settings, {} runs. Errors are against `{}`{}; processor time is user and system time of one run, on all \
+         its threads.\n\n",
+        plan.scene.display(),
+        outcome.rows.len(),
+        plan.runs.len(),
+        outcome.rows[outcome.reference].setting,
+        exact_words(plan),
+    );
+    let rows = cells(plan, outcome, usize::MAX);
+    let line = |cells: &Vec<String>| {
+        let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
+        format!("| {} |\n", cells.join(" | "))
+    };
+    text += &line(&rows[0]);
+    text += &format!("|{}\n", "---|".repeat(rows[0].len()));
+    rows[1..].iter().for_each(|row| text += &line(row));
+    text += &format!("\n{}\n", recommendation(plan, outcome));
+    if outcome.rows.iter().any(|row| row.quantities.iter().any(|c| c.scatter.is_some())) {
+        text += "\nBehind ± is the standard error of the error, by the scatter of the seeds. An error below it cannot be distinguished \
+                 from none.\n";
+    }
+    let remarks = remarks(plan, outcome);
+    if !remarks.is_empty() {
+        text += "\n";
+        remarks.iter().for_each(|remark| text += &format!("* {remark}\n"));
+    }
+    text
+}
+
+fn exact_words(plan: &Plan) -> String {
+    let known: Vec<&str> =
+        plan.quantities.iter().filter(|q| q.exact.is_some()).map(|q| q.name.as_str()).collect();
+    if known.is_empty() { String::new() } else { format!(", of {} against known values", known.join(", ")) }
+}
+
+/// The first rows of the table with its heads, for a terminal.
+pub fn printed(plan: &Plan, outcome: &Outcome, most: usize) -> String {
+    let rows = cells(plan, outcome, most);
+    let columns = rows[0].len();
+    let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in &rows {
+        let cells: Vec<String> = (0..columns)
+            .map(|k| match k {
+                1 => format!("{:<w$}", row[k], w = widths[k]),
+                _ => format!("{:>w$}", row[k], w = widths[k]),
+            })
+            .collect();
+        text += &format!("  {}\n", cells.join("  ").trim_end());
+    }
+    if outcome.rows.len() > most {
+        text += &format!("  … {} more in study.md\n", outcome.rows.len() - most);
+    }
+    text
+}
+
+/// Heads and rows as texts.
+fn cells(plan: &Plan, outcome: &Outcome, most: usize) -> Vec<Vec<String>> {
+    let mut heads = vec!["#".to_string(), "setting".to_string()];
+    for (quantity, unit) in plan.quantities.iter().zip(&outcome.units) {
+        heads.extend([head(quantity, unit), "error".into()]);
+    }
+    heads.extend(["steps", "CPU [s]", "speed-up"].map(String::from));
+    let row = |(k, row): (usize, &Row)| {
+        let mark = if outcome.recommended == Some(k) { "*" } else { "" };
+        let mut cells = vec![format!("{}{mark}", k + 1), row.setting.clone()];
+        for (cell, quantity) in row.quantities.iter().zip(&plan.quantities) {
+            cells.push(cell.value.map_or("–".into(), four_digits));
+            cells.push(error_text(cell, quantity));
+        }
+        cells.push(row.cost.as_ref().map_or("–".into(), |c| format!("{:.0}", c.steps)));
+        cells.push(cpu(row).map_or("–".into(), |s| format!("{s:.2}")));
+        cells.push(row.speed_up.map_or("–".into(), |s| format!("{s:.2}")));
+        cells
+    };
+    std::iter::once(heads).chain(outcome.rows.iter().enumerate().take(most).map(row)).collect()
+}
+
+/// An error with its scatter.
+fn error_text(cell: &Cell, quantity: &Quantity) -> String {
+    let text = |value: f64| match quantity.norm {
+        Norm::Relative => percent(value),
+        Norm::Absolute => four_digits(value),
+    };
+    match (cell.error, cell.scatter) {
+        (None, _) => "–".into(),
+        (Some(error), None) => text(error),
+        (Some(error), Some(scatter)) => {
+            let below = if cell.below_scatter { ", below the scatter" } else { "" };
+            format!("{} ± {}{below}", text(error), text(scatter))
+        }
+    }
+}
+
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent.abs() {
+        0.0 => "0 %".into(),
+        p if p < 0.01 => format!("{percent:.1e} %"),
+        p if p < 10.0 => format!("{percent:.2} %"),
+        _ => format!("{percent:.1} %"),
+    }
+}
+
+/// A share that somebody has chosen, without zeros at its end.
+fn plain_percent(share: f64) -> String {
+    let text = format!("{:.6}", 100.0 * share);
+    format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// A number with four digits that count.
+fn four_digits(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (3 - libm::log10(size).floor() as i32).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// Which setting to take.
+pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
+    let uniform = plan.quantities.iter().all(|q| q.norm == Norm::Relative && q.tolerance == plan.tolerance);
+    let within = if uniform {
+        format!("within {}", plain_percent(plan.tolerance))
+    } else {
+        "within the tolerances".into()
+    };
+    let reference = &outcome.rows[outcome.reference];
+    let Some(k) = outcome.recommended else {
+        return format!("No setting is {within} for all quantities.");
+    };
+    let row = &outcome.rows[k];
+    let others = outcome.rows.iter().enumerate().any(|(k, row)| k != outcome.reference && row.within);
+    if k == outcome.reference && !others && outcome.rows.len() > 1 {
+        return format!(
+            "No setting but the reference \"{}\" is {within} for all quantities.",
+            reference.setting
+        );
+    }
+    let largest = row.quantities.iter().zip(&plan.quantities).max_by(|a, b| {
+        let over = |(cell, quantity): &(&Cell, &Quantity)| cell.error.unwrap_or(0.0) / quantity.tolerance;
+        over(a).total_cmp(&over(b))
+    });
+    let largest =
+        largest.map_or(String::new(), |(c, q)| format!("; largest error {} ({})", error_text(c, q), q.name));
+    let speed = match row.speed_up {
+        _ if k == outcome.reference => ", the reference itself".to_string(),
+        Some(speed) => format!(", {speed:.2} times as fast as the reference"),
+        None => String::new(),
+    };
+    let cost = cpu(row).map_or(String::new(), |s| format!(": {s:.2} s of processor time{speed}"));
+    format!("Cheapest setting {within}: \"{}\"{cost}{largest}.", row.setting)
+}
+
+/// What else is to be said of the rows.
+pub fn remarks(plan: &Plan, outcome: &Outcome) -> Vec<String> {
+    let mut remarks = Vec::new();
+    for row in &outcome.rows {
+        remarks.extend(row.reasons.iter().map(|reason| format!("not in the table: {reason}")));
+        for (cell, quantity) in row.quantities.iter().zip(&plan.quantities) {
+            if let Some(remark) = cell.remark.as_ref().filter(|_| row.done > 0) {
+                remarks.push(format!("{}, {}: {remark}", row.setting, quantity.name));
+            }
+        }
+    }
+    remarks
+}
