@@ -134,9 +134,14 @@ pub fn largest_d(scheme: Scheme) -> f64 {
     }
 }
 
-/// Masses that the surface offers where it belongs to elements of the material `material`; none where none does, or where
-/// all such points are held.
-pub fn point_masses(solid: &fem::Model, surface: &SolidSurface, material: u32) -> Option<PointMasses> {
+/// Masses that the surface offers where it belongs to elements of the material `material` and stones can come, which
+/// `reached` says of a face by number; none where there are no such faces, or where all such points are held.
+pub fn point_masses(
+    solid: &fem::Model,
+    surface: &SolidSurface,
+    material: u32,
+    reached: impl Fn(u32) -> bool,
+) -> Option<PointMasses> {
     let mesh = solid.mesh();
     let mass = |patch: u32| {
         let element = surface.faces()[patch as usize].element as usize;
@@ -144,7 +149,7 @@ pub fn point_masses(solid: &fem::Model, surface: &SolidSurface, material: u32) -
     };
     let own = |patch: &u32| {
         let element = surface.faces()[*patch as usize].element as usize;
-        mesh.materials[element] == material
+        mesh.materials[element] == material && reached(*patch)
     };
     let patches = || (0..surface.faces().len() as u32).filter(own);
     let lightest = patches().min_by(|a, b| mass(*a).total_cmp(&mass(*b)))?;
@@ -327,16 +332,43 @@ mod tests {
         for (f, study) in found.iter().zip([0.018, 0.042, 0.101]) {
             assert!((f - study).abs() < 6e-4, "{f} against {study}");
         }
-        let least = point_masses(&solid, &surface, 1).unwrap();
+        let least = point_masses(&solid, &surface, 1, |_| true).unwrap();
         println!("least of the block: {least:?} kg, share of a corner {:.4}", least.corner / element);
         // The nearer to the border, the lighter: a corner one element away from it has a tenth less than the middle one.
         let share = least.corner / (found[0] * element);
         assert!(share > 0.85 && share < 1.0 + 1e-9 && least.least() == least.corner, "{share}");
         assert!(least.border < 0.5 * least.corner && least.side > least.corner);
-        assert!(point_masses(&solid, &surface, 2).is_none());
+        assert!(point_masses(&solid, &surface, 2, |_| true).is_none());
+        assert!(point_masses(&solid, &surface, 1, |_| false).is_none());
         // Spread over a disc, a corner of the inside offers more.
         let faces = surface.faces().to_vec();
         let wide = SolidSurface::new(solid.mesh(), faces).spread_over(0.2);
         assert!(solver.at(&wide, inner, [-1.0, -1.0]) > 3.0 * found[0] * element);
+    }
+
+    /// A strip of thin elements sets the least mass only where stones come to it: without it the points of the others are as heavy
+    /// as their width says.
+    #[test]
+    fn faces_out_of_reach_do_not_count() {
+        let mut mesh = Mesh::block([6, 4, 2], [1.2, 0.8, 0.4]);
+        // Elements of 0.2 m, those beyond x = 0.8 of 0.05 m.
+        for x in &mut mesh.coordinates {
+            x[0] = if x[0] > 0.8 { 0.8 + 0.25 * (x[0] - 0.8) } else { x[0] };
+        }
+        let solid = fem::Model::new(ModelInput {
+            mesh,
+            materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 2000.0 }.into())].into(),
+            quadrature: Quadrature::Gauss3,
+            ..Default::default()
+        })
+        .unwrap();
+        let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
+        let surface = SolidSurface::new(solid.mesh(), faces);
+        let all = point_masses(&solid, &surface, 1, |_| true).unwrap();
+        let within = |k: u32| surface.face_nodes(k).iter().any(|&n| surface.position(n)[0] < 0.6 - 1e-9);
+        let some = point_masses(&solid, &surface, 1, within).unwrap();
+        let ratio = some.least() / all.least();
+        println!("all {all:?}, within reach {some:?}");
+        assert!((2.5..6.0).contains(&ratio), "{ratio}");
     }
 }

@@ -120,7 +120,7 @@ fn a_stone_falls_through_air_as_the_closed_form_says() {
     }
     assert!(seen > 100);
     let summary = json(&folder.join("out/summary.json"));
-    assert!(summary["energy"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
+    assert!(summary["energy"]["spent"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 1e-9);
     assert!(sources(&summary).iter().any(|s| s.contains("Haider")));
 }

@@ -179,7 +179,9 @@ impl CouplingPart {
         ids.sort_unstable();
         ids.dedup();
         // A solid that grains lie on without a mass is refused elsewhere.
-        let places = ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id)?)));
+        let within = |face: u32| reached(model, surface, face);
+        let places =
+            ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id, within)?)));
         let places: Vec<_> = places.collect();
         self.with_stones(grains, model, solid, own, &places)
     }
@@ -251,4 +253,14 @@ impl CouplingPart {
         }
         classes
     }
+}
+
+/// Whether stones can come to a face of the surface: not where it lies wholly behind a plane that stands still.
+fn reached(model: &dem::Model, surface: &SolidSurface, face: u32) -> bool {
+    let nodes: Vec<_> = surface.face_nodes(face).iter().map(|&n| surface.mesh_position(n)).collect();
+    model
+        .planes()
+        .iter()
+        .filter(|p| p.velocity == dem::Vec3::zeros())
+        .all(|plane| nodes.iter().any(|&x| (dem::Vec3::from(x) - plane.point).dot(&plane.normal) > 0.0))
 }
