@@ -1,0 +1,15 @@
+//! Stability at the extremes: at, near and beyond each edge of what a scene can hold the program gives the right result, or
+//! says what is wrong. Each row is a test that runs small scenes, and a row of the table in `docs/extremes.md`.
+
+mod case;
+mod grains;
+mod plastic;
+mod shapes;
+mod solid;
+mod table;
+
+use table::Entry;
+
+/// Titles of the table's parts with their rows.
+const PARTS: [(&str, &[&[Entry]]); 2] =
+    [("Grains", &[grains::ROWS, shapes::ROWS]), ("Solid", &[solid::ROWS, plastic::ROWS])];
