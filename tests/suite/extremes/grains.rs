@@ -1,8 +1,8 @@
 //! Grains: the step, stiffnesses, masses and radii far apart, friction and restitution at their ends, impacts, bodies alone.
 
 use super::case::{Case, off};
+use super::scenes::{ball, floor, mass, plane, stone, time};
 use super::table::{Row, figure, figures, rows};
-use std::f64::consts::PI;
 
 rows! {
     step: "step of the grains at its limit";
@@ -14,52 +14,6 @@ rows! {
     coincident: "centres that coincide";
     impact: "1000 m/s against a thin plate";
     alone: "no gravity, one grain, none";
-}
-
-/// Head of a scene of one material `stone` of 2600 kg/m³ with `keys` in place of the usual ones.
-pub fn stone(keys: &str) -> String {
-    let mut text = String::from("title = \"edge\"\n");
-    text += if keys.contains("weightless") { "gravity = [0, 0, 0]\n" } else { "" };
-    text += "\n[[material]]\nname = \"stone\"\ndensity = 2600\n";
-    for (key, usual) in [("stiffness", "1e5"), ("friction", "0.5"), ("restitution", "0.5")] {
-        if !keys.lines().any(|line| line.starts_with(&format!("{key} ="))) {
-            text += &format!("{key} = {usual}\n");
-        }
-    }
-    text + &keys.replace("weightless", "")
-}
-
-/// A group of one ball [m, m/s] whose place is recorded.
-pub fn ball(name: &str, place: [f64; 3], radius: f64, velocity: [f64; 3]) -> String {
-    let [x, y, z] = place;
-    format!(
-        "\n[[grains]]\nname = \"{name}\"\nshape = \"sphere\"\nmaterial = \"stone\"\nrecord = true\n\
-         spheres = [[{x:?}, {y:?}, {z:?}, {radius:?}]]\nvelocity = {velocity:?}\n"
-    )
-}
-
-/// A recorded plane.
-pub fn plane(name: &str, point: [f64; 3], normal: [f64; 3]) -> String {
-    format!(
-        "\n[[walls]]\nname = \"{name}\"\nkind = \"plane\"\nmaterial = \"stone\"\nrecord = true\n\
-         point = {point:?}\nnormal = {normal:?}\n"
-    )
-}
-
-/// Duration [s] and rows of the history.
-pub fn time(end: f64, rows: u32) -> String {
-    let interval = end / f64::from(rows);
-    format!("\n[time]\nend = {end:?}\n\n[output]\nvtk = false\nhistory_interval = {interval:?}\n")
-}
-
-/// Floor through the origin.
-pub fn floor() -> String {
-    plane("floor", [0.0; 3], [0.0, 0.0, 1.0])
-}
-
-/// Mass of a ball of 2600 kg/m³ [kg].
-pub fn mass(radius: f64) -> f64 {
-    2600.0 * 4.0 / 3.0 * PI * radius.powi(3)
 }
 
 /// Face-centred cubic crystal of 3³ cells, pressed together by 1 % and disturbed, between six planes.

@@ -2,8 +2,11 @@
 //! says what is wrong. Each row is a test that runs small scenes, and a row of the table in `docs/extremes.md`.
 
 mod case;
+mod elements;
+mod exchange;
 mod grains;
 mod plastic;
+mod scenes;
 mod shapes;
 mod solid;
 mod table;
@@ -11,5 +14,5 @@ mod table;
 use table::Entry;
 
 /// Titles of the table's parts with their rows.
-const PARTS: [(&str, &[&[Entry]]); 2] =
-    [("Grains", &[grains::ROWS, shapes::ROWS]), ("Solid", &[solid::ROWS, plastic::ROWS])];
+const PARTS: [(&str, &[&[Entry]]); 3] =
+    [("Grains", &[grains::ROWS, shapes::ROWS]), ("Solid", &[solid::ROWS, elements::ROWS, plastic::ROWS]), ("Exchange", &[exchange::ROWS])];

@@ -1,7 +1,7 @@
 //! Grains: edges, corners and seams, needles and plates, beds of unlike grains, large and small units, long runs.
 
 use super::case::{Case, off};
-use super::grains::{ball, floor, mass, plane, stone, time};
+use super::scenes::{ball, floor, mass, plane, stone, time};
 use super::table::{Row, figure, figures, rows};
 use crate::suite::support::Folder;
 
