@@ -52,7 +52,7 @@ fn windows() -> Row {
         stone("stiffness = 1e7\n")
             + &ground([4, 2], "young = 1e6\npoisson = 0.3\ndensity = 1000")
             + &ball("ball", [0.52, 0.47, 0.051], 0.05, [0.0, 0.0, -0.5])
-            + &coupled(keys, 0.05, 100)
+            + &coupled(keys, 0.015, 100)
     };
     let one = Case::run(&text("substeps = 1"), &["time.end=1e-4"]).good();
     let scale = (class(&one, "masses/corner") / class(&one, "stiffness")).sqrt();
@@ -71,10 +71,10 @@ fn windows() -> Row {
         case.stopped("the energy account does not close");
         assert!(case.warned("the exchange may be unstable for stone on "));
     }
-    let iterated = [0.01, 0.5, 3.0, 10.0].map(|w| account(run("iterated", w)));
+    let iterated = [0.5, 3.0, 10.0].map(|w| account(run("iterated", w)));
     assert!(iterated.iter().all(|e| *e < 0.01), "{iterated:?}");
     Row::new(
-        "stone at 0.5 m/s, K = 10 MN/m, on ground of 1 MPa; predicted: W = 0.01, 0.1, 0.5; 3, 10; iterated: 0.01, 0.5, 3, 10",
+        "stone at 0.5 m/s, K = 10 MN/m, on ground of 1 MPa; predicted: W = 0.01, 0.1, 0.5; 3, 10; iterated: 0.5, 3, 10",
         format!(
             "predicted right up to its limit 1: energy account off by {}; beyond warned before the run (`the exchange may be \
              unstable`) and stopped by the account; iterated right: {}",
@@ -106,7 +106,10 @@ fn heavy() -> Row {
         if density == 100.0 {
             let said = refused.outcome.stderr.split_once("time.grain_step of ").unwrap().1;
             let step = format!("grain_step = {}", said.split_once(" s or less").unwrap().0);
-            errors.push(weight_error(&Case::run(&text(density, "substeps = \"auto\"", &step), &[]).good(), 0.25));
+            errors.push(weight_error(
+                &Case::run(&text(density, "substeps = \"auto\"", &step), &[]).good(),
+                0.25,
+            ));
         }
     }
     assert!(errors.iter().all(|e| *e < 5e-3), "{errors:?}");
@@ -185,22 +188,38 @@ fn lift_off() -> Row {
 
 fn seats() -> Row {
     let run = |x: f64, y: f64, keys: &str| {
-        let text = stone("stiffness = 1e6\nrestitution = 0.2\nrolling_friction = 0.5\ntangential_damping_ratio = 1.0\n")
-            + &ground([4, 2], "young = 50e6\npoisson = 0.3")
+        let text = stone(
+            "stiffness = 1e6\nrestitution = 0.2\nrolling_friction = 0.5\ntangential_damping_ratio = 1.0\n",
+        ) + &ground([4, 2], "young = 50e6\npoisson = 0.3")
             + DAMPED
             + &ball("ball", [x, y, 0.0501], 0.05, [0.0; 3])
-            + &coupled(keys, 0.4, 400);
+            + &coupled(keys, 0.25, 250);
         Case::run(&text, &[]).good()
     };
     let inside = [(0.52, 0.47), (0.5, 0.52), (0.5, 0.5), (0.625, 0.5)];
     let inside = inside.map(|(x, y)| weight_error(&run(x, y, "substeps = \"auto\""), 0.05));
-    println!("{inside:?}");
-    for (x, y, keys) in [(1.0, 0.52, "substeps = \"auto\""), (1.0, 1.0, "substeps = \"auto\""), (1.0, 1.0, "substeps = 3"), (1.0, 1.0, "substeps = 1"), (1.0, 1.0, "scheme = \"iterated\"")] {
-        let case = run(x, y, keys);
-        println!("{x} {y} {keys} {} {} {}", weight_error(&case, 0.05), case.value("/energy/largest_relative_error"), case.summary()["warnings"]);
-        println!("{} {}", case.value("/model/solid_step"), case.last("ball_z"));
-    }
-    Row::new("?", figures(&inside), "?")
+    assert!(inside.iter().all(|e| *e < 1e-6), "{inside:?}");
+    let edge = weight_error(&run(1.0, 0.52, "substeps = \"auto\""), 0.05);
+    let iterated = run(1.0, 1.0, "scheme = \"iterated\"");
+    let corner = [weight_error(&run(1.0, 1.0, "substeps = 1"), 0.05), weight_error(&iterated, 0.05)];
+    assert!(edge < 1e-6 && corner.iter().all(|e| *e < 1e-6), "{edge} {corner:?}");
+    // The mass of a corner of the mesh is a quarter of that of one within, which the number of sub-steps follows.
+    let chatter = run(1.0, 1.0, "substeps = \"auto\"");
+    assert!(chatter.warned("the dashpots at the solid's surface took "));
+    let account = chatter.value("/energy/largest_relative_error");
+    Row::new(
+        "ball at rest in a face, over a seam, a node, a mid-side node, the edge and the corner of the mesh",
+        format!(
+            "right: weight off by {}, on the edge by {}, on the corner with one sub-step by {}, in iterated windows by {}; limit: \
+             `\"auto\"` follows the masses within, at the corner it chatters, warned: energy account off by {} %",
+            figures(&inside),
+            figure(edge),
+            figure(corner[0]),
+            figure(corner[1]),
+            figure(100.0 * account)
+        ),
+        "weight at rest",
+    )
 }
 
 fn leaving() -> Row {
@@ -217,7 +236,10 @@ fn leaving() -> Row {
     assert!(!Case::run(&text(0.0), &[]).good().warned("left the solid"));
     Row::new(
         "ball rolling off the border at 2 m/s; one that stays",
-        format!("falls past the mesh, energy account off by {}; warned: `bodies that have left the solid`", figure(account)),
+        format!(
+            "falls past the mesh, energy account off by {}; warned: `bodies that have left the solid`",
+            figure(account)
+        ),
         "energy account",
     )
 }

@@ -5,6 +5,7 @@ mod case;
 mod elements;
 mod exchange;
 mod grains;
+mod laws;
 mod plastic;
 mod scenes;
 mod shapes;
@@ -14,5 +15,8 @@ mod table;
 use table::Entry;
 
 /// Titles of the table's parts with their rows.
-const PARTS: [(&str, &[&[Entry]]); 3] =
-    [("Grains", &[grains::ROWS, shapes::ROWS]), ("Solid", &[solid::ROWS, elements::ROWS, plastic::ROWS]), ("Exchange", &[exchange::ROWS])];
+const PARTS: [(&str, &[&[Entry]]); 3] = [
+    ("Grains", &[grains::ROWS, laws::ROWS, shapes::ROWS]),
+    ("Solid", &[solid::ROWS, elements::ROWS, plastic::ROWS]),
+    ("Exchange", &[exchange::ROWS]),
+];

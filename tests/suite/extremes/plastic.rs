@@ -3,7 +3,7 @@
 use super::case::{Case, off};
 use super::scenes::{LISTS, TABLES, held, material, pressure};
 use super::solid::cylinder;
-use super::table::{Row, figures, rows};
+use super::table::{Row, figure, figures, rows};
 use crate::suite::support::PLASTIC;
 
 rows! {
@@ -54,22 +54,27 @@ fn reached(case: &Case) -> f64 {
     text.split_once(':').unwrap().0.parse().unwrap()
 }
 
-/// Bursting pressure found over the right one, for a cohesion of 10 kPa and these angles [degrees].
+/// Bursting pressure found over the right one, to the 5e-5 that steps are halved to, for a cohesion of 10 kPa and these angles [degrees].
 fn strength(friction: f64, dilation: f64) -> f64 {
     let right = bursting(1e4, friction.to_radians().tan());
     1.05 * reached(&burst(&mohr_coulomb(1e4, friction, dilation), 1.05 * right, 0.05))
 }
 
+/// The largest of some errors.
+fn worst(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(0.0, f64::max)
+}
+
 fn friction_angles() -> Row {
     let errors = [0.0, 1e-6, 1e-3, 1.0, 60.0, 80.0].map(|friction| (strength(friction, 0.0) - 1.0).abs());
-    assert!(errors.iter().all(|e| *e < 0.02), "{errors:?}");
+    assert!(errors.iter().all(|e| *e < 5e-3), "{errors:?}");
     burst(&mohr_coulomb(1e4, 80.1, 0.0), 1.0, 1.0).refused("solid.material.0.friction: found ");
     burst(&mohr_coulomb(0.0, 0.0, 0.0), 1.0, 1.0).refused("solid.material.0.cohesion: found ");
     Row::new(
         "0, 1e-6°, 1e-3°, 1°, 60°, 80° in a thick cylinder; 80.1°; 0 without cohesion",
         format!(
-            "right: bursting pressure off by {}; refused: `solid.material.0.friction`, `solid.material.0.cohesion`",
-            figures(&errors)
+            "right: bursting pressure off by {} at most; refused: `solid.material.0.friction`, `solid.material.0.cohesion`",
+            figure(worst(&errors))
         ),
         "c cot φ ((b/a)^(2 sin φ/(1 + sin φ)) − 1)",
     )
@@ -78,11 +83,14 @@ fn friction_angles() -> Row {
 fn dilation() -> Row {
     let angles = [(30.0, 0.0), (30.0, 30.0), (60.0, 60.0), (1e-3, 1e-3)];
     let errors = angles.map(|(friction, dilation)| (strength(friction, dilation) - 1.0).abs());
-    assert!(errors.iter().all(|e| *e < 0.02), "{errors:?}");
+    assert!(errors.iter().all(|e| *e < 5e-3), "{errors:?}");
     burst(&mohr_coulomb(1e4, 30.0, 30.1), 1.0, 1.0).refused("solid.material.0.dilation: found ");
     Row::new(
         "friction and dilation 30° and 0, 30° and 30°, 60° and 60°, 1e-3° and 1e-3°; dilation above friction",
-        format!("right: bursting pressure off by {}; refused: `solid.material.0.dilation`", figures(&errors)),
+        format!(
+            "right: bursting pressure off by {} at most; refused: `solid.material.0.dilation`",
+            figure(worst(&errors))
+        ),
         "as above; it does not depend on the dilation",
     )
 }
@@ -114,7 +122,7 @@ fn no_cohesion() -> Row {
     for (friction, way) in [(30.0, -0.04), (60.0, -0.1), (30.0, 0.01), (60.0, 0.01)] {
         errors.push((rankine(friction, way) - 1.0).abs());
     }
-    assert!(errors.iter().all(|e| *e < 0.01), "{errors:?}");
+    assert!(errors.iter().all(|e| *e < 1e-4), "{errors:?}");
     Row::new(
         "level ground without cohesion pushed and let go by a smooth wall, friction 30° and 60°",
         format!(

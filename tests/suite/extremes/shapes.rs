@@ -8,10 +8,10 @@ use crate::suite::support::Folder;
 rows! {
     borders: "ball on an edge, a corner, a seam of triangles";
     needle: "needle 1:50";
+    slap: "needle that slaps down, steps that follow the contacts";
     flat: "plate 1:50";
     unlike_bed: "bed of radius ratio 1:100";
     units: "units huge and tiny";
-    [long "wrong: the step does not follow 50 contacts that come at once"] slap: "a needle that slaps down";
     [long "ten million steps: a minute or two"] quiet: "10⁷ steps of a quiet bed";
     [long "ten million steps: a minute"] tumbling: "10⁷ steps of a tumbling clump";
 }
@@ -117,28 +117,25 @@ fn flat() -> Row {
     )
 }
 
-/// Many contacts that come at once, between two looks at what the contacts allow.
+/// Many contacts, each with a dashpot for the mass of the whole, come at once between two looks at what the contacts allow.
 fn slap() -> Row {
-    let stopped = [1, 2, 3]
-        .map(|k| {
-            let turn = f64::from(k) * 0.1;
-            dropped(&needle_places(), 0.11, [turn.cos(), 0.0, turn.sin(), 0.0], &time(0.4, 400))
-        })
-        .iter()
-        .filter(|case| case.outcome.code != 0)
-        .map(|case| case.stopped("at t = "))
-        .count();
+    let mut stopped = 0;
+    for turn in [0.1_f64, 0.2, 0.3] {
+        let case = dropped(&needle_places(), 0.11, [turn.cos(), 0.0, turn.sin(), 0.0], &time(0.4, 400));
+        if case.outcome.code == 0 {
+            assert!(case.value("/energy/largest_relative_error") < 0.01, "not right, and nothing said");
+        } else {
+            case.stopped("the energy account does not close");
+            stopped += 1;
+        }
+    }
     let outcome = match stopped {
         0 => "right".to_string(),
         _ => format!(
-            "wrong: {stopped} of 3 stopped, the energy account does not close; `time.grain_step` within its limit is right"
+            "limit: {stopped} of 3 stopped, `the energy account does not close`, with advice on `time.grain_step`, which helps"
         ),
     };
-    Row::new(
-        "needle of 50 spheres at three orientations, steps that follow the contacts",
-        outcome,
-        "energy account",
-    )
+    Row::new("needle of 50 spheres at three orientations", outcome, "energy account")
 }
 
 /// A boulder of 50 mm settles on a bed of grains of 0.5 mm in a ring.
@@ -219,9 +216,6 @@ fn quiet() -> Row {
     };
     let moved = drift("bed_x").max(drift("bed_y")).max(drift("bed_z"));
     let kinetic = case.last("grains_kinetic");
-    let weight = 27.0 * mass(0.01) * 9.81;
-    let force = off(-case.last("floor_force_z"), weight);
-    println!("{moved:e} {kinetic:e} {force:e} {:e}", drift("contact_springs"));
     assert!(moved < 1e-9 && kinetic < 1e-20, "{moved:e} {kinetic:e}");
     Row::new(
         "27 spheres in a box",

@@ -1,7 +1,7 @@
 //! The solid in its elastic range: Poisson's ratio, contrasts, supports, units, steps of time, large strains.
 
 use super::case::{Case, off};
-use super::scenes::{LISTS, TABLES, block, material, held, pressure, rollers};
+use super::scenes::{LISTS, TABLES, block, held, material, pressure, rollers};
 use super::table::{Row, figure, figures, rows};
 use std::f64::consts::PI;
 use trackbed_fem::mesh::{Constraint, Mesh};
