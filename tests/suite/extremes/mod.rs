@@ -6,6 +6,7 @@ mod elements;
 mod exchange;
 mod grains;
 mod laws;
+mod motion;
 mod plastic;
 mod scenes;
 mod shapes;
@@ -16,7 +17,7 @@ use table::Entry;
 
 /// Titles of the table's parts with their rows.
 const PARTS: [(&str, &[&[Entry]]); 3] = [
-    ("Grains", &[grains::ROWS, laws::ROWS, shapes::ROWS]),
+    ("Grains", &[grains::ROWS, motion::ROWS, laws::ROWS, shapes::ROWS]),
     ("Solid", &[solid::ROWS, elements::ROWS, plastic::ROWS]),
     ("Exchange", &[exchange::ROWS]),
 ];

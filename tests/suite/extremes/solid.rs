@@ -11,6 +11,7 @@ rows! {
     contrast: "moduli far apart";
     unsupported: "body that is not held";
     units: "units huge and tiny";
+    far: "solid far from the origin";
     time_steps: "steps from 1e-9 to 1e3 of the period";
     large_strain: "strains that are not small, forces beyond all numbers";
 }
@@ -163,6 +164,20 @@ fn units() -> Row {
     Row::new(
         "column of 1 nm, 1 µm, 1 m, 1000 km, 1e9 m; Young's modulus from 1e-9 to 1e18 Pa",
         format!("right: settlement off by {}", figures(&errors)),
+        "oedometric modulus",
+    )
+}
+
+fn far() -> Row {
+    let errors = [1e3, 1e6, 1e9, 1e12].map(|offset: f64| {
+        let axis = format!("{{ lines = [{offset:?}, {:?}], counts = [2] }}", offset + 1.0);
+        let text = block([&axis; 3]) + &material(1, "") + &rollers() + &pressure("z+", 1e4) + TABLES;
+        off(Case::run(&text, &[]).good().value("/statics/largest_displacement/0"), 1e4 / 24e6)
+    });
+    assert!(errors[..3].iter().all(|e| *e < 1e-5) && errors[3] < 1e-2, "{errors:?}");
+    Row::new(
+        "column of 1 m at 1e3, 1e6, 1e9, 1e12 m from the origin",
+        format!("right: settlement off by {}, as coordinates there are rounded", figures(&errors)),
         "oedometric modulus",
     )
 }
