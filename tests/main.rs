@@ -12,6 +12,7 @@ mod suite {
     mod determinism;
     mod examples;
     mod exchange;
+    mod extremes;
     mod faces;
     mod fem_cases;
     mod flow;
