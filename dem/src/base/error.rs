@@ -218,7 +218,7 @@ pub enum StepError {
     },
     /// A rigid triangle body moves so fast that contacts would be missed, or its velocity is not a number.
     #[error(
-        "at t = {time} s a point of the rigid body of wall {wall} moves at {speed} m/s, above the bound {bound} m/s (half \
+        "at t = {time} s a point of wall {wall} moves at {speed} m/s, above the bound {bound} m/s (half \
          the smallest radius per step)"
     )]
     WallSpeed {
