@@ -208,7 +208,7 @@ fn sizes_of_one_to_twenty() {
     let sizes = |x: f64| if x < 0.5 { 20.0 } else { 1.0 + 4.0 * (x - 0.5) };
     // Small spheres roll on and on without resistance, and contacts that come and go have no limit to compare with.
     let material = Material { rolling_friction: 0.2, ..stone() };
-    Bed::settled(bed(shapes, sizes, material, 0.021), NoSurface, 1.2).compare("sizes 1:20");
+    Bed::settled(bed(shapes, sizes, material, 0.021), NoSurface, 3.0).compare("sizes 1:20");
 }
 
 #[test]

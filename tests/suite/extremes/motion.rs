@@ -2,7 +2,7 @@
 
 use super::case::{Case, off};
 use super::scenes::{ball, floor, mass, plane, stone, time};
-use super::table::{Row, figure, figures, rows};
+use super::table::{Row, figures, rows};
 
 rows! {
     far: "grains far from the origin";
@@ -77,11 +77,9 @@ fn moving_walls() -> Row {
         errors.push(off(struck(speed, stiffness).good().velocity("ball", 0.1)[2], 1.5 * speed));
     }
     assert!(errors.iter().all(|e| *e < 0.01), "{errors:?}");
-    for speed in [100.0, 300.0] {
-        struck(speed, 1e5).stopped("body 0 and triangle 0 overlap");
-    }
+    struck(100.0, 1e5).stopped("body 0 and triangle 0 overlap");
     Row::new(
-        "plate of triangles that meets a ball at rest at 0.1, 1, 30 m/s, 1000 m/s (K = 1.1e10); 100, 300 m/s (K = 1e5)",
+        "plate of triangles that meets a ball at rest at 0.1, 1, 30 m/s, 1000 m/s (K = 1.1e10); 100 m/s (K = 1e5)",
         format!(
             "right: speed of the ball off by {}; too soft for it stopped: `body 0 and triangle 0 overlap`",
             figures(&errors)
@@ -91,12 +89,12 @@ fn moving_walls() -> Row {
 }
 
 fn skipping_walls() -> Row {
-    for speed in [1e3, 3e3, 1e4] {
+    for speed in [300.0, 1e3, 3e3, 1e4] {
         struck(speed, 1e5).stopped("a point of wall 0 moves at");
     }
     Row::new(
-        "the plate at 1e3, 3e3, 1e4 m/s, K = 1e5: 4, 12, 40 radii in a step",
-        "stopped: `a point of wall 0 moves at` more than half the smallest radius a step".into(),
+        "the plate at 300, 1e3, 3e3, 1e4 m/s, K = 1e5: 1.2, 4, 12, 40 radii in a step",
+        "stopped: `a point of wall 0 moves at` more than half the smallest radius a step",
         "v' = (1 + e) v",
     )
 }
