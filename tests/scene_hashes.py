@@ -231,8 +231,9 @@ def run_case(case, binary, threads, keep):
 
 
 def is_scene(path):
-    """Scenes have a title; libraries of stones and tables of trains have none."""
-    return "title" in tomllib.loads(path.read_text())
+    """Scenes have a title; libraries of stones and tables of trains have none. Studies name a scene."""
+    content = tomllib.loads(path.read_text())
+    return "title" in content and "scene" not in content
 
 
 def cases(only):

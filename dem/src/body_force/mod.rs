@@ -2,7 +2,7 @@
 //! bodies at a time and leaves their motion as it is; a model without body forces has no such stage. (Gravity and local
 //! damping belong to the motion itself: one is the same acceleration for all, the other needs the sum of all forces.)
 //!
-//! A body force is one file with a [`Act`] and one line in `body_forces!`.
+//! A body force is one file with an `Act` and one line in `body_forces!`.
 //!
 //! Velocities are those of half a step ago, so a force that depends on them is right to first order in the share of the
 //! velocity that it takes in a step. Its work is booked exactly for translation, and with the spins before and after the step
