@@ -300,13 +300,10 @@ mod tests {
     use trackbed_fem::mesh::Mesh;
     use trackbed_fem::{Elastic, ModelInput, Quadrature};
 
-    /// Shares of one element's mass that points of a block's top offer, against the reference study (consistent mass,
-    /// 4 × 4 × 2 elements): mid-face 0.101, mid-edge 0.042, corner 0.018, of points within the block; those at
-    /// its border are lighter.
-    #[test]
-    fn masses_of_points_are_those_of_the_study() {
+    /// Ground of one material, and its top.
+    fn ground(mesh: Mesh) -> (fem::Model, SolidSurface) {
         let solid = fem::Model::new(ModelInput {
-            mesh: Mesh::block([4, 4, 2], [1.0, 1.0, 0.5]),
+            mesh,
             materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 2000.0 }.into())].into(),
             quadrature: Quadrature::Gauss3,
             ..Default::default()
@@ -314,6 +311,15 @@ mod tests {
         .unwrap();
         let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
         let surface = SolidSurface::new(solid.mesh(), faces);
+        (solid, surface)
+    }
+
+    /// Shares of one element's mass that points of a block's top offer, against the reference study (consistent mass,
+    /// 4 × 4 × 2 elements): mid-face 0.101, mid-edge 0.042, corner 0.018, of points within the block; those at
+    /// its border are lighter.
+    #[test]
+    fn masses_of_points_are_those_of_the_study() {
+        let (solid, surface) = ground(Mesh::block([4, 4, 2], [1.0, 1.0, 0.5]));
         let element = 2000.0 / 64.0;
         let mut solver = MassSolver::new(&solid);
         // The face at the inner side of x = y = 0.5: its first corner is the middle of the top.
@@ -355,15 +361,7 @@ mod tests {
         for x in &mut mesh.coordinates {
             x[0] = if x[0] > 0.8 { 0.8 + 0.25 * (x[0] - 0.8) } else { x[0] };
         }
-        let solid = fem::Model::new(ModelInput {
-            mesh,
-            materials: [(1, Elastic { young: 2e7, poisson: 0.3, density: 2000.0 }.into())].into(),
-            quadrature: Quadrature::Gauss3,
-            ..Default::default()
-        })
-        .unwrap();
-        let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
-        let surface = SolidSurface::new(solid.mesh(), faces);
+        let (solid, surface) = ground(mesh);
         let all = point_masses(&solid, &surface, 1, |_| true).unwrap();
         let within = |k: u32| surface.face_nodes(k).iter().any(|&n| surface.position(n)[0] < 0.6 - 1e-9);
         let some = point_masses(&solid, &surface, 1, within).unwrap();

@@ -20,11 +20,8 @@ use crate::bodies::sums::Sums;
 use crate::lanes::record::xyz;
 use crate::lanes::{self, Four, Kernel, Pack, Real, Simd, V3};
 
-/// Four bodies as a body force sees them.
+/// Four bodies as a body force sees them; one that depends on more adds it here.
 pub(crate) struct Seen<R> {
-    /// Centre of mass [m].
-    #[allow(dead_code, reason = "not every force depends on the place")]
-    pub position: V3<R>,
     /// Velocity of the centre half a step ago [m/s].
     pub velocity: V3<R>,
     /// Radius of the sphere of the body's volume [m].
@@ -157,13 +154,7 @@ impl<F: Act> Acting<'_, F> {
         for k in (0..n).step_by(4) {
             // The last four may be fewer: the lanes beyond see the last body again, and nobody reads them.
             let at = [k, (k + 1).min(n - 1), (k + 2).min(n - 1), (k + 3).min(n - 1)];
-            let (x, v) = (&block.centre, &block.velocity);
-            let [px, py, pz, _] = R::transpose([
-                R::load(&x[at[0]]),
-                R::load(&x[at[1]]),
-                R::load(&x[at[2]]),
-                R::load(&x[at[3]]),
-            ]);
+            let v = &block.velocity;
             let [vx, vy, vz, _] = R::transpose([
                 R::load(&v[at[0]]),
                 R::load(&v[at[1]]),
@@ -171,7 +162,6 @@ impl<F: Act> Acting<'_, F> {
                 R::load(&v[at[3]]),
             ]);
             let seen = Seen {
-                position: V3::new(px, py, pz),
                 velocity: V3::new(vx, vy, vz),
                 radius: R::load(&[radius[at[0]], radius[at[1]], radius[at[2]], radius[at[3]]]),
             };

@@ -6,7 +6,7 @@ use crate::model::solid::{SolidPart, TimeMethod};
 use crate::run::checkpoint::{Body, Loaded};
 use crate::run::checkpoint_store::Interrupt;
 use crate::run::initial;
-use crate::run::system::{Applied, SolidView, System};
+use crate::run::system::{Applied, SolidView, System, stored_at_rest};
 use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::TrackSystem;
@@ -157,12 +157,8 @@ impl System for PlasticDynamics<'_> {
     }
 
     fn stored(&self) -> Stored {
-        Stored {
-            solid_kinetic: fem::energy::kinetic(&self.part.model, &self.state),
-            solid_strain: fem::energy::strain(&self.part.model, &self.state),
-            solid_gravity: -self.gravity.iter().zip(&self.state.u).map(|(f, u)| f * u).sum::<f64>(),
-            ..Stored::default()
-        }
+        let kinetic = fem::energy::kinetic(&self.part.model, &self.state);
+        Stored { solid_kinetic: kinetic, ..stored_at_rest(&self.part.model, &self.state, &self.gravity) }
     }
 
     fn spent(&self) -> Spent {

@@ -6,11 +6,10 @@ use crate::model::solid::{QuasiStaticPlan, SolidPart};
 use crate::run::checkpoint::{Body, Loaded};
 use crate::run::checkpoint_store::Interrupt;
 use crate::run::initial;
-use crate::run::system::{Applied, SolidView, System};
+use crate::run::system::{Applied, SolidView, System, stored_at_rest};
 use std::io;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::TrackSystem;
-use trackbed_fem as fem;
 use trackbed_fem::nonlinear::{Loading, Memory, QuasiStatic, Statistics, StepControl, energy};
 use trackbed_fem::{SolveError, State};
 
@@ -178,11 +177,7 @@ impl System for QuasiStaticSystem<'_> {
     }
 
     fn stored(&self) -> Stored {
-        Stored {
-            solid_strain: fem::energy::strain(&self.part.model, &self.state),
-            solid_gravity: -self.gravity.iter().zip(&self.state.u).map(|(f, u)| f * u).sum::<f64>(),
-            ..Stored::default()
-        }
+        stored_at_rest(&self.part.model, &self.state, &self.gravity)
     }
 
     fn spent(&self) -> Spent {

@@ -77,3 +77,12 @@ pub trait System: TrackSystem {
         self.grains().map_or(0.0, |g| g.state.ledger.work_applied)
     }
 }
+
+/// Energy that a solid alone stores in its strain and against gravity, whose nodal forces are `gravity` [N], shape `[3·nodes]`.
+pub fn stored_at_rest(model: &fem::Model, state: &fem::state::State, gravity: &[f64]) -> Stored {
+    Stored {
+        solid_strain: fem::energy::strain(model, state),
+        solid_gravity: -gravity.iter().zip(&state.u).map(|(f, u)| f * u).sum::<f64>(),
+        ..Stored::default()
+    }
+}

@@ -1,6 +1,6 @@
 //! An elastic solid alone.
 
-use super::{Applied, SolidView, System};
+use super::{Applied, SolidView, System, stored_at_rest};
 use crate::failure::Failure;
 use crate::model::solid::{SolidPart, TimeMethod};
 use crate::run::checkpoint::{Body, Loaded};
@@ -104,12 +104,8 @@ impl System for SolidSystem<'_> {
     }
 
     fn stored(&self) -> Stored {
-        Stored {
-            solid_kinetic: fem::energy::kinetic(&self.part.model, &self.state),
-            solid_strain: fem::energy::strain(&self.part.model, &self.state),
-            solid_gravity: -self.gravity.iter().zip(&self.state.u).map(|(f, u)| f * u).sum::<f64>(),
-            ..Stored::default()
-        }
+        let kinetic = fem::energy::kinetic(&self.part.model, &self.state);
+        Stored { solid_kinetic: kinetic, ..stored_at_rest(&self.part.model, &self.state, &self.gravity) }
     }
 
     fn spent(&self) -> Spent {
