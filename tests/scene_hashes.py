@@ -200,7 +200,9 @@ def scene_rows(case, binary, threads, work):
         count, status = interrupted([*command, "--out", str(again)], again, pauses)
         found, whole = files(again), files(out)
         differing = sorted(n for n in found.keys() | whole.keys() if found.get(n) != whole.get(n))
-        rows["(restart)"] = ", ".join(differing) or status
+        rows["(restart)"] = ", ".join(differing) + f" {status}" if differing else status
+        if differing:
+            print(f"{case['name']}: after a restart {rows['(restart)']}", file=sys.stderr)
         if count == 0:
             print(f"{case['name']}: was over before it could be interrupted", file=sys.stderr)
     return rows
@@ -264,7 +266,9 @@ def compare(found, expected):
     differing = sorted(key for key in found.keys() | expected.keys() if found.get(key) != expected.get(key))
     for key in differing:
         word = "new" if key not in expected else "missing" if key not in found else "differs"
-        value = f": {found[key]}" if word != "missing" and not re.fullmatch("[0-9a-f]{64}", found[key]) else ""
+        values = [table.get(key, "") for table in (expected, found)]
+        readable = [v if not re.fullmatch("[0-9a-f]{64}", v) else v[:8] for v in values]
+        value = f": {readable[0]} -> {readable[1]}" if readable != [v[:8] for v in values] else ""
         print(f"{word:8} {key[0]}  {key[1]}{value}")
     print(f"{len(found)} rows, {len(differing)} differ")
     return len(differing)

@@ -25,6 +25,11 @@ pub struct Lock {
     pub left_behind: bool,
 }
 
+/// Whether the lock of a run is in a folder: of one at work there, or of one that was killed.
+pub fn is_there(dir: &Path) -> bool {
+    dir.join(FILE).is_file()
+}
+
 impl Lock {
     /// Locks a folder, which is made where it is missing; goes again with the lock if nothing was put there.
     ///

@@ -101,14 +101,21 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         if origin::was_done(&dir, &scene_hash)? {
             return Ok(Outcome::WasDone(dir));
         }
-        let (checkpoint, remarks) = slots.load(&document)?;
-        remarks.iter().for_each(|remark| message::note(remark));
-        loaded = Some(checkpoint);
+        if slots.any() || !lock::is_there(&dir) {
+            let (checkpoint, remarks) = slots.load(&document)?;
+            remarks.iter().for_each(|remark| message::note(remark));
+            loaded = Some(checkpoint);
+        } else {
+            message::note(&format!(
+                "{}: the run was ended before its first checkpoint, it starts from its beginning",
+                dir.display()
+            ));
+        }
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
         let lock = Lock::take(&dir)?;
-        if !options.resume && !options.force {
+        if loaded.is_none() && !options.force {
             occupied::check(&dir, &origin, &slots, &lock)?;
         }
         let record = RunRecord {

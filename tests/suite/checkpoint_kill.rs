@@ -117,6 +117,27 @@ fn kill_and_resume() {
     assert!(ahead > 0, "the run never got ahead");
 }
 
+/// A run that was ended while it wrote its first checkpoint has nothing to go on from: it starts anew, and says so. A folder
+/// where no run was begun is still refused.
+#[test]
+fn a_run_ended_before_its_first_checkpoint_starts_anew() {
+    let folder = Folder::new("killed_first");
+    let scene = repository().join("inputs/grains/box.toml");
+    let set: Vec<String> = ["grains.0.count=300", "time.end=0.02"].map(String::from).into();
+    let (whole, out) = (folder.join("whole"), folder.join("out"));
+    run(&scene, &whole, &set.iter().map(String::as_str).collect::<Vec<_>>()).good();
+    let refused = start(&scene, &out, &set, 1, true).wait_with_output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+    fs::create_dir_all(out.join("checkpoint")).unwrap();
+    fs::write(out.join("run.lock"), "1\n").unwrap();
+    fs::write(out.join("checkpoint/a.checkpoint.part"), "half of it").unwrap();
+    let end = start(&scene, &out, &set, 1, true).wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&end.stderr);
+    assert!(end.status.success(), "{said}");
+    assert!(said.contains("before its first checkpoint, it starts from its beginning"), "{said}");
+    same(&whole, &out);
+}
+
 /// Ctrl-C: one line, exit code 130, and a run that goes on.
 #[test]
 fn ctrl_c_and_sigterm() {
