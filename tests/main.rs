@@ -4,6 +4,7 @@
 mod suite {
     mod bad_input;
     mod ballast;
+    mod bedding;
     mod bonds;
     mod checkpoint;
     mod checkpoint_kill;
@@ -18,6 +19,7 @@ mod suite {
     mod flow;
     mod grain_limits;
     mod hostile;
+    mod include;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;

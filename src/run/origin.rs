@@ -65,7 +65,7 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
         hash.add(value.as_bytes());
     }
     let mut files = Vec::new();
-    let named = files_of(scene).into_iter().map(Path::to_path_buf);
+    let named = document.included().chain(files_of(scene)).map(Path::to_path_buf);
     for file in named.chain(behind_the_mesh(document, scene)) {
         // One that is missing or has gone changes the hash, which is what it is for; so does one that is not to be read, which the
         // model refuses.

@@ -13,6 +13,8 @@ pub struct Compaction {
     pub region: [[Quantity<Length>; 3]; 2],
     /// Friction between grains in this stage, instead of their own.
     pub friction: Option<f64>,
+    /// Contact stiffness in this stage, as a share of their own; default 1.
+    pub stiffness_factor: Option<f64>,
     /// Local non-viscous damping in this stage, 0–1; default 0.
     #[serde(default)]
     pub local_damping: f64,
@@ -24,13 +26,13 @@ pub struct Compaction {
     pub direction: Option<[f64; 3]>,
     /// Of `vibration`: largest displacement from the middle [m].
     pub amplitude: Option<Quantity<Length>>,
-    /// Of `vibration` and `tamping`.
+    /// Of `vibration`, `tamping` and `bedding`.
     pub frequency: Option<Quantity<Frequency>>,
-    /// Of `vibration` and `tamping`: number of cycles (at each place).
+    /// Of `vibration`, `tamping` and `bedding`: number of cycles (at each place).
     pub cycles: Option<u32>,
     /// Of `tamping`: the plate.
     pub plate: Option<Plate>,
-    /// Of `tamping`: largest force on the plate, downwards [N].
+    /// Of `tamping` and `bedding`: largest force on the plate or on each sleeper, downwards [N].
     pub force: Option<Quantity<Force>>,
     /// Of `tamping`: places of the plate's centre in x and y, one after the other [m].
     pub at: Option<Vec<[Quantity<Length>; 2]>>,
@@ -42,6 +44,12 @@ pub struct Compaction {
     pub porosity: Option<f64>,
     /// Of `squeeze`: longest way of the wall [m].
     pub max_travel: Option<Quantity<Length>>,
+    /// Of `pouring`: names of the groups of grains that wait for it.
+    pub groups: Option<Vec<String>>,
+    /// Of `pouring`: parts that they are dropped in, one after the other; default 1.
+    pub layers: Option<u32>,
+    /// Of `pouring`: those with their centre above are taken away at its end [m].
+    pub level: Option<Quantity<Length>>,
 }
 
 /// What a stage of compaction does.
@@ -54,6 +62,10 @@ pub enum CompactionKind {
     Tamping,
     /// A plane moves in until a porosity is reached.
     Squeeze,
+    /// The sleepers are set down, and pressed into the bed.
+    Bedding,
+    /// Grains are dropped on the bed, around the sleepers that lie there.
+    Pouring,
 }
 
 /// A rigid plate that presses.

@@ -18,6 +18,8 @@ pub struct Deposition {
     pub layers: u32,
     /// Friction between grains while they settle, instead of their own: lower packs denser.
     pub friction: Option<f64>,
+    /// Contact stiffness while they settle, as a share of their own; default 1. Lower takes longer steps.
+    pub stiffness_factor: Option<f64>,
     /// Local non-viscous damping while they settle, 0–1; default 0.
     #[serde(default)]
     pub local_damping: f64,

@@ -1,6 +1,7 @@
 //! The scene file as a tree with the line of every key, so that each message can name its place.
 
 use super::SceneError;
+use super::include::{self, Included};
 use super::value::Value;
 use super::wording::explain;
 use crate::read::source;
@@ -10,10 +11,11 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A parsed scene file.
+/// A parsed scene file, with the files that it includes.
 pub struct Document {
     file: PathBuf,
     text: String,
+    included: Vec<Included>,
     /// Overrides given on the command line as (key path, value); their values carry spans past the text.
     overrides: Vec<(String, String)>,
 }
@@ -36,23 +38,19 @@ impl Document {
     /// # Errors
     /// The text is not TOML.
     pub fn parse(file: &Path, text: String) -> Result<Document, SceneError> {
-        DeTable::parse(&text).map_err(|e| {
-            let message = e.message().lines().collect::<Vec<_>>().join(", ");
-            let (found, expected) = message.split_once(", expected ").unwrap_or((&message, "valid TOML"));
-            SceneError {
-                file: file.to_path_buf(),
-                line: e.span().map(|s| line_of(&text, s.start)),
-                key: "syntax".into(),
-                found: found.into(),
-                expected: expected.into(),
-            }
-        })?;
-        Ok(Document { file: file.to_path_buf(), text, overrides: Vec::new() })
+        syntax(file, &text, 0)?;
+        let mut document =
+            Document { file: file.to_path_buf(), text, included: Vec::new(), overrides: Vec::new() };
+        document.included = include::read(&document)?;
+        Ok(document)
     }
 
     /// The tree of the text with the overrides applied.
     fn tree(&self) -> Spanned<DeTable<'_>> {
         let mut tree = DeTable::parse(&self.text).expect("the text was parsed when the document was opened");
+        for file in &self.included {
+            include::merge(tree.get_mut(), file.tree());
+        }
         for (path, value) in &self.overrides {
             self.apply(tree.get_mut(), path, value).expect("the override was applied when it was set");
         }
@@ -75,7 +73,8 @@ impl Document {
     }
 
     fn apply<'a>(&self, root: &mut DeTable<'a>, path: &'a str, value: &'a str) -> Result<(), SceneError> {
-        let span = self.text.len()..self.text.len();
+        let end = self.end();
+        let span = end..end;
         let parsed = match DeValue::parse(value) {
             Ok(v) => v.into_inner(),
             Err(_) => DeValue::String(value.into()),
@@ -121,7 +120,9 @@ impl Document {
     /// # Errors
     /// A key is unknown, missing or of the wrong type or unit.
     pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<T, SceneError> {
-        T::deserialize(Value::root(self.tree())).map_err(|fault| {
+        let mut root = self.tree();
+        root.get_mut().remove(include::KEY);
+        T::deserialize(Value::root(root)).map_err(|fault| {
             let tree = self.tree();
             let value = value_at(tree.get_ref(), &fault.path);
             let (key, found, expected) = explain(&fault.message, &fault.path, value);
@@ -137,9 +138,14 @@ impl Document {
         };
         let made = |key: &str| below(key, path) && self.locate(path).is_none();
         let overridden = self.overrides.iter().any(|(key, _)| below(path, key) || made(key));
+        let (file, line) = match self.locate(path) {
+            _ if overridden => (Path::new("--set"), None),
+            Some((file, line)) => (file, Some(line)),
+            None => (self.file.as_path(), None),
+        };
         SceneError {
-            file: if overridden { PathBuf::from("--set") } else { self.file.clone() },
-            line: if overridden { None } else { self.locate(path) },
+            file: file.to_path_buf(),
+            line,
             key: path.to_string(),
             found: found.into(),
             expected: expected.into(),
@@ -149,6 +155,11 @@ impl Document {
     /// File that was read.
     pub fn file(&self) -> &Path {
         &self.file
+    }
+
+    /// Files that it includes, as it names them.
+    pub fn included(&self) -> impl Iterator<Item = &Path> {
+        self.included.iter().map(|file| file.named.as_path())
     }
 
     /// The text of the file, for the hash of a run.
@@ -161,17 +172,33 @@ impl Document {
         &self.overrides
     }
 
-    /// `path` relative to the folder of the scene file.
+    /// `path` relative to the folder of the scene file; where nothing is there, to that of the first included file beside which
+    /// something is.
     pub fn resolve(&self, path: &Path) -> PathBuf {
-        self.file.parent().unwrap_or(Path::new("")).join(path)
+        let beside = |file: &Path| file.parent().unwrap_or(Path::new("")).join(path);
+        let own = beside(&self.file);
+        if self.included.is_empty() || own.exists() {
+            return own;
+        }
+        let others = self.included.iter().map(|file| beside(&file.file));
+        others.into_iter().find(|there| there.exists()).unwrap_or(own)
     }
 
-    fn line(&self, span: &Range<usize>) -> Option<usize> {
-        (span.start < self.text.len()).then(|| line_of(&self.text, span.start))
+    /// Where the places of keys end, of the file and of those that it includes.
+    fn end(&self) -> usize {
+        self.included.last().map_or(self.text.len(), Included::end)
     }
 
-    /// Line of the deepest existing part of `path`.
-    fn locate(&self, path: &str) -> Option<usize> {
+    fn line(&self, span: &Range<usize>) -> Option<(&Path, usize)> {
+        if span.start < self.text.len() {
+            return Some((&self.file, line_of(&self.text, span.start)));
+        }
+        let file = self.included.iter().find(|file| file.holds(span.start))?;
+        Some((&file.file, file.line(span.start)))
+    }
+
+    /// File and line of the deepest existing part of `path`.
+    fn locate(&self, path: &str) -> Option<(&Path, usize)> {
         let tree = self.tree();
         let mut span = 0..0;
         let mut table = Some(tree.get_ref());
@@ -194,6 +221,22 @@ impl Document {
         }
         if span == (0..0) { None } else { self.line(&span) }
     }
+}
+
+/// Whether a text is TOML; it begins at byte `start`, after blanks.
+pub(super) fn syntax(file: &Path, text: &str, start: usize) -> Result<(), SceneError> {
+    let wrong = |e: toml::de::Error| {
+        let message = e.message().lines().collect::<Vec<_>>().join(", ");
+        let (found, expected) = message.split_once(", expected ").unwrap_or((&message, "valid TOML"));
+        SceneError {
+            file: file.to_path_buf(),
+            line: e.span().map(|s| line_of(&text[start..], s.start.saturating_sub(start))),
+            key: "syntax".into(),
+            found: found.into(),
+            expected: expected.into(),
+        }
+    };
+    DeTable::parse(text).map_err(wrong).map(drop)
 }
 
 /// An error in a `--set` argument.
@@ -222,6 +265,6 @@ fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'
 }
 
 /// Line number (from 1) of byte `offset` of `text`.
-fn line_of(text: &str, offset: usize) -> usize {
+pub(super) fn line_of(text: &str, offset: usize) -> usize {
     text.as_bytes()[..offset.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1
 }

@@ -13,6 +13,7 @@ mod document;
 pub mod flow;
 pub mod grains;
 pub mod history;
+mod include;
 pub mod material;
 mod output;
 pub mod periodic;

@@ -1,10 +1,11 @@
 //! `[[compaction]]` resolved.
 
 use super::check::{find, region};
-use super::deposition::{DepositionPlan, SETTLED_SPEED};
+use super::deposition::{DepositionPlan, SETTLED_SPEED, SOFTER};
 use super::groups::GroupsPart;
 use super::walls::WallsPart;
 use crate::scene::compaction::{Compaction, CompactionKind};
+use crate::scene::grains::GrainShape;
 use crate::scene::units::vector;
 use crate::scene::walls::WallKind;
 use crate::scene::{Scene, SceneError, Table};
@@ -55,6 +56,24 @@ pub enum Press {
         /// Number of cycles at each place.
         cycles: u32,
     },
+    /// The sleepers are set down where they are not yet, and pressed.
+    Bedding {
+        /// Largest force on each [N].
+        force: f64,
+        /// Frequency [Hz].
+        frequency: f64,
+        /// Number of cycles.
+        cycles: u32,
+    },
+    /// Grains that waited are dropped.
+    Pouring {
+        /// Their groups.
+        parts: Vec<u32>,
+        /// Parts that they are dropped in.
+        layers: u32,
+        /// Height above which they are taken away afterwards [m].
+        level: Option<f64>,
+    },
     /// A plane moves in.
     Squeeze {
         /// The plane.
@@ -75,6 +94,8 @@ impl Press {
             Press::Vibration { .. } => "vibration",
             Press::Tamping { .. } => "tamping",
             Press::Squeeze { .. } => "squeeze",
+            Press::Bedding { .. } => "bedding",
+            Press::Pouring { .. } => "pouring",
         }
     }
 }
@@ -90,12 +111,15 @@ pub(super) fn build(
     for c in scene.rows("compaction", &scene.compaction) {
         refuse_idle_keys(&c)?;
         c.check("friction", c.friction, |f| f >= 0.0, "0 or more")?;
+        let factor = c.check("stiffness_factor", c.stiffness_factor, |f| f > 0.0 && f <= 1.0, SOFTER)?;
         c.check("local_damping", c.local_damping, |a| (0.0..1.0).contains(&a), "0 or more, below 1")?;
         c.check("rest", c.rest, |t| t > 0.0, "a time above 0")?;
         let press = match c.kind {
             CompactionKind::Vibration => vibration(scene, &c)?,
             CompactionKind::Tamping => tamping(scene, &c, groups)?,
             CompactionKind::Squeeze => squeeze(scene, &c, walls)?,
+            CompactionKind::Bedding => bedding(scene, &c)?,
+            CompactionKind::Pouring => pouring(scene, &c, groups)?,
         };
         plans.push(CompactionPlan {
             press,
@@ -107,6 +131,7 @@ pub(super) fn build(
                 layers: 1,
                 level: None,
                 friction: c.friction,
+                stiffness_factor: factor.unwrap_or(1.0),
                 local_damping: c.local_damping,
             },
         });
@@ -115,8 +140,8 @@ pub(super) fn build(
 }
 
 fn refuse_idle_keys(c: &Table<Compaction>) -> Result<(), SceneError> {
-    use CompactionKind::{Squeeze, Tamping, Vibration};
-    let swings: &[CompactionKind] = &[Vibration, Tamping];
+    use CompactionKind::{Bedding, Pouring, Squeeze, Tamping, Vibration};
+    let swings: &[CompactionKind] = &[Vibration, Tamping, Bedding];
     let keys = [
         ("walls", c.walls.is_some(), &[Vibration][..]),
         ("direction", c.direction.is_some(), &[Vibration]),
@@ -124,12 +149,15 @@ fn refuse_idle_keys(c: &Table<Compaction>) -> Result<(), SceneError> {
         ("frequency", c.frequency.is_some(), swings),
         ("cycles", c.cycles.is_some(), swings),
         ("plate", c.plate.is_some(), &[Tamping]),
-        ("force", c.force.is_some(), &[Tamping]),
+        ("force", c.force.is_some(), &[Tamping, Bedding]),
         ("at", c.at.is_some(), &[Tamping]),
         ("wall", c.wall.is_some(), &[Squeeze]),
         ("speed", c.speed.is_some(), &[Squeeze]),
         ("porosity", c.porosity.is_some(), &[Squeeze]),
         ("max_travel", c.max_travel.is_some(), &[Squeeze]),
+        ("groups", c.groups.is_some(), &[Pouring]),
+        ("layers", c.layers.is_some(), &[Pouring]),
+        ("level", c.level.is_some(), &[Pouring]),
     ];
     let idle = keys.map(|(key, present, kinds)| (key, present && !kinds.contains(&c.kind)));
     c.refuse(idle, "no such key for this kind of compaction")
@@ -188,6 +216,47 @@ fn tamping(
     };
     let at = at.iter().map(|p| [p[0].si, p[1].si]).collect();
     Ok(Press::Tamping { plate, half, at, force, frequency, cycles })
+}
+
+fn bedding(scene: &Table<Scene>, c: &Table<Compaction>) -> Result<Press, SceneError> {
+    if scene.track.as_ref().is_none_or(|track| track.sleeper.mesh.is_some()) {
+        return Err(c.error("kind", "\"bedding\"", "rigid sleepers ([track.sleeper]), which it beds"));
+    }
+    let (frequency, cycles) = swing(c)?;
+    let force = c.need("force", c.force, "the largest force on a sleeper")?.si;
+    c.check("force", force, |f| f > 0.0, "above 0")?;
+    Ok(Press::Bedding { force, frequency, cycles })
+}
+
+/// The grains of the groups that are poured wait from here on.
+fn pouring(
+    scene: &Table<Scene>,
+    c: &Table<Compaction>,
+    groups: &mut GroupsPart,
+) -> Result<Press, SceneError> {
+    let names = c.need("groups", c.groups.as_ref(), "names of the groups that are poured")?;
+    let mut parts = Vec::new();
+    for (k, name) in names.iter().enumerate() {
+        let key = format!("groups.{k}");
+        let Some(part) = groups.names.iter().position(|n| n == name) else {
+            return Err(c.error(&key, format!("\"{name}\""), "the name of a group in [[grains]]"));
+        };
+        let bonded = scene.grains[part].shape == GrainShape::Bonded;
+        let part = part as u32;
+        let mut own = groups.bodies.iter_mut().filter(|b| b.part == part).peekable();
+        if bonded || own.peek().is_none_or(|b| b.absent) || groups.moving.iter().any(|m| m.part == part) {
+            let expected = "a group of grains that are not bonded, at rest, and that nothing else lets in";
+            return Err(c.error(&key, format!("\"{name}\""), expected));
+        }
+        own.for_each(|b| b.absent = true);
+        parts.push(part);
+    }
+    if parts.is_empty() {
+        return Err(c.error("groups", "none", "at least one group"));
+    }
+    let layers = c.layers.unwrap_or(1);
+    c.check("layers", layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
+    Ok(Press::Pouring { parts, layers, level: c.level.map(|l| l.si) })
 }
 
 fn squeeze(scene: &Table<Scene>, c: &Table<Compaction>, walls: &WallsPart) -> Result<Press, SceneError> {

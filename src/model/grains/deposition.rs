@@ -7,6 +7,9 @@ use trackbed_dem::Model;
 /// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
 pub(super) const SETTLED_SPEED: f64 = 5e-3;
 
+/// What a factor on the stiffness may be.
+pub(super) const SOFTER: &str = "above 0, at most 1";
+
 /// Settling before the run proper.
 #[derive(Clone, Debug)]
 pub struct DepositionPlan {
@@ -22,6 +25,8 @@ pub struct DepositionPlan {
     pub level: Option<f64>,
     /// Friction coefficient between grains meanwhile, where it is another.
     pub(super) friction: Option<f64>,
+    /// Contact stiffness meanwhile, as a share of the true one.
+    pub(super) stiffness_factor: f64,
     /// Local damping meanwhile; 0 for none.
     pub(super) local_damping: f64,
 }
@@ -45,6 +50,7 @@ pub(super) fn build(d: &Table<Deposition>) -> Result<DepositionPlan, SceneError>
         d.check("unbalanced_ratio", d.unbalanced_ratio, |r| r > 0.0 && r < 1.0, "above 0, below 1")?;
     d.check("layers", d.layers, |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
     d.check("friction", d.friction, |f| f >= 0.0, "0 or more")?;
+    let factor = d.check("stiffness_factor", d.stiffness_factor, |f| f > 0.0 && f <= 1.0, SOFTER)?;
     d.check("local_damping", d.local_damping, |a| (0.0..1.0).contains(&a), "0 or more, below 1")?;
     Ok(DepositionPlan {
         max_time: d.max_time.si,
@@ -58,6 +64,7 @@ pub(super) fn build(d: &Table<Deposition>) -> Result<DepositionPlan, SceneError>
         layers: d.layers,
         level: d.level.map(|l| l.si),
         friction: d.friction,
+        stiffness_factor: factor.unwrap_or(1.0),
         local_damping: d.local_damping,
     })
 }

@@ -62,6 +62,17 @@ pub struct PackingPlan {
     pub compaction: Vec<CompactionPlan>,
 }
 
+/// Takes a share of the stiffness of all contacts.
+fn soften(input: &mut ModelInput, factor: f64) {
+    for material in &mut input.materials {
+        material.stiffness *= factor;
+        material.young = material.young.map(|young| young * factor);
+    }
+    for pair in &mut input.contacts {
+        pair.stiffness = pair.stiffness.map(|stiffness| stiffness * factor);
+    }
+}
+
 impl GrainsPart {
     /// The model in which filled grains settle: no sleeper, friction and damping of the deposition.
     pub fn deposition_input(&self, plan: &DepositionPlan) -> ModelInput {
@@ -74,6 +85,7 @@ impl GrainsPart {
             ..self.input(self.groups.bodies.clone())
         };
         let mut input = ModelInput { contacts, damping, ..alone };
+        soften(&mut input, plan.stiffness_factor);
         // How grains bounce on their way into the bed does not matter.
         if let TimeStep::Measured { longest, collisions, .. } = &mut input.time_step {
             (*longest, *collisions) = (f64::INFINITY, false);

@@ -1,5 +1,6 @@
 //! Compaction of a settled bed: planes that swing, a plate that presses, a plane that moves in.
 
+use super::bedding;
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
 use crate::failure::Failure;
 use crate::model::Job;
@@ -9,11 +10,11 @@ use crate::run::bed::{Bed, rms_speed, top_below};
 use crate::run::context::Run;
 use crate::run::packing::CompactionRecord;
 use crate::run::summary::StageRecord;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::measure::{BoxRegion, body_volume_in};
-use trackbed_dem::{AppliedForce, BodyInput, Vec3};
+use trackbed_dem::{BodyInput, Vec3};
 
 /// A bed after a stage.
 struct Pressed<'a> {
@@ -34,6 +35,8 @@ fn longest(plan: &CompactionPlan) -> f64 {
     match &plan.press {
         Press::Vibration { frequency, cycles, .. } => f64::from(*cycles) / frequency + rest,
         Press::Squeeze { velocity, max_travel, .. } => max_travel / velocity.norm() + rest,
+        Press::Bedding { frequency, cycles, .. } => f64::from(*cycles) / frequency + rest,
+        Press::Pouring { layers, .. } => f64::from(*layers) * rest,
         Press::Tamping { at, frequency, cycles, .. } => {
             at.len() as f64 * (f64::from(*cycles) / frequency + rest)
         }
@@ -78,7 +81,7 @@ fn compact(
 ) -> Result<(), Failure> {
     let plan = grains.packing.compaction[index].clone();
     let progress = Progress::start("compacting", 1.0, run.quiet);
-    let mut bed = new_bed(run, grains, &plan, settled.bodies.clone(), surface)?;
+    let mut bed = new_bed(run, grains, &plan, settled.all(), surface)?;
     let before = porosity(&bed, settled.bodies.len(), &plan.region);
     let region = plan.region;
     let done = match &plan.press {
@@ -102,24 +105,31 @@ fn compact(
             let wall_force = Some(on_it.map(|c| c.normal_force).sum());
             Pressed { steps: bed.state.steps, bed, rested, region, wall_force }
         }
-        Press::Tamping { plate, half, at, force, frequency, cycles } => {
-            let mut done = Pressed { steps: 0, bed, rested: true, region, wall_force: None };
-            for place in at {
-                // A model with the plate for every place, and one without it to come to rest in.
-                let mut bodies = done.bed.at_rest(&settled.bodies);
-                let z = top_below(&done.bed.model, &done.bed.state, *place, half, surface) + half[2];
-                bodies.push(BodyInput { position: Vec3::new(place[0], place[1], z), ..plate.clone() });
-                let mut pressed = new_bed(run, grains, &plan, bodies, surface)?;
-                tamp(&mut pressed, settled.bodies.len(), *force, *frequency, *cycles)?;
-                done.bed = new_bed(run, grains, &plan, pressed.at_rest(&settled.bodies), surface)?;
-                done.rested &= done.bed.rest(&plan.rest)?;
-                done.steps += pressed.state.steps + done.bed.state.steps;
+        Press::Bedding { force, frequency, cycles } => {
+            if settled.sleepers.is_empty() {
+                settled.sleepers = bedding::set_down(&bed, grains, surface);
+                bed = new_bed(run, grains, &plan, settled.all(), surface)?;
             }
-            done
+            bedding::press(&mut bed, settled.bodies.len(), *force, *frequency, *cycles)?;
+            let rested = bed.rest(&plan.rest)?;
+            Pressed { steps: bed.state.steps, bed, rested, region, wall_force: None }
+        }
+        Press::Pouring { parts, layers, .. } => {
+            let new = |now: &Settled| new_bed(run, grains, &plan, now.all(), surface);
+            let (bed, steps, rested) = bedding::pour(grains, settled, (parts, *layers), &plan.rest, new)?;
+            Pressed { steps, bed, rested, region, wall_force: None }
+        }
+        Press::Tamping { .. } => {
+            let start = Pressed { steps: 0, bed, rested: true, region, wall_force: None };
+            let new = |bodies: Vec<BodyInput>| new_bed(run, grains, &plan, bodies, surface);
+            tamp(start, &plan, &settled.all(), surface, new)?
         }
     };
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
-    settled.bodies = done.bed.at_rest(&settled.bodies);
+    settled.take(&done.bed);
+    if let Press::Pouring { parts, level, .. } = &plan.press {
+        bedding::cut(settled, parts, *level);
+    }
     if !done.rested {
         settled.warnings.push(format!(
             "the grains were still moving at {:.2e} m/s (root mean square) after stage {} of the compaction",
@@ -159,6 +169,29 @@ fn porosity(bed: &Bed<'_>, grains: usize, region: &BoxRegion) -> f64 {
     1.0 - solid / region.volume()
 }
 
+/// A plate presses at one place after the other; `bodies` are those of the bed before.
+fn tamp<'b>(
+    mut done: Pressed<'b>,
+    plan: &CompactionPlan,
+    bodies: &[BodyInput],
+    surface: Option<&SolidSurface>,
+    new: impl Fn(Vec<BodyInput>) -> Result<Bed<'b>, Failure>,
+) -> Result<Pressed<'b>, Failure> {
+    let Press::Tamping { plate, half, at, force, frequency, cycles } = &plan.press else { return Ok(done) };
+    for place in at {
+        // A model with the plate for every place, and one without it to come to rest in.
+        let mut all = done.bed.at_rest(bodies);
+        let z = top_below(&done.bed.model, &done.bed.state, *place, half, surface) + half[2];
+        all.push(BodyInput { position: Vec3::new(place[0], place[1], z), ..plate.clone() });
+        let mut pressed = new(all)?;
+        bedding::press(&mut pressed, bodies.len(), *force, *frequency, *cycles)?;
+        done.bed = new(pressed.at_rest(bodies))?;
+        done.rested &= done.bed.rest(&plan.rest)?;
+        done.steps += pressed.state.steps + done.bed.state.steps;
+    }
+    Ok(done)
+}
+
 /// Planes swing as A sin(2πft) for whole cycles and are then where they were.
 fn shake(
     bed: &mut Bed<'_>,
@@ -177,17 +210,6 @@ fn shake(
         bed.step(&[])?;
     }
     planes.iter().for_each(|&p| bed.state.set_plane_velocity(p, Vec3::zeros()));
-    Ok(())
-}
-
-/// A plate (the body `plate`) is pressed down with F sin²(πft).
-fn tamp(bed: &mut Bed<'_>, plate: usize, force: f64, frequency: f64, cycles: u32) -> Result<(), Failure> {
-    let end = f64::from(cycles) / frequency;
-    while bed.state.time < end {
-        let share = libm::sin(PI * frequency * bed.state.time).powi(2);
-        let force = Vec3::new(0.0, 0.0, -force * share);
-        bed.step(&[AppliedForce { body: plate, force, point: bed.state.position(plate) }])?;
-    }
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! The stages of a run, in order: `run` carries them out, `check` and `explain` report them, all from the one list
 //! [`STAGES`].
 
+mod bedding;
 mod compaction;
 mod coupling_remarks;
 mod equilibrium;

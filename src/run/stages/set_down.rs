@@ -8,7 +8,8 @@ use crate::run::bed;
 use crate::run::context::Run;
 use trackbed_dem as dem;
 
-/// Each sleeper is put just above the highest grain below it; meshed ones are no bodies, and only get their heights.
+/// Each sleeper is put just above the highest grain below it, if compaction has not bedded it; meshed ones are no bodies, and
+/// only get their heights.
 pub struct SetDown;
 
 impl Stage for SetDown {
@@ -23,6 +24,11 @@ impl Stage for SetDown {
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
         let Some(grains) = &mut state.grains else { return Ok(()) };
         let Some(plan) = &grains.part.track.sleeper else { return Ok(()) };
+        if !grains.bed.sleepers.is_empty() {
+            grains.bases = grains.bed.sleepers.iter().map(|s| s.position.z - plan.row.half[2]).collect();
+            grains.bodies.extend(grains.bed.sleepers.iter().cloned());
+            return Ok(());
+        }
         let input = grains.part.input(grains.bodies.clone());
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
         let resting = dem::State::new(&model);

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
+use crate::run::bed::Bed;
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::packing::{CompactionRecord, GrowthRecord};
@@ -81,6 +82,8 @@ pub enum Packed {
 pub struct Settled {
     /// The grains at rest.
     pub bodies: Vec<BodyInput>,
+    /// The sleepers, once they are set down.
+    pub sleepers: Vec<BodyInput>,
     /// Points of the planes, which compaction may have moved [m].
     pub planes: Vec<dem::Vec3>,
     /// Time that the settling took [s].
@@ -93,6 +96,20 @@ pub struct Settled {
     pub growth: Vec<GrowthRecord>,
     /// Results of compaction.
     pub compaction: Vec<CompactionRecord>,
+}
+
+impl Settled {
+    /// Grains and sleepers as bodies of one model.
+    pub fn all(&self) -> Vec<BodyInput> {
+        self.bodies.iter().chain(&self.sleepers).cloned().collect()
+    }
+
+    /// Takes over where a model of [`Settled::all`] has brought them, at rest.
+    pub fn take(&mut self, bed: &Bed<'_>) {
+        let mut all = bed.at_rest(&self.all());
+        self.sleepers = all.split_off(self.bodies.len());
+        self.bodies = all;
+    }
 }
 
 /// The head of a checkpoint from within the packing.

@@ -1,0 +1,127 @@
+//! `include = ["…"]` at the head of a scene: files whose tables are put under those of the scene.
+//!
+//! Places of keys in included files go on where those of the file before have ended, so that each names its file.
+
+use super::SceneError;
+use super::document::{Document, line_of, syntax};
+use crate::read::source;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+/// The key.
+pub(super) const KEY: &str = "include";
+
+/// A file that a scene includes.
+pub(super) struct Included {
+    /// Its name in the scene.
+    pub named: PathBuf,
+    /// Where it is.
+    pub file: PathBuf,
+    /// Its text, after as many blanks as there are places of keys before it.
+    text: String,
+    start: usize,
+}
+
+impl Included {
+    /// Its tree.
+    pub fn tree(&self) -> DeTable<'_> {
+        DeTable::parse(&self.text).expect("the text was parsed when the file was read").into_inner()
+    }
+
+    /// Where its places end.
+    pub fn end(&self) -> usize {
+        self.text.len()
+    }
+
+    /// Whether a place is one of its own.
+    pub fn holds(&self, place: usize) -> bool {
+        (self.start..self.end()).contains(&place)
+    }
+
+    /// The line of a place.
+    pub fn line(&self, place: usize) -> usize {
+        line_of(&self.text[self.start..], place - self.start)
+    }
+}
+
+/// Reads the files that a scene includes; their paths are relative to its folder.
+///
+/// # Errors
+/// `include` is no list of names; a file cannot be read, is not TOML, or includes files itself.
+pub(super) fn read(document: &Document) -> Result<Vec<Included>, SceneError> {
+    let expected = "a list of files: include = [\"granite.toml\"]";
+    let tree = DeTable::parse(document.text()).expect("the text was parsed before").into_inner();
+    let names = match tree.get(KEY).map(Spanned::get_ref) {
+        None => return Ok(Vec::new()),
+        Some(DeValue::Array(names)) => names,
+        Some(_) => return Err(document.error(KEY, "no list", expected)),
+    };
+    let mut start = document.text().len();
+    let mut all = Vec::new();
+    for (k, name) in names.iter().enumerate() {
+        let key = format!("{KEY}.{k}");
+        let DeValue::String(name) = name.get_ref() else {
+            return Err(document.error(&key, "no name", expected));
+        };
+        let file = document.file().parent().unwrap_or(Path::new("")).join(name.as_ref());
+        let own = source::text(&file).map_err(|refusal| {
+            let (found, expected) = refusal.words(|e| e.to_string());
+            document.error(&key, format!("{}: {found}", file.display()), expected)
+        })?;
+        let text = format!("{}{own}\n", " ".repeat(start));
+        syntax(&file, &text, start)?;
+        let included = Included { named: PathBuf::from(name.as_ref()), file, text, start };
+        if included.tree().contains_key(KEY) {
+            let found = format!("{}, which includes files itself", included.file.display());
+            return Err(document.error(&key, found, "a file without `include`"));
+        }
+        start = included.end();
+        all.push(included);
+    }
+    Ok(all)
+}
+
+/// Puts the keys of an included file under those of `own`: what is there stays, tables are merged key by key, and to lists of tables
+/// those are added whose `name` is not there yet.
+pub(super) fn merge<'a>(own: &mut DeTable<'a>, other: DeTable<'a>) {
+    for (key, value) in other {
+        match (own.get_mut(key.get_ref().as_ref()).map(Spanned::get_mut), value.get_ref()) {
+            (None, _) => {
+                own.insert(key, value);
+            }
+            (Some(DeValue::Table(own)), DeValue::Table(_)) => {
+                let DeValue::Table(other) = value.into_inner() else { unreachable!("seen above") };
+                merge(own, other);
+            }
+            (Some(DeValue::Array(own)), DeValue::Array(list)) if tables(own) && tables(list) => {
+                let DeValue::Array(other) = value.into_inner() else { unreachable!("seen above") };
+                merge_lists(own, other);
+            }
+            _ => {}
+        }
+    }
+}
+
+fn tables(list: &DeArray<'_>) -> bool {
+    list.iter().all(|value| matches!(value.get_ref(), DeValue::Table(_)))
+}
+
+fn merge_lists<'a>(own: &mut DeArray<'a>, other: DeArray<'a>) {
+    for value in other {
+        let there = name(value.get_ref())
+            .and_then(|name| own.iter().position(|o| self::name(o.get_ref()) == Some(name)));
+        match there.and_then(|k| own.get_mut(k)).map(Spanned::get_mut) {
+            Some(DeValue::Table(own)) => {
+                let DeValue::Table(other) = value.into_inner() else { unreachable!("a list of tables") };
+                merge(own, other);
+            }
+            _ => own.push(value),
+        }
+    }
+}
+
+/// The `name` of a table.
+fn name<'t>(table: &'t DeValue<'_>) -> Option<&'t str> {
+    table.as_table()?.get("name")?.get_ref().as_str()
+}
