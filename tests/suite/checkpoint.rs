@@ -165,6 +165,9 @@ fn clumps_and_spheres_that_settle() {
 fn grains_shared_among_threads_on_a_solid() {
     let set = [
         "grains.0.count=250",
+        "grains.1.count=10",
+        "grains.2.count=10",
+        "compaction=",
         "deposition.max_time=0.03",
         "deposition.level=9",
         "track.load.cycles=1",

@@ -322,7 +322,8 @@ fn check_tells_the_stability_of_the_exchange() {
     let scene = repository().join("inputs/track/cyclic/scene.toml");
     let numbers = |substeps: &str| {
         let set = format!("coupling.substeps={substeps}");
-        let outcome = trackbed(["check", scene.to_str().unwrap(), "--set", &set]).good();
+        let scheme = "coupling.scheme=predicted";
+        let outcome = trackbed(["check", scene.to_str().unwrap(), "--set", &set, "--set", scheme]).good();
         let after = |mark: &str| -> f64 {
             let rest = outcome.stdout.split_once(mark).unwrap().1;
             rest.split([',', ' ']).next().unwrap().parse().unwrap()

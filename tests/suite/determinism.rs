@@ -6,8 +6,11 @@ use super::support::{Folder, SOLID, json, repository, results, scene_folder, tra
 use std::path::Path;
 
 /// Makes the main scene small, yet with more than the 2500 spheres from which on the grains share their work.
-pub(super) const SMALL: [&str; 8] = [
+pub(super) const SMALL: [&str; 11] = [
     "grains.0.count=250",
+    "grains.1.count=10",
+    "grains.2.count=10",
+    "compaction=",
     "deposition.max_time=0.06",
     "deposition.level=9",
     "track.load.cycles=1",
