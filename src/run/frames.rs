@@ -4,7 +4,7 @@ use super::system::{GrainsView, SolidView};
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
-use crate::write::{ChainFrame, Format, Frame, GrainFrame, Part, SolidFrame, WallFrame, Writers};
+use crate::write::{ChainFrame, Format, Frame, GrainFrame, Part, SolidFrame, WallFrame, WallKind, Writers};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::shape::Shape;
@@ -206,7 +206,9 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
 /// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
 fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
     let mut frame = WallFrame::default();
-    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
+    let mut add = |id, points: &[dem::Vec3], polygons: &[&[u32]]| {
+        push(&mut frame, (id, WallKind::Plane), points, polygons);
+    };
     let extent = extent(view);
     let mut id = 0;
     for (i, plane) in part.walls.planes.iter().enumerate() {
@@ -216,7 +218,6 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
         id += 1;
     }
     id = wall_output::polygons(view, part, extent, id, &mut frame);
-    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
     for body in 0..view.model.body_count() {
         if let Shape::Box { half } = view.model.shape(body) {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
@@ -228,7 +229,7 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
                 .collect();
             let sides: [&[u32]; 6] =
                 [&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]];
-            add(id, &corners, &sides);
+            push(&mut frame, (id, WallKind::Box), &corners, &sides);
             id += 1;
         }
     }
@@ -236,12 +237,13 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
 }
 
 /// Adds polygons of one wall.
-fn push(frame: &mut WallFrame, id: u32, points: &[dem::Vec3], polygons: &[&[u32]]) {
+fn push(frame: &mut WallFrame, (id, kind): (u32, WallKind), points: &[dem::Vec3], polygons: &[&[u32]]) {
     let first = frame.points.len() as u32;
     frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
     for polygon in polygons {
         frame.polygons.push(polygon.iter().map(|v| v + first).collect());
         frame.id.push(id);
+        frame.kind.push(kind as u32);
     }
 }
 
