@@ -64,8 +64,12 @@ fn open(address: &str) {
         _ => "xdg-open",
     };
     let quiet = std::process::Stdio::null;
-    let started =
-        std::process::Command::new(program).arg(address).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
+    let started = std::process::Command::new(program)
+        .arg(address)
+        .stdin(quiet())
+        .stdout(quiet())
+        .stderr(quiet())
+        .spawn();
     if started.is_err() {
         message::note(&format!("no browser could be started ({program}): open {address} in one"));
     }

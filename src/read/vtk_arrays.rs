@@ -60,9 +60,8 @@ impl Arrays {
                 "Piece" => {
                     let text = tag.attribute("NumberOfPoints").unwrap_or_default();
                     let count = text.trim().parse::<usize>();
-                    let count = count.map_err(|_| {
-                        fault("NumberOfPoints", &format!("\"{text}\""), "a whole number")
-                    })?;
+                    let count = count
+                        .map_err(|_| fault("NumberOfPoints", &format!("\"{text}\""), "a whole number"))?;
                     if points.replace(count).is_some() {
                         return Err(fault("Piece", "a second one", "one piece"));
                     }

@@ -178,9 +178,14 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
             continue;
         }
         frame.strong.push(u32::from(strong));
-        let first = view.state.position(c.a);
+        // The centre of a sleeper is far from where it is touched: a line to it would cross stones without force.
+        let end = |body: usize, shift: Option<dem::Vec3>| match view.model.shape(body) {
+            Shape::Box { .. } => c.point,
+            _ => moved(view.state.position(body), shift),
+        };
+        let first = end(c.a, None);
         let second = match c.b {
-            dem::Partner::Body(b) => moved(view.state.position(b), Some(c.shift)),
+            dem::Partner::Body(b) => end(b, Some(c.shift)),
             _ => c.point,
         };
         let back = into_box(view, c.a);

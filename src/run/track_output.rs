@@ -1,8 +1,8 @@
 //! What is written of a track: its rails in the frames, the curve of a push.
 
 use crate::failure::Failure;
-use crate::write::{WallFrame, WallKind};
 use crate::write::csv::{Field, write_table};
+use crate::write::{WallFrame, WallKind};
 use std::path::Path;
 use trackbed_coupling::track::Track;
 use trackbed_coupling::track::push::PushSummary;

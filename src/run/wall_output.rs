@@ -3,8 +3,8 @@
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
 use crate::model::grains::GrainsPart;
-use crate::write::{WallFrame, WallKind};
 use crate::write::csv::Row;
+use crate::write::{WallFrame, WallKind};
 use trackbed_dem::{Vec3, WallShape};
 
 /// Corners around a ring in a picture.

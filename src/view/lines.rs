@@ -6,6 +6,7 @@ use super::chunk::{Chunk, Coding};
 use crate::failure::Failure;
 use crate::read::ReadError;
 use crate::read::vtk_arrays::Arrays;
+use crate::write::WallKind;
 
 /// Places relative to `origin`.
 pub fn relative(places: &[f64], origin: [f64; 3]) -> Vec<f64> {
@@ -53,10 +54,11 @@ pub fn walls(file: &Path, origin: [f64; 3], coding: Coding) -> Result<Vec<u8>, F
     let corners = arrays.indices("Polys", "connectivity")?;
     let ends = arrays.indices("Polys", "offsets")?;
     let of_polygons = |name: &str| match arrays.components("CellData", name) {
-        Some(1) => arrays.indices("CellData", name),
-        _ => Ok(vec![1; ends.len()]),
+        Some(1) => Ok(Some(arrays.indices("CellData", name)?)),
+        _ => Ok::<_, ReadError>(None),
     };
-    let (ids, kinds) = (of_polygons("id")?, of_polygons("kind")?);
+    let ids = of_polygons("id")?.unwrap_or_else(|| vec![0; ends.len()]);
+    let kinds = of_polygons("kind")?.unwrap_or_else(|| kinds(&ids, &ends));
     let sorted = ends.is_sorted() && ends.last().is_none_or(|last| *last as usize <= corners.len());
     if !sorted || corners.iter().any(|c| *c as usize >= arrays.points) || ids.len() != ends.len() {
         let found = format!("{} corners of {} polygons", corners.len(), ends.len());
@@ -83,4 +85,24 @@ pub fn walls(file: &Path, origin: [f64; 3], coding: Coding) -> Result<Vec<u8>, F
     chunk.indices("id", &id, 1);
     chunk.small("kind", &kind);
     Ok(chunk.finish())
+}
+
+/// What walls are in files that do not say so: one square is a plane, six are a box.
+fn kinds(ids: &[u32], ends: &[u32]) -> Vec<u32> {
+    let squares = |id: u32| {
+        let corners = (0..ends.len().min(ids.len())).filter(|p| ids[*p] == id);
+        let corners = corners.map(|p| ends[p] - if p == 0 { 0 } else { ends[p - 1].min(ends[p]) });
+        let (mut count, mut all) = (0, true);
+        corners.for_each(|c| (count, all) = (count + 1, all && c == 4));
+        if all { count } else { 0 }
+    };
+    let mut known = std::collections::HashMap::new();
+    let kind = |id: &u32| {
+        *known.entry(*id).or_insert_with(|| match squares(*id) {
+            1 => WallKind::Plane,
+            6 => WallKind::Box,
+            _ => WallKind::Wall,
+        } as u32)
+    };
+    ids.iter().map(kind).collect()
 }

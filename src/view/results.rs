@@ -128,7 +128,13 @@ impl Results {
         }
     }
 
-    fn frame(&self, file: &Path, part: Part, field: Option<&str>, common: &Common) -> Result<Vec<u8>, Failure> {
+    fn frame(
+        &self,
+        file: &Path,
+        part: Part,
+        field: Option<&str>,
+        common: &Common,
+    ) -> Result<Vec<u8>, Failure> {
         match (part, field) {
             (Part::Grains, None) => {
                 Ok(GrainFile::open(file)?.chunk(common.bodies.as_ref(), common.origin, self.coding))

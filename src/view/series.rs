@@ -27,12 +27,8 @@ pub enum Part {
 }
 
 /// All parts with their names in addresses.
-pub const PARTS: [(Part, &str); 4] = [
-    (Part::Solid, "solid"),
-    (Part::Grains, "grains"),
-    (Part::Chains, "chains"),
-    (Part::Walls, "walls"),
-];
+pub const PARTS: [(Part, &str); 4] =
+    [(Part::Solid, "solid"), (Part::Grains, "grains"), (Part::Chains, "chains"), (Part::Walls, "walls")];
 
 /// The files of one moment.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +62,8 @@ pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
     let mut frames: Vec<Frame> = Vec::new();
     for tag in tags(&bytes).filter(|tag| tag.name == "DataSet") {
         let time = tag.attribute("timestep").and_then(|t| t.trim().parse::<f64>().ok());
-        let time = time.filter(|t| t.is_finite()).ok_or_else(|| fault("a frame without a time", "a number"))?;
+        let time =
+            time.filter(|t| t.is_finite()).ok_or_else(|| fault("a frame without a time", "a number"))?;
         let name = tag.attribute("file").unwrap_or_default();
         let part = tag.attribute("part").and_then(|p| p.trim().parse::<usize>().ok()).unwrap_or(0);
         let Some(file) = inside(&root, &name)? else { continue };
@@ -92,7 +89,8 @@ pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
 /// # Errors
 /// A name that leads out of `root`, by itself or by a link.
 pub fn inside(root: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
-    let out = || Failure::Input(format!("{}: found \"{name}\", expected a file in the folder", root.display()));
+    let out =
+        || Failure::Input(format!("{}: found \"{name}\", expected a file in the folder", root.display()));
     let relative = Path::new(name);
     if name.contains('\\') || !relative.components().all(|c| matches!(c, Component::Normal(_))) {
         return Err(out());

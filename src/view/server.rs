@@ -82,7 +82,8 @@ impl Site {
             ("Referrer-Policy", "no-referrer"),
             ("Cache-Control", "no-store"),
         ];
-        let response = fixed.into_iter().fold(response, |r, (name, value)| r.with_header(header(name, value)));
+        let response =
+            fixed.into_iter().fold(response, |r, (name, value)| r.with_header(header(name, value)));
         // Who went away gets nothing.
         let _ = request.respond(response);
     }

@@ -140,7 +140,9 @@ impl Skin {
         let arrays = Arrays::open(file, "UnstructuredGrid")?;
         if arrays.points != self.mesh_nodes {
             let (found, expected) = (format!("{} nodes", arrays.points), format!("{}", self.mesh_nodes));
-            return Err(ReadError::whole(file, "mesh", found, format!("{expected} as in the first frame")).into());
+            return Err(
+                ReadError::whole(file, "mesh", found, format!("{expected} as in the first frame")).into()
+            );
         }
         Ok(arrays)
     }

@@ -19,8 +19,10 @@ const MOST: usize = 4000;
 /// The file cannot be read or holds words.
 pub fn table(file: &Path) -> Result<Vec<u8>, Failure> {
     let bad = |what: String| Failure::Input(format!("{}: {what}", file.display()));
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(file).map_err(|e| bad(e.to_string()))?;
-    let names: Vec<String> = reader.headers().map_err(|e| bad(e.to_string()))?.iter().map(String::from).collect();
+    let mut reader =
+        csv::ReaderBuilder::new().flexible(true).from_path(file).map_err(|e| bad(e.to_string()))?;
+    let names: Vec<String> =
+        reader.headers().map_err(|e| bad(e.to_string()))?.iter().map(String::from).collect();
     let mut columns = vec![Vec::new(); names.len()];
     for (row, record) in reader.records().enumerate() {
         let record = record.map_err(|e| bad(e.to_string()))?;

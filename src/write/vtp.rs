@@ -139,7 +139,8 @@ mod tests {
         let dir = folder("vtp_walls");
         let file = dir.join("walls.vtp");
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let frame = WallFrame { points: points.clone(), polygons: vec![vec![0, 1, 3]], id: vec![0], kind: vec![0] };
+        let frame =
+            WallFrame { points: points.clone(), polygons: vec![vec![0, 1, 3]], id: vec![0], kind: vec![0] };
         let error = write_walls(&file, &frame).unwrap_err();
         assert!(error.to_string().contains("polygon 0 names point 3, expected below 3"), "{error}");
         let frame = WallFrame { points, polygons: vec![vec![0, 1]], id: vec![0], kind: vec![0] };

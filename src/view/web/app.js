@@ -38,6 +38,7 @@ export class App {
     this.stage.scene.add(this.solid.group, this.chains.group, this.grains.group, this.walls.group);
     this.shown = {};
     this.common = {};
+    this.largestFactor = this.size = this.base = null;
   }
 
   /** Opens a run below the folder of the program. */
@@ -51,7 +52,9 @@ export class App {
     const scene = await source.block('scene');
     if (!scene) throw new Error('there are no results');
     const { meta } = scene;
-    const [grains, solid] = [await source.block('grains'), await source.block('solid')];
+    const has = (part) => meta.frames.some((frame) => frame.parts.includes(part));
+    const grains = has('grains') ? await source.block('grains') : null;
+    const solid = has('solid') && meta.solidFields.length ? await source.block('solid') : null;
     this.source = source;
     this.meta = meta;
     this.clear();
@@ -61,7 +64,7 @@ export class App {
     state.view = { ...kept, flat: null };
     state.times = meta.frames.map((frame) => frame.time);
     state.frames = meta.frames.length;
-    for (const part of Object.keys(state.parts)) state.parts[part] = meta.frames.some((frame) => frame.parts.includes(part));
+    for (const part of Object.keys(state.parts)) state.parts[part] = has(part);
     state.solid.field = ['stress_zz', 'von_mises', 'displacement'].find((f) => meta.solidFields.includes(f)) ?? (solid ? 'displacement' : '');
     // Where chains are all that there is, they are what is wanted.
     state.chains.show = state.parts.chains && !state.parts.grains;
@@ -77,6 +80,7 @@ export class App {
     const { bounds, origin } = this.meta;
     const box = new THREE.Box3(...bounds.map((corner) => new THREE.Vector3(...corner.map((x, k) => x - origin[k]))));
     box.union(this.walls.bounds());
+    this.base = box;
     this.stage.setBox(box);
     this.size = box.getSize(new THREE.Vector3()).length();
     const { state } = this;
@@ -89,9 +93,20 @@ export class App {
     }
     this.stage.select(state.view.projection);
     Object.values(this.stage.controls).forEach((controls) => { controls.enableRotate = !state.view.flat; });
-    this.stage.look(state.view.side);
-    this.shown.side = state.view.side;
+    this.look();
     await this.changed();
+  }
+
+  /** Looks at everything, or at the grains with a part of the solid below. */
+  look() {
+    const { side, focus } = this.state.view;
+    const box = focus === 'grains' ? this.grains.box() : null;
+    if (box && this.solidSkin) {
+      const size = box.getSize(new THREE.Vector3());
+      box.min.z -= 0.35 * Math.max(size.x, size.y);
+    }
+    this.stage.look(side, box ?? this.stage.box);
+    this.shown.side = side;
   }
 
   get solidSkin() { return this.common.solid; }
@@ -112,7 +127,7 @@ export class App {
     const values = typeof path === 'string' ? { [path]: value } : path;
     for (const [p, v] of Object.entries(values)) {
       put(this.state, p, v);
-      if (p === 'view.side') this.shown.side = null;
+      if (p === 'view.side' || p === 'view.focus') this.shown.side = null;
     }
     return this.changed();
   }
@@ -181,6 +196,7 @@ export class App {
     const has = this.meta.frames[k].parts;
     this.grains.group.visible = state.grains.show && has.includes('grains');
     this.chains.group.visible = state.chains.show && has.includes('chains');
+    this.size ??= new THREE.Vector3(...this.meta.bounds[1]).distanceTo(new THREE.Vector3(...this.meta.bounds[0]));
     this.solid.group.visible = state.solid.show && has.includes('solid');
     this.walls.group.visible = has.includes('walls');
     if (has.includes('grains')) await this.updateGrains(k);
@@ -197,8 +213,7 @@ export class App {
     if (has.includes('solid') && this.solidSkin) await this.updateSolid(k);
     if (state.view.projection !== stage.projection) stage.select(state.view.projection);
     if (this.shown.side !== state.view.side && this.shown.side !== undefined) {
-      stage.look(state.view.side);
-      this.shown.side = state.view.side;
+      this.look();
     }
     stage.lamp = state.view.light;
     Object.values(stage.controls).forEach((controls) => { controls.autoRotate = state.view.autoRotate; });
@@ -222,6 +237,9 @@ export class App {
       grains.frame(this.common.grains, block);
       this.grainBlock = block;
       this.shown.section = this.shown.colour = null;
+      // Stones may leave the place where they began.
+      const box = this.grains.box();
+      if (this.base && box) this.stage.setBox(box.union(this.base));
     });
     await this.once('colour', [look, state.reference.frame], async () => {
       const values = await this.grainValues(look.colour, k);
@@ -255,6 +273,9 @@ export class App {
       const before = since ? await this.block(`solid/${state.reference.frame}`) : null;
       solid.frame(await this.block(`solid/${k}`), before);
       this.shown.field = null;
+      const most = solid.displacement.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
+      // The slider ends where the largest displacement is a tenth of everything.
+      if (most > 0) this.largestFactor = Math.max(this.largestFactor ?? 10, 10 ** Math.ceil(Math.log10((0.1 * this.size) / most || 1)));
     });
     await this.once('field', look, async () => {
       const { field } = look;

@@ -71,3 +71,14 @@ export function figure(value) {
   if (size >= 1e5 || size < 1e-3) return value.toExponential(2).replace('e+', 'e');
   return String(Number(value.toPrecision(3)));
 }
+
+const PREFIXES = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ']];
+
+/** The prefix with which numbers up to `most` of a unit read best, as { factor, unit }. */
+export function scaled(unit, most) {
+  const most1 = Math.abs(most);
+  if (!['Pa', 'N', 'm', 'm/s'].includes(unit) || !(most1 > 0)) return { factor: 1, unit };
+  const known = PREFIXES.filter(([f]) => unit === 'Pa' || unit === 'N' ? f >= 1 : f <= 1);
+  const [factor, prefix] = known.find(([f]) => most1 >= 1.1 * f) ?? known.at(-1);
+  return { factor, unit: prefix + unit };
+}

@@ -1,5 +1,5 @@
 // Windows: open, help, about; what was picked.
-import { figure } from 'colours';
+import { figure, scaled } from 'colours';
 
 const $ = (id) => document.getElementById(id);
 
@@ -52,9 +52,11 @@ export function showPicked(picked) {
   const box = $('picked');
   box.hidden = !picked;
   if (!picked) return;
-  const rows = picked.data.map(([name, value, unit]) => {
+  const rows = picked.data.map(([name, value, plain]) => {
     const row = document.createElement('tr');
-    const shown = typeof value === 'number' ? figure(value) : Array.isArray(value) ? value.map((v) => v.toFixed(4)).join(', ') : value;
+    const number = typeof value === 'number';
+    const { factor, unit } = number ? scaled(plain, value) : { factor: 1, unit: plain };
+    const shown = number ? figure(value / factor) : Array.isArray(value) ? value.map((v) => v.toFixed(4)).join(', ') : value;
     for (const text of [name, `${shown}${unit ? ` ${unit}` : ''}`]) {
       const cell = document.createElement('td');
       cell.textContent = text;

@@ -1,4 +1,5 @@
 // Grains of a frame: places of all spheres from those of their bodies, colours, removal by the section.
+import * as THREE from 'three';
 import { groupTexture, mapTexture, pieceTexture, rgb } from 'colours';
 import { Spheres } from 'spheres';
 
@@ -14,7 +15,7 @@ const UNITS = {
 /** What the user reads. */
 const LABELS = {
   speed: 'Speed', diameter: 'Diameter', mean_stress: 'Mean stress', force: 'Contact force', spin: 'Spin',
-  coordination: 'Coordination', displacement: 'Displacement since the reference frame', part: 'Group', piece: 'Piece',
+  coordination: 'Coordination', fragment: 'Fragment', displacement: 'Displacement since the reference frame', part: 'Group', piece: 'Piece',
 };
 
 export const label = (field) => LABELS[field] ?? field;
@@ -140,6 +141,21 @@ export class Grains {
       if (start[mid] <= sphere) low = mid; else high = mid;
     }
     return low;
+  }
+
+  /** The box around all spheres; null without any. */
+  box() {
+    if (!this.count) return null;
+    const box = new THREE.Box3();
+    const { array } = this.spheres.place;
+    const { min, max } = box;
+    for (let s = 0; s < array.length; s += 4) {
+      const r = this.bodies.radius[s >> 2];
+      const [x, y, z] = [array[s], array[s + 1], array[s + 2]];
+      min.set(Math.min(min.x, x - r), Math.min(min.y, y - r), Math.min(min.z, z - r));
+      max.set(Math.max(max.x, x + r), Math.max(max.y, y + r), Math.max(max.z, z + r));
+    }
+    return box;
   }
 
   /** Place of a body in a block, by its number; null where it is not there. */

@@ -1,14 +1,16 @@
 // Controls at the side: each is tied to a place in the state by its path.
 import { MAPS } from 'colours';
 
-/** Rows: kind, path, label, and what the kind needs. `when`: shown only if this holds. */
+const mapped = (look) => !['constant', 'part', 'piece'].includes(look.colour ?? look.field);
+
+/** Rows: kind, path, label, what the kind needs, and when it is shown. */
 const sections = (app) => [
   ['Grains', 'grains', [
     ['check', 'grains.show', 'Show'],
     ['select', 'grains.colour', 'Colour by', () => app.grainFields()],
-    ['colour', 'grains.constant', 'Constant colour'],
-    ['select', 'grains.map', 'Colour map', () => MAPS],
-    ['limits', 'grains'],
+    ['colour', 'grains.constant', 'Constant colour', null, (s) => s.grains.colour === 'constant'],
+    ['select', 'grains.map', 'Colour map', () => MAPS, (s) => mapped(s.grains)],
+    ['limits', 'grains', null, null, (s) => mapped(s.grains)],
     ['range', 'grains.opacity', 'Opacity', [0.05, 1, 0.05]],
   ]],
   ['Section', 'section', [
@@ -20,9 +22,9 @@ const sections = (app) => [
   ['Force chains', 'chains', [
     ['check', 'chains.show', 'Show (loads the file)'],
     ['select', 'chains.colour', 'Colour by', () => [['force', 'magnitude'], ['constant', 'constant']]],
-    ['colour', 'chains.constant', 'Constant colour'],
-    ['select', 'chains.map', 'Colour map', () => MAPS],
-    ['limits', 'chains'],
+    ['colour', 'chains.constant', 'Constant colour', null, (s) => s.chains.colour === 'constant'],
+    ['select', 'chains.map', 'Colour map', () => MAPS, (s) => mapped(s.chains)],
+    ['limits', 'chains', null, null, (s) => mapped(s.chains)],
     ['range', 'chains.thickness', 'Thickness', [0.1, 4, 0.1]],
     ['range', 'chains.least', 'Least force / largest', [0, 1, 0.01]],
     ['check', 'chains.strong', 'Above the mean only'],
@@ -30,10 +32,10 @@ const sections = (app) => [
   ['Solid', 'solid', [
     ['check', 'solid.show', 'Show'],
     ['select', 'solid.field', 'Contour', () => app.solidFields()],
-    ['colour', 'solid.constant', 'Constant colour'],
-    ['select', 'solid.map', 'Colour map', () => MAPS],
-    ['limits', 'solid'],
-    ['check', 'solid.bands', 'In 12 bands'],
+    ['colour', 'solid.constant', 'Constant colour', null, (s) => s.solid.field === 'constant'],
+    ['select', 'solid.map', 'Colour map', () => MAPS, (s) => mapped(s.solid)],
+    ['limits', 'solid', null, null, (s) => mapped(s.solid)],
+    ['check', 'solid.bands', 'In 12 bands', null, (s) => mapped(s.solid)],
     ['range', 'solid.factor', 'Deformation ×', [0, 100, 1]],
     ['check', 'solid.edges', 'Element edges'],
     ['range', 'solid.opacity', 'Opacity', [0.05, 1, 0.05]],
@@ -52,6 +54,7 @@ const sections = (app) => [
   ]],
   ['View', 'view', [
     ['select', 'view.side', 'From', () => ['oblique', 'front', 'back', 'left', 'right', 'top', 'bottom'].map((s) => [s, s])],
+    ['select', 'view.focus', 'Frame', () => [['all', 'everything'], ['grains', 'grains']]],
     ['select', 'view.projection', 'Projection', () => [['perspective', 'perspective'], ['parallel', 'parallel']]],
     ['select', 'view.light', 'Light', () => [['camera', 'from the eye'], ['x', 'along x'], ['y', 'along y'], ['z', 'along z']]],
     ['palette', 'view.background', 'Background', ['#ffffff', '#e8edf2', '#9fb3c8', '#33414f', '#000000']],
@@ -77,10 +80,15 @@ export class Panel {
     this.root = root;
     this.app = app;
     this.inputs = [];
+    this.conditions = [];
     for (const [title, key, rows] of sections(app)) {
       const body = element('div', { className: 'rows' });
-      rows.forEach((row) => body.append(...this.row(...row)));
-      const box = element('details', { id: `section-${key}`, open: ['grains', 'chains', 'solid'].includes(key) }, element('summary', { textContent: title }), body);
+      rows.forEach((row) => {
+        const made = this.row(...row);
+        if (row[4]) this.conditions.push([row[4], made]);
+        body.append(...made);
+      });
+      const box = element('details', { id: `part-${key}`, open: ['grains', 'chains', 'solid'].includes(key) }, element('summary', { textContent: title }), body);
       root.append(box);
     }
   }
@@ -156,11 +164,13 @@ export class Panel {
 
   /** Shows the state. */
   update(state) {
+    document.getElementById('solid-factor').max = this.app.largestFactor ?? 100;
     for (const { path, input, write } of this.inputs) write(input, at(state, path));
+    for (const [holds, made] of this.conditions) made.forEach((row) => { row.hidden = !holds(state); });
     for (const part of ['grains', 'solid', 'chains', 'walls', 'reference']) {
       const has = part === 'reference' ? state.parts.solid || state.parts.grains : state.parts[part];
-      document.getElementById(`section-${part}`).hidden = !has;
+      document.getElementById(`part-${part}`).hidden = !has;
     }
-    document.getElementById('section-section').hidden = !state.parts.grains;
+    document.getElementById('part-section').hidden = !state.parts.grains;
   }
 }

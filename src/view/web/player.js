@@ -25,7 +25,7 @@ export class Player {
   toggle() { this.play(this.app.state.playing ? 0 : 1); }
 
   fit() {
-    this.app.stage.look(this.app.state.view.side);
+    this.app.look();
   }
 
   hideSide() {
@@ -90,7 +90,7 @@ export class Player {
     $('time').textContent = `t = ${state.time?.toPrecision(4) ?? '–'} s, frame ${state.frame} of ${Math.max(state.frames - 1, 0)}`;
     $('speed').value = state.speed;
     $('speed-shown').textContent = `${state.speed}/s`;
-    $('play').textContent = state.playing ? '⏸' : '▶';
+    $('play').textContent = state.playing ? '❙❙' : '▶';
     $('play').classList.toggle('on', state.playing === 1);
     $('play-fast').classList.toggle('on', state.playing > 1);
     $('play-back').classList.toggle('on', state.playing < 0);

@@ -1,5 +1,5 @@
 // Small plots beside the picture, with the time of the frame marked, and legends in the picture.
-import { colourAt, figure } from 'colours';
+import { colourAt, figure, scaled } from 'colours';
 
 const INK = '#1c2733';
 
@@ -98,7 +98,8 @@ export function legends(g, width, list, dark) {
   const ink = dark ? '#f2f4f7' : INK;
   let y = 14;
   g.textBaseline = 'alphabetic';
-  for (const { title, unit, range, map, swatches, bands } of list) {
+  for (const { title, unit: plain, range, map, swatches, bands } of list) {
+    const { factor, unit } = scaled(plain, range ? Math.max(...range.map(Math.abs)) : 0);
     g.font = '600 12px system-ui, sans-serif';
     const rows = swatches ? swatches.length : 7;
     const size = swatches ? 18 * rows : 132;
@@ -131,7 +132,7 @@ export function legends(g, width, list, dark) {
         const t = k / (rows - 3);
         const at = top + (1 - t) * size;
         g.fillRect(x + 18, at - 0.5, 4, 1);
-        g.fillText(figure(range[0] + t * (range[1] - range[0])), x + 27, at + 4);
+        g.fillText(figure((range[0] + t * (range[1] - range[0])) / factor), x + 27, at + 4);
       }
     }
     y += size + 52;

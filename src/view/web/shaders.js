@@ -141,7 +141,9 @@ export function surfaceMaterial() {
         if (picking == 1) { gl_FragColor = numberOf(floor(number + 0.5)); return; }
         vec3 normal = normalize(cross(dFdx(at), dFdy(at)));
         if (normal.z < 0.0) normal = -normal;
-        gl_FragColor = vec4(lit(colourOf(item), normal), opacity);
+        // Colours of a field must be found in the legend again: less shade.
+        vec3 plain = colourOf(item);
+        gl_FragColor = vec4(mode == 0 ? mix(plain, lit(plain, normal), 0.4) : lit(plain, normal), opacity);
       }`,
   });
 }

@@ -71,20 +71,20 @@ export class Stage {
   /** What is to be seen. */
   setBox(box) { this.box.copy(box); }
 
-  /** Looks at everything from a side. */
-  look(view) {
-    const centre = this.box.getCenter(new THREE.Vector3());
+  /** Looks at a box from a side. */
+  look(view, box = this.box) {
+    const centre = box.getCenter(new THREE.Vector3());
     const radius = 0.5 * this.box.getSize(new THREE.Vector3()).length() || 1;
     const direction = new THREE.Vector3(...VIEWS[view]).normalize();
     const half = Math.tan((this.cameras.perspective.fov * Math.PI) / 360);
     const right = new THREE.Vector3().crossVectors(direction, this.camera.up).normalize().negate();
     const above = new THREE.Vector3().crossVectors(right, direction).negate();
-    const aspect = this.width / this.height;
-    // The corners of the box decide the distance.
+    // Room for the legends at the edge; the corners of the box decide the distance.
+    const aspect = Math.max(this.width - 220, 0.6 * this.width) / this.height;
     let distance = 0;
     let size = 0;
     for (let c = 0; c < 8; c++) {
-      const corner = new THREE.Vector3(...[0, 1, 2].map((k) => (c >> k & 1 ? this.box.max : this.box.min).getComponent(k))).sub(centre);
+      const corner = new THREE.Vector3(...[0, 1, 2].map((k) => (c >> k & 1 ? box.max : box.min).getComponent(k))).sub(centre);
       const across = Math.max(Math.abs(corner.dot(right)) / aspect, Math.abs(corner.dot(above)));
       size = Math.max(size, across);
       distance = Math.max(distance, across / half + corner.dot(direction));

@@ -6,7 +6,7 @@ export function initial() {
     playing: 0, speed: 10, loading: '', error: '',
     parts: { grains: false, chains: false, walls: false, solid: false },
     view: {
-      side: 'oblique', projection: 'perspective', light: 'camera', background: '#ffffff', autoRotate: false,
+      side: 'oblique', focus: 'all', projection: 'perspective', light: 'camera', background: '#ffffff', autoRotate: false,
       legends: true, plots: true, flat: null,
     },
     grains: { show: true, colour: 'constant', constant: '#b9ab94', map: 'viridis', auto: true, min: 0, max: 1, opacity: 1 },
