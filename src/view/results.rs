@@ -9,7 +9,7 @@
 //! | `table/history` | a table |
 
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde_json::{Value, json};
 
@@ -27,6 +27,8 @@ pub struct Results {
     /// Its frames.
     pub frames: Vec<Frame>,
     common: OnceLock<Common>,
+    /// The grains read last, with their file: fields of a frame are asked for one by one.
+    latest: Mutex<Option<(PathBuf, Arc<GrainFile>)>>,
 }
 
 /// What holds for all frames.
@@ -69,7 +71,13 @@ impl Results {
     /// It holds no frames.
     pub fn open(dir: &Path, coding: Coding) -> Result<Results, Failure> {
         let frames = series::read(dir)?;
-        Ok(Results { dir: dir.to_path_buf(), coding, frames, common: OnceLock::new() })
+        Ok(Results {
+            dir: dir.to_path_buf(),
+            coding,
+            frames,
+            common: OnceLock::new(),
+            latest: Mutex::default(),
+        })
     }
 
     /// The same with every `n`-th frame and the last one.
@@ -137,11 +145,11 @@ impl Results {
     ) -> Result<Vec<u8>, Failure> {
         match (part, field) {
             (Part::Grains, None) => {
-                Ok(GrainFile::open(file)?.chunk(common.bodies.as_ref(), common.origin, self.coding))
+                Ok(self.grains(file)?.chunk(common.bodies.as_ref(), common.origin, self.coding))
             }
             (Part::Grains, Some(field)) => {
                 let mut chunk = Chunk::new(self.coding);
-                chunk.numbers("value", &GrainFile::open(file)?.field(field)?, 1);
+                chunk.numbers("value", &self.grains(file)?.field(field)?, 1);
                 Ok(chunk.finish())
             }
             (Part::Solid, field) => {
@@ -154,6 +162,18 @@ impl Results {
             (Part::Chains, _) => lines::chains(file, common.origin, self.coding),
             (Part::Walls, _) => lines::walls(file, common.origin, self.coding),
         }
+    }
+
+    /// The grains of a file, read once for all of their fields.
+    fn grains(&self, file: &Path) -> Result<Arc<GrainFile>, Failure> {
+        let latest = || self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, grains)) = latest().as_ref().filter(|(of, _)| of == file) {
+            return Ok(grains.clone());
+        }
+        // The lock is free meanwhile: reading a million grains takes a second.
+        let grains = Arc::new(GrainFile::open(file)?);
+        *latest() = Some((file.to_path_buf(), grains.clone()));
+        Ok(grains)
     }
 
     /// What the page needs first.

@@ -16,7 +16,7 @@ export function launch() {
 }
 
 /** A page of the viewer that is ready; `faults` collects errors of scripts and requests that leave this machine. */
-export async function open(browser, address, faults, size = { width: 1400, height: 900 }) {
+export async function open(browser, address, faults, size = { width: 900, height: 600 }) {
   const context = await browser.newContext({ viewport: size, acceptDownloads: true });
   const page = await context.newPage();
   page.on('pageerror', (error) => faults.push(`error in the page: ${error.stack ?? error}`));
@@ -67,7 +67,8 @@ export class View {
 
   /** Opens the part of the panel that a control is in. */
   async control(id) {
-    await this.run((name) => { document.getElementById(name).closest('details').open = true; }, id);
+    await this.run((name) => { const part = document.getElementById(name).closest('details');
+      if (part) part.open = true; }, id);
     return this.page.locator(`#${id}`);
   }
 
@@ -111,7 +112,6 @@ export class View {
   /** Number of pixels of the picture, without legends, for which `test`, a text of an expression in r, g, b, holds. */
   count(test) {
     return this.run((text) => {
-      trackbed.app.stage.draw();
       const from = trackbed.app.stage.canvas;
       const canvas = new OffscreenCanvas(from.width, from.height);
       const g = canvas.getContext('2d');
@@ -129,7 +129,6 @@ export class View {
   /** Colour of the picture at a place of the canvas, in CSS pixels. */
   pixel(x, y) {
     return this.run(([px, py]) => {
-      trackbed.app.stage.draw();
       const from = trackbed.app.stage.canvas;
       const ratio = trackbed.app.stage.renderer.getPixelRatio();
       const canvas = new OffscreenCanvas(1, 1);
@@ -142,7 +141,6 @@ export class View {
   /** A number that changes with the picture. */
   hash() {
     return this.run(() => {
-      trackbed.app.stage.draw();
       const from = trackbed.app.stage.canvas;
       const canvas = new OffscreenCanvas(from.width, from.height);
       const g = canvas.getContext('2d');

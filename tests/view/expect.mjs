@@ -11,7 +11,7 @@ export async function check(id, what, act) {
     console.log(`ok   ${id.padEnd(7)} ${what}${said ? `: ${said}` : ''} (${((Date.now() - begun) / 1000).toFixed(1)} s)`);
   } catch (error) {
     results.push({ id, good: false });
-    console.log(`FAIL ${id.padEnd(7)} ${what}: ${error.message}`);
+    console.log(`FAIL ${id.padEnd(7)} ${what}: ${error.message.split('\n')[0]}`);
   }
 }
 

@@ -78,14 +78,18 @@ export async function onTables(view, dir, frames) {
   });
 
   await check('S0-62', 'light along x, y, z', async () => {
+    // At 0.7 of the radius to the sides.
     const bright = async (dx, dy) => {
-      const [x, y] = await view.bodyAt(2);
-      return (await view.pixel(x + dx, y + dy))[1];
+      const [[x, y], [end]] = [await view.bodyAt(2), await view.run(() => {
+        const [px, py, pz] = trackbed.app.grains.position.slice(6, 9);
+        return trackbed.histories.picker.project([px + 0.4, py, pz]);
+      })];
+      return (await view.pixel(x + 0.7 * dx * Math.abs(end - x), y + 0.7 * dy * Math.abs(end - x)))[1];
     };
     await view.select('view-light', 'x');
-    const [right, left] = [await bright(40, 0), await bright(-40, 0)];
+    const [right, left] = [await bright(1, 0), await bright(-1, 0)];
     await view.select('view-light', 'z');
-    const [above, below] = [await bright(0, -40), await bright(0, 40)];
+    const [above, below] = [await bright(0, -1), await bright(0, 1)];
     await view.select('view-light', 'y');
     const front = await bright(0, 0);
     await view.select('view-side', 'back');
@@ -119,7 +123,7 @@ export async function onTables(view, dir, frames) {
     let state = await view.state();
     expect(state.view.flat === 'z' && state.view.projection === 'parallel', JSON.stringify(state.view));
     const before = await view.camera();
-    await view.drag([500, 400], [650, 480]);
+    await view.drag([300, 250], [400, 300]);
     const after = await view.camera();
     const same = (a, b) => a.every((v, k) => near(v, b[k], 1e-6));
     const turned = (c) => c.place.map((v, k) => v - c.target[k]).map((v) => v / c.distance);
@@ -133,7 +137,7 @@ export async function onTables(view, dir, frames) {
     state = await view.state();
     expect(state.view.flat === null, 'three dimensions');
     const at = await view.camera();
-    await view.drag([500, 400], [650, 480]);
+    await view.drag([300, 250], [400, 300]);
     expect(!same(turned(at), turned(await view.camera())), 'space turns');
   });
 }

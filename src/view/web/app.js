@@ -157,7 +157,7 @@ export class App {
   /** Waits until everything is up to date and drawn. */
   async idle() {
     while (this.running) await this.running;
-    this.stage.draw();
+    this.stage.now();
   }
 
   say(text) {

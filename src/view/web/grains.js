@@ -45,7 +45,7 @@ export class Grains {
   place() {
     const { start, radius, offset } = this.bodies;
     const { position, orientation } = this;
-    const out = this.spheres.place.array;
+    const out = this.spheres.places;
     for (let b = 0; b < this.count; b++) {
       const [px, py, pz] = [position[3 * b], position[3 * b + 1], position[3 * b + 2]];
       let m = null;
@@ -70,7 +70,7 @@ export class Grains {
   /** Removes bodies that lie before `low` or behind `high` along `axis`; returns how many. */
   section(axis, low, high) {
     const { start, radius } = this.bodies;
-    const out = this.spheres.place.array;
+    const out = this.spheres.places;
     let removed = 0;
     for (let b = 0; b < this.count; b++) {
       const d = this.position[3 * b] * axis[0] + this.position[3 * b + 1] * axis[1] + this.position[3 * b + 2] * axis[2];
@@ -99,7 +99,7 @@ export class Grains {
     this.range = look.auto ? [least, most] : [look.min, look.max];
     u.range.value.set(...this.range);
     const { start } = this.bodies;
-    const out = this.spheres.value.array;
+    const out = this.spheres.numbers;
     for (let b = 0; b < this.count; b++) out.fill(values[b], start[b], start[b + 1]);
     this.spheres.coloured();
   }
@@ -147,9 +147,9 @@ export class Grains {
   box() {
     if (!this.count) return null;
     const box = new THREE.Box3();
-    const { array } = this.spheres.place;
+    const array = this.spheres.places;
     const { min, max } = box;
-    for (let s = 0; s < array.length; s += 4) {
+    for (let s = 0; s < 4 * this.spheres.count; s += 4) {
       const r = this.bodies.radius[s >> 2];
       const [x, y, z] = [array[s], array[s + 1], array[s + 2]];
       min.set(Math.min(min.x, x - r), Math.min(min.y, y - r), Math.min(min.z, z - r));

@@ -36,12 +36,16 @@ function uniforms(extra = {}) {
 
 export function sphereMaterial() {
   return new THREE.ShaderMaterial({
-    uniforms: uniforms({ chosen: { value: new THREE.Vector2(-1, -1) } }),
+    uniforms: uniforms({ chosen: { value: new THREE.Vector2(-1, -1) }, places: { value: null }, values: { value: null } }),
     vertexShader: /* glsl */ `
-      attribute vec4 place; attribute float value;
-      uniform vec2 chosen;
+      uniform vec2 chosen; uniform highp sampler2D places; uniform highp sampler2D values;
       varying vec3 at; varying vec4 ball; varying float item; varying float mark; varying float number;
       void main() {
+        int n = gl_VertexID / 6, k = gl_VertexID - 6 * n;
+        ivec2 cell = ivec2(n & 2047, n >> 11);
+        vec4 place = texelFetch(places, cell, 0);
+        // Corners of two triangles.
+        vec2 corner = vec2(k == 1 || k == 2 || k == 4 ? 1.0 : -1.0, k == 2 || k == 4 || k == 5 ? 1.0 : -1.0);
         vec3 c = (modelViewMatrix * vec4(place.xyz, 1.0)).xyz;
         float r = place.w, s = r;
         vec3 right = vec3(1.0, 0.0, 0.0), up = vec3(0.0, 1.0, 0.0);
@@ -52,10 +56,10 @@ export function sphereMaterial() {
           up = cross(right, n);
           s = r * d / sqrt(max(d * d - r * r, 0.01 * d * d));
         }
-        at = c + (position.x * right + position.y * up) * s;
+        at = c + (corner.x * right + corner.y * up) * s;
         ball = vec4(c, r);
-        item = value;
-        number = float(gl_InstanceID);
+        item = texelFetch(values, cell, 0).r;
+        number = float(n);
         mark = number >= chosen.x && number < chosen.y ? 1.0 : 0.0;
         gl_Position = r > 0.0 ? projectionMatrix * vec4(at, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
       }`,

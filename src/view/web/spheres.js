@@ -1,6 +1,10 @@
-// Any number of spheres in one draw call, each a quad that faces the eye.
+// Any number of spheres in one draw call, each a quad that faces the eye. Their places are in a texture: drawing instances of a
+// quad takes a thousand times longer where software draws.
 import * as THREE from 'three';
 import { sphereMaterial } from 'shaders';
+
+/** Width of the texture; that of shaders.js. */
+const WIDTH = 2048;
 
 export class Spheres {
   constructor() {
@@ -17,19 +21,19 @@ export class Spheres {
   reserve(count) {
     if (this.count === count && this.meshes.length) return;
     this.meshes.forEach((mesh) => { this.group.remove(mesh); mesh.geometry.dispose(); });
-    const geometry = new THREE.InstancedBufferGeometry();
-    const corners = new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]);
-    geometry.setAttribute('position', new THREE.BufferAttribute(corners, 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    this.place = new THREE.InstancedBufferAttribute(new Float32Array(4 * count), 4);
-    this.value = new THREE.InstancedBufferAttribute(new Float32Array(count), 1);
-    this.place.setUsage(THREE.DynamicDrawUsage);
-    geometry.setAttribute('place', this.place);
-    geometry.setAttribute('value', this.value);
-    geometry.instanceCount = count;
+    this.place?.dispose();
+    this.value?.dispose();
+    const height = Math.max(Math.ceil(count / WIDTH), 1);
+    const texture = (items, format) => new THREE.DataTexture(new Float32Array(items * WIDTH * height), WIDTH, height, format, THREE.FloatType);
+    [this.place, this.value] = [texture(4, THREE.RGBAFormat), texture(1, THREE.RedFormat)];
+    // No corners are stored: the shader knows a corner by its number.
+    const geometry = new THREE.BufferGeometry();
+    geometry.setDrawRange(0, 6 * count);
     this.count = count;
     this.meshes = [this.depth, this.material].map((material, k) => {
       const mesh = new THREE.Mesh(geometry, material);
+      material.uniforms.places.value = this.place;
+      material.uniforms.values.value = this.value;
       mesh.frustumCulled = false;
       mesh.renderOrder = 10 + k;
       mesh.visible = k === 1;
@@ -37,6 +41,10 @@ export class Spheres {
       return mesh;
     });
   }
+
+  /** x, y, z and radius of all spheres, and one number each. */
+  get places() { return this.place.image.data; }
+  get numbers() { return this.value.image.data; }
 
   /** Places changed: upload them. */
   moved() { this.place.needsUpdate = true; }

@@ -123,6 +123,15 @@ export class Stage {
     });
   }
 
+  /** Draws at once what is due. */
+  now() {
+    if (!this.due) return;
+    cancelAnimationFrame(this.due);
+    this.due = 0;
+    this.draw();
+    if (this.control.autoRotate) this.wanted();
+  }
+
   /** Direction of sight. */
   sight() { return this.camera.getWorldDirection(new THREE.Vector3()); }
 
