@@ -29,9 +29,9 @@ try {
     expect(state.frames > 5 && state.parts.grains && state.parts.solid && !state.error, JSON.stringify(state));
     const seen = (await view.run(() => trackbed.app.stage.width * trackbed.app.stage.height)) - await view.count('white');
     expect(seen > 12000, `${seen} pixels are drawn`);
+    if (picture) await shoot(view, picture);
     await onPlayer(view, process.env.KEEP);
     await onTrack(view);
-    if (picture) await shoot(view, picture);
     await view.page.context().close();
     return `first picture after ${view.page.firstPicture.toFixed(1)} s, ${seen} pixels drawn`;
   });
@@ -69,8 +69,14 @@ process.exitCode = sum() ? 0 : 1;
 
 /** The picture of the guide. */
 async function shoot(view, file) {
-  await view.page.setViewportSize({ width: 1280, height: 800 });
+  const size = view.page.viewportSize();
+  await view.page.setViewportSize({ width: 1000, height: 640 });
   await view.run(() => trackbed.peak());
-  await view.idle();
+  await view.set({ 'grains.show': true, 'grains.opacity': 0.3, 'solid.bands': true });
   await view.page.screenshot({ path: file });
+  expect(fs.statSync(file).size < 200e3, `${file} has ${fs.statSync(file).size} bytes`);
+  await view.page.setViewportSize(size);
+  await view.page.reload();
+  await view.page.waitForFunction('window.trackbed');
+  await view.run(() => trackbed.ready.then(() => trackbed.idle()));
 }

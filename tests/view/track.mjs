@@ -183,6 +183,7 @@ export async function onTrack(view, only) {
   });
 
   await check('fields', 'contours of nodal and element fields on the deformed mesh, legend with units', async () => {
+    await view.run(() => trackbed.app.set('frame', trackbed.histories.peakFrame()));
     const options = await (await view.control('solid-field')).locator('option').evaluateAll((all) => all.map((o) => o.value));
     for (const field of options) {
       await view.select('solid-field', field);

@@ -13,6 +13,8 @@ import { Walls } from 'walls';
 import * as local from 'local';
 
 const $ = (id) => document.getElementById(id);
+/** What the user has chosen of a look: limits from the data follow from it. */
+const chosen = (look) => (look.auto ? { ...look, min: 0, max: 0 } : look);
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
 export class App {
@@ -223,10 +225,13 @@ export class App {
 
   /** Radius of the strongest chain at thickness 1 [m]. */
   thickness() {
-    const radius = this.grains.bodies?.diameter ?? [];
-    if (!radius.length) return 0.006 * (this.size ?? 1);
-    const sorted = Float32Array.from(radius).sort();
-    return 0.22 * sorted[sorted.length >> 1];
+    const { diameter } = this.grains.bodies ?? {};
+    if (!diameter?.length) return 0.006 * (this.size ?? 1);
+    if (this.sortedFrom !== diameter) {
+      this.sortedFrom = diameter;
+      this.middle = Float32Array.from(diameter).sort()[diameter.length >> 1];
+    }
+    return 0.22 * this.middle;
   }
 
   async updateGrains(k) {
@@ -241,7 +246,7 @@ export class App {
       const box = this.grains.box();
       if (this.base && box) this.stage.setBox(box.union(this.base));
     });
-    await this.once('colour', [look, state.reference.frame], async () => {
+    await this.once('colour', [chosen(look), state.reference.frame], async () => {
       const values = await this.grainValues(look.colour, k);
       const palette = { part: 'groups', piece: 'pieces' }[look.colour];
       const pieces = look.colour === 'piece' ? grains.pieces(values) : null;
@@ -277,7 +282,7 @@ export class App {
       // The slider ends where the largest displacement is a tenth of everything.
       if (most > 0) this.largestFactor = Math.max(this.largestFactor ?? 10, 10 ** Math.ceil(Math.log10((0.1 * this.size) / most || 1)));
     });
-    await this.once('field', look, async () => {
+    await this.once('field', chosen(look), async () => {
       const { field } = look;
       const made = DISPLACEMENTS.includes(field);
       const values = !field || field === 'constant' ? null : made ? solid.displacementField(field) : (await this.block(`solid/${k}/${field}`))?.arrays.value;

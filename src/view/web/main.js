@@ -9,6 +9,11 @@ import { EmbeddedSource, embeddedTexts } from 'source';
 
 const $ = (id) => document.getElementById(id);
 const { served } = JSON.parse($('settings').textContent);
+if (!document.createElement('canvas').getContext('webgl2')) {
+  $('message').textContent = 'This browser draws no WebGL 2: found none, expected a browser of 2021 or later with graphics switched on';
+  $('message').className = 'shown error';
+  throw new Error('no WebGL 2');
+}
 const app = new App(served);
 const panel = new Panel($('panel'), app);
 const player = new Player(app);

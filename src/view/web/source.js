@@ -6,23 +6,19 @@ const KEPT = 600e6;
 
 class Source {
   constructor() {
+    /** By name: what is loading or loaded, and its bytes, the last used at the end. */
     this.kept = new Map();
-    this.bytes = 0;
   }
 
   /** The block of a name, or null where there is none. */
   async block(name) {
-    const known = this.kept.get(name);
-    if (known) {
-      this.kept.delete(name);
-      this.kept.set(name, known);
-      return known;
-    }
-    const loading = this.load(name);
-    this.kept.set(name, loading);
+    const entry = this.kept.get(name) ?? { loading: this.load(name), bytes: 0 };
+    this.kept.delete(name);
+    this.kept.set(name, entry);
     try {
-      const block = await loading;
-      this.keep(name, block);
+      const block = await entry.loading;
+      entry.bytes = block?.bytes ?? 0;
+      this.forget();
       return block;
     } catch (error) {
       this.kept.delete(name);
@@ -30,14 +26,15 @@ class Source {
     }
   }
 
-  keep(name, block) {
-    if (!this.kept.has(name)) return;
-    this.bytes += block?.bytes ?? 0;
-    for (const [other, value] of this.kept) {
-      if (this.bytes <= KEPT) break;
-      if (other === name || !value) continue;
-      this.kept.delete(other);
-      value.then?.((b) => { this.bytes -= b?.bytes ?? 0; });
+  /** Lets go of blocks that were not used for longest, down to the bytes that are kept. */
+  forget() {
+    let sum = 0;
+    for (const { bytes } of this.kept.values()) sum += bytes;
+    for (const [name, { bytes }] of this.kept) {
+      if (sum <= KEPT) return;
+      if (!bytes) continue;
+      this.kept.delete(name);
+      sum -= bytes;
     }
   }
 }
