@@ -1,6 +1,7 @@
 //! The command line.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// Coupled DEM–FEM solver for ballasted railway track.
@@ -25,6 +26,8 @@ pub enum Command {
     Study(StudyArgs),
     /// Natural frequencies and modes of the solid part of a scene.
     Modal(ModalArgs),
+    /// Show the results of a run in a browser: grains, force chains, solid, walls; or write them as one HTML file.
+    View(ViewArgs),
     /// Read a mesh: count and measure it, find its faults, or convert it.
     Mesh {
         /// What to do with the mesh.
@@ -116,6 +119,28 @@ pub struct ModalArgs {
     /// Replace one key of the scene, as key.path=value; may be given again.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+}
+
+/// Arguments of `view`.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// Folder of the results of a run, or one with such folders below it.
+    pub dir: PathBuf,
+    /// Port on this machine (127.0.0.1); default any that is free.
+    #[arg(long, default_value_t = 0, hide_default_value = true)]
+    pub port: u16,
+    /// Write one HTML file that needs no server and no network, instead of serving.
+    #[arg(long, value_name = "FILE.html")]
+    pub export: Option<PathBuf>,
+    /// Every N-th frame alone, and the last one, in the exported file.
+    #[arg(long, value_name = "N", default_value = "1", requires = "export")]
+    pub every: NonZeroUsize,
+    /// Replace the exported file if it exists.
+    #[arg(long, requires = "export")]
+    pub force: bool,
+    /// Do not start a browser.
+    #[arg(long)]
+    pub no_open: bool,
 }
 
 /// Arguments of `check`.

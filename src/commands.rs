@@ -7,6 +7,7 @@ mod modal;
 mod output;
 mod stone;
 mod study;
+mod view;
 
 use crate::cli::{Command, MeshCommand, RunArgs};
 use crate::failure::Failure;
@@ -35,6 +36,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             mesh::convert(&mesh, &output, format)
         }
         Command::Stone { command } => stone::stone(&command),
+        Command::View(args) => view::view(&args),
     }
 }
 

@@ -20,4 +20,5 @@ pub mod run;
 pub mod scene;
 pub mod stone_tools;
 pub mod study;
+pub mod view;
 pub mod write;

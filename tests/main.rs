@@ -39,5 +39,6 @@ mod suite {
     mod track;
     mod train;
     mod verdict;
+    mod view;
     mod walls;
 }

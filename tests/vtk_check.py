@@ -43,7 +43,7 @@ KINDS = {
         [],
     ),
     "chains": ([], [("normal_force", 1), ("tangential_force", 1), ("magnitude", 1), ("kind", 1), ("strong", 1)]),
-    "walls": ([], [("id", 1)]),
+    "walls": ([], [("id", 1), ("kind", 1)]),
 }
 
 

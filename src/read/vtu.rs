@@ -101,7 +101,7 @@ pub fn read_vtu(file: &Path) -> Result<MeshFile, ReadError> {
     vtk_grid::mesh(builder, grid)
 }
 
-fn coding_of(tag: &Tag) -> Result<Coding, (&'static str, String, &'static str)> {
+pub(super) fn coding_of(tag: &Tag) -> Result<Coding, (&'static str, String, &'static str)> {
     let compressor = tag.attribute("compressor").unwrap_or_default();
     let zlib = match compressor.as_str() {
         "" => false,
@@ -208,7 +208,7 @@ fn most_numbers(section: &str, name: &str, points: u64, cells: u64, components: 
 }
 
 /// Numbers in text.
-fn text_numbers(text: &[u8]) -> Result<Vec<f64>, String> {
+pub(super) fn text_numbers(text: &[u8]) -> Result<Vec<f64>, String> {
     let text = std::str::from_utf8(text).map_err(|_| "no text".to_string())?;
     let number = |word: &str| {
         number::real(word).ok_or_else(|| format!("\"{}\"", word.chars().take(40).collect::<String>()))

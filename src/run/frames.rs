@@ -4,7 +4,7 @@ use super::system::{GrainsView, SolidView};
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
-use crate::write::{ChainFrame, Format, Frame, GrainFrame, Part, SolidFrame, WallFrame, Writers};
+use crate::write::{ChainFrame, Format, Frame, GrainFrame, Part, SolidFrame, WallFrame, WallKind, Writers};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::shape::Shape;
@@ -178,9 +178,14 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
             continue;
         }
         frame.strong.push(u32::from(strong));
-        let first = view.state.position(c.a);
+        // The centre of a sleeper is far from where it is touched: a line to it would cross stones without force.
+        let end = |body: usize, shift: Option<dem::Vec3>| match view.model.shape(body) {
+            Shape::Box { .. } => c.point,
+            _ => moved(view.state.position(body), shift),
+        };
+        let first = end(c.a, None);
         let second = match c.b {
-            dem::Partner::Body(b) => moved(view.state.position(b), Some(c.shift)),
+            dem::Partner::Body(b) => end(b, Some(c.shift)),
             _ => c.point,
         };
         let back = into_box(view, c.a);
@@ -206,7 +211,9 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
 /// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
 fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
     let mut frame = WallFrame::default();
-    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
+    let mut add = |id, points: &[dem::Vec3], polygons: &[&[u32]]| {
+        push(&mut frame, (id, WallKind::Plane), points, polygons);
+    };
     let extent = extent(view);
     let mut id = 0;
     for (i, plane) in part.walls.planes.iter().enumerate() {
@@ -216,7 +223,6 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
         id += 1;
     }
     id = wall_output::polygons(view, part, extent, id, &mut frame);
-    let mut add = |id: u32, points: &[dem::Vec3], polygons: &[&[u32]]| push(&mut frame, id, points, polygons);
     for body in 0..view.model.body_count() {
         if let Shape::Box { half } = view.model.shape(body) {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
@@ -228,7 +234,7 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
                 .collect();
             let sides: [&[u32]; 6] =
                 [&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]];
-            add(id, &corners, &sides);
+            push(&mut frame, (id, WallKind::Box), &corners, &sides);
             id += 1;
         }
     }
@@ -236,12 +242,13 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
 }
 
 /// Adds polygons of one wall.
-fn push(frame: &mut WallFrame, id: u32, points: &[dem::Vec3], polygons: &[&[u32]]) {
+fn push(frame: &mut WallFrame, (id, kind): (u32, WallKind), points: &[dem::Vec3], polygons: &[&[u32]]) {
     let first = frame.points.len() as u32;
     frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
     for polygon in polygons {
         frame.polygons.push(polygon.iter().map(|v| v + first).collect());
         frame.id.push(id);
+        frame.kind.push(kind as u32);
     }
 }
 

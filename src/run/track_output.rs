@@ -1,8 +1,8 @@
 //! What is written of a track: its rails in the frames, the curve of a push.
 
 use crate::failure::Failure;
-use crate::write::WallFrame;
 use crate::write::csv::{Field, write_table};
+use crate::write::{WallFrame, WallKind};
 use std::path::Path;
 use trackbed_coupling::track::Track;
 use trackbed_coupling::track::push::PushSummary;
@@ -32,6 +32,7 @@ pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
             if let Some(before) = last {
                 frame.polygons.push(vec![before, before + 1, begin + 1, begin]);
                 frame.id.push(id);
+                frame.kind.push(WallKind::Rail as u32);
             }
             last = Some(begin);
         }

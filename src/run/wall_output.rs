@@ -3,8 +3,8 @@
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
 use crate::model::grains::GrainsPart;
-use crate::write::WallFrame;
 use crate::write::csv::Row;
+use crate::write::{WallFrame, WallKind};
 use trackbed_dem::{Vec3, WallShape};
 
 /// Corners around a ring in a picture.
@@ -42,6 +42,7 @@ pub fn polygons(
         for polygon in polygons {
             frame.polygons.push(polygon.iter().map(|v| v + first).collect());
             frame.id.push(id);
+            frame.kind.push(WallKind::Wall as u32);
         }
         id += 1;
     }

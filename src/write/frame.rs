@@ -90,4 +90,19 @@ pub struct WallFrame {
     pub polygons: Vec<Vec<u32>>,
     /// Number of the wall that each polygon belongs to. Shape `[polygons]`.
     pub id: Vec<u32>,
+    /// What each polygon is part of, a [`WallKind`] as its number. Shape `[polygons]`.
+    pub kind: Vec<u32>,
+}
+
+/// What a polygon of a [`WallFrame`] is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WallKind {
+    /// A plane, which has no end: shown as a square as wide as the grains.
+    Plane = 0,
+    /// Any other wall.
+    Wall = 1,
+    /// A box: a rigid sleeper, a plate.
+    Box = 2,
+    /// A rail.
+    Rail = 3,
 }

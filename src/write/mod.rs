@@ -32,7 +32,7 @@ pub mod vtu;
 pub mod writer;
 
 pub use error::WriteError;
-pub use frame::{ChainFrame, Frame, GrainFrame, SolidFrame, WallFrame};
+pub use frame::{ChainFrame, Frame, GrainFrame, SolidFrame, WallFrame, WallKind};
 pub use mesh_file::{MeshOptions, write_mesh_file};
 pub use writer::{Format, Mark, Part, Writers};
 

@@ -111,6 +111,7 @@ fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
             points: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             polygons: vec![vec![0, 1, 2, 3], vec![0, 1, 4]],
             id: vec![0, 1],
+            kind: vec![0, 2],
         };
         vtp::write_walls(&path(&name("walls", "vtp")), &walls).unwrap();
         for (part, kind, ending) in

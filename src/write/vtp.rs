@@ -48,7 +48,7 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     write(file, frame.ends.as_flattened(), fields, lines, ("NumberOfLines", count))
 }
 
-/// Writes the walls: cell data `id`.
+/// Writes the walls: cell data `id`, `kind`.
 ///
 /// # Errors
 /// As [`write_grains`]; a polygon of fewer than three corners or with a corner that does not exist.
@@ -65,6 +65,7 @@ pub fn write_walls(file: &Path, frame: &WallFrame) -> Result<(), WriteError> {
     }
     let mut fields = Fields::of_cells(file, frame.polygons.len());
     fields.ids("id", &frame.id)?;
+    fields.ids("kind", &frame.kind)?;
     let connectivity = frame.polygons.iter().flatten().map(|c| u64::from(*c));
     let ends = frame.polygons.iter().scan(0, |end, polygon| {
         *end += polygon.len() as u64;
@@ -138,10 +139,11 @@ mod tests {
         let dir = folder("vtp_walls");
         let file = dir.join("walls.vtp");
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let frame = WallFrame { points: points.clone(), polygons: vec![vec![0, 1, 3]], id: vec![0] };
+        let frame =
+            WallFrame { points: points.clone(), polygons: vec![vec![0, 1, 3]], id: vec![0], kind: vec![0] };
         let error = write_walls(&file, &frame).unwrap_err();
         assert!(error.to_string().contains("polygon 0 names point 3, expected below 3"), "{error}");
-        let frame = WallFrame { points, polygons: vec![vec![0, 1]], id: vec![0] };
+        let frame = WallFrame { points, polygons: vec![vec![0, 1]], id: vec![0], kind: vec![0] };
         let error = write_walls(&file, &frame).unwrap_err();
         assert!(error.to_string().contains("polygon 0 has 2 corners"), "{error}");
         assert!(!file.exists());

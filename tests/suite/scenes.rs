@@ -9,10 +9,10 @@ use std::process::Command;
 use vtkio::model::{Attribute, DataSet};
 
 /// Arrays of a VTK file: name → (components, values).
-type Arrays = BTreeMap<String, (usize, Vec<f64>)>;
+pub(super) type Arrays = BTreeMap<String, (usize, Vec<f64>)>;
 
 /// Points, point data and cell data of a file; everything must be finite.
-fn vtk(file: &Path) -> (Vec<f64>, Arrays, Arrays) {
+pub(super) fn vtk(file: &Path) -> (Vec<f64>, Arrays, Arrays) {
     let arrays = |list: Vec<Attribute>| -> Arrays {
         let one = |attribute: Attribute| match attribute {
             Attribute::DataArray(a) => (a.name.clone(), (a.num_comp(), a.data.cast_into::<f64>().unwrap())),

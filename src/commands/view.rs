@@ -1,0 +1,76 @@
+//! `trackbed view`: results in a browser.
+
+use std::path::Path;
+
+use super::output::print;
+use crate::cli::ViewArgs;
+use crate::failure::Failure;
+use crate::message;
+use crate::run::size;
+use crate::view::{self, Coding, Results};
+
+/// Serves the results of a folder, or writes them as one HTML file.
+///
+/// # Errors
+/// A folder without results; see [`Failure`].
+pub fn view(args: &ViewArgs) -> Result<(), Failure> {
+    let dir = &args.dir;
+    if !dir.is_dir() {
+        let found = if dir.exists() { "a file" } else { "no such folder" };
+        return Err(Failure::Input(format!(
+            "{}: found {found}, expected the folder of the results of a run",
+            dir.display()
+        )));
+    }
+    match &args.export {
+        Some(file) => export(args, file),
+        None => serve(args),
+    }
+}
+
+fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
+    if file.exists() && !args.force {
+        return Err(Failure::Input(format!(
+            "{}: found a file of this name, expected none, or --force to replace it",
+            file.display()
+        )));
+    }
+    let results = Results::open(&args.dir, Coding::Compact)?.every(args.every.get());
+    let name = args.dir.canonicalize()?.file_name().map(|n| n.to_string_lossy().into_owned());
+    view::export::export(file, &name.unwrap_or_default(), &results)?;
+    let bytes = std::fs::metadata(file)?.len();
+    print(&format!("{}: {} frames, {}\n", file.display(), results.frames.len(), size(bytes)))
+}
+
+fn serve(args: &ViewArgs) -> Result<(), Failure> {
+    // A folder with runs below it, as a study leaves it, is shown run by run.
+    if view::folders(&args.dir).is_empty() {
+        Results::open(&args.dir, Coding::Exact)?;
+    }
+    let (server, port) = view::server::bind(args.port)?;
+    let address = format!("http://127.0.0.1:{port}/");
+    print(&format!("{address} shows {}; Ctrl-C ends it\n", args.dir.display()))?;
+    if !args.no_open {
+        open(&address);
+    }
+    view::server::serve(&server, port, &args.dir)
+}
+
+/// Opens the address in the user's browser.
+fn open(address: &str) {
+    let program = match std::env::consts::OS {
+        "windows" => "explorer",
+        "macos" => "open",
+        _ => "xdg-open",
+    };
+    let quiet = std::process::Stdio::null;
+    let started = std::process::Command::new(program)
+        .arg(address)
+        .stdin(quiet())
+        .stdout(quiet())
+        .stderr(quiet())
+        .spawn();
+    if started.is_err() {
+        message::note(&format!("no browser could be started ({program}): open {address} in one"));
+    }
+}

@@ -1,0 +1,141 @@
+//! The arrays of a VTK XML file of one piece, each decoded when it is wanted: a viewer shows a few of many.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::error::ReadError;
+use super::mesh_file::read_bytes;
+use super::vtu::{coding_of, text_numbers};
+use super::vtu_data::{Coding, decode};
+use super::xml::tags;
+
+/// Where an array stands in its file.
+#[derive(Debug)]
+struct Entry {
+    section: String,
+    name: String,
+    kind: String,
+    components: usize,
+    ascii: bool,
+    text: Range<usize>,
+}
+
+/// A file with the places of its arrays.
+#[derive(Debug)]
+pub(crate) struct Arrays {
+    file: PathBuf,
+    bytes: Vec<u8>,
+    coding: Coding,
+    entries: Vec<Entry>,
+    /// Number of points.
+    pub points: usize,
+}
+
+/// Sections that arrays can stand in.
+const SECTIONS: [&str; 6] = ["PointData", "CellData", "Points", "Cells", "Lines", "Polys"];
+
+/// Numbers that an array can hold: the largest file is far smaller.
+const MOST: u64 = 1 << 32;
+
+impl Arrays {
+    /// Opens a file of type `kind`, such as `PolyData`.
+    ///
+    /// # Errors
+    /// The file cannot be read, is of another type, or keeps its arrays in a form that this program does not write.
+    pub(crate) fn open(file: &Path, kind: &str) -> Result<Arrays, ReadError> {
+        let bytes = read_bytes(file, "VTK file")?;
+        let fault = |key: &str, found: &str, expected: &str| ReadError::whole(file, key, found, expected);
+        let (mut entries, mut coding, mut points) = (Vec::new(), None, None);
+        let mut section = None;
+        for tag in tags(&bytes) {
+            match tag.name.as_str() {
+                "VTKFile" => {
+                    let found = tag.attribute("type").unwrap_or_default();
+                    if found != kind {
+                        return Err(fault("type of the VTK file", &found, kind));
+                    }
+                    let known = coding_of(&tag);
+                    coding = Some(known.map_err(|(key, found, expected)| fault(key, &found, expected))?);
+                }
+                "Piece" => {
+                    let text = tag.attribute("NumberOfPoints").unwrap_or_default();
+                    let count = text.trim().parse::<usize>();
+                    let count = count
+                        .map_err(|_| fault("NumberOfPoints", &format!("\"{text}\""), "a whole number"))?;
+                    if points.replace(count).is_some() {
+                        return Err(fault("Piece", "a second one", "one piece"));
+                    }
+                }
+                "DataArray" => {
+                    let Some(section) = &section else { continue };
+                    let format = tag.attribute("format").unwrap_or_default();
+                    if format != "binary" && format != "ascii" {
+                        return Err(fault("format of an array", &format!("\"{format}\""), "binary or ascii"));
+                    }
+                    let components = tag.attribute("NumberOfComponents").and_then(|c| c.trim().parse().ok());
+                    entries.push(Entry {
+                        section: String::clone(section),
+                        name: tag.attribute("Name").unwrap_or_default(),
+                        kind: tag.attribute("type").unwrap_or_default(),
+                        components: components.unwrap_or(1).clamp(1, 9),
+                        ascii: format == "ascii",
+                        text: tag.end..tag.end + tag.text_after(&bytes).len(),
+                    });
+                }
+                name => {
+                    section = SECTIONS.into_iter().find(|s| *s == name).map(String::from).or(section);
+                }
+            }
+        }
+        let coding = coding.ok_or_else(|| fault("VTK file", "no VTKFile element", "a VTK XML file"))?;
+        let points = points.ok_or_else(|| fault("VTK file", "no Piece", "one piece"))?;
+        Ok(Arrays { file: file.to_path_buf(), bytes, coding, entries, points })
+    }
+
+    /// Names of the arrays of a section, with the numbers of their components.
+    pub(crate) fn names(&self, section: &str) -> impl Iterator<Item = (&str, usize)> {
+        let of_section = self.entries.iter().filter(move |e| e.section == section);
+        of_section.map(|e| (e.name.as_str(), e.components))
+    }
+
+    /// Number of components of an array, if there is one of this name.
+    pub(crate) fn components(&self, section: &str, name: &str) -> Option<usize> {
+        self.names(section).find(|(n, _)| *n == name).map(|(_, components)| components)
+    }
+
+    /// The numbers of an array.
+    ///
+    /// # Errors
+    /// There is none of this name, or it is damaged.
+    pub(crate) fn values(&self, section: &str, name: &str) -> Result<Vec<f64>, ReadError> {
+        let key = format!("array {name} of {section}");
+        let fault = |found: String| ReadError::whole(&self.file, key.clone(), found, "a whole array");
+        let entry = self.entries.iter().find(|e| e.section == section && e.name == name);
+        let entry = entry.ok_or_else(|| fault("none".to_string()))?;
+        let text = &self.bytes[entry.text.clone()];
+        let values = match entry.ascii {
+            true => text_numbers(text),
+            false => decode(text.trim_ascii(), true, &entry.kind, self.coding, MOST),
+        };
+        let values = values.map_err(fault)?;
+        if let Some(k) = values.iter().position(|v| !v.is_finite()) {
+            return Err(ReadError::whole(&self.file, key, format!("{} at index {k}", values[k]), "a number"));
+        }
+        if matches!(section, "Points" | "PointData") {
+            let components = if section == "Points" { 3 } else { entry.components };
+            if values.len() != components * self.points {
+                let expected = format!("{} of {} points", components * self.points, self.points);
+                return Err(ReadError::whole(&self.file, key, format!("{} numbers", values.len()), expected));
+            }
+        }
+        Ok(values)
+    }
+
+    /// The numbers of an array as indices.
+    ///
+    /// # Errors
+    /// As [`Arrays::values`].
+    pub(crate) fn indices(&self, section: &str, name: &str) -> Result<Vec<u32>, ReadError> {
+        Ok(self.values(section, name)?.into_iter().map(|v| v as u32).collect())
+    }
+}

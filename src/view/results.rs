@@ -1,0 +1,232 @@
+//! The results of one run as blocks for the page, by the names that the page knows them by:
+//!
+//! | name | block |
+//! |---|---|
+//! | `scene` | title, times, parts, fields, origin, size: JSON in `meta` |
+//! | `grains`, `solid` | what holds for all frames |
+//! | `grains/7`, `chains/7`, `walls/7`, `solid/7` | frame 7 |
+//! | `grains/7/speed`, `solid/7/stress_zz` | a field of frame 7 |
+//! | `table/history` | a table |
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use serde_json::{Value, json};
+
+use super::chunk::{Chunk, Coding};
+use super::grains::{Bodies, GrainFile};
+use super::series::{self, Frame, PARTS, Part};
+use super::solid::Skin;
+use super::{lines, solid, tables};
+use crate::failure::Failure;
+
+/// The results of one run.
+pub struct Results {
+    dir: PathBuf,
+    coding: Coding,
+    /// Its frames.
+    pub frames: Vec<Frame>,
+    common: OnceLock<Common>,
+    /// The grains read last, with their file: fields of a frame are asked for one by one.
+    latest: Mutex<Option<(PathBuf, Arc<GrainFile>)>>,
+}
+
+/// What holds for all frames.
+struct Common {
+    origin: [f64; 3],
+    bounds: [[f64; 3]; 2],
+    bodies: Option<Bodies>,
+    grain_fields: Vec<String>,
+    skin: Option<Skin>,
+    solid_fields: Vec<String>,
+}
+
+impl Common {
+    /// From the first frames that have grains and a solid.
+    fn of(frames: &[Frame]) -> Result<Common, Failure> {
+        let first = |part: Part| frames.iter().find_map(|frame| frame.file(part));
+        let (mut bodies, mut grain_fields, mut bounds) = (None, Vec::new(), Vec::new());
+        if let Some(file) = first(Part::Grains) {
+            let file = GrainFile::open(file)?;
+            grain_fields = file.fields();
+            bounds.extend(file.bounds());
+            bodies = Some(file.bodies);
+        }
+        let skin = first(Part::Solid).map(Skin::open).transpose()?;
+        bounds.extend(skin.as_ref().map(Skin::bounds));
+        let solid_fields = first(Part::Solid).map(solid::fields).transpose()?.unwrap_or_default();
+        let whole = |a: [[f64; 3]; 2], b: [[f64; 3]; 2]| {
+            [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
+        };
+        let bounds = bounds.into_iter().reduce(whole).unwrap_or([[-1.0; 3], [1.0; 3]]);
+        let origin = [0, 1, 2].map(|k| 0.5 * (bounds[0][k] + bounds[1][k]));
+        Ok(Common { origin, bounds, bodies, grain_fields, skin, solid_fields })
+    }
+}
+
+impl Results {
+    /// Opens a folder.
+    ///
+    /// # Errors
+    /// It holds no frames.
+    pub fn open(dir: &Path, coding: Coding) -> Result<Results, Failure> {
+        let frames = series::read(dir)?;
+        Ok(Results {
+            dir: dir.to_path_buf(),
+            coding,
+            frames,
+            common: OnceLock::new(),
+            latest: Mutex::default(),
+        })
+    }
+
+    /// The same with every `n`-th frame and the last one.
+    #[must_use]
+    pub fn every(mut self, n: usize) -> Results {
+        let last = self.frames.len().saturating_sub(1);
+        let mut k = 0;
+        self.frames.retain(|_| {
+            k += 1;
+            (k - 1) % n == 0 || k - 1 == last
+        });
+        self
+    }
+
+    fn common(&self) -> Result<&Common, Failure> {
+        if let Some(common) = self.common.get() {
+            return Ok(common);
+        }
+        let made = Common::of(&self.frames)?;
+        Ok(self.common.get_or_init(|| made))
+    }
+
+    /// The block of a name; `None` where there is none.
+    ///
+    /// # Errors
+    /// A file is damaged.
+    pub fn block(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
+        let mut words = name.splitn(3, '/');
+        let (head, number, field) = (words.next().unwrap_or_default(), words.next(), words.next());
+        if head == "scene" && number.is_none() {
+            return self.scene().map(Some);
+        }
+        if head == "table" {
+            let known = tables::TABLES.into_iter().find(|t| Some(*t) == number);
+            let file = known.map(|t| self.dir.join(format!("{t}.csv"))).filter(|file| file.is_file());
+            return file.map(|file| tables::table(&file)).transpose();
+        }
+        let Some((part, _)) = PARTS.into_iter().find(|(_, word)| *word == head) else { return Ok(None) };
+        let common = self.common()?;
+        let Some(number) = number else { return Ok(self.whole(part, common)) };
+        let frame = number.parse::<usize>().ok().and_then(|k| self.frames.get(k));
+        let Some(file) = frame.and_then(|frame| frame.file(part)) else { return Ok(None) };
+        self.frame(file, part, field, common).map(Some)
+    }
+
+    /// What holds for all frames of a part.
+    fn whole(&self, part: Part, common: &Common) -> Option<Vec<u8>> {
+        match part {
+            Part::Grains => common.bodies.as_ref().map(|bodies| {
+                let mut chunk = Chunk::new(self.coding);
+                bodies.write(&mut chunk);
+                chunk.finish()
+            }),
+            Part::Solid => common.skin.as_ref().map(|skin| skin.chunk(common.origin, self.coding)),
+            _ => None,
+        }
+    }
+
+    fn frame(
+        &self,
+        file: &Path,
+        part: Part,
+        field: Option<&str>,
+        common: &Common,
+    ) -> Result<Vec<u8>, Failure> {
+        match (part, field) {
+            (Part::Grains, None) => {
+                Ok(self.grains(file)?.chunk(common.bodies.as_ref(), common.origin, self.coding))
+            }
+            (Part::Grains, Some(field)) => {
+                let mut chunk = Chunk::new(self.coding);
+                chunk.numbers("value", &self.grains(file)?.field(field)?, 1);
+                Ok(chunk.finish())
+            }
+            (Part::Solid, field) => {
+                let skin = common.skin.as_ref().ok_or_else(|| Failure::Other("no mesh".to_string()))?;
+                match field {
+                    None => skin.displacement(file, self.coding),
+                    Some(field) => skin.field(file, field, self.coding),
+                }
+            }
+            (Part::Chains, _) => lines::chains(file, common.origin, self.coding),
+            (Part::Walls, _) => lines::walls(file, common.origin, self.coding),
+        }
+    }
+
+    /// The grains of a file, read once for all of their fields.
+    fn grains(&self, file: &Path) -> Result<Arc<GrainFile>, Failure> {
+        let latest = || self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, grains)) = latest().as_ref().filter(|(of, _)| of == file) {
+            return Ok(grains.clone());
+        }
+        // The lock is free meanwhile: reading a million grains takes a second.
+        let grains = Arc::new(GrainFile::open(file)?);
+        *latest() = Some((file.to_path_buf(), grains.clone()));
+        Ok(grains)
+    }
+
+    /// What the page needs first.
+    fn scene(&self) -> Result<Vec<u8>, Failure> {
+        let common = self.common()?;
+        let summary: Value = std::fs::read(self.dir.join("summary.json"))
+            .ok()
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+            .unwrap_or_default();
+        let frames: Vec<Value> = self
+            .frames
+            .iter()
+            .map(|frame| {
+                let parts = PARTS.iter().filter(|(part, _)| frame.file(*part).is_some());
+                json!({ "time": frame.time, "parts": parts.map(|(_, word)| *word).collect::<Vec<_>>() })
+            })
+            .collect();
+        let tables = tables::TABLES.iter().filter(|t| self.dir.join(format!("{t}.csv")).is_file());
+        let folder = self.dir.canonicalize().unwrap_or_else(|_| self.dir.clone());
+        let folder = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let mut chunk = Chunk::new(self.coding);
+        chunk.meta("title", summary.get("title").cloned().unwrap_or_else(|| json!(folder)));
+        // Without a summary the run was interrupted, or goes on.
+        chunk.meta("status", summary.get("status").cloned().unwrap_or_else(|| json!("not finished")));
+        chunk.meta("folder", json!(folder));
+        chunk.meta("frames", json!(frames));
+        chunk.meta("origin", json!(common.origin));
+        chunk.meta("bounds", json!(common.bounds));
+        chunk.meta("grainFields", json!(common.grain_fields));
+        chunk.meta("solidFields", json!(common.solid_fields));
+        chunk.meta("tables", json!(tables.collect::<Vec<_>>()));
+        Ok(chunk.finish())
+    }
+
+    /// The names of all blocks that there are.
+    ///
+    /// # Errors
+    /// A file is damaged.
+    pub fn names(&self) -> Result<Vec<String>, Failure> {
+        let common = self.common()?;
+        let mut names: Vec<String> = ["scene", "grains", "solid"].map(String::from).into();
+        names.extend(tables::TABLES.iter().map(|t| format!("table/{t}")));
+        for (k, frame) in self.frames.iter().enumerate() {
+            for (part, word) in PARTS.iter().filter(|(part, _)| frame.file(*part).is_some()) {
+                names.push(format!("{word}/{k}"));
+                let fields = match part {
+                    Part::Grains => &common.grain_fields[..],
+                    Part::Solid => &common.solid_fields[..],
+                    _ => &[],
+                };
+                names.extend(fields.iter().map(|field| format!("{word}/{k}/{field}")));
+            }
+        }
+        Ok(names)
+    }
+}

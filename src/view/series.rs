@@ -1,0 +1,125 @@
+//! The frames of a folder of results, from its `results.pvd`.
+
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use crate::failure::Failure;
+use crate::read::xml::tags;
+
+/// The list of frames.
+pub const SERIES: &str = "results.pvd";
+
+/// Folders below the one that is shown which may hold results of their own.
+const DEEPEST: usize = 4;
+const MOST_FOLDERS: usize = 2000;
+
+/// Parts of a frame, in the numbers of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The solid (`.vtu`).
+    Solid = 0,
+    /// Grains, one point per sphere.
+    Grains = 1,
+    /// Lines of contacts.
+    Chains = 2,
+    /// Walls, sleepers, rails.
+    Walls = 3,
+}
+
+/// All parts with their names in addresses.
+pub const PARTS: [(Part, &str); 4] =
+    [(Part::Solid, "solid"), (Part::Grains, "grains"), (Part::Chains, "chains"), (Part::Walls, "walls")];
+
+/// The files of one moment.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    /// Simulated time [s].
+    pub time: f64,
+    files: [Option<PathBuf>; 4],
+}
+
+impl Frame {
+    /// The file of a part, where there is one.
+    pub fn file(&self, part: Part) -> Option<&Path> {
+        self.files[part as usize].as_deref()
+    }
+}
+
+/// Reads the list of a folder; what it names and is not there is left out.
+///
+/// # Errors
+/// There is no list, it names nothing that is there, or it names a file outside the folder.
+pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
+    let list = dir.join(SERIES);
+    let fault = |found: &str, expected: &str| {
+        Failure::Input(format!("{}: found {found}, expected {expected}", list.display()))
+    };
+    let bytes = fs::read(&list).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => fault("no such file", "the list of frames of a run"),
+        _ => fault(&format!("that it cannot be read ({error})"), "the list of frames of a run"),
+    })?;
+    let root = dir.canonicalize()?;
+    let mut frames: Vec<Frame> = Vec::new();
+    for tag in tags(&bytes).filter(|tag| tag.name == "DataSet") {
+        let time = tag.attribute("timestep").and_then(|t| t.trim().parse::<f64>().ok());
+        let time =
+            time.filter(|t| t.is_finite()).ok_or_else(|| fault("a frame without a time", "a number"))?;
+        let name = tag.attribute("file").unwrap_or_default();
+        let part = tag.attribute("part").and_then(|p| p.trim().parse::<usize>().ok()).unwrap_or(0);
+        let Some(file) = inside(&root, &name)? else { continue };
+        if part >= PARTS.len() {
+            continue;
+        }
+        let same = frames.last().is_some_and(|last| last.time == time && last.files[part].is_none());
+        if !same {
+            frames.push(Frame { time, ..Frame::default() });
+        }
+        if let Some(frame) = frames.last_mut() {
+            frame.files[part] = Some(file);
+        }
+    }
+    if frames.is_empty() {
+        return Err(fault("no frame whose files are there", "one or more"));
+    }
+    Ok(frames)
+}
+
+/// A file below `root`, which is canonical; `None` where there is none of that name.
+///
+/// # Errors
+/// A name that leads out of `root`, by itself or by a link.
+pub fn inside(root: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
+    let out =
+        || Failure::Input(format!("{}: found \"{name}\", expected a file in the folder", root.display()));
+    let relative = Path::new(name);
+    if name.contains('\\') || !relative.components().all(|c| matches!(c, Component::Normal(_))) {
+        return Err(out());
+    }
+    match root.join(relative).canonicalize() {
+        Ok(path) if path.starts_with(root) => Ok(Some(path)),
+        Ok(_) => Err(out()),
+        Err(_) => Ok(None),
+    }
+}
+
+/// Folders with results in `root` and below it, as names from there ("" is `root` itself), in order. Links are not followed.
+pub fn folders(root: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open = vec![(PathBuf::new(), 0)];
+    let mut looked = 0;
+    while let Some((folder, depth)) = open.pop() {
+        looked += 1;
+        if root.join(&folder).join(SERIES).is_file() {
+            found.push(folder.to_string_lossy().into_owned());
+        }
+        let Ok(entries) = fs::read_dir(root.join(&folder)) else { continue };
+        for entry in entries.flatten() {
+            let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+            if is_folder && depth < DEEPEST && looked + open.len() < MOST_FOLDERS {
+                open.push((folder.join(entry.file_name()), depth + 1));
+            }
+        }
+    }
+    found.sort();
+    found
+}

@@ -1,0 +1,202 @@
+//! The page and its data over HTTP, for this machine alone.
+//!
+//! A page of another site could make a browser send requests here under a name of its own that it lets point to this machine: only
+//! requests under the names of this machine are answered. Nothing is ever written.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde_json::json;
+use tiny_http::{Header, Method, Request, Response, Server};
+
+use super::chunk::Coding;
+use super::results::Results;
+use super::{page, series};
+use crate::failure::Failure;
+
+/// Requests handled at a time.
+const THREADS: usize = 4;
+/// Runs of a folder that are kept open.
+const OPEN: usize = 8;
+/// Longest address [bytes].
+const LONGEST: usize = 2000;
+
+/// What is served.
+struct Site {
+    /// The folder, without links.
+    root: PathBuf,
+    port: u16,
+    runs: Mutex<HashMap<String, Arc<Results>>>,
+}
+
+/// A refusal: status and one sentence.
+type Refusal = (u16, String);
+
+/// A page or a block with its type.
+struct Content(&'static str, Vec<u8>);
+
+/// Binds the address; port 0 is any that is free. Returns the server and its port.
+///
+/// # Errors
+/// The port is taken or not allowed.
+pub fn bind(port: u16) -> Result<(Server, u16), Failure> {
+    let refused = |error: String| {
+        Failure::Input(format!("--port: found {port}, which cannot be used ({error}), expected a free port"))
+    };
+    let server = Server::http(("127.0.0.1", port)).map_err(|e| refused(e.to_string()))?;
+    let bound = server.server_addr().to_ip().map(|address| address.port());
+    bound.ok_or_else(|| refused("no address".to_string())).map(|port| (server, port))
+}
+
+/// Serves a folder until the process ends.
+///
+/// # Errors
+/// The folder is gone.
+pub fn serve(server: &Server, port: u16, dir: &Path) -> Result<(), Failure> {
+    let site = Site { root: dir.canonicalize()?, port, runs: Mutex::default() };
+    std::thread::scope(|scope| {
+        for _ in 0..THREADS {
+            scope.spawn(|| {
+                while let Ok(request) = server.recv() {
+                    site.handle(request);
+                }
+            });
+        }
+    });
+    Ok(())
+}
+
+impl Site {
+    fn handle(&self, request: Request) {
+        let response = match self.checked(&request).and_then(|()| self.content(request.url())) {
+            Ok(Content(kind, bytes)) => Response::from_data(bytes).with_header(header("Content-Type", kind)),
+            Err((status, sentence)) => Response::from_data(sentence.into_bytes())
+                .with_status_code(status)
+                .with_header(header("Content-Type", "text/plain; charset=utf-8")),
+        };
+        let fixed = [
+            ("Content-Security-Policy", page::POLICY),
+            ("Cross-Origin-Resource-Policy", "same-origin"),
+            ("X-Content-Type-Options", "nosniff"),
+            ("Referrer-Policy", "no-referrer"),
+            ("Cache-Control", "no-store"),
+        ];
+        let response =
+            fixed.into_iter().fold(response, |r, (name, value)| r.with_header(header(name, value)));
+        // Who went away gets nothing.
+        let _ = request.respond(response);
+    }
+
+    /// Whether a request comes from this machine's own page.
+    fn checked(&self, request: &Request) -> Result<(), Refusal> {
+        let values = |name: &'static str| {
+            request.headers().iter().filter(move |h| h.field.equiv(name)).map(|h| h.value.as_str())
+        };
+        let own = [format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port)];
+        let is_own = |host: &str| own.iter().any(|o| host.eq_ignore_ascii_case(o));
+        let hosts: Vec<&str> = values("Host").collect();
+        if hosts.len() != 1 || !is_own(hosts[0]) {
+            return Err((403, format!("only requests to {} are answered", own[0])));
+        }
+        if values("Origin").any(|origin| !origin.strip_prefix("http://").is_some_and(is_own)) {
+            return Err((403, "requests of other pages are not answered".to_string()));
+        }
+        if *request.method() != Method::Get {
+            return Err((405, "only GET is answered".to_string()));
+        }
+        if request.url().len() > LONGEST {
+            return Err((414, format!("an address has at most {LONGEST} bytes")));
+        }
+        Ok(())
+    }
+
+    /// What an address stands for.
+    fn content(&self, url: &str) -> Result<Content, Refusal> {
+        let (path, query) = url.split_once('?').unwrap_or((url, ""));
+        let bad = || (400, "the address is damaged".to_string());
+        let path = decoded(path).ok_or_else(bad)?;
+        let run = query.split('&').find_map(|pair| pair.strip_prefix("run="));
+        let run = run.map(decoded).unwrap_or(Some(String::new())).ok_or_else(bad)?;
+        match path.as_str() {
+            "/" => {
+                let title = self.root.file_name().map(|n| n.to_string_lossy().into_owned());
+                let (head, tail) = page::pieces(&title.unwrap_or_default(), &json!({ "served": true }));
+                Ok(Content("text/html; charset=utf-8", (head + &tail).into_bytes()))
+            }
+            "/folders" => {
+                let folders = json!(series::folders(&self.root)).to_string();
+                Ok(Content("application/json", folders.into_bytes()))
+            }
+            _ => match path.strip_prefix("/data/") {
+                Some(name) => self.block(name, &run),
+                None => Err((404, "there is no such page".to_string())),
+            },
+        }
+    }
+
+    fn block(&self, name: &str, run: &str) -> Result<Content, Refusal> {
+        let results = self.results(run, name == "scene")?;
+        match results.block(name) {
+            Ok(Some(bytes)) => Ok(Content("application/octet-stream", bytes)),
+            Ok(None) => Err((404, "the run has no such data".to_string())),
+            Err(failure) => Err((422, failure.to_string())),
+        }
+    }
+
+    /// The run of a folder below the root, read again where `fresh`: it may have gone on.
+    fn results(&self, run: &str, fresh: bool) -> Result<Arc<Results>, Refusal> {
+        let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(results) = runs.get(run).filter(|_| !fresh) {
+            return Ok(results.clone());
+        }
+        let dir = match run {
+            "" => Some(self.root.clone()),
+            _ => series::inside(&self.root, run).map_err(|failure| (403, failure.to_string()))?,
+        };
+        let dir = dir.ok_or_else(|| (404, "there is no such folder".to_string()))?;
+        let results = Results::open(&dir, Coding::Exact).map_err(|failure| (422, failure.to_string()))?;
+        if runs.len() >= OPEN {
+            runs.clear();
+        }
+        let results = Arc::new(results);
+        runs.insert(run.to_string(), results.clone());
+        Ok(results)
+    }
+}
+
+/// A header of fixed letters.
+fn header(name: &str, value: &str) -> Header {
+    Header::from_bytes(name, value).expect("headers are ASCII")
+}
+
+/// A text with its `%41` as letters; `None` where that is no UTF-8 or has control characters.
+fn decoded(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((first, tail)) = rest.split_first() {
+        rest = tail;
+        if *first != b'%' {
+            bytes.push(*first);
+            continue;
+        }
+        let digits = std::str::from_utf8(tail.get(..2)?).ok()?;
+        bytes.push(u8::from_str_radix(digits, 16).ok()?);
+        rest = &tail[2..];
+    }
+    String::from_utf8(bytes).ok().filter(|text| !text.contains(char::is_control))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decoded;
+
+    #[test]
+    fn addresses_are_decoded_once() {
+        assert_eq!(decoded("/a%20b%2Fc").unwrap(), "/a b/c");
+        assert_eq!(decoded("%252e").unwrap(), "%2e");
+        for damaged in ["%", "%2", "%zz", "%ff", "%00", "%0a"] {
+            assert_eq!(decoded(damaged), None, "{damaged}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+// Start of the page.
+import { App } from 'app';
+import { dialogs } from 'dialogs';
+import { Histories } from 'history';
+import { Panel } from 'panel';
+import { Player } from 'player';
+import { Avi, download, picture, print } from 'save';
+import { EmbeddedSource, embeddedTexts } from 'source';
+
+const $ = (id) => document.getElementById(id);
+const { served } = JSON.parse($('settings').textContent);
+if (!document.createElement('canvas').getContext('webgl2')) {
+  $('message').textContent = 'This browser draws no WebGL 2: found none, expected a browser of 2021 or later with graphics switched on';
+  $('message').className = 'shown error';
+  throw new Error('no WebGL 2');
+}
+const app = new App(served);
+const panel = new Panel($('panel'), app);
+const player = new Player(app);
+const histories = new Histories(app);
+dialogs(app);
+
+app.listeners.push((state) => {
+  panel.update(state);
+  $('title').textContent = state.title;
+  const unfinished = state.status && state.status !== 'done' && state.status !== 'opened from disk';
+  $('subtitle').textContent = `t = ${state.time?.toPrecision(4) ?? '–'} s${unfinished ? ` · run: ${state.status}` : ''}`;
+  const mark = state.picked?.kind === 'grain' ? app.grains.bodies.id.indexOf(state.picked.id) : -1;
+  const { start } = app.grains.bodies ?? {};
+  app.grains.spheres.mark(...(mark >= 0 ? [start[mark], start[mark + 1]] : [-1, -1]));
+  $('preset-peak').hidden = !state.parts.chains;
+});
+
+// Tables belong to a run: read with it.
+const open = app.open.bind(app);
+app.open = async (source, run) => {
+  await open(source, run);
+  await histories.load();
+  await app.changed();
+};
+
+/** The picture with legends, title and time as one canvas. */
+async function composed() {
+  await app.idle();
+  const canvas = document.createElement('canvas');
+  const from = app.stage.canvas;
+  [canvas.width, canvas.height] = [from.width, from.height];
+  const g = canvas.getContext('2d');
+  g.drawImage(from, 0, 0);
+  g.drawImage($('legend'), 0, 0);
+  const ratio = app.stage.renderer.getPixelRatio();
+  g.scale(ratio, ratio);
+  g.font = '600 13px system-ui, sans-serif';
+  g.fillStyle = app.dark() ? '#f2f4f7' : '#1c2733';
+  g.fillText(`${app.state.title}   t = ${app.state.time.toPrecision(4)} s`, 12, 22);
+  return canvas;
+}
+
+/** Saves a picture: of the frame nearest the time that was typed, else of this one. */
+async function savePicture(format) {
+  const typed = $('save-time').value;
+  if (typed !== '') {
+    const { times } = app.state;
+    const nearest = times.reduce((best, t, k) => (Math.abs(t - typed) < Math.abs(times[best] - typed) ? k : best), 0);
+    await app.set('frame', nearest);
+  }
+  const canvas = await composed();
+  const name = `trackbed_${String(app.state.frame).padStart(5, '0')}.${format}`;
+  app.state.saved = download(name, await picture(canvas, format));
+}
+
+async function saveVideo() {
+  player.play(0);
+  const was = app.state.frame;
+  let avi = null;
+  for (let k = 0; k < app.state.frames; k++) {
+    await app.set('frame', k);
+    const canvas = await composed();
+    avi ??= new Avi(canvas.width, canvas.height, app.state.speed);
+    await avi.add(canvas);
+    app.say(`Video: frame ${k + 1} of ${app.state.frames}`);
+  }
+  await app.set('frame', was);
+  app.state.saved = download('trackbed.avi', avi.blob());
+}
+
+for (const format of ['png', 'jpg', 'bmp']) $(`save-${format}`).onclick = () => savePicture(format);
+$('save-avi').onclick = saveVideo;
+$('button-print').onclick = async () => print(await composed(), `${app.state.title}, t = ${app.state.time.toPrecision(4)} s`);
+
+/** The whole track where the load is largest: forces in the ballast, stress in the solid below. */
+async function peak() {
+  player.play(0);
+  const field = app.meta.solidFields.includes('stress_zz') ? 'stress_zz' : app.state.solid.field;
+  await app.set({
+    frame: histories.peakFrame(), 'grains.show': false, 'chains.show': true, 'chains.colour': 'force', 'chains.map': 'blue-red',
+    'solid.show': true, 'solid.field': field, 'solid.auto': true, 'solid.map': 'viridis', 'solid.opacity': 1,
+    'walls.boundary.show': false, 'walls.track.show': true, 'walls.track.opacity': 0.35, 'view.side': 'oblique',
+    'view.focus': app.state.parts.grains ? 'grains' : 'all',
+  });
+  // Below single stones the stress has peaks that would take all colours: limits without the outermost hundredths.
+  const sorted = Float32Array.from(app.solid.values ?? []).sort();
+  if (sorted.length > 100) {
+    const [min, max] = [0.01, 0.99].map((share) => sorted[Math.round(share * (sorted.length - 1))]);
+    await app.set({ 'solid.auto': false, 'solid.min': min, 'solid.max': max });
+  }
+}
+$('preset-peak').onclick = peak;
+
+window.trackbed = { app, state: app.state, player, histories, panel, composed, peak, idle: () => app.idle() };
+window.trackbed.ready = (async () => {
+  try {
+    if (!served) {
+      await app.open(new EmbeddedSource(embeddedTexts(document)), '');
+    } else {
+      const folders = await (await fetch('/folders')).json();
+      await app.openRun(folders.includes('') || !folders.length ? '' : folders[0]);
+    }
+  } catch (error) {
+    app.state.error = error.message;
+    app.say('');
+  }
+})();

@@ -1,0 +1,82 @@
+// Checks the viewer in a browser by acting and looking: node tests/view/check.mjs PROGRAM TRACK STONE [PICTURE.png]
+//
+// TRACK: results of a short run of inputs/track/cyclic, STONE: of inputs/grains/bonded_stone. The browser is Chromium
+// (variable CHROMIUM, default /usr/bin/chromium), driven by playwright-core, found from the folder in which this is run.
+import { execFileSync } from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { View, launch, open, serve } from './browser.mjs';
+import { check, expect, sum } from './expect.mjs';
+import { onPlayer } from './player.mjs';
+import { onStone } from './stone.mjs';
+import { onTables } from './tables.mjs';
+import { onTrack } from './track.mjs';
+
+const [program, track, stone, picture] = process.argv.slice(2);
+const dir = fs.mkdtempSync(path.join(os.tmpdir(), 'trackbed_view_'));
+const faults = [];
+const browser = await launch();
+try {
+  const page = path.join(dir, 'track.html');
+  console.log(execFileSync(program, ['view', track, '--export', page], { encoding: 'utf8' }).trim());
+
+  await check('S0-72', 'no installation: one file from disk, without network', async () => {
+    const view = new View(await open(browser, pathToFileURL(page).href, faults));
+    await view.page.context().setOffline(true);
+    const state = await view.state();
+    expect(state.frames > 5 && state.parts.grains && state.parts.solid && !state.error, JSON.stringify(state));
+    const seen = (await view.run(() => trackbed.app.stage.width * trackbed.app.stage.height)) - await view.count('white');
+    expect(seen > 12000, `${seen} pixels are drawn`);
+    if (picture) await shoot(view, picture);
+    await onPlayer(view, process.env.KEEP);
+    await onTrack(view);
+    await view.page.context().close();
+    return `first picture after ${view.page.firstPicture.toFixed(1)} s, ${seen} pixels drawn`;
+  });
+
+  const server = await serve(program, track);
+  await check('served', 'the same from the program', async () => {
+    const view = new View(await open(browser, server.address, faults));
+    expect(/only requests|127\.0\.0\.1/.test(server.line), server.line);
+    await onTrack(view, ['S0-69', 'S0-64', 'S2-26']);
+    await onTables(view, dir, path.join(stone, 'frames'));
+    await view.page.context().close();
+    return `first picture after ${view.page.firstPicture.toFixed(1)} s`;
+  });
+  await check('Ctrl-C', 'ends the server', async () => {
+    const code = await server.stop();
+    expect(code === 'SIGINT' || code === 130 || code === 0, `ended with ${code}`);
+    return `${code}`;
+  });
+
+  const other = await serve(program, stone);
+  await check('stone', 'a stone that breaks', async () => {
+    const view = new View(await open(browser, other.address, faults));
+    await onStone(view);
+    await view.page.context().close();
+  });
+  await other.stop();
+  await check('faults', 'no errors of scripts, no requests to elsewhere', () => {
+    expect(faults.length === 0, faults.join('; '));
+  });
+} finally {
+  await browser.close();
+  fs.rmSync(dir, { recursive: true });
+}
+process.exitCode = sum() ? 0 : 1;
+
+/** The picture of the guide. */
+async function shoot(view, file) {
+  const size = view.page.viewportSize();
+  await view.page.setViewportSize({ width: 1000, height: 640 });
+  await view.run(() => trackbed.peak());
+  await view.set({ 'grains.show': true, 'grains.opacity': 0.3, 'solid.bands': true });
+  await view.page.screenshot({ path: file });
+  expect(fs.statSync(file).size < 200e3, `${file} has ${fs.statSync(file).size} bytes`);
+  await view.page.setViewportSize(size);
+  await view.page.reload();
+  await view.page.waitForFunction('window.trackbed');
+  await view.run(() => trackbed.ready.then(() => trackbed.idle()));
+}
