@@ -5,6 +5,7 @@ mod explain;
 mod mesh;
 mod modal;
 mod output;
+mod report;
 mod stone;
 mod study;
 
@@ -28,6 +29,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
         }
         Command::Study(args) => study::study(args),
+        Command::Report(args) => report::report(args),
         Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),

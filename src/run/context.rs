@@ -2,6 +2,7 @@
 
 use super::checkpoint_store::CheckpointStore;
 use super::folder;
+use super::run_file::{self, RunFile};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::scene::Document;
@@ -42,6 +43,9 @@ impl Run<'_> {
         } else {
             self.checkpoints.clear_others()?;
             folder::prepare(self.dir, &self.job.output)?;
+        }
+        if !self.continued || !self.dir.join(run_file::FILE).exists() {
+            RunFile::of(self.document).write(self.dir)?;
         }
         self.prepared.set(true);
         Ok(())

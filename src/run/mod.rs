@@ -19,6 +19,7 @@ mod packing;
 mod plastic;
 mod record;
 mod recorder;
+mod run_file;
 mod sources;
 pub(crate) mod stages;
 mod summary;
@@ -31,6 +32,7 @@ pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, parse_size, size};
 pub(crate) use origin::{default_folder, quoted, scene_hash};
+pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
