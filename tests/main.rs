@@ -24,6 +24,7 @@ mod suite {
     mod meshed_sleeper;
     mod packings;
     mod rail;
+    mod report;
     mod scenes;
     mod solid_edges;
     mod solid_keys;

@@ -40,7 +40,8 @@ thead th { border-bottom: 1.5px solid #555; overflow-wrap: normal; }
 tbody th { font-weight: normal; color: #333; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 thead th.n { text-align: right; }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(420px, 1fr)); gap: 18px 26px; align-items: start; }
+.facts td.n, .facts th.n { text-align: left; }
+.plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(420px, 100%), 1fr)); gap: 18px 26px; align-items: start; }
 figure { margin: 6px 0; max-width: 620px; break-inside: avoid; }
 figure > svg { width: 100%; height: auto; display: block; }
 figcaption { font-weight: bold; font-size: 14px; margin: 0 0 4px 40px; }
@@ -147,6 +148,11 @@ impl Cell {
     fn is_number(&self) -> bool {
         matches!(self, Cell::Value(..) | Cell::Scaled(..))
     }
+}
+
+/// A table whose values stand under each other at their left, for rows of different kinds.
+pub fn facts_table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> String {
+    table(heads, rows).replacen("<table>", "<table class=\"facts\">", 1)
 }
 
 /// A table: heads, and rows whose first cell names them. Nothing without rows.

@@ -11,8 +11,6 @@ const HEIGHT: f64 = 340.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 50.0;
 const FONT: f64 = 13.0;
-/// Most markers on a curve: more would hide the line.
-const MARKERS: usize = 25;
 
 /// The rectangle that curves are drawn in, with its sides.
 struct Area<'a> {
@@ -93,8 +91,7 @@ fn curve(svg: &mut String, curve: &Curve, area: &Area<'_>) {
         add(svg, format_args!("<polyline points=\"{}\" {}/>", list.join(" "), stroke(curve.look)));
     }
     if curve.look.marks || pixels.len() == 1 {
-        let every = if curve.look.line { pixels.len().div_ceil(MARKERS) } else { 1 };
-        for [x, y] in pixels.iter().step_by(every) {
+        for [x, y] in &pixels {
             add(svg, format_args!("{}", mark(curve.look.dash, colour, *x, *y)));
         }
     }

@@ -55,10 +55,10 @@ impl Side {
         }
     }
 
-    fn ruler(&self, values: impl Iterator<Item = f64>, most: usize) -> Ruler {
+    fn ruler(&self, values: impl Iterator<Item = f64>, most: usize, tight: bool) -> Ruler {
         match self.logarithmic {
             true => Ruler::logarithmic(values),
-            false => Ruler::linear(values.chain(self.from_zero.then_some(0.0)), most),
+            false => Ruler::linear(values.chain(self.from_zero.then_some(0.0)), most, tight),
         }
     }
 }
@@ -106,14 +106,14 @@ impl Plot {
         Plot { title: title.into(), x, y, curves }
     }
 
-    /// The plot as a figure of a page; nothing where no curve has a point that can be shown.
+    /// The plot as a figure of a page; nothing where no curve has two points that can be shown.
     pub fn figure(&self) -> String {
         let values = |d: usize| self.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[d]));
         let largest = |d: usize| values(d).filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
         let scales = [scale(&self.x.unit, largest(0)), scale(&self.y.unit, largest(1))];
         let [fx, fy] = [scales[0].factor, scales[1].factor];
-        let x = self.x.ruler(values(0).map(|v| v * fx), 7);
-        let y = self.y.ruler(values(1).map(|v| v * fy), 6);
+        let x = self.x.ruler(values(0).map(|v| v * fx), 7, true);
+        let y = self.y.ruler(values(1).map(|v| v * fy), 6, false);
         let shown = |p: &[f64; 2]| {
             let p = [p[0] * fx, p[1] * fy];
             (x.holds(p[0]) && y.holds(p[1])).then_some(p)
@@ -124,7 +124,7 @@ impl Plot {
             .map(|c| Curve { points: c.points.iter().filter_map(shown).collect(), ..c.clone() })
             .filter(|c| !c.points.is_empty())
             .collect();
-        if curves.is_empty() {
+        if curves.iter().all(|c| c.points.len() < 2) {
             return String::new();
         }
         let labels = [self.x.label(&scales[0]), self.y.label(&scales[1])];
@@ -134,10 +134,10 @@ impl Plot {
     }
 }
 
-/// The list of the curves; a single one needs none.
+/// The list of the curves that have names.
 fn legend(curves: &[Curve]) -> String {
     let named: Vec<&Curve> = curves.iter().filter(|c| !c.name.is_empty()).collect();
-    if named.len() < 2 {
+    if named.is_empty() {
         return String::new();
     }
     let mut out = String::from("<ul class=\"legend\">\n");

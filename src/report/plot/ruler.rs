@@ -22,8 +22,9 @@ pub struct Ruler {
 }
 
 impl Ruler {
-    /// A linear side over the values, with up to `most` steps of 1, 2 or 5 times a power of ten.
-    pub fn linear(values: impl Iterator<Item = f64>, most: usize) -> Ruler {
+    /// A linear side over the values, with up to `most` steps of 1, 2 or 5 times a power of ten: from tick to tick, or
+    /// `tight`, from the least value to the largest.
+    pub fn linear(values: impl Iterator<Item = f64>, most: usize, tight: bool) -> Ruler {
         let (low, high) = widened(range(values).unwrap_or([0.0, 1.0]));
         let least = (high - low) / most as f64;
         let power = libm::pow(10.0, libm::log10(least).floor());
@@ -35,7 +36,11 @@ impl Ruler {
         let largest = step * first.abs().max(last.abs());
         let label = |value: f64| label(value, step, largest);
         let ticks = (0..=(last - first) as usize).map(|k| (first + k as f64) * step);
-        let ticks = ticks.map(|value| Tick { value, label: Some(label(value)) }).collect();
+        let mut ticks: Vec<Tick> = ticks.map(|value| Tick { value, label: Some(label(value)) }).collect();
+        if tight {
+            ticks.retain(|t| t.value >= low - 1e-6 * step && t.value <= high + 1e-6 * step);
+            return Ruler { low, high, logarithmic: false, ticks };
+        }
         Ruler { low: first * step, high: last * step, logarithmic: false, ticks }
     }
 
@@ -140,21 +145,24 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_enclose_the_values() {
-        assert_eq!(labels(&Ruler::linear([0.0, 30.24].into_iter(), 6)), ["0", "10", "20", "30", "40"]);
+        assert_eq!(labels(&Ruler::linear([0.0, 30.24].into_iter(), 6, false)), ["0", "10", "20", "30", "40"]);
         assert_eq!(
-            labels(&Ruler::linear([-0.31, 0.52].into_iter(), 5)),
+            labels(&Ruler::linear([-0.31, 0.52].into_iter(), 5, false)),
             ["\u{2212}0.4", "\u{2212}0.2", "0", "0.2", "0.4", "0.6"]
         );
-        assert_eq!(labels(&Ruler::linear([5.0, 5.0].into_iter(), 5)), ["0", "2", "4", "6", "8", "10"]);
-        assert_eq!(labels(&Ruler::linear([].into_iter(), 4)), ["0", "0.5", "1"]);
+        assert_eq!(labels(&Ruler::linear([5.0, 5.0].into_iter(), 5, false)), ["0", "2", "4", "6", "8", "10"]);
+        assert_eq!(labels(&Ruler::linear([].into_iter(), 4, false)), ["0", "0.5", "1.0"]);
+        let tight = Ruler::linear([0.0, 0.41].into_iter(), 5, true);
+        assert_eq!((labels(&tight).last().unwrap().as_str(), tight.fraction(0.41)), ("0.4", 1.0));
         assert_eq!(labels(&Ruler::logarithmic([1.0, 10.0].into_iter())), ["1", "2", "5", "10"]);
         assert_eq!(labels(&Ruler::logarithmic([1.0, 1000.0].into_iter())), ["1", "10", "100", "1000"]);
         assert_eq!(labels(&Ruler::logarithmic([1.0].into_iter())), ["1", "2"]);
         assert_eq!(labels(&Ruler::logarithmic([0.0, -1.0, 30.0, 63.0].into_iter())), ["20", "50", "100"]);
         for (low, high) in [(1e-12, 1e9), (3.0, 3.1), (1e-30, 1e30), (99.0, 101.0), (1.0, 1e5)] {
-            for ruler in
-                [Ruler::linear([low, high].into_iter(), 6), Ruler::logarithmic([low, high].into_iter())]
-            {
+            for ruler in [
+                Ruler::linear([low, high].into_iter(), 6, false),
+                Ruler::logarithmic([low, high].into_iter()),
+            ] {
                 let (first, last) = (ruler.fraction(low), ruler.fraction(high));
                 assert!(
                     (-1e-6..=last).contains(&first) && last <= 1.0 + 1e-6,

@@ -3,7 +3,6 @@
 use super::overlay::facts;
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, table};
-use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Most keys that are listed.
@@ -108,12 +107,6 @@ fn results(runs: &[RunData]) -> String {
             ("largest energy error over energy turned over", &path("energy.largest_relative_error", "")),
             ("time by the clock", &wall),
             ("processor time", &path("cpu_seconds", "s")),
-            ("same bits as the first run", &|r| match (r.value("scene_hash"), runs[0].value("scene_hash")) {
-                (Value::String(a), Value::String(b)) => {
-                    Cell::text(if a == b { "yes: the same scene" } else { "no" })
-                }
-                _ => Cell::Nothing,
-            }),
         ],
     )
 }

@@ -73,9 +73,9 @@ fn single_loops(runs: &[RunData]) -> (String, String) {
         let fine: Vec<&Loop> = all.iter().filter(|l| l.points.len() >= ROWS).collect();
         coarse |= fine.len() < all.len();
         // The count of the loops is that of the cycles only where each was seen.
-        let jumps = run.value("settlement.jump").is_object();
+        let counted = run.table("cycles").is_some_and(|t| t.rows() == all.len());
         for (k, one) in selected(&fine, if runs.len() > 1 { 2 } else { 6 }).into_iter().enumerate() {
-            let kind = if jumps { "loop" } else { "cycle" };
+            let kind = if counted { "cycle" } else { "loop" };
             let name = format!("{kind} {}", one.number);
             let (name, colour) =
                 if runs.len() > 1 { (format!("{}: {name}", run.label), r) } else { (name, k) };

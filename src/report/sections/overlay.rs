@@ -1,7 +1,7 @@
 //! What sections share: curves and tables of one or several runs.
 
 use crate::report::data::RunData;
-use crate::report::page::{Cell, table};
+use crate::report::page::{Cell, facts_table};
 use crate::report::plot::{Curve, Look};
 
 /// More points than these have no markers: the line is dense.
@@ -47,7 +47,7 @@ pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> String {
         .collect();
     let labels = runs.iter().map(|r| if runs.len() > 1 { r.label.as_str() } else { "value" });
     let heads: Vec<&str> = std::iter::once("").chain(labels).collect();
-    table(&heads, &rows)
+    facts_table(&heads, &rows)
 }
 
 /// The columns of a vector of a history among `_x`, `_y`, `_z` that vary most, as (axis, values).

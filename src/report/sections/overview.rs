@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 
 /// Keys that have sections of their own, or are long.
 const ELSEWHERE: [&str; 3] = ["material", "title", "probe"];
-/// Most options that are listed before the text of the scene, which has all.
-const OPTIONS: usize = 80;
+/// Most tables that are listed before the text of the scene, which has all.
+const OPTIONS: usize = 60;
 
 /// What was run.
 pub fn overview(runs: &[RunData]) -> Option<Section> {
@@ -100,28 +100,31 @@ fn materials(run: &RunData, kind: &str) -> String {
     table(&heads, &rows)
 }
 
-/// The other keys of the scene, as they were written.
+/// The other keys of the scene, as they were written: a row for each table.
 fn options(run: &RunData, whose: &str) -> String {
     let elsewhere = |key: &str| {
         let first = key.split('.').next().unwrap_or(key);
         ELSEWHERE.contains(&first) || key.starts_with("solid.material.")
     };
-    let all: Vec<(&String, &String)> = run.keys.iter().filter(|(key, _)| !elsewhere(key)).collect();
-    let cell = |v: &str| vec![Cell::Text(shown(v))];
+    let mut tables: Vec<(&str, Vec<String>)> = Vec::new();
+    for (key, value) in run.keys.iter().filter(|(key, _)| !elsewhere(key)) {
+        let (name, key) = key.rsplit_once('.').unwrap_or(("scene", key));
+        let text = format!("{key} = {}", shown(value));
+        match tables.iter_mut().find(|t| t.0 == name) {
+            Some((_, keys)) => keys.push(text),
+            None => tables.push((name, vec![text])),
+        }
+    }
+    let shown = tables.iter().take(OPTIONS);
     let rows: Vec<(String, Vec<Cell>)> =
-        all.iter().take(OPTIONS).map(|(key, value)| (key.to_string(), cell(value))).collect();
+        shown.map(|(name, keys)| (name.to_string(), vec![Cell::Text(keys.join(", "))])).collect();
     if rows.is_empty() {
         return String::new();
     }
-    let rest = all.len().saturating_sub(OPTIONS);
-    let rest = if rest > 0 {
-        paragraph(&format!("{rest} further keys stand in the scene below."))
-    } else {
-        String::new()
+    let rest = match tables.len().saturating_sub(OPTIONS) {
+        0 => String::new(),
+        rest => paragraph(&format!("{rest} further tables stand in the scene below.")),
     };
-    format!(
-        "<details open=\"open\">\n<summary>Options of the scene{}, as written there</summary>\n{}{rest}</details>\n",
-        escaped(whose),
-        table(&["key", "value"], &rows)
-    )
+    let head = format!("<h3>Options of the scene{}, as written there</h3>\n", escaped(whose));
+    head + &table(&["table", "keys"], &rows) + &rest
 }

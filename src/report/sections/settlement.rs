@@ -27,7 +27,8 @@ pub fn settlement(runs: &[RunData]) -> Option<Section> {
         curves[0].name = "simulated".into();
         curves[0].look.marks = true;
         curves[0].look.line = run.table("cycles").is_some_and(|t| t.rows() > 200);
-        curves.extend(laws[0].iter().enumerate().map(|(k, law)| fitted(law, law.name.clone(), 1 + k)));
+        let drawn = laws[0].iter().filter(|law| !law.curve().is_empty());
+        curves.extend(drawn.enumerate().map(|(k, law)| fitted(law, law.name.clone(), 1 + k)));
     } else {
         for (r, laws) in laws.iter().enumerate() {
             let best = laws.iter().filter(|l| !l.curve().is_empty()).max_by(|a, b| a.r2.total_cmp(&b.r2));
@@ -159,15 +160,19 @@ fn by_cycle(runs: &[RunData]) -> String {
             let column = table.column(name);
             rows.iter().map(|&k| column.map(|c| c[k])).collect()
         };
+        // Zero: the cycle does not tell it.
+        let known = |name: &str| -> Vec<Option<f64>> {
+            of(name).into_iter().map(|v| v.filter(|v| *v != 0.0)).collect()
+        };
         let all = [
             ("settlement", "m", of("settlement")),
             ("rate per cycle", "m", of("rate")),
             ("resilient deflection", "m", of("resilient_deflection")),
-            ("secant stiffness", "N/m", of("secant_stiffness")),
-            ("bed stiffness", "N/m", of("bed_stiffness")),
-            ("resilient modulus", "Pa", of("resilient_modulus")),
+            ("secant stiffness", "N/m", known("secant_stiffness")),
+            ("bed stiffness", "N/m", known("bed_stiffness")),
+            ("resilient modulus", "Pa", known("resilient_modulus")),
             ("dissipated", "J", of("dissipated_energy")),
-            ("peak formation pressure", "Pa", of("peak_formation_pressure")),
+            ("peak formation pressure", "Pa", known("peak_formation_pressure")),
         ];
         let some: Vec<_> = all.into_iter().filter(|c| c.2.iter().flatten().any(|v| *v != 0.0)).collect();
         let whose = if runs.len() > 1 {

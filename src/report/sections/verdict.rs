@@ -14,7 +14,9 @@ pub fn verdict(runs: &[RunData]) -> Option<Section> {
 
 /// A run with its state and remarks.
 fn card(run: &RunData) -> String {
+    let remarks = remarks(run);
     let class = match run.state() {
+        State::Passed if !remarks.is_empty() => "warned",
         State::Passed | State::Modes => "passed",
         State::Warned => "warned",
         State::Failed | State::Stopped => "failed",
@@ -24,7 +26,6 @@ fn card(run: &RunData) -> String {
     let mut add =
         |text: std::fmt::Arguments<'_>| out.write_fmt(text).expect("writing to a string does not fail");
     add(format_args!("<p><strong>{}</strong> {}</p>\n", word(run), escaped(&sentence(run))));
-    let remarks = remarks(run);
     if !remarks.is_empty() {
         add(format_args!("<ul>\n"));
         remarks.iter().for_each(|r| add(format_args!("<li>{}</li>\n", escaped(r))));
@@ -57,13 +58,15 @@ fn sentence(run: &RunData) -> String {
     let checkpoint = run.dir.join("checkpoint").is_dir();
     let on = if checkpoint { " A checkpoint is there: --resume goes on from it." } else { "" };
     match run.state() {
-        State::Passed => format!("The run is done; {judged} accounts were judged, with nothing to remark."),
-        State::Warned => format!(
-            "The run is done; {judged} accounts were judged, with remarks: look at the results with care."
-        ),
+        State::Passed if judged == 0 => "The run is done; it has no account to judge.".into(),
+        State::Passed => format!("The run is done, and its accounts close: {judged} judged, none remarked."),
+        State::Warned => {
+            format!("The run is done; of {judged} accounts some are remarked: look at the results with care.")
+        }
         State::Failed => {
             let status = run.text("status").unwrap_or_default();
             let status = if status == "done" { "an account says that there is no result" } else { status };
+            let status = status.strip_prefix("failed: ").unwrap_or(status);
             format!("{status}. What is below is what was written until then.{reached}{on}")
         }
         State::Interrupted => format!("What is below is what was written until then.{reached}{on}"),

@@ -7,6 +7,9 @@ use crate::report::plot::{Plot, Side};
 use crate::report::table::NumberTable;
 use crate::scene::walls::{Wall, WallKind};
 
+/// Share of the largest force above which a wall touches.
+const TOUCH: f64 = 0.01;
+
 /// Forces on walls.
 pub fn walls(runs: &[RunData]) -> Option<Section> {
     let forces = overlay(runs, |run| {
@@ -48,7 +51,7 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
     let note = match strained {
         true => paragraph(
             "Of each wall the component that varies most. Stress of a servo wall: force of the grains along its normal over its \
-             area; strain: its way towards the plane that faces it, over their distance in the first row.",
+             area; strain: its way towards the plane that faces it since the stress first passed 1 % of its largest, over their distance then.",
         ),
         false => paragraph("Of each wall the component that varies most."),
     };
@@ -82,12 +85,15 @@ fn servo(wall: &Wall, all: &[Wall], table: &NumberTable) -> Option<Servo> {
         Some((0..x.len()).map(|k| dot([x[k], y[k], z[k]], normal)).collect())
     };
     let (force, way) = (along("force")?, along("displacement")?);
-    let first = *way.first()?;
+    // A plate may come a long way before it touches.
+    let most = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    let start = force.iter().position(|f| f.abs() > TOUCH * most)?;
+    let first = way[start];
     // The nearest plane on the side that the wall looks to, and that looks back.
     let faces = all.iter().filter_map(plane).filter(|(_, n)| dot(*n, normal) < -0.999);
     let gaps = faces.map(|(p, _)| dot([0, 1, 2].map(|d| p[d] - point[d]), normal) - first);
     let gap = gaps.filter(|g| *g > 0.0).min_by(f64::total_cmp)?;
-    let points = way.iter().zip(&force).map(|(u, f)| [(u - first) / gap, -f / area]).collect();
+    let points = way.iter().zip(&force).skip(start).map(|(u, f)| [(u - first) / gap, -f / area]).collect();
     Some(Servo { name: name.clone(), points })
 }
 
