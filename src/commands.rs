@@ -49,14 +49,15 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         memory,
         resume: args.resume,
         force: args.force,
-        interrupt: run::Interrupt::on_signals()?,
+        interrupt: run::Interrupt::on_signals("the present step")?,
         quiet: args.quiet,
     };
     match run::run(&args.scene, &options)? {
         run::Outcome::Done(_) if args.quiet => Ok(()),
         run::Outcome::Done(summary) => {
             // The results are in their folder, and the same text in its log: nobody need listen.
-            if let Err(failure) = print(&summary.report()) {
+            let text = format!("{}results are in {}\n", summary.report(), summary.dir.display());
+            if let Err(failure) = print(&text) {
                 message::note(&format!("standard output: {failure}"));
             }
             Ok(())

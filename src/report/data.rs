@@ -178,7 +178,7 @@ fn summary(file: &Path) -> Result<Value, Failure> {
 /// run that begins at this moment must find it free.
 fn lock(dir: &Path) -> Option<(u32, bool)> {
     let text = std::fs::read_to_string(dir.join("run.lock")).ok()?;
-    let process: u32 = text.trim().parse().ok()?;
+    let process: u32 = text.lines().next()?.trim().parse().ok()?;
     Some((process, Path::new("/proc").join(process.to_string()).exists()))
 }
 

@@ -129,7 +129,7 @@ impl Cell {
 
     fn html(&self) -> String {
         match self {
-            Cell::Nothing => "<td>\u{2013}</td>".into(),
+            Cell::Nothing => "<td class=\"n\">\u{2013}</td>".into(),
             Cell::Text(text) => format!("<td>{}</td>", escaped(text)),
             Cell::Html(html) => format!("<td>{html}</td>"),
             Cell::Value(v, unit) => {

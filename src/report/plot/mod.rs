@@ -24,12 +24,19 @@ pub struct Side {
     pub downwards: bool,
     /// Whether it begins at zero, whatever the values are.
     pub from_zero: bool,
+    /// Whether its values are counts, which have no ticks between whole numbers.
+    pub whole: bool,
 }
 
 impl Side {
     /// A linear side.
     pub fn new(name: &str, unit: &str) -> Side {
         Side { name: name.into(), unit: unit.into(), ..Side::default() }
+    }
+
+    /// A linear side of counts.
+    pub fn count(name: &str) -> Side {
+        Side { name: name.into(), whole: true, ..Side::default() }
     }
 
     /// The same by logarithms.
@@ -43,7 +50,7 @@ impl Side {
     }
 
     /// The same from zero on.
-    pub fn from_zero(self) -> Side {
+    pub fn with_zero(self) -> Side {
         Side { from_zero: true, ..self }
     }
 
@@ -58,7 +65,10 @@ impl Side {
     fn ruler(&self, values: impl Iterator<Item = f64>, most: usize, tight: bool) -> Ruler {
         match self.logarithmic {
             true => Ruler::logarithmic(values),
-            false => Ruler::linear(values.chain(self.from_zero.then_some(0.0)), most, tight),
+            false => {
+                let least = if self.whole { 1.0 } else { 0.0 };
+                Ruler::linear(values.chain(self.from_zero.then_some(0.0)), most, least, tight)
+            }
         }
     }
 }

@@ -22,11 +22,11 @@ pub struct Ruler {
 }
 
 impl Ruler {
-    /// A linear side over the values, with up to `most` steps of 1, 2 or 5 times a power of ten: from tick to tick, or
+    /// A linear side over the values, with up to `most` steps of 1, 2 or 5 times a power of ten, none below `least`: from tick to tick, or
     /// `tight`, from the least value to the largest.
-    pub fn linear(values: impl Iterator<Item = f64>, most: usize, tight: bool) -> Ruler {
+    pub fn linear(values: impl Iterator<Item = f64>, most: usize, least: f64, tight: bool) -> Ruler {
         let (low, high) = widened(range(values).unwrap_or([0.0, 1.0]));
-        let least = (high - low) / most as f64;
+        let least = ((high - low) / most as f64).max(least);
         let power = libm::pow(10.0, libm::log10(least).floor());
         let steps = [1.0, 2.0, 5.0, 10.0].map(|m| m * power);
         let step = steps.into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power);
@@ -145,14 +145,21 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_enclose_the_values() {
-        assert_eq!(labels(&Ruler::linear([0.0, 30.24].into_iter(), 6, false)), ["0", "10", "20", "30", "40"]);
         assert_eq!(
-            labels(&Ruler::linear([-0.31, 0.52].into_iter(), 5, false)),
+            labels(&Ruler::linear([0.0, 30.24].into_iter(), 6, 0.0, false)),
+            ["0", "10", "20", "30", "40"]
+        );
+        assert_eq!(
+            labels(&Ruler::linear([-0.31, 0.52].into_iter(), 5, 0.0, false)),
             ["\u{2212}0.4", "\u{2212}0.2", "0", "0.2", "0.4", "0.6"]
         );
-        assert_eq!(labels(&Ruler::linear([5.0, 5.0].into_iter(), 5, false)), ["0", "2", "4", "6", "8", "10"]);
-        assert_eq!(labels(&Ruler::linear([].into_iter(), 4, false)), ["0", "0.5", "1.0"]);
-        let tight = Ruler::linear([0.0, 0.41].into_iter(), 5, true);
+        assert_eq!(
+            labels(&Ruler::linear([5.0, 5.0].into_iter(), 5, 0.0, false)),
+            ["0", "2", "4", "6", "8", "10"]
+        );
+        assert_eq!(labels(&Ruler::linear([].into_iter(), 4, 0.0, false)), ["0", "0.5", "1.0"]);
+        assert_eq!(labels(&Ruler::linear([0.0, 3.0].into_iter(), 7, 1.0, true)), ["0", "1", "2", "3"]);
+        let tight = Ruler::linear([0.0, 0.41].into_iter(), 5, 0.0, true);
         assert_eq!((labels(&tight).last().unwrap().as_str(), tight.fraction(0.41)), ("0.4", 1.0));
         assert_eq!(labels(&Ruler::logarithmic([1.0, 10.0].into_iter())), ["1", "2", "5", "10"]);
         assert_eq!(labels(&Ruler::logarithmic([1.0, 1000.0].into_iter())), ["1", "10", "100", "1000"]);
@@ -160,7 +167,7 @@ mod tests {
         assert_eq!(labels(&Ruler::logarithmic([0.0, -1.0, 30.0, 63.0].into_iter())), ["20", "50", "100"]);
         for (low, high) in [(1e-12, 1e9), (3.0, 3.1), (1e-30, 1e30), (99.0, 101.0), (1.0, 1e5)] {
             for ruler in [
-                Ruler::linear([low, high].into_iter(), 6, false),
+                Ruler::linear([low, high].into_iter(), 6, 0.0, false),
                 Ruler::logarithmic([low, high].into_iter()),
             ] {
                 let (first, last) = (ruler.fraction(low), ruler.fraction(high));

@@ -19,10 +19,10 @@ pub fn bonds(runs: &[RunData]) -> Option<Section> {
     let energy = one(runs, |r| r.table("history")?.points("time", "bond_energy"));
     let time = || Side::new("time", "s");
     let figures = plots([
-        Plot::new("Broken bonds", time(), Side::new("bonds", "").from_zero(), broken).figure(),
-        Plot::new("Pieces", time(), Side::new("fragments, single grains among them", "").from_zero(), pieces)
+        Plot::new("Broken bonds", time(), Side::new("bonds", "").with_zero(), broken).figure(),
+        Plot::new("Pieces", time(), Side::new("fragments, single grains among them", "").with_zero(), pieces)
             .figure(),
-        Plot::new("Elastic energy of the bonds", time(), Side::new("energy", "J").from_zero(), energy)
+        Plot::new("Elastic energy of the bonds", time(), Side::new("energy", "J").with_zero(), energy)
             .figure(),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);

@@ -20,8 +20,8 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
     });
     let time = || Side::new("time", "s");
     let figures = plots([
-        Plot::new("Mass of grains", time(), Side::new("mass", "kg").from_zero(), mass).figure(),
-        Plot::new("Mass flow out", time(), Side::new("mean rate", "kg/s").from_zero(), one(runs, rate))
+        Plot::new("Mass of grains", time(), Side::new("mass", "kg").with_zero(), mass).figure(),
+        Plot::new("Mass flow out", time(), Side::new("mean rate", "kg/s").with_zero(), one(runs, rate))
             .figure(),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);

@@ -36,7 +36,7 @@ pub fn gradation(runs: &[RunData]) -> Option<Section> {
         }
         out
     });
-    let y = Side::new("passing by mass [%]", "").from_zero();
+    let y = Side::new("passing by mass [%]", "").with_zero();
     let figure = Plot::new("Sieve curves", Side::new("sieve", "m").logarithmic(), y, curves).figure();
     let mut names = Vec::new();
     let mut found: Vec<&Value> = Vec::new();

@@ -17,7 +17,7 @@ struct Loop {
 
 /// Loops, stiffness, damping.
 pub fn loops(runs: &[RunData]) -> Option<Section> {
-    let x = || Side::new("load cycle N", "").logarithmic();
+    let x = || Side::count("load cycle N").logarithmic();
     let of = |column: &'static str| {
         one(runs, move |r| {
             // Zero: the cycle does not tell it.
@@ -26,7 +26,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
         })
     };
     let plot = |title: &str, name: &str, unit: &str, curves: Vec<Curve>| {
-        Plot::new(title, x(), Side::new(name, unit).from_zero(), curves).figure()
+        Plot::new(title, x(), Side::new(name, unit).with_zero(), curves).figure()
     };
     let single = runs.iter().all(|r| r.table("cycles").is_none_or(|t| t.rows() < 2));
     let over_cycles = match single {
@@ -91,7 +91,7 @@ fn single_loops(runs: &[RunData]) -> (String, String) {
         Plot::new(
             "Loops of load and deflection",
             x,
-            Side::new("load on the sleeper", "N").from_zero(),
+            Side::new("load on the sleeper", "N").with_zero(),
             curves,
         )
         .figure(),

@@ -22,9 +22,12 @@ mod walls;
 use super::data::RunData;
 use super::page::Section;
 
+/// Makes a section of the runs.
+type Make = fn(&[RunData]) -> Option<Section>;
+
 /// All sections that the runs have something for.
 pub fn all(runs: &[RunData]) -> Vec<Section> {
-    let sections: [fn(&[RunData]) -> Option<Section>; 20] = [
+    let sections: [Make; 20] = [
         verdict::verdict,
         compare::compare,
         overview::overview,

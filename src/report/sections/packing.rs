@@ -44,15 +44,15 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
         + &plots([
             Plot::new(
                 "How many neighbours grains have",
-                Side::new("neighbours", "").from_zero(),
-                Side::new("share of the grains", "").from_zero(),
+                Side::count("neighbours").with_zero(),
+                Side::new("share of the grains", "").with_zero(),
                 neighbours,
             )
             .figure(),
             Plot::new(
                 "Radial distribution function of the first box",
-                Side::new("distance", "m").from_zero(),
-                Side::new("g", "").from_zero(),
+                Side::new("distance", "m").with_zero(),
+                Side::new("g", "").with_zero(),
                 radial,
             )
             .figure(),

@@ -40,19 +40,15 @@ pub fn settlement(runs: &[RunData]) -> Option<Section> {
         }
     }
     curves.retain(|c| !c.points.is_empty());
-    let y = || Side::new("settlement", "m").downwards().from_zero();
-    let linear = Plot::new(
-        "Settlement of the sleeper",
-        Side::new("load cycle N", "").from_zero(),
-        y(),
-        curves.clone(),
-    );
+    let y = || Side::new("settlement", "m").downwards().with_zero();
+    let linear =
+        Plot::new("Settlement of the sleeper", Side::count("load cycle N").with_zero(), y(), curves.clone());
     let several = runs.iter().any(|r| r.table("cycles").is_some_and(|t| t.rows() > 2));
     let figures = [
         linear.figure(),
         match several {
             true => {
-                let x = Side::new("load cycle N", "").logarithmic();
+                let x = Side::count("load cycle N").logarithmic();
                 Plot::new("The same over the logarithm of N", x, y(), curves).figure()
             }
             false => String::new(),

@@ -141,7 +141,7 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
     let figure = Plot::new(
         "Largest displacement against the factor",
         Side::new("factor by which the strength is divided", ""),
-        Side::new("largest displacement", "m").from_zero(),
+        Side::new("largest displacement", "m").with_zero(),
         curve,
     )
     .figure();

@@ -18,13 +18,13 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
         let points = table.points("cycle", "peak_formation_pressure")?;
         Some(points.into_iter().filter(|p| p[1] > 0.0).collect())
     });
-    let y = |name: &str| Side::new(name, "Pa").from_zero();
+    let y = |name: &str| Side::new(name, "Pa").with_zero();
     let html = plots([
         Plot::new("Largest pressure on a face of the formation", time(), y("peak pressure"), in_time)
             .figure(),
         Plot::new(
             "Largest pressure on the formation in a cycle",
-            Side::new("load cycle N", "").logarithmic(),
+            Side::count("load cycle N").logarithmic(),
             y("peak pressure"),
             by_cycle,
         )
@@ -32,7 +32,7 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
         Plot::new(
             "Force of the bed on the solid, downwards",
             time(),
-            Side::new("force", "N").from_zero(),
+            Side::new("force", "N").with_zero(),
             force,
         )
         .figure(),
@@ -106,7 +106,7 @@ pub fn push(runs: &[RunData]) -> Option<Section> {
     let x = || Side::new("way of the sleeper", "m");
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let html = plots([
-        Plot::new("Lateral resistance", x(), Side::new("force of the ram", "N").from_zero(), curve("force"))
+        Plot::new("Lateral resistance", x(), Side::new("force of the ram", "N").with_zero(), curve("force"))
             .figure(),
         Plot::new("Rise of the sleeper", x(), Side::new("rise", "m"), curve("uplift")).figure(),
     ]);
