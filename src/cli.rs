@@ -24,6 +24,8 @@ pub enum Command {
     Explain(CheckArgs),
     /// Run variations of a scene, and compare error and cost of each: the trade of speed against accuracy.
     Study(StudyArgs),
+    /// Make one page (HTML) with tables and plots of the results of one run, or of several beside each other.
+    Report(ReportArgs),
     /// Natural frequencies and modes of the solid part of a scene.
     Modal(ModalArgs),
     /// Show the results of a run in a browser: grains, force chains, solid, walls; or write them as one HTML file.
@@ -100,6 +102,20 @@ pub struct StudyArgs {
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Arguments of `report`.
+#[derive(Debug, Args)]
+pub struct ReportArgs {
+    /// Folders of results.
+    #[arg(required = true, value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+    /// The page; default `report.html` in the folder, where it is a single one.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Title of the page; default that of the scene.
+    #[arg(long)]
+    pub title: Option<String>,
 }
 
 /// Arguments of `modal`.

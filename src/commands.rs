@@ -5,6 +5,7 @@ mod explain;
 mod mesh;
 mod modal;
 mod output;
+mod report;
 mod stone;
 mod study;
 mod view;
@@ -29,6 +30,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
         }
         Command::Study(args) => study::study(args),
+        Command::Report(args) => report::report(args),
         Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),
@@ -49,14 +51,15 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         memory,
         resume: args.resume,
         force: args.force,
-        interrupt: run::Interrupt::on_signals()?,
+        interrupt: run::Interrupt::on_signals("the present step")?,
         quiet: args.quiet,
     };
     match run::run(&args.scene, &options)? {
         run::Outcome::Done(_) if args.quiet => Ok(()),
         run::Outcome::Done(summary) => {
             // The results are in their folder, and the same text in its log: nobody need listen.
-            if let Err(failure) = print(&summary.report()) {
+            let text = format!("{}results are in {}\n", summary.report(), summary.dir.display());
+            if let Err(failure) = print(&text) {
                 message::note(&format!("standard output: {failure}"));
             }
             Ok(())

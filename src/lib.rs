@@ -16,6 +16,7 @@ pub mod message;
 pub mod model;
 mod progress;
 pub mod read;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod stone_tools;

@@ -26,6 +26,7 @@ mod suite {
     mod meshed_sleeper;
     mod packings;
     mod rail;
+    mod report;
     mod scenes;
     mod solid_edges;
     mod solid_keys;

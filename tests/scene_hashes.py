@@ -13,6 +13,7 @@ What is hashed, and what is left out on purpose:
 * .vtu, .vtp: elements, attributes and the decoded numbers of every array, bit by bit. Left out is how they are stored:
   `format`, `offset`, `encoding`, `compressor`, `header_type`, `version`, the ranges and white space.
 * summary.json: every value as written, except wall times, threads, memory, `version` and `scene_hash` (MACHINE_KEYS).
+* run.json: except `version` and where the scene lies.
 * log.txt: except the wall times of the stages and of the parts of the solver.
 * output of `check` and `explain`: except the lines on memory and on the time of the probe, and the name of the vector
   instructions.
@@ -145,6 +146,8 @@ def digest_of(path):
             return vtk(content)
         if path.name == "summary.json":
             content = summary(content)
+        if path.name == "run.json":
+            content = json.dumps(json.loads(content) | {"version": "", "scene": ""}).encode()
     except (Unreadable, ElementTree.ParseError, ValueError, KeyError, struct.error, zlib.error) as error:
         return f"unreadable: {error}"
     if path.name == "log.txt":

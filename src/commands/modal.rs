@@ -40,7 +40,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
             other => Failure::Numerical(format!("modes: {other}")),
         })?;
         let dir = args.out.clone().unwrap_or_else(|| {
-            let mut folder = run::default_folder(&args.scene).into_os_string();
+            let mut folder = run::default_folder(&args.scene, &args.set).into_os_string();
             folder.push("_modes");
             folder.into()
         });

@@ -23,7 +23,7 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         resume: args.resume,
         force: args.force,
         quiet,
-        interrupt: Interrupt::on_signals()?,
+        interrupt: Interrupt::on_signals("the runs under way have kept where they are")?,
     };
     let check = |scene: &Path, set: &[String]| check::check(scene, set, None).map(drop);
     let text = study::execute(&args.study, &options, &check)?;

@@ -2,30 +2,37 @@
 
 use super::checkpoint::{Body, Moment, Slots};
 use crate::failure::Failure;
+use crate::message;
 use std::cell::{Cell, RefCell};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+/// Time between two looks at a request from outside.
+const WATCH: Duration = Duration::from_millis(50);
+
 /// A request to stop a run at the end of its present step.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     stop: Arc<AtomicBool>,
-    /// Whether a signal ends the program at once, because no stage is there to write a checkpoint.
-    at_once: Arc<AtomicBool>,
+    /// Whether a stage is under way that looks at the request and keeps where it is.
+    keeps: Arc<AtomicBool>,
+    /// Whether a stage has seen the request.
+    seen: Arc<AtomicBool>,
     /// Steps after which the run stops by itself.
     steps: Option<u64>,
 }
 
 impl Interrupt {
     /// A request that comes with Ctrl-C (SIGINT), SIGTERM, or SIGHUP, of a terminal that is closed, unless it is ignored as
-    /// under `nohup`. A second signal ends the program at once, with exit code 130, as the first does where nothing could be
-    /// kept. A file that grows beyond the limit of its size (SIGXFSZ) is an error of that file.
+    /// under `nohup`. It is acknowledged at once on standard error, with what the program stops after. A second signal ends the
+    /// program at once, with exit code 130, as the first does where nothing could be kept. A file that grows beyond the limit of
+    /// its size (SIGXFSZ) is an error of that file.
     ///
     /// # Errors
     /// The system refuses the handlers.
-    pub fn on_signals() -> io::Result<Interrupt> {
+    pub fn on_signals(after: &'static str) -> io::Result<Interrupt> {
         use signal_hook::consts::{SIGINT, SIGTERM};
         use signal_hook::flag;
         let mut signals = vec![SIGINT, SIGTERM];
@@ -38,19 +45,37 @@ impl Interrupt {
             // Having any action, it does not end the program, and the system says to the writer what is wrong.
             flag::register(SIGXFSZ, Arc::default())?;
         }
-        let interrupt = Interrupt { at_once: Arc::new(AtomicBool::new(true)), ..Interrupt::default() };
+        let interrupt = Interrupt::default();
+        let again = Arc::new(AtomicBool::new(false));
         for signal in signals {
-            // In this order: the first signal finds `at_once` as the stage has set it, the second finds it set.
-            flag::register_conditional_shutdown(signal, 130, interrupt.at_once.clone())?;
-            flag::register(signal, interrupt.at_once.clone())?;
+            // In this order: the first signal finds `again` unset, the second finds it set.
+            flag::register_conditional_shutdown(signal, 130, again.clone())?;
+            flag::register(signal, again.clone())?;
             flag::register(signal, interrupt.stop.clone())?;
         }
+        let watched = interrupt.clone();
+        std::thread::Builder::new().name("signals".into()).spawn(move || watched.watch(after))?;
         Ok(interrupt)
+    }
+
+    /// Waits for a request and says what becomes of it: a step of a large solid may take minutes.
+    fn watch(&self, after: &str) {
+        while !self.stopped() {
+            std::thread::sleep(WATCH);
+        }
+        if self.keeps.load(Ordering::Relaxed) || self.seen.load(Ordering::Relaxed) {
+            message::say(&format!("stopping after {after}; press again to abort"));
+        } else {
+            message::say("interrupted: nothing is under way that could be kept");
+            signal_hook::low_level::exit(130);
+        }
     }
 
     /// Whether a signal ends the program at once from now on, or waits for what is under way to be kept.
     pub(crate) fn end_at_once(&self, at_once: bool) {
-        self.at_once.store(at_once, Ordering::Relaxed);
+        // One that has come meanwhile belongs to the stage that ends.
+        self.seen.fetch_or(self.stopped(), Ordering::Relaxed);
+        self.keeps.store(!at_once, Ordering::Relaxed);
     }
 
     /// Whether a signal has come.

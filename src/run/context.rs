@@ -2,6 +2,8 @@
 
 use super::checkpoint_store::CheckpointStore;
 use super::folder;
+use super::origin::quoted;
+use super::run_file::{self, RunFile};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::scene::Document;
@@ -32,6 +34,21 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// The folder of the results is no longer where it was; `place` is where it is now, if that is known.
+    pub fn gone(&self, place: Option<&Path>) -> Failure {
+        let dir = self.dir.display();
+        let head =
+            format!("{dir}: the folder of the results was renamed or removed while the run wrote there");
+        Failure::Other(match place {
+            None => format!("{head}; what was written until then is gone with it"),
+            Some(place) => format!(
+                "{head}; what was written until then, and the last checkpoint if there is one, is in {}: go on with --resume --out {}",
+                place.display(),
+                quoted(place)
+            ),
+        })
+    }
+
     /// Makes the folder of the results; of a run that is continued its files stay.
     ///
     /// # Errors
@@ -42,6 +59,9 @@ impl Run<'_> {
         } else {
             self.checkpoints.clear_others()?;
             folder::prepare(self.dir, &self.job.output)?;
+        }
+        if !self.continued || !self.dir.join(run_file::FILE).exists() {
+            RunFile::of(self.document).write(self.dir)?;
         }
         self.prepared.set(true);
         Ok(())

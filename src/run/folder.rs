@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// What a run may leave beside the files of its formats.
-const FILES: [&str; 15] = [
+const FILES: [&str; 17] = [
     "push.csv",
     "breaks.csv",
     "summary.json",
@@ -23,6 +23,8 @@ const FILES: [&str; 15] = [
     "gradation.svg",
     "radial.csv",
     "packing.csv",
+    "run.json",
+    "report.html",
 ];
 
 /// All files of known names.

@@ -1,6 +1,6 @@
 //! The lock of a folder of results: one command at a time writes there.
 //!
-//! The file `run.lock` holds the number of the process, and is locked by the system (advisory), which ends with the process
+//! The file `run.lock` holds the number of the process and the scene that it runs, and is locked by the system (advisory), which ends with the process
 //! however that ends: the file that a killed run leaves behind locks nobody out. It is removed at the end.
 
 use crate::failure::Failure;
@@ -53,7 +53,13 @@ impl Lock {
             Some((file, left_behind)) => Ok(Lock { path, file, made, left_behind }),
             None => {
                 let process = fs::read_to_string(&path).unwrap_or_default();
-                let process = process.trim().parse::<u32>().map_or(String::new(), |n| format!(" {n}"));
+                let process = process
+                    .lines()
+                    .next()
+                    .unwrap_or_default()
+                    .trim()
+                    .parse::<u32>()
+                    .map_or(String::new(), |n| format!(" {n}"));
                 let expected = "a folder that no other run writes to (--out)";
                 let dir = dir.display();
                 Err(Failure::Input(format!(
@@ -62,6 +68,51 @@ impl Lock {
             }
         }
     }
+}
+
+impl Lock {
+    /// Adds to the lock which scene is run, so that another one of its name goes elsewhere from the beginning.
+    pub fn name(&mut self, scene: &Path) {
+        // A lock without a name locks as well.
+        let _ = self.file.write_all(format!("{}\n", scene.display()).as_bytes());
+    }
+
+    /// Where the folder is if it is no longer where it was: its new place, if the system tells it.
+    pub fn moved(&self) -> Option<Option<PathBuf>> {
+        if self.is_there() {
+            return None;
+        }
+        Some(
+            place(&self.file)
+                .and_then(|file| Some(file.parent()?.to_path_buf()))
+                .filter(|dir| dir.join(FILE).exists()),
+        )
+    }
+
+    /// Whether the lock is the file of its name.
+    #[cfg(unix)]
+    fn is_there(&self) -> bool {
+        use std::os::unix::fs::MetadataExt;
+        let (Ok(own), Ok(named)) = (self.file.metadata(), fs::metadata(&self.path)) else { return false };
+        (own.dev(), own.ino()) == (named.dev(), named.ino())
+    }
+
+    #[cfg(not(unix))]
+    fn is_there(&self) -> bool {
+        self.path.exists()
+    }
+}
+
+/// Where an open file is now, by the system's own account.
+#[cfg(target_os = "linux")]
+fn place(file: &File) -> Option<PathBuf> {
+    use std::os::fd::AsRawFd;
+    fs::read_link(format!("/proc/self/fd/{}", file.as_raw_fd())).ok()
+}
+
+#[cfg(not(target_os = "linux"))]
+fn place(_: &File) -> Option<PathBuf> {
+    None
 }
 
 /// The locked file and whether it was there before; none where another process has it.
@@ -98,7 +149,10 @@ fn remove(made: &[PathBuf]) {
 impl Drop for Lock {
     fn drop(&mut self) {
         // While it is locked, so that no lock of another process is removed; what cannot be removed locks nobody out.
-        let _ = fs::remove_file(&self.path);
+        match self.moved() {
+            None => drop(fs::remove_file(&self.path)),
+            Some(place) => drop(place.map(|dir| fs::remove_file(dir.join(FILE)))),
+        }
         let _ = self.file.unlock();
         remove(&self.made);
     }

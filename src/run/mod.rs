@@ -19,6 +19,7 @@ mod packing;
 mod plastic;
 mod record;
 mod recorder;
+mod run_file;
 mod sources;
 pub(crate) mod stages;
 mod summary;
@@ -31,6 +32,7 @@ pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, parse_size, size};
 pub(crate) use origin::{default_folder, quoted, scene_hash};
+pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
@@ -92,7 +94,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     }
     let parsed: Scene = document.read()?;
     let pool = thread_pool(options.threads)?;
-    let dir = options.out.clone().unwrap_or_else(|| default_folder(scene));
+    let dir = options.out.clone().unwrap_or_else(|| default_folder(scene, &options.set));
     let origin = origin::origin(&document, &parsed);
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
@@ -114,10 +116,11 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
-        let lock = Lock::take(&dir)?;
+        let mut lock = Lock::take(&dir)?;
         if loaded.is_none() && !options.force {
             occupied::check(&dir, &origin, &slots, &lock)?;
         }
+        lock.name(scene);
         let record = RunRecord {
             status: "running".into(),
             title: job.title.clone(),
@@ -127,7 +130,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             threads: rayon::current_num_threads(),
             ..RunRecord::default()
         };
-        let summary = Summary { run: record, ..Summary::default() };
+        let summary = Summary { run: record, dir: dir.clone(), ..Summary::default() };
         let command = origin::resume_command(scene, &dir, &options.set);
         let (interrupt, interval) = (options.interrupt.clone(), job.output.checkpoint);
         let set_down = OnceCell::new();
@@ -142,12 +145,17 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),
             set_down: &set_down,
         };
-        carry_out(&run, loaded, summary)
+        carry_out(&run, loaded, summary, &lock)
     })
 }
 
 /// Carries out the stages of a run, and writes its summary whatever becomes of them.
-fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<Outcome, Failure> {
+fn carry_out(
+    run: &Run<'_>,
+    loaded: Option<Loaded>,
+    summary: Summary,
+    lock: &Lock,
+) -> Result<Outcome, Failure> {
     let mut state = RunState::new(loaded, summary);
     let result = guarded(|| {
         // What the main loop would refuse is refused before hours of packing.
@@ -175,6 +183,10 @@ fn carry_out(run: &Run<'_>, loaded: Option<Loaded>, summary: Summary) -> Result<
     }
     if let Err(failure @ Failure::Input(_)) = result {
         return Err(failure);
+    }
+    // Nothing is written where another folder may be by now.
+    if let Some(place) = lock.moved() {
+        return Err(run.gone(place.as_deref()));
     }
     // A failure before the first file, such as one while settling, has no folder yet, or one with the results of
     // an earlier run. What stopped the run comes before what stopped its summary.

@@ -1,8 +1,9 @@
-//! What a folder of results holds before a run: nothing that is worth keeping is replaced without `--force`.
+//! What a folder of results holds before a run: no result is replaced without `--force`.
 
 use super::checkpoint::{Origin, Slots};
 use super::folder;
 use super::lock::Lock;
+use super::run_file;
 use crate::failure::Failure;
 use crate::message::shown;
 use crate::read::source;
@@ -11,8 +12,8 @@ use std::path::Path;
 /// Longest title of another scene in a message [characters].
 const LONGEST: usize = 80;
 
-/// Refuses to begin a run anew in a folder with the checkpoint of an interrupted run, with the finished results of another
-/// scene or of this one with other overrides or files, or with files of others under the names of results.
+/// Refuses to begin a run anew in a folder with the checkpoint of an interrupted run, with results of whatever run, or with files
+/// of others under the names of results.
 ///
 /// # Errors
 /// Bad input.
@@ -26,24 +27,30 @@ pub fn check(dir: &Path, origin: &Origin, slots: &Slots, lock: &Lock) -> Result<
     }
     let bytes = source::bytes(&dir.join("summary.json"), source::LARGEST_TEXT).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&bytes).unwrap_or_default();
+    let replace = "another --out, or --force to replace them";
     if let Some(hash) = summary["scene_hash"].as_str() {
-        if summary["status"] == "done" && hash != origin.scene_hash {
-            let title = summary["title"].as_str().unwrap_or_default();
-            let found = format!("the results of another scene (\"{}\")", shown(title, LONGEST));
-            return refuse(&found, "another --out, or --force to replace them");
-        }
-        return Ok(());
+        let title = shown(summary["title"].as_str().unwrap_or_default(), LONGEST);
+        let (own, done) = (hash == origin.scene_hash, summary["status"] == "done");
+        return match (own, done) {
+            (true, true) => refuse(
+                "the finished results of this scene",
+                "another --out, or --force to replace them; --resume has nothing to go on with",
+            ),
+            (false, true) => refuse(&format!("the results of another scene (\"{title}\")"), replace),
+            (_, false) => refuse(
+                &format!("what an unfinished run of \"{title}\" has left, without a checkpoint"),
+                &format!("{replace}; --resume has nothing to go on with"),
+            ),
+        };
     }
-    // A run that was killed before its first summary.
-    if lock.left_behind {
-        return Ok(());
+    let Some(file) = folder::first_result(dir) else { return Ok(()) };
+    if lock.left_behind || dir.join(run_file::FILE).exists() {
+        return refuse(
+            "what a killed run has left, without a checkpoint",
+            &format!("{replace}; --resume has nothing to go on with"),
+        );
     }
-    match folder::first_result(dir) {
-        None => Ok(()),
-        Some(file) => {
-            let name = file.strip_prefix(dir).unwrap_or(&file).display().to_string();
-            let expected = "another --out, or --force to replace files of its names";
-            refuse(&format!("{name}, which no run has left there"), expected)
-        }
-    }
+    let name = file.strip_prefix(dir).unwrap_or(&file).display().to_string();
+    let expected = "another --out, or --force to replace files of its names";
+    refuse(&format!("{name}, which no run has left there"), expected)
 }

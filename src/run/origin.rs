@@ -2,9 +2,12 @@
 
 use super::checkpoint::{self, Origin};
 use super::hash::Hash;
+use super::lock;
+use super::run_file::RunFile;
 use crate::failure::Failure;
 use crate::read::{mesh_files, source};
 use crate::scene::{Document, Scene};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Whether the results in `dir` are those of a finished run of the same scene, without any checkpoint of a later one.
@@ -45,15 +48,49 @@ pub fn scene_hash(document: &Document, scene: &Scene) -> String {
     origin(document, scene).scene_hash
 }
 
-/// `results/` and the name of the scene file, or of its folder when the file is just called `scene.toml`.
-pub fn default_folder(scene: &Path) -> PathBuf {
+/// `results/` and the name of the scene file, or of its folder when the file is just called `scene.toml`; with overrides and
+/// a hash of them, so that each variant has a folder of its own. Where the folder is another scene's of the same name, a hash of
+/// the way to the file is added too.
+pub fn default_folder(scene: &Path, set: &[String]) -> PathBuf {
+    let mut name = plain_name(scene);
+    if !set.is_empty() {
+        name += &format!("-{}", short_hash(set.iter().map(String::as_bytes)));
+    }
+    let results = Path::new("results");
+    let whole = fs::canonicalize(scene).unwrap_or_else(|_| scene.to_path_buf());
+    let own =
+        results.join(format!("{name}-{}", short_hash([whole.as_os_str().as_encoded_bytes()].into_iter())));
+    let plain = results.join(name);
+    if own.exists() || is_of_another(&plain, scene, &whole) { own } else { plain }
+}
+
+/// Six digits that parts of a name are known by.
+fn short_hash<'a>(parts: impl Iterator<Item = &'a [u8]>) -> String {
+    let mut hash = Hash::default();
+    parts.for_each(|part| hash.add(part));
+    hash.hex()[..6].into()
+}
+
+/// Whether a folder has results of another scene, or such a scene is being run there.
+fn is_of_another(dir: &Path, scene: &Path, whole: &Path) -> bool {
+    let same = |path: &str| fs::canonicalize(path).ok().map(|path| path == whole);
+    let lock = fs::read_to_string(dir.join(lock::FILE)).unwrap_or_default();
+    if let Some(running) = lock.lines().nth(1) {
+        return same(running) == Some(false);
+    }
+    let Some(file) = RunFile::read(dir) else { return false };
+    // A scene that has gone from where it was is known by its text.
+    same(&file.scene).map_or_else(|| source::text(scene).is_ok_and(|text| text != file.text), |same| !same)
+}
+
+/// The name of the scene file, or of its folder when the file is just called `scene.toml`.
+fn plain_name(scene: &Path) -> String {
     let stem = scene.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = scene.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    let name = match (stem.as_str(), folder) {
+    match (stem.as_str(), folder) {
         ("scene", Some(folder)) => folder,
         _ => stem,
-    };
-    Path::new("results").join(name)
+    }
 }
 
 /// What the results of a run depend on: scene, overrides, and the files that the scene names.

@@ -6,6 +6,7 @@ use super::value::Value;
 use super::wording::explain;
 use crate::read::source;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -170,6 +171,28 @@ impl Document {
     /// Overrides given on the command line, as (key path, value).
     pub fn overrides(&self) -> &[(String, String)] {
         &self.overrides
+    }
+
+    /// Every key of the scene with its value as TOML, overrides applied.
+    pub fn keys(&self) -> BTreeMap<String, String> {
+        fn visit(path: &str, value: &toml::Value, out: &mut BTreeMap<String, String>) {
+            let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+            match value {
+                toml::Value::Table(t) => t.iter().for_each(|(k, v)| visit(&below(k), v, out)),
+                toml::Value::Array(a) if a.iter().any(toml::Value::is_table) => {
+                    a.iter().enumerate().for_each(|(i, v)| visit(&below(&i.to_string()), v, out));
+                }
+                other => {
+                    out.insert(path.to_string(), other.to_string());
+                }
+            }
+        }
+        let mut out = BTreeMap::new();
+        // A tree that cannot be read shows no keys; the hash of a run still distinguishes the scenes.
+        if let Ok(tree) = self.read::<toml::Table>() {
+            visit("", &toml::Value::Table(tree), &mut out);
+        }
+        out
     }
 
     /// `path` relative to the folder of the scene file; where nothing is there, to that of the first included file beside which

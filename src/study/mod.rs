@@ -71,7 +71,7 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
     let document = Document::open(file)?;
     let parsed: StudyFile = document.read()?;
     let plan = Plan::new(&document, &parsed)?;
-    let dir = options.out.clone().unwrap_or_else(|| run::default_folder(file));
+    let dir = options.out.clone().unwrap_or_else(|| run::default_folder(file, &[]));
     let store = Store::new(&dir);
     if options.merge && !dir.join("runs").is_dir() {
         let expected = "a folder with runs of the study (--out)";

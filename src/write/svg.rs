@@ -44,9 +44,9 @@ const CHARACTER: f64 = 0.6;
 /// Line sample and gap of a legend entry [px].
 pub(super) const SAMPLE: f64 = 34.0;
 
-pub(super) const COLOURS: [&str; 7] =
+pub(crate) const COLOURS: [&str; 7] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"];
-const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
+pub(crate) const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
 
 impl LinePlot {
     /// Writes the plot.
@@ -208,7 +208,7 @@ impl Axis {
 }
 
 /// A typographic minus, as wide as a digit.
-pub(super) fn minus(text: &str) -> String {
+pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
@@ -218,7 +218,7 @@ fn nice_step(least: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power)
 }
 
-pub(super) fn text_width(text: &str, font: f64) -> f64 {
+pub(crate) fn text_width(text: &str, font: f64) -> f64 {
     CHARACTER * font * text.chars().count() as f64
 }
 
@@ -229,7 +229,7 @@ pub(super) fn fitted(text: &str, font: f64, space: f64) -> f64 {
 }
 
 /// Pixels to a hundredth: more digits only lengthen the file.
-pub(super) fn round(value: f64) -> f64 {
+pub(crate) fn round(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }
 
@@ -265,7 +265,7 @@ fn curve(series: &Series, index: usize, area: &Area, x: &Axis, y: &Axis) -> Stri
 
 /// Of the points that fall in one column of half a pixel in a row, the first, the lowest, the highest and the
 /// last, in order: a history of millions of steps looks the same and stays small.
-fn thinned(pixels: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+pub(crate) fn thinned(pixels: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let all: Vec<[f64; 2]> = pixels.collect();
     let column = |p: &[f64; 2]| (2.0 * p[0]).floor();
     let mut kept = Vec::new();

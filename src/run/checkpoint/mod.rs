@@ -64,7 +64,11 @@ impl Slots {
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         self.clear_others()?;
-        fs::create_dir_all(&self.dir).map_err(|e| failure(&self.dir, &e))?;
+        // Not with the folder of the results: where that has been renamed a new one would part the run from its results.
+        match fs::create_dir(&self.dir) {
+            Err(e) if e.kind() != io::ErrorKind::AlreadyExists => return Err(failure(&self.dir, &e)),
+            _ => {}
+        }
         let header = Header { number: self.next, moment, origin: self.origin.clone() };
         let file = self.dir.join(SLOTS[(self.next % 2) as usize]);
         atomic::write(&file, |out| {

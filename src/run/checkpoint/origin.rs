@@ -61,10 +61,10 @@ impl Origin {
         let wrong = "the scene is not the one of the checkpoint";
         let before = Document::parse(document.file(), old.scene.clone()).ok().and_then(|mut d| {
             old.overrides.iter().try_for_each(|o| d.set(o)).ok()?;
-            Some(keys(&d))
+            Some(d.keys())
         });
         if let Some(before) = before {
-            let now = keys(document);
+            let now = document.keys();
             let changed = before.keys().chain(now.keys()).find(|k| before.get(*k) != now.get(*k));
             if let Some(key) = changed {
                 let text =
@@ -78,26 +78,4 @@ impl Origin {
             None => format!("{wrong}: its text or its overrides have changed, though no key has"),
         })
     }
-}
-
-/// Every key of a scene with its value, overrides applied.
-fn keys(document: &Document) -> BTreeMap<String, String> {
-    fn visit(path: &str, value: &toml::Value, out: &mut BTreeMap<String, String>) {
-        let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
-        match value {
-            toml::Value::Table(t) => t.iter().for_each(|(k, v)| visit(&below(k), v, out)),
-            toml::Value::Array(a) if a.iter().any(toml::Value::is_table) => {
-                a.iter().enumerate().for_each(|(i, v)| visit(&below(&i.to_string()), v, out));
-            }
-            other => {
-                out.insert(path.to_string(), other.to_string());
-            }
-        }
-    }
-    let mut out = BTreeMap::new();
-    // A tree that cannot be read shows no keys; the hash still distinguishes the scenes.
-    if let Ok(tree) = document.read::<toml::Table>() {
-        visit("", &toml::Value::Table(tree), &mut out);
-    }
-    out
 }

@@ -12,13 +12,16 @@ use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
 use crate::write::WriteError;
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use trackbed_coupling::track::extremes::TrackRecord;
 use trackbed_coupling::track::push::PushSummary;
 
 /// The content of `summary.json`. Parts that are flattened stand in it key by key, in this order.
 #[derive(Debug, Default, Serialize)]
 pub struct Summary {
+    /// Folder of the results.
+    #[serde(skip)]
+    pub dir: PathBuf,
     /// The run itself.
     #[serde(flatten)]
     pub run: RunRecord,

@@ -1,7 +1,7 @@
 //! Folders of results: one run at a time, nothing of worth replaced in silence, and every file of a mesh in the hash.
 
 use super::super::support::{
-    COUPLED, Folder, GRAINS, SOLID, json, repository, scene_folder, small_block, snapshot, trackbed,
+    COUPLED, Folder, GRAINS, SOLID, json, repository, results, scene_folder, small_block, snapshot, trackbed,
     trackbed_in, write_lists,
 };
 use super::refused;
@@ -38,7 +38,9 @@ fn one_run_at_a_time_in_a_folder() {
     first.kill().unwrap();
     first.wait().unwrap();
     assert!(out.join("run.lock").exists());
-    let short = ["--set", "grains.0.count=20", "--set", "time.end=0.01"];
+    // What it has written is a result: it is not replaced in silence either.
+    refused(arguments(&scene, &out, &[]), "expected another --out, or --force to replace them");
+    let short = ["--set", "grains.0.count=20", "--set", "time.end=0.01", "--force"];
     trackbed(arguments(&scene, &out, &short)).good();
     assert!(json(&out.join("summary.json"))["status"] == "done" && !out.join("run.lock").exists());
 }
@@ -61,34 +63,117 @@ fn a_checkpoint_is_not_replaced_in_silence() {
     refused(arguments(&scene, &out, &[]), words);
     assert!(snapshot(&out) == before, "a refusal leaves everything");
     trackbed(arguments(&scene, &out, &["--resume"])).good();
-    trackbed(arguments(&scene, &out, &[])).good();
     // Both together say two things.
     assert_eq!(trackbed(arguments(&scene, &out, &["--resume", "--force"])).code, 2);
 }
 
-/// H1: variants of a scene, and scenes of one name, share the default folder: the second is refused.
+/// H1: results are not replaced in silence, not even by those of the same scene; the sentence says both ways on.
 #[test]
-fn results_of_another_scene_are_not_replaced_in_silence() {
-    let folder = Folder::new("variants");
+fn results_are_not_replaced_in_silence() {
+    let folder = Folder::new("again");
     folder.write("a/scene.toml", GRAINS);
     folder.write("b/a.toml", &GRAINS.replace("two spheres", "two\\u0007others"));
-    let run =
-        |more: &[&str]| trackbed_in(folder.path(), [&["run", "a/scene.toml", "--quiet"], more].concat());
-    run(&[]).good();
-    // The same scene again has the same results.
-    run(&[]).good();
-    let before = snapshot(&folder.join("results"));
-    let words =
-        "results/a: found the results of another scene (\"two spheres\"), expected another --out, or --force";
-    for outcome in
-        [run(&["--set", "time.end=0.01"]), trackbed_in(folder.path(), ["run", "b/a.toml", "--quiet"])]
-    {
+    let run = |scene: &str, more: &[&str]| {
+        trackbed_in(folder.path(), [&["run", scene, "--quiet", "--out", "out"], more].concat())
+    };
+    run("a/scene.toml", &[]).good();
+    let before = snapshot(&folder.join("out"));
+    let own = "out: found the finished results of this scene, expected another --out, or --force to replace them; --resume has \
+               nothing to go on with";
+    let other = "out: found the results of another scene (\"two spheres\"), expected another --out, or --force to replace them";
+    for (outcome, words) in [
+        (run("a/scene.toml", &[]), own),
+        (run("a/scene.toml", &["--set", "time.end=0.01"]), other),
+        (run("b/a.toml", &[]), other),
+    ] {
         assert!(outcome.code == 2 && outcome.stderr.contains(words), "{outcome:?}");
+        assert_eq!(outcome.stderr.lines().count(), 1, "{outcome:?}");
     }
-    assert!(snapshot(&folder.join("results")) == before);
-    trackbed_in(folder.path(), ["run", "b/a.toml", "--quiet", "--force"]).good();
-    let log = fs::read_to_string(folder.join("results/a/log.txt")).unwrap();
+    assert!(snapshot(&folder.join("out")) == before, "a refusal leaves everything");
+    let resumed = run("a/scene.toml", &["--resume"]).good();
+    assert!(resumed.stdout.contains("there is nothing to go on with"), "{resumed:?}");
+    run("b/a.toml", &["--force"]).good();
+    let log = fs::read_to_string(folder.join("out/log.txt")).unwrap();
     assert!(log.starts_with("two\\u{7}others\n"), "{log}");
+}
+
+/// H1: variants of a scene, and scenes of one name, have default folders of their own, the same ones every time; the last line
+/// says which.
+#[test]
+fn default_folders_are_distinct() {
+    let folder = Folder::new("variants");
+    folder.write("a/scene.toml", GRAINS);
+    folder.write("b/a.toml", GRAINS);
+    let runs: [&[&str]; 5] = [
+        &["a/scene.toml"],
+        &["a/scene.toml", "--set", "time.end=0.01"],
+        &["a/scene.toml", "--set", "time.end=0.012"],
+        &["b/a.toml"],
+        &["b/a.toml", "--set", "time.end=0.01"],
+    ];
+    let place = |more: &[&str], force: &[&str]| {
+        let said = trackbed_in(folder.path(), [&["run"], more, force].concat()).good();
+        let last = said.stdout.lines().last().unwrap().to_string();
+        last.strip_prefix("results are in ").unwrap_or_else(|| panic!("{last}")).to_string()
+    };
+    let first: Vec<String> = runs.iter().map(|more| place(more, &[])).collect();
+    assert_eq!(first[0], "results/a");
+    for (k, name) in first.iter().enumerate() {
+        assert!(!first[..k].contains(name) && name.starts_with("results/a"), "{first:?}");
+        assert_eq!(json(&folder.join(name).join("summary.json"))["status"], "done");
+    }
+    let again: Vec<String> = runs.iter().map(|more| place(more, &["--force"])).collect();
+    assert_eq!(first, again);
+    // Each is known again by --resume.
+    for more in runs {
+        let said = trackbed_in(folder.path(), [&["run", "--resume"], more].concat()).good();
+        assert!(said.stdout.contains("there is nothing to go on with"), "{said:?}");
+    }
+}
+
+/// H1: a folder that is renamed while a run writes there takes its results along; nothing is written under the old name, and
+/// the run goes on from there to the same bytes.
+#[test]
+fn a_folder_that_is_renamed_takes_its_run_along() {
+    let folder = Folder::new("renamed");
+    let scene = repository().join("inputs/grains/box.toml");
+    let [whole, out, moved] = ["whole", "out", "moved"].map(|name| folder.join(name));
+    let set = [
+        "--set",
+        "grains.0.count=800",
+        "--set",
+        "time.end=0.4",
+        "--set",
+        "output.frames=3",
+        "--set",
+        "output.checkpoint=0.02",
+        "--threads",
+        "1",
+    ];
+    trackbed(arguments(&scene, &whole, &set)).good();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trackbed"))
+        .args(arguments(&scene, &out, &set))
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let rows = || fs::read_to_string(out.join("history.csv")).map_or(0, |t| t.lines().count());
+    while rows() < 20 || !out.join("checkpoint").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(1));
+    }
+    fs::rename(&out, &moved).unwrap();
+    let said = child.wait_with_output().unwrap();
+    let text = String::from_utf8(said.stderr).unwrap();
+    assert_eq!((said.status.code(), text.lines().count()), (Some(1), 1), "{text}");
+    let words = "out: the folder of the results was renamed or removed while the run wrote there";
+    assert!(text.contains(words) && text.contains(&format!("--resume --out {}", moved.display())), "{text}");
+    assert!(!out.exists(), "nothing is made under the old name");
+    assert!(!moved.join("run.lock").exists());
+    trackbed(arguments(&scene, &moved, &[&set[..], &["--resume"]].concat())).good();
+    let (whole, moved) = (results(&whole), results(&moved));
+    assert!(whole.keys().eq(moved.keys()), "{:?} {:?}", whole.keys(), moved.keys());
+    whole.iter().for_each(|(name, bytes)| assert!(*bytes == moved[name], "{name} differs"));
 }
 
 /// H4: files of others in the folder stay.

@@ -116,6 +116,30 @@ fn a_limit_of_file_sizes_is_an_error_that_names_the_file() {
     assert!(text.starts_with("error: ") && text.contains("cannot be written"), "{text}");
 }
 
+/// Ctrl-C is acknowledged within a second wherever a run is: while it makes one piece of work that keeps nothing it ends, and a
+/// long step says that it will.
+#[test]
+fn an_interrupt_is_acknowledged_at_once() {
+    let folder = Folder::new("acknowledged");
+    let scene = repository().join("inputs/solid/embankment_large.toml");
+    let out = folder.join("out");
+    // A static solve of some seconds.
+    let set = ["solid.block.x.counts=[60]", "solid.block.y.counts=[24]", "solid.block.z.counts=[8, 8]"];
+    let mut child = program(&scene, &out, &set).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while !out.join("run.lock").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(2));
+    }
+    kill("INT", &child);
+    let begun = Instant::now();
+    let said = child.wait_with_output().unwrap();
+    let text = String::from_utf8(said.stderr).unwrap();
+    assert!(begun.elapsed() < Duration::from_secs(1), "{:?}: {text}", begun.elapsed());
+    assert_eq!(said.status.code(), Some(130), "{text}");
+    assert!(text.lines().any(|l| l == "interrupted: nothing is under way that could be kept"), "{text}");
+}
+
 /// G6: Ctrl-C is heard between two iterations of a plastic step, and the run goes on to the same bytes.
 #[test]
 fn a_plastic_step_hears_the_interrupt() {

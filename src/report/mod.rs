@@ -1,0 +1,84 @@
+//! A report of one or several runs: one page with tables and plots, made of the files in their folders alone.
+//!
+//! Every [`sections`] entry looks for its data in the folders and is left out where none of them has any, so a run that was
+//! interrupted, has failed or still goes on is reported as far as it came.
+
+mod data;
+mod page;
+mod plot;
+mod quantity;
+mod sections;
+mod table;
+
+use crate::failure::Failure;
+use crate::write::{WriteError, atomic};
+use data::RunData;
+use std::path::{Path, PathBuf};
+
+/// What to report.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Folders of results.
+    pub folders: Vec<PathBuf>,
+    /// The page; default `report.html` in the folder, if it is one.
+    pub out: Option<PathBuf>,
+    /// Title of the page; default that of the scene.
+    pub title: Option<String>,
+}
+
+/// Writes a report, and returns where it is.
+///
+/// # Errors
+/// Bad input: a folder without results, a page that is no page. The page cannot be written.
+pub fn write(options: &Options) -> Result<PathBuf, Failure> {
+    let out = match (&options.out, options.folders.as_slice()) {
+        (Some(out), _) => out.clone(),
+        (None, [dir]) => dir.join("report.html"),
+        (None, _) => {
+            let expected = "a file such as report.html for the report of several folders";
+            return Err(Failure::Input(format!("--out: found nothing, expected {expected}")));
+        }
+    };
+    let ending = out.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    if !matches!(ending.as_deref(), Some("html" | "htm")) {
+        let found = out.display();
+        return Err(Failure::Input(format!("--out: found {found}, expected a file ending in .html")));
+    }
+    if out.is_dir() {
+        let found = out.display();
+        return Err(Failure::Input(format!("--out: found the folder {found}, expected a file")));
+    }
+    let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
+    data::distinguish(&mut runs);
+    let title = options.title.clone().unwrap_or_else(|| title(&runs));
+    let text = page::page(&title, &head(&runs), &sections::all(&runs));
+    put(&out, &text)?;
+    Ok(out)
+}
+
+fn put(out: &Path, text: &str) -> Result<(), Failure> {
+    atomic::write(out, |file| file.write_all(text.as_bytes()).map_err(WriteError::io(out)))?;
+    Ok(())
+}
+
+/// The title that all runs have, or one that counts them.
+fn title(runs: &[RunData]) -> String {
+    let first = runs[0].title();
+    match (runs.len(), runs.iter().all(|r| r.title() == first)) {
+        (1, _) => first.into(),
+        (n, true) => format!("{first}: {n} runs"),
+        (n, false) => format!("Comparison of {n} runs"),
+    }
+}
+
+/// The line below the title.
+fn head(runs: &[RunData]) -> String {
+    let whose = match runs {
+        [run] => format!("Results in {}", run.dir.display()),
+        _ => "Results of several runs".into(),
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    page::paragraph(&format!(
+        "{whose}; report by trackbed {version}. Values behind the pointer are those of the files, in SI units."
+    ))
+}

@@ -1,0 +1,205 @@
+//! The page: its head with the style sheet, sections, tables. It is well-formed as XML too, and needs nothing from outside.
+
+use super::quantity::{Scale, exact, number, scale, with_unit};
+use quick_xml::escape::escape;
+use std::fmt::Write;
+
+/// A part of the page.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// Name for links.
+    pub id: &'static str,
+    /// Its head.
+    pub title: &'static str,
+    /// Its content.
+    pub html: String,
+}
+
+impl Section {
+    /// A section; none where it has no content.
+    pub fn new(id: &'static str, title: &'static str, html: String) -> Option<Section> {
+        (!html.trim().is_empty()).then_some(Section { id, title, html })
+    }
+}
+
+const STYLE: &str = "
+body { font: 15px/1.45 Helvetica, Arial, sans-serif; color: #111; background: #fff; margin: 0 auto; max-width: 1180px;
+  padding: 0 20px 60px; }
+h1 { font-size: 25px; margin: 26px 0 4px; overflow-wrap: anywhere; }
+h2 { font-size: 19px; margin: 34px 0 8px; padding-top: 10px; border-top: 1px solid #bbb; }
+h3 { font-size: 16px; margin: 18px 0 6px; }
+p, li { max-width: 85ch; }
+nav { font-size: 14px; margin: 14px 0; }
+nav a { margin-right: 14px; white-space: nowrap; }
+a { color: #00558a; }
+.tables { overflow-x: auto; }
+table { border-collapse: collapse; margin: 8px 0 14px; font-size: 14px; }
+th, td { padding: 3px 12px 3px 6px; text-align: left; border-bottom: 1px solid #ddd; vertical-align: top;
+  overflow-wrap: anywhere; }
+thead th { border-bottom: 1.5px solid #555; overflow-wrap: normal; }
+tbody th { font-weight: normal; color: #333; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+thead th.n { text-align: right; }
+.facts td.n, .facts th.n { text-align: left; }
+.plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(420px, 100%), 1fr)); gap: 18px 26px; align-items: start; }
+figure { margin: 6px 0; max-width: 620px; break-inside: avoid; }
+figure > svg { width: 100%; height: auto; display: block; }
+figcaption { font-weight: bold; font-size: 14px; margin: 0 0 4px 40px; }
+ul.legend { list-style: none; margin: 4px 0 0 40px; padding: 0; display: flex; flex-wrap: wrap; gap: 2px 18px;
+  font-size: 13px; }
+ul.legend li { overflow-wrap: anywhere; }
+ul.legend svg { vertical-align: -1px; margin-right: 6px; }
+.note { color: #444; font-size: 14px; }
+.run { border: 1px solid #bbb; border-left-width: 8px; padding: 8px 14px; margin: 10px 0; break-inside: avoid; }
+.run h3 { margin: 0 0 4px; overflow-wrap: anywhere; }
+.run ul { margin: 6px 0; padding-left: 22px; }
+.passed { border-left-color: #009e73; } .warned { border-left-color: #e69f00; } .failed { border-left-color: #d55e00; }
+.open { border-left-color: #0072b2; }
+.bar { display: inline-block; height: 10px; background: #0072b2; vertical-align: middle; }
+pre { font-size: 12.5px; background: #f6f6f6; padding: 10px; overflow-x: auto; white-space: pre-wrap;
+  overflow-wrap: anywhere; }
+summary { cursor: pointer; }
+@media print { body { font-size: 11pt; max-width: none; padding: 0; } nav { display: none; }
+  h2 { break-after: avoid; } .plots { grid-template-columns: 1fr 1fr; } a { color: inherit; text-decoration: none; } }
+";
+
+/// The whole page.
+pub fn page(title: &str, head: &str, sections: &[Section]) -> String {
+    let title = escaped(title);
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
+         <h1>{title}</h1>\n{head}"
+    );
+    let mut add = |text: String| out.push_str(&text);
+    add("<nav>\n".into());
+    sections.iter().for_each(|s| add(format!("<a href=\"#{}\">{}</a>\n", s.id, s.title)));
+    add("</nav>\n".into());
+    for s in sections {
+        add(format!("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", s.id, s.title, s.html));
+    }
+    add("</body>\n</html>\n".into());
+    out
+}
+
+/// A text of others as content or attribute of the page: escaped, without control characters, which XML cannot hold.
+pub fn escaped(text: &str) -> String {
+    let fits = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    let printable: String =
+        text.chars().map(|c| if fits(c) || matches!(c, '\n' | '\t') { c } else { '\u{fffd}' }).collect();
+    escape(&printable).into_owned()
+}
+
+/// A paragraph of plain text.
+pub fn paragraph(text: &str) -> String {
+    format!("<p class=\"note\">{}</p>\n", escaped(text))
+}
+
+/// Plots beside each other; nothing where there is none.
+pub fn plots(figures: impl IntoIterator<Item = String>) -> String {
+    let all: String = figures.into_iter().collect();
+    if all.is_empty() { all } else { format!("<div class=\"plots\">\n{all}</div>\n") }
+}
+
+/// A cell of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Nothing is known.
+    Nothing,
+    /// A text.
+    Text(String),
+    /// A value in SI units, which stands behind the pointer to its last digit; with the prefix for its own size.
+    Value(f64, &'static str),
+    /// A value in SI units whose unit stands in the head of the column.
+    Scaled(f64, Scale, &'static str),
+    /// Content that is HTML already.
+    Html(String),
+}
+
+impl Cell {
+    /// A value, if there is one.
+    pub fn of(value: Option<f64>, unit: &'static str) -> Cell {
+        value.filter(|v| v.is_finite()).map_or(Cell::Nothing, |v| Cell::Value(v, unit))
+    }
+
+    /// A text.
+    pub fn text(text: impl Into<String>) -> Cell {
+        Cell::Text(text.into())
+    }
+
+    fn html(&self) -> String {
+        match self {
+            Cell::Nothing => "<td class=\"n\">\u{2013}</td>".into(),
+            Cell::Text(text) => format!("<td>{}</td>", escaped(text)),
+            Cell::Html(html) => format!("<td>{html}</td>"),
+            Cell::Value(v, unit) => {
+                format!(
+                    "<td class=\"n\" title=\"{}\">{}</td>",
+                    exact(*v, unit),
+                    escaped(&with_unit(*v, unit))
+                )
+            }
+            Cell::Scaled(v, scale, unit) => {
+                format!("<td class=\"n\" title=\"{}\">{}</td>", exact(*v, unit), number(v * scale.factor))
+            }
+        }
+    }
+
+    fn is_number(&self) -> bool {
+        matches!(self, Cell::Value(..) | Cell::Scaled(..))
+    }
+}
+
+/// A table whose values stand under each other at their left, for rows of different kinds.
+pub fn facts_table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> String {
+    table(heads, rows).replacen("<table>", "<table class=\"facts\">", 1)
+}
+
+/// A table: heads, and rows whose first cell names them. Nothing without rows.
+pub fn table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("<div class=\"tables\"><table>\n<thead><tr>");
+    let mut add =
+        |text: std::fmt::Arguments<'_>| out.write_fmt(text).expect("writing to a string does not fail");
+    for (k, head) in heads.iter().enumerate() {
+        let number = k > 0 && rows.iter().any(|r| r.1.get(k - 1).is_some_and(Cell::is_number));
+        add(format_args!(
+            "<th scope=\"col\"{}>{}</th>",
+            if number { " class=\"n\"" } else { "" },
+            escaped(head)
+        ));
+    }
+    add(format_args!("</tr></thead>\n<tbody>\n"));
+    for (name, cells) in rows {
+        let cells: String = cells.iter().map(Cell::html).collect();
+        add(format_args!("<tr><th scope=\"row\">{}</th>{cells}</tr>\n", escaped(name)));
+    }
+    add(format_args!("</tbody></table></div>\n"));
+    out
+}
+
+/// A table of columns of values, each with its unit in the head and one prefix: (name, unit, values), beside the names of
+/// the rows.
+pub fn columns(first: &str, names: &[String], columns: &[(&str, &'static str, Vec<Option<f64>>)]) -> String {
+    let scales: Vec<Scale> = columns
+        .iter()
+        .map(|(_, unit, values)| scale(unit, values.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()))))
+        .collect();
+    let mut heads = vec![first.to_string()];
+    for ((name, _, _), scale) in columns.iter().zip(&scales) {
+        heads.push(if scale.unit.is_empty() { name.to_string() } else { format!("{name} [{}]", scale.unit) });
+    }
+    let cell = |k: usize, row: usize| {
+        let (_, unit, values) = &columns[k];
+        let value = values.get(row).copied().flatten().filter(|v| v.is_finite());
+        value.map_or(Cell::Nothing, |v| Cell::Scaled(v, scales[k].clone(), unit))
+    };
+    let rows: Vec<(String, Vec<Cell>)> = names
+        .iter()
+        .enumerate()
+        .map(|(row, name)| (name.clone(), (0..columns.len()).map(|k| cell(k, row)).collect()))
+        .collect();
+    table(&heads.iter().map(String::as_str).collect::<Vec<_>>(), &rows)
+}

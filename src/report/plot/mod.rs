@@ -1,0 +1,192 @@
+//! Plots of a report: SVG inside the page, the legend as a list of the page below it, so that no text covers another.
+//!
+//! Text is placed by estimated widths, as in [`crate::write::svg`]. Curves differ by colour (Okabe and Ito 2008, distinct for
+//! colour-blind readers), by dashes and by the shape of their markers.
+
+mod draw;
+mod ruler;
+
+use super::page::escaped;
+use super::quantity::{Scale, scale};
+use ruler::Ruler;
+use std::fmt::Write;
+
+/// A side of a plot.
+#[derive(Clone, Debug, Default)]
+pub struct Side {
+    /// Quantity, such as `settlement`.
+    pub name: String,
+    /// Its SI unit; empty for a count or a ratio.
+    pub unit: String,
+    /// Whether distances are ratios.
+    pub logarithmic: bool,
+    /// Whether it grows downwards.
+    pub downwards: bool,
+    /// Whether it begins at zero, whatever the values are.
+    pub from_zero: bool,
+    /// Whether its values are counts, which have no ticks between whole numbers.
+    pub whole: bool,
+}
+
+impl Side {
+    /// A linear side.
+    pub fn new(name: &str, unit: &str) -> Side {
+        Side { name: name.into(), unit: unit.into(), ..Side::default() }
+    }
+
+    /// A linear side of counts.
+    pub fn count(name: &str) -> Side {
+        Side { name: name.into(), whole: true, ..Side::default() }
+    }
+
+    /// The same by logarithms.
+    pub fn logarithmic(self) -> Side {
+        Side { logarithmic: true, ..self }
+    }
+
+    /// The same growing downwards.
+    pub fn downwards(self) -> Side {
+        Side { downwards: true, ..self }
+    }
+
+    /// The same from zero on.
+    pub fn with_zero(self) -> Side {
+        Side { from_zero: true, ..self }
+    }
+
+    /// Quantity and unit, as it stands beside the side.
+    fn label(&self, scale: &Scale) -> String {
+        match scale.unit.as_str() {
+            "" => self.name.clone(),
+            unit => format!("{} [{unit}]", self.name),
+        }
+    }
+
+    fn ruler(&self, values: impl Iterator<Item = f64>, most: usize, tight: bool) -> Ruler {
+        match self.logarithmic {
+            true => Ruler::logarithmic(values),
+            false => {
+                let least = if self.whole { 1.0 } else { 0.0 };
+                Ruler::linear(values.chain(self.from_zero.then_some(0.0)), most, least, tight)
+            }
+        }
+    }
+}
+
+/// How a curve looks: numbers of its colour and of its dashes, whether a line joins its points, whether they have markers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// Number of the colour.
+    pub colour: usize,
+    /// Number of the dashes and of the shape of markers.
+    pub dash: usize,
+    /// Whether points are joined.
+    pub line: bool,
+    /// Whether points have markers.
+    pub marks: bool,
+}
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Its name in the legend; what has none is not in it.
+    pub name: String,
+    /// Points (x, y) in SI units, joined in order.
+    pub points: Vec<[f64; 2]>,
+    /// How it looks.
+    pub look: Look,
+}
+
+/// A plot.
+#[derive(Clone, Debug, Default)]
+pub struct Plot {
+    /// Title.
+    pub title: String,
+    /// Along the page.
+    pub x: Side,
+    /// Up or down the page.
+    pub y: Side,
+    /// The curves.
+    pub curves: Vec<Curve>,
+}
+
+impl Plot {
+    /// A plot of curves.
+    pub fn new(title: &str, x: Side, y: Side, curves: Vec<Curve>) -> Plot {
+        Plot { title: title.into(), x, y, curves }
+    }
+
+    /// The plot as a figure of a page; nothing where no curve has two points that can be shown.
+    pub fn figure(&self) -> String {
+        let values = |d: usize| self.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[d]));
+        let largest = |d: usize| values(d).filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
+        let scales = [scale(&self.x.unit, largest(0)), scale(&self.y.unit, largest(1))];
+        let [fx, fy] = [scales[0].factor, scales[1].factor];
+        let x = self.x.ruler(values(0).map(|v| v * fx), 7, true);
+        let y = self.y.ruler(values(1).map(|v| v * fy), 6, false);
+        let shown = |p: &[f64; 2]| {
+            let p = [p[0] * fx, p[1] * fy];
+            (x.holds(p[0]) && y.holds(p[1])).then_some(p)
+        };
+        let curves: Vec<Curve> = self
+            .curves
+            .iter()
+            .map(|c| Curve { points: c.points.iter().filter_map(shown).collect(), ..c.clone() })
+            .filter(|c| !c.points.is_empty())
+            .collect();
+        if curves.iter().all(|c| c.points.len() < 2) {
+            return String::new();
+        }
+        let labels = [self.x.label(&scales[0]), self.y.label(&scales[1])];
+        let svg = draw::svg(&self.title, labels, (&x, &y, self.y.downwards), &curves);
+        let legend = legend(&curves);
+        format!("<figure>\n<figcaption>{}</figcaption>\n{svg}{legend}</figure>\n", escaped(&self.title))
+    }
+}
+
+/// The list of the curves that have names.
+fn legend(curves: &[Curve]) -> String {
+    let named: Vec<&Curve> = curves.iter().filter(|c| !c.name.is_empty()).collect();
+    if named.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("<ul class=\"legend\">\n");
+    for curve in named {
+        let sample = draw::sample(curve.look);
+        writeln!(out, "<li>{sample}{}</li>", escaped(&curve.name))
+            .expect("writing to a string does not fail");
+    }
+    out + "</ul>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_has_units_legend_and_only_finite_points() {
+        let curve = |name: &str, points: &[[f64; 2]], k| Curve {
+            name: name.into(),
+            points: points.to_vec(),
+            look: Look { colour: k, dash: 0, line: true, marks: true },
+        };
+        let plot = Plot::new(
+            "a < b",
+            Side::new("cycle N", "").logarithmic(),
+            Side::new("settlement", "m").downwards(),
+            vec![
+                curve("run <1>", &[[0.0, 0.0], [1.0, 0.01], [10.0, 0.03]], 0),
+                curve("run 2", &[[1.0, f64::NAN], [2.0, 0.02]], 1),
+            ],
+        );
+        let text = plot.figure();
+        assert!(text.contains("settlement [mm]") && text.contains("cycle N") && text.contains("a &lt; b"));
+        assert!(text.contains("run &lt;1&gt;") && !text.contains("NaN"), "{text}");
+        assert_eq!(text.matches("<li>").count(), 2);
+        // Downwards: the deepest settlement is the lowest point of the page, whose coordinates grow downwards.
+        let line = text.split("<polyline points=\"").nth(1).unwrap().split('"').next().unwrap();
+        let y: Vec<f64> = line.split(' ').map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
+        assert!(y.len() == 2 && y[1] > y[0], "{y:?}");
+        assert_eq!(Plot::new("x", Side::default(), Side::default(), vec![curve("a", &[], 0)]).figure(), "");
+    }
+}

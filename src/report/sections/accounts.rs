@@ -1,0 +1,118 @@
+//! The accounts of energy, momentum and of the interface.
+
+use super::overlay::{facts, one, overlay};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, columns, plots};
+use crate::report::plot::{Plot, Side};
+use serde_json::Value;
+
+/// Columns of the history that store energy, with their names.
+const STORED: [(&str, &str); 8] = [
+    ("grains_kinetic", "motion of the grains"),
+    ("contact_springs", "springs of contacts"),
+    ("bond_energy", "bonds"),
+    ("grains_gravity", "gravity on the grains"),
+    ("solid_kinetic", "motion of the solid"),
+    ("solid_strain", "strain of the solid"),
+    ("solid_gravity", "gravity on the solid"),
+    ("rail_energy", "rails"),
+];
+
+/// Columns of work and losses.
+const SPENT: [(&str, &str); 6] = [
+    ("work", "work"),
+    ("dissipated_dashpot", "dashpots of contacts"),
+    ("dissipated_friction", "friction"),
+    ("dissipated_solid", "in the solid"),
+    ("dissipated_bonds", "dashpots of bonds"),
+    ("dissipated_track", "pads and track beyond"),
+];
+
+/// Energy, momentum, interface.
+pub fn energy(runs: &[RunData]) -> Option<Section> {
+    let time = || Side::new("time", "s");
+    let curves = |columns: &'static [(&'static str, &'static str)], change: bool| {
+        overlay(runs, move |run| {
+            let Some(table) = run.table("history") else { return Vec::new() };
+            let of = |(column, name): &(&str, &str)| {
+                let mut points = table.points("time", column)?;
+                let first = if change { points.first()?[1] } else { 0.0 };
+                points.iter_mut().for_each(|p| p[1] -= first);
+                points.iter().any(|p| p[1] != 0.0).then(|| (name.to_string(), points))
+            };
+            columns.iter().filter_map(of).collect()
+        })
+    };
+    let error = one(runs, |r| r.table("history")?.points("time", "energy_error"));
+    // Of several runs the parts would be too many lines.
+    let single = runs.len() == 1;
+    let part = |plot: Plot| if single { plot.figure() } else { String::new() };
+    let figures = plots([
+        part(Plot::new("Work and losses", time(), Side::new("energy", "J"), curves(&SPENT, false))),
+        part(Plot::new(
+            "Stored energy since the start",
+            time(),
+            Side::new("change", "J"),
+            curves(&STORED, true),
+        )),
+        if single {
+            String::new()
+        } else {
+            Plot::new("Work", time(), Side::new("work", "J"), curves(&SPENT[..1], false)).figure()
+        },
+        Plot::new("Error of the energy account", time(), Side::new("error", "J"), error).figure(),
+    ]);
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let sums = facts(
+        runs,
+        &[
+            ("work of the load", &path("energy.work", "J")),
+            ("energy turned over", &path("energy.turned_over", "J")),
+            ("error at the end", &path("energy.error", "J")),
+            ("the same over what was turned over", &path("energy.relative_error", "")),
+            ("largest error at any row", &path("energy.largest_error", "J")),
+            ("the same over what was turned over until then", &path("energy.largest_relative_error", "")),
+            ("momentum error over impulses", &path("momentum.linear", "")),
+            ("angular momentum error over impulses", &path("momentum.angular", "")),
+            ("interface: largest force error", &path("coupling.transfer.force", "")),
+            ("interface: largest moment error", &path("coupling.transfer.moment", "")),
+            ("interface: work as both sides see it, difference", &path("coupling.interface_work_error", "J")),
+        ],
+    );
+    Section::new("energy", "Energy and other accounts", figures + &sums + &parts(runs))
+}
+
+/// What was stored at both ends, and what was spent, part by part.
+fn parts(runs: &[RunData]) -> String {
+    let mut html = String::new();
+    for run in runs {
+        let object = |path: &str| run.value(path).as_object().cloned().unwrap_or_default();
+        let (start, end, spent) = (object("energy.start"), object("energy.end"), object("energy.spent"));
+        let whose = match runs.len() {
+            1 => String::new(),
+            _ => format!(": {}", crate::report::page::escaped(&run.label)),
+        };
+        let number = |v: Option<&Value>| v.and_then(Value::as_f64);
+        let stored: Vec<&String> = start
+            .keys()
+            .filter(|k| [start.get(*k), end.get(*k)].into_iter().any(|v| number(v).is_some_and(|v| v != 0.0)))
+            .collect();
+        let names: Vec<String> = stored.iter().map(|k| k.replace('_', " ")).collect();
+        let both = [
+            ("at the start", "J", stored.iter().map(|k| number(start.get(*k))).collect::<Vec<_>>()),
+            ("at the end", "J", stored.iter().map(|k| number(end.get(*k))).collect()),
+        ];
+        let lost: Vec<(&String, f64)> =
+            spent.iter().filter_map(|(k, v)| Some((k, v.as_f64().filter(|v| *v != 0.0)?))).collect();
+        let spent_names: Vec<String> = lost.iter().map(|(k, _)| k.replace('_', " ")).collect();
+        let spent_values = [("energy", "J", lost.iter().map(|(_, v)| Some(*v)).collect::<Vec<_>>())];
+        if !names.is_empty() || !spent_names.is_empty() {
+            html += &format!(
+                "<details>\n<summary>Part by part{whose}</summary>\n{}{}</details>\n",
+                columns("stored", &names, &both),
+                columns("work and losses", &spent_names, &spent_values)
+            );
+        }
+    }
+    html
+}

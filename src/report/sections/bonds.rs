@@ -1,0 +1,41 @@
+//! Bonds that break, and the pieces that they leave.
+
+use super::overlay::{facts, one, overlay};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, plots};
+use crate::report::plot::{Plot, Side};
+
+/// Bonds.
+pub fn bonds(runs: &[RunData]) -> Option<Section> {
+    let broken = overlay(runs, |run| {
+        let Some(table) = run.table("history") else { return Vec::new() };
+        let of = |(name, column): (&str, &str)| Some((name.to_string(), table.points("time", column)?));
+        [("by tension", "broken_by_tension"), ("by shear", "broken_by_shear")]
+            .into_iter()
+            .filter_map(of)
+            .collect()
+    });
+    let pieces = one(runs, |r| r.table("history")?.points("time", "fragments"));
+    let energy = one(runs, |r| r.table("history")?.points("time", "bond_energy"));
+    let time = || Side::new("time", "s");
+    let figures = plots([
+        Plot::new("Broken bonds", time(), Side::new("bonds", "").with_zero(), broken).figure(),
+        Plot::new("Pieces", time(), Side::new("fragments, single grains among them", "").with_zero(), pieces)
+            .figure(),
+        Plot::new("Elastic energy of the bonds", time(), Side::new("energy", "J").with_zero(), energy)
+            .figure(),
+    ]);
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let sums = facts(
+        runs,
+        &[
+            ("bonds at the start", &path("bonds.made", "")),
+            ("broken by tension and bending", &path("bonds.broken_by_tension", "")),
+            ("broken by shear and twisting", &path("bonds.broken_by_shear", "")),
+            ("energy set free by breaks", &path("bonds.energy_of_breaks", "J")),
+            ("pieces at the end", &path("bonds.fragments", "")),
+            ("bodies of the largest piece", &path("bonds.largest_fragment", "")),
+        ],
+    );
+    Section::new("bonds", "Bonds", figures + &sums)
+}

@@ -1,0 +1,112 @@
+//! Several runs beside each other: what sets them apart, and what came of it.
+
+use super::overlay::facts;
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, table};
+use std::collections::BTreeSet;
+
+/// Most keys that are listed.
+const KEYS: usize = 60;
+
+/// Comparison of several runs; none of a single one.
+pub fn compare(runs: &[RunData]) -> Option<Section> {
+    if runs.len() < 2 {
+        return None;
+    }
+    let html = format!("{}{}", different_keys(runs), results(runs));
+    Section::new("compare", "Comparison", html)
+}
+
+/// Keys of the scenes that are not alike in all runs.
+fn different_keys(runs: &[RunData]) -> String {
+    let all: BTreeSet<&String> = runs.iter().flat_map(|r| r.keys.keys()).collect();
+    let known = runs.iter().all(|r| !r.keys.is_empty());
+    let differ = |key: &&String| runs.iter().any(|r| r.keys.get(*key) != runs[0].keys.get(*key));
+    let rows: Vec<(String, Vec<Cell>)> = all
+        .into_iter()
+        .filter(differ)
+        .take(KEYS)
+        .map(|key| {
+            let of = |r: &RunData| r.keys.get(key).map_or(Cell::Nothing, |v| Cell::Text(shown(v)));
+            (key.clone(), runs.iter().map(of).collect())
+        })
+        .collect();
+    if rows.is_empty() {
+        let text = if known {
+            "The scenes are alike, key by key."
+        } else {
+            "Not all runs have their scene with them."
+        };
+        return crate::report::page::paragraph(text);
+    }
+    let heads: Vec<&str> =
+        std::iter::once("key of the scene").chain(runs.iter().map(|r| r.label.as_str())).collect();
+    table(&heads, &rows)
+}
+
+/// A value of a scene for people: strings without quotes, long ones in short.
+pub fn shown(value: &str) -> String {
+    let text = value.strip_prefix('"').and_then(|v| v.strip_suffix('"')).unwrap_or(value);
+    match text.char_indices().nth(160) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text.into(),
+    }
+}
+
+/// Settlement after a cycle [m].
+fn settlement_at(run: &RunData, cycle: f64) -> Option<f64> {
+    let points = run.table("cycles")?.points("cycle", "settlement")?;
+    points.iter().find(|p| p[0] == cycle).map(|p| p[1])
+}
+
+/// Last value of a column of `cycles.csv`.
+pub fn last_of(run: &RunData, column: &str) -> Option<f64> {
+    run.table("cycles")?.column(column)?.last().copied()
+}
+
+/// Largest value of a column of `history.csv`.
+fn largest_of(run: &RunData, column: &str) -> Option<f64> {
+    run.table("history")?.column(column)?.iter().copied().reduce(f64::max)
+}
+
+fn results(runs: &[RunData]) -> String {
+    let last = runs.iter().filter_map(|r| last_of(r, "cycle"));
+    let common = last.fold(f64::INFINITY, f64::min);
+    let at_common = format!("settlement after cycle {common}");
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let cycle =
+        |column: &'static str, unit: &'static str| move |r: &RunData| Cell::of(last_of(r, column), unit);
+    let porosity = |r: &RunData| Cell::of(r.value("packing.measures.0.porosity").as_f64(), "");
+    let wall = |r: &RunData| {
+        let seconds = r.list("stages").iter().filter_map(|s| s["seconds"].as_f64());
+        Cell::of((!r.list("stages").is_empty()).then(|| seconds.sum()), "s")
+    };
+    facts(
+        runs,
+        &[
+            ("outcome", &|r: &RunData| r.text("verdict.outcome").map_or(Cell::Nothing, Cell::text)),
+            ("cycles", &cycle("cycle", "")),
+            (&at_common, &|r| Cell::of(settlement_at(r, common), "m")),
+            ("settlement after the last cycle", &cycle("settlement", "m")),
+            ("resilient deflection in the last cycle", &cycle("resilient_deflection", "m")),
+            ("secant stiffness in the last cycle", &cycle("secant_stiffness", "N/m")),
+            ("resilient modulus in the last cycle", &cycle("resilient_modulus", "Pa")),
+            ("energy dissipated in the last cycle", &cycle("dissipated_energy", "J")),
+            ("largest pressure on the formation", &|r| {
+                Cell::of(largest_of(r, "peak_formation_pressure"), "Pa")
+            }),
+            ("peak of the lateral push", &path("push.peak", "N")),
+            ("coordination at the end", &path("packing.coordination", "")),
+            ("porosity of the first measured box", &porosity),
+            ("mean mass flow out", &path("flow.mean_rate_out", "kg/s")),
+            ("bonds broken by tension", &path("bonds.broken_by_tension", "")),
+            ("factor of safety: stands at", &path("safety.stands_at", "")),
+            ("factor of safety: fails at", &path("safety.fails_at", "")),
+            ("largest displacement", &|r| Cell::of(r.value("statics.largest_displacement.0").as_f64(), "m")),
+            ("work of the load", &path("energy.work", "J")),
+            ("largest energy error over energy turned over", &path("energy.largest_relative_error", "")),
+            ("time by the clock", &wall),
+            ("processor time", &path("cpu_seconds", "s")),
+        ],
+    )
+}

@@ -1,0 +1,95 @@
+//! Settlement laws as the summary has them: their curves.
+
+use serde_json::Value;
+
+/// Points of a curve.
+const POINTS: usize = 120;
+
+/// A law that was fitted to the settlement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    /// Its name.
+    pub name: String,
+    /// s(N).
+    pub form: String,
+    /// Names and values of the parameters; settlements [m].
+    pub parameters: Vec<(String, f64)>,
+    /// Share of the spread that it explains.
+    pub r2: f64,
+    /// Root-mean-square residual [m].
+    pub rms_error: f64,
+    /// First and last cycle used.
+    pub range: [f64; 2],
+}
+
+impl Law {
+    /// Of `settlement.fits` in a summary; none where something is missing.
+    pub fn of(fit: &Value) -> Option<Law> {
+        let parameter = |p: &Value| Some((p.get(0)?.as_str()?.to_string(), p.get(1)?.as_f64()?));
+        Some(Law {
+            name: fit["law"].as_str()?.into(),
+            form: fit["form"].as_str()?.into(),
+            parameters: fit["parameters"].as_array()?.iter().filter_map(parameter).collect(),
+            r2: fit["r2"].as_f64()?,
+            rms_error: fit["rms_error"].as_f64()?,
+            range: [fit["range"].get(0)?.as_f64()?, fit["range"].get(1)?.as_f64()?],
+        })
+    }
+
+    /// Settlement after N cycles [m]; none of a law that is not known here, or is another one's curve written in another way
+    /// (Hettler's is that of Alva-Hurtado & Selig).
+    pub fn at(&self, n: f64) -> Option<f64> {
+        let p = |name: &str| self.parameters.iter().find(|p| p.0 == name).map(|p| p.1);
+        let log = libm::log10(n);
+        let value = match self.name.as_str() {
+            "Alva-Hurtado & Selig" => p("s1")? * (1.0 + p("C")? * log),
+            "ORE D71" => p("s1")? * (1.0 + 0.2 * log),
+            "Indraratna" => p("s1")? * (1.0 + p("a")? * log + 0.5 * p("b")? * log * log),
+            "power" => p("a")? * libm::pow(n, p("b")?),
+            "Shenton" => p("a")? * libm::pow(n, 0.2) + p("b")? * n,
+            "Sato" => -p("gamma")? * libm::expm1(-p("alpha")? * n) + p("beta")? * n,
+            _ => return None,
+        };
+        value.is_finite().then_some(value)
+    }
+
+    /// Its curve over the cycles that it was fitted to; empty where it has none of its own.
+    pub fn curve(&self) -> Vec<[f64; 2]> {
+        let [from, to] = self.range;
+        if !(from > 0.0 && to > from) {
+            return Vec::new();
+        }
+        let place = |k: usize| from * libm::pow(to / from, k as f64 / POINTS as f64);
+        (0..=POINTS).filter_map(|k| Some([place(k), self.at(place(k))?])).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trackbed_coupling::track::settlement;
+
+    #[test]
+    fn every_law_has_the_curve_that_was_fitted() {
+        // The residuals of each curve are those that its fit states.
+        let data: Vec<[f64; 2]> = (1..=400)
+            .map(|n| {
+                let n = f64::from(n);
+                [n, 0.004 * (1.0 + 0.4 * libm::log10(n)) + 2e-6 * n + 2e-4 * libm::sin(0.3 * n)]
+            })
+            .collect();
+        let fits = settlement::fits(&data, 30e3);
+        let laws: Vec<Law> =
+            fits.iter().map(|f| Law::of(&serde_json::to_value(f).unwrap()).unwrap()).collect();
+        assert!(laws.len() >= 6, "{}", laws.len());
+        for law in laws.iter().filter(|l| l.name != "Hettler") {
+            let used: Vec<&[f64; 2]> = data.iter().filter(|p| p[0] >= law.range[0]).collect();
+            let rest: f64 = used.iter().map(|p| (law.at(p[0]).unwrap() - p[1]).powi(2)).sum();
+            let rms = (rest / used.len() as f64).sqrt();
+            assert!((rms / law.rms_error - 1.0).abs() < 1e-6, "{}: {rms} {}", law.name, law.rms_error);
+            assert_eq!(law.curve().len(), POINTS + 1);
+        }
+        let hettler = laws.iter().find(|l| l.name == "Hettler").expect("it goes with Alva-Hurtado & Selig");
+        assert!(hettler.curve().is_empty());
+    }
+}

@@ -1,0 +1,150 @@
+//! Load against deflection in single cycles; stiffness, modulus and damping over the cycles.
+
+use super::overlay::one;
+use crate::report::data::RunData;
+use crate::report::page::{Section, paragraph, plots};
+use crate::report::plot::{Curve, Look, Plot, Side};
+use std::f64::consts::PI;
+
+/// Rows of the history that a loop needs.
+const ROWS: usize = 12;
+
+/// A loop: deflection [m] downwards, load [N].
+struct Loop {
+    number: usize,
+    points: Vec<[f64; 2]>,
+}
+
+/// Loops, stiffness, damping.
+pub fn loops(runs: &[RunData]) -> Option<Section> {
+    let x = || Side::count("load cycle N").logarithmic();
+    let of = |column: &'static str| {
+        one(runs, move |r| {
+            // Zero: the cycle does not tell it.
+            let points = r.table("cycles")?.points("cycle", column)?;
+            Some(points.into_iter().filter(|p| p[1] != 0.0).collect())
+        })
+    };
+    let plot = |title: &str, name: &str, unit: &str, curves: Vec<Curve>| {
+        Plot::new(title, x(), Side::new(name, unit).with_zero(), curves).figure()
+    };
+    let single = runs.iter().all(|r| r.table("cycles").is_none_or(|t| t.rows() < 2));
+    let over_cycles = match single {
+        true => Vec::new(),
+        false => vec![
+            plot("Resilient deflection", "resilient deflection", "m", of("resilient_deflection")),
+            plot("Secant stiffness", "load range / resilient deflection", "N/m", of("secant_stiffness")),
+            plot("Stiffness of the bed", "slope between two loads", "N/m", of("bed_stiffness")),
+            plot("Resilient modulus", "pressure range / resilient strain", "Pa", of("resilient_modulus")),
+            plot("Area of the loop", "energy dissipated in a cycle", "J", of("dissipated_energy")),
+            plot("Damping ratio", "damping ratio D", "", one(runs, damping)),
+        ],
+    };
+    let (figure, note) = single_loops(runs);
+    let html = plots(std::iter::once(figure).chain(over_cycles));
+    if html.is_empty() {
+        return None;
+    }
+    let formulas = paragraph(
+        "Secant stiffness K: range of the load over the resilient deflection u, the rise of the sleeper from its lowest place to \
+         the end of the cycle. Area of the loop E: work of the load over the cycle, that of the settlement among it. Damping \
+         ratio D = 2 E/(π K u²): E over 4π times the energy of a spring K at half the range of u.",
+    );
+    Section::new("loops", "Load and deflection", html + &note + &formulas)
+}
+
+/// Damping ratio of each cycle: E/(4π ½ K (u/2)²).
+fn damping(run: &RunData) -> Option<Vec<[f64; 2]>> {
+    let table = run.table("cycles")?;
+    let [n, u, k, e] =
+        ["cycle", "resilient_deflection", "secant_stiffness", "dissipated_energy"].map(|c| table.column(c));
+    let (n, u, k, e) = (n?, u?, k?, e?);
+    let ratio = |i: usize| 2.0 * e[i] / (PI * k[i] * u[i] * u[i]);
+    let known = (0..n.len()).filter(|&i| u[i] > 0.0 && k[i] > 0.0 && ratio(i).is_finite());
+    Some(known.map(|i| [n[i], ratio(i)]).collect())
+}
+
+/// The plot of single loops, and what to say about it.
+fn single_loops(runs: &[RunData]) -> (String, String) {
+    let mut curves = Vec::new();
+    let mut coarse = false;
+    for (r, run) in runs.iter().enumerate() {
+        let Some(all) = loops_of(run) else { continue };
+        let fine: Vec<&Loop> = all.iter().filter(|l| l.points.len() >= ROWS).collect();
+        coarse |= fine.len() < all.len();
+        // The count of the loops is that of the cycles only where each was seen.
+        let counted = run.table("cycles").is_some_and(|t| t.rows() == all.len());
+        for (k, one) in selected(&fine, if runs.len() > 1 { 2 } else { 6 }).into_iter().enumerate() {
+            let kind = if counted { "cycle" } else { "loop" };
+            let name = format!("{kind} {}", one.number);
+            let (name, colour) =
+                if runs.len() > 1 { (format!("{}: {name}", run.label), r) } else { (name, k) };
+            let look = Look { colour, dash: k, line: true, marks: false };
+            curves.push(Curve { name, points: one.points.clone(), look });
+        }
+    }
+    let text = "Loops are drawn from the rows of the history; a cycle with fewer than 12 of them is left out \
+                (output.history_interval sets the time between rows).";
+    let note = if coarse { paragraph(text) } else { String::new() };
+    let x = Side::new("lowering since the start", "m");
+    (
+        Plot::new(
+            "Loops of load and deflection",
+            x,
+            Side::new("load on the sleeper", "N").with_zero(),
+            curves,
+        )
+        .figure(),
+        note,
+    )
+}
+
+/// The first, the last and some between by equal ratios.
+fn selected<'a>(all: &[&'a Loop], most: usize) -> Vec<&'a Loop> {
+    if all.len() <= most {
+        return all.to_vec();
+    }
+    let last = (all.len() - 1) as f64;
+    let mut places: Vec<usize> = (0..most)
+        .map(|k| (libm::pow(last + 1.0, k as f64 / (most - 1) as f64) - 1.0).round() as usize)
+        .collect();
+    places.dedup();
+    places.into_iter().map(|k| all[k.min(all.len() - 1)]).collect()
+}
+
+/// The loops of the first sleeper with a load: from one least load to the next. None without a load that goes up and down.
+fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
+    let table = run.table("history")?;
+    let (load, z) = [("load", "sleeper_z"), ("load_1", "sleeper_1_z")]
+        .into_iter()
+        .find_map(|(load, z)| Some((table.column(load)?, table.column(z)?)))?;
+    let least = load.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = load.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The load goes through the middle of its range, not just past it: a ramp from zero is no cycle of its own.
+    let (low, high) = (least + 0.45 * (most - least), least + 0.55 * (most - least));
+    let mut rises = Vec::new();
+    let mut below = true;
+    for (k, f) in load.iter().enumerate() {
+        if below && *f > high {
+            rises.push(k);
+            below = false;
+        }
+        below |= *f < low;
+    }
+    let lowest = |from: usize, to: usize| (from..to).min_by(|a, b| load[*a].total_cmp(&load[*b]));
+    let mut ends = Vec::new();
+    for (k, &rise) in rises.iter().enumerate() {
+        let from = if k == 0 { 0 } else { rises[k - 1] };
+        // Before the first rise the last of the rows of least load: rest and ramp are no part of a cycle.
+        let near = |i: &usize| load[*i] <= load[lowest(from, rise).unwrap_or(from)] + 0.08 * (most - least);
+        let start = if k == 0 { (from..rise).rev().find(near) } else { lowest(from, rise) };
+        ends.push(start.unwrap_or(from));
+    }
+    if let Some(&rise) = rises.last() {
+        // The last cycle may not be over.
+        ends.extend(lowest(rise, load.len()).filter(|&k| load[k] < low));
+    }
+    let first = *z.first()?;
+    let points = |w: &[usize]| (w[0]..=w[1]).map(|i| [first - z[i], load[i]]).collect();
+    Some(ends.windows(2).enumerate().map(|(k, w)| Loop { number: k + 1, points: points(w) }).collect())
+}

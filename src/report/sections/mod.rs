@@ -1,0 +1,53 @@
+//! The sections of a report, in their order on the page; each a function of the runs that returns nothing where these have
+//! nothing for it.
+
+mod accounts;
+mod bonds;
+mod compare;
+mod flow;
+mod gradation;
+mod laws;
+mod loops;
+mod overlay;
+mod overview;
+mod packing;
+mod reproduce;
+mod settlement;
+mod solid;
+mod steps;
+mod track;
+mod verdict;
+mod walls;
+
+use super::data::RunData;
+use super::page::Section;
+
+/// Makes a section of the runs.
+type Make = fn(&[RunData]) -> Option<Section>;
+
+/// All sections that the runs have something for.
+pub fn all(runs: &[RunData]) -> Vec<Section> {
+    let sections: [Make; 20] = [
+        verdict::verdict,
+        compare::compare,
+        overview::overview,
+        settlement::settlement,
+        loops::loops,
+        track::pressure,
+        track::sleepers,
+        track::push,
+        walls::walls,
+        packing::packing,
+        gradation::gradation,
+        flow::flow,
+        bonds::bonds,
+        solid::solid,
+        solid::safety,
+        solid::modes,
+        accounts::energy,
+        steps::steps,
+        steps::timings,
+        reproduce::reproduce,
+    ];
+    sections.iter().filter_map(|section| section(runs)).collect()
+}

@@ -1,0 +1,63 @@
+//! What sections share: curves and tables of one or several runs.
+
+use crate::report::data::RunData;
+use crate::report::page::{Cell, facts_table};
+use crate::report::plot::{Curve, Look};
+
+/// More points than these have no markers: the line is dense.
+const FEW: usize = 60;
+
+/// A named curve of a run, in SI units.
+pub type Named = (String, Vec<[f64; 2]>);
+
+/// The curves of all runs: of one run in colours of their own; of several each run has its colour, and its curves differ by
+/// dashes.
+pub fn overlay(runs: &[RunData], of: impl Fn(&RunData) -> Vec<Named>) -> Vec<Curve> {
+    let several = runs.len() > 1;
+    let mut curves = Vec::new();
+    for (r, run) in runs.iter().enumerate() {
+        for (k, (name, points)) in of(run).into_iter().enumerate().filter(|(_, c)| !c.1.is_empty()) {
+            let look =
+                Look { colour: if several { r } else { k }, dash: k, line: true, marks: points.len() <= FEW };
+            let name = match (several, name.as_str()) {
+                (true, "") => run.label.clone(),
+                (true, name) => format!("{}: {name}", run.label),
+                (false, _) => name,
+            };
+            curves.push(Curve { name, points, look });
+        }
+    }
+    curves
+}
+
+/// A curve of each run without a name of its own.
+pub fn one(runs: &[RunData], of: impl Fn(&RunData) -> Option<Vec<[f64; 2]>>) -> Vec<Curve> {
+    overlay(runs, |run| of(run).map(|points| vec![(String::new(), points)]).unwrap_or_default())
+}
+
+/// A row of a table of facts: name, and what a run has.
+pub type Fact<'a> = (&'a str, &'a dyn Fn(&RunData) -> Cell);
+
+/// A table with a column for each run and a row for each fact that any of them has.
+pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> String {
+    let rows: Vec<(String, Vec<Cell>)> = rows
+        .iter()
+        .map(|(name, of)| (name.to_string(), runs.iter().map(of).collect::<Vec<_>>()))
+        .filter(|(_, cells)| cells.iter().any(|c| *c != Cell::Nothing))
+        .collect();
+    let labels = runs.iter().map(|r| if runs.len() > 1 { r.label.as_str() } else { "value" });
+    let heads: Vec<&str> = std::iter::once("").chain(labels).collect();
+    facts_table(&heads, &rows)
+}
+
+/// The columns of a vector of a history among `_x`, `_y`, `_z` that vary most, as (axis, values).
+pub fn dominant<'a>(run: &'a RunData, stem: &str) -> Option<(&'static str, &'a [f64])> {
+    let table = run.table("history")?;
+    let spread = |values: &[f64]| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+    };
+    let axes = ["x", "y", "z"].into_iter();
+    let all = axes.filter_map(|axis| Some((axis, table.column(&format!("{stem}_{axis}"))?)));
+    all.max_by(|a, b| spread(a.1).total_cmp(&spread(b.1))).filter(|a| spread(a.1) > 0.0)
+}

@@ -1,0 +1,130 @@
+//! What was run: counts, steps of the model, materials, options.
+
+use super::compare::shown;
+use super::overlay::facts;
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, escaped, paragraph, table};
+use std::collections::BTreeSet;
+
+/// Keys that have sections of their own, or are long.
+const ELSEWHERE: [&str; 3] = ["material", "title", "probe"];
+/// Most tables that are listed before the text of the scene, which has all.
+const OPTIONS: usize = 60;
+
+/// What was run.
+pub fn overview(runs: &[RunData]) -> Option<Section> {
+    let mut html = counts(runs);
+    // Of runs of one scene the materials that differ stand in the comparison.
+    let alike = |run: &RunData| run.keys == runs[0].keys;
+    let shown: Vec<&RunData> = if runs.iter().all(alike) { vec![&runs[0]] } else { runs.iter().collect() };
+    for run in shown {
+        let whose = if runs.len() > 1 && !runs.iter().all(alike) {
+            format!(" of {}", run.label)
+        } else {
+            String::new()
+        };
+        for (kind, what) in [
+            ("material", "Materials of stones, walls and sleepers"),
+            ("solid.material", "Materials of the solid"),
+        ] {
+            let text = materials(run, kind);
+            if !text.is_empty() {
+                html += &format!("<h3>{what}{}</h3>\n{text}", escaped(&whose));
+            }
+        }
+        html += &options(run, &whose);
+    }
+    Section::new("overview", "What was run", html)
+}
+
+fn counts(runs: &[RunData]) -> String {
+    let path = |path: &'static str, unit: &'static str| {
+        move |r: &RunData| Cell::of(r.number(path).filter(|v| *v > 0.0), unit)
+    };
+    let wall = |r: &RunData| {
+        let seconds = r.list("stages").iter().filter_map(|s| s["seconds"].as_f64());
+        Cell::of((!r.list("stages").is_empty()).then(|| seconds.sum()), "s")
+    };
+    let text = |text: Option<&str>| text.map_or(Cell::Nothing, Cell::text);
+    facts(
+        runs,
+        &[
+            ("scene", &|r| text(Some(r.title()))),
+            ("scene file", &|r| text(r.file.as_ref().map(|f| f.scene.as_str()))),
+            ("folder", &|r| Cell::Text(r.dir.display().to_string())),
+            ("status", &|r| text(r.text("status"))),
+            ("version of the program", &|r| {
+                text(r.text("version").or(r.file.as_ref().map(|f| f.version.as_str())))
+            }),
+            ("nodes of the solid", &path("model.nodes", "")),
+            ("elements of the solid", &path("model.elements", "")),
+            ("unknowns of the solid", &path("model.unknowns", "")),
+            ("bodies (stones and sleepers)", &path("model.bodies", "")),
+            ("spheres that carry contacts", &path("model.spheres", "")),
+            ("simulated time", &|r| {
+                Cell::of(r.table("history").and_then(|t| t.column("time")?.last().copied()), "s")
+            }),
+            ("load cycles", &|r| Cell::of(super::compare::last_of(r, "cycle"), "")),
+            ("threads", &path("threads", "")),
+            ("time by the clock", &wall),
+            ("processor time", &path("cpu_seconds", "s")),
+            ("largest resident memory", &path("peak_memory", "B")),
+        ],
+    )
+}
+
+/// Materials of a kind, a row each, with the keys that any of them has.
+fn materials(run: &RunData, kind: &str) -> String {
+    let key_of = |key: &str| {
+        let rest = key.strip_prefix(kind)?.strip_prefix('.')?;
+        let (index, key) = rest.split_once('.')?;
+        Some((index.parse::<usize>().ok()?, key.to_string()))
+    };
+    let all: Vec<(usize, String, &String)> =
+        run.keys.iter().filter_map(|(k, v)| key_of(k).map(|(index, key)| (index, key, v))).collect();
+    let named = |key: &str| matches!(key, "name" | "id");
+    let keys: BTreeSet<&String> = all.iter().map(|a| &a.1).filter(|k| !named(k)).collect();
+    let count = all.iter().map(|a| a.0 + 1).max().unwrap_or(0);
+    let value = |index: usize, key: &str| all.iter().find(|a| a.0 == index && a.1 == key).map(|a| shown(a.2));
+    let rows: Vec<(String, Vec<Cell>)> = (0..count)
+        .map(|i| {
+            let name = match (value(i, "name"), value(i, "id")) {
+                (Some(name), Some(id)) => format!("{id}: {name}"),
+                (Some(name), None) => name,
+                (None, id) => id.unwrap_or_else(|| i.to_string()),
+            };
+            (name, keys.iter().map(|key| value(i, key).map_or(Cell::Nothing, Cell::Text)).collect())
+        })
+        .collect();
+    let heads: Vec<&str> = std::iter::once("material").chain(keys.iter().map(|k| k.as_str())).collect();
+    table(&heads, &rows)
+}
+
+/// The other keys of the scene, as they were written: a row for each table.
+fn options(run: &RunData, whose: &str) -> String {
+    let elsewhere = |key: &str| {
+        let first = key.split('.').next().unwrap_or(key);
+        ELSEWHERE.contains(&first) || key.starts_with("solid.material.")
+    };
+    let mut tables: Vec<(&str, Vec<String>)> = Vec::new();
+    for (key, value) in run.keys.iter().filter(|(key, _)| !elsewhere(key)) {
+        let (name, key) = key.rsplit_once('.').unwrap_or(("scene", key));
+        let text = format!("{key} = {}", shown(value));
+        match tables.iter_mut().find(|t| t.0 == name) {
+            Some((_, keys)) => keys.push(text),
+            None => tables.push((name, vec![text])),
+        }
+    }
+    let shown = tables.iter().take(OPTIONS);
+    let rows: Vec<(String, Vec<Cell>)> =
+        shown.map(|(name, keys)| (name.to_string(), vec![Cell::Text(keys.join(", "))])).collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let rest = match tables.len().saturating_sub(OPTIONS) {
+        0 => String::new(),
+        rest => paragraph(&format!("{rest} further tables stand in the scene below.")),
+    };
+    let head = format!("<h3>Options of the scene{}, as written there</h3>\n", escaped(whose));
+    head + &table(&["table", "keys"], &rows) + &rest
+}

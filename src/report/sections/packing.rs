@@ -1,0 +1,134 @@
+//! The grains at the end: coordination, porosity, stress; how the bed was made.
+
+use super::overlay::{facts, one};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, columns, plots, table};
+use crate::report::plot::{Plot, Side};
+use serde_json::Value;
+
+/// Packing.
+pub fn packing(runs: &[RunData]) -> Option<Section> {
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let figures = facts(
+        runs,
+        &[
+            ("neighbours of a grain at the start of the run", &path("model.coordination", "")),
+            ("neighbours of a grain at the end", &path("packing.coordination", "")),
+            ("the same without rattlers", &path("packing.mechanical_coordination", "")),
+            ("rattlers: share of the grains with no or one neighbour", &path("packing.rattlers", "")),
+            ("mean normal force of a contact", &path("packing.mean_contact_force", "N")),
+            ("strong contacts: share that carries more than the mean", &path("packing.strong_contacts", "")),
+            ("share of the normal forces that they carry", &path("packing.strong_load", "")),
+            ("unbalanced force over mean contact force", &path("packing.unbalanced_ratio", "")),
+            ("fouling index: fines by mass", &path("packing.fouling.fouling_index", "")),
+            (
+                "fines by solid volume over the other grains",
+                &path("packing.fouling.relative_fouling_ratio", ""),
+            ),
+        ],
+    );
+    let neighbours = one(runs, |r| {
+        let counts: Vec<f64> = r.list("packing.neighbours").iter().filter_map(Value::as_f64).collect();
+        let all: f64 = counts.iter().sum();
+        (all > 0.0).then(|| counts.iter().enumerate().map(|(k, n)| [k as f64, n / all]).collect())
+    });
+    let radial = one(runs, |r| {
+        let table = r.table("radial")?;
+        let first = *table.column("measure")?.first()?;
+        let of_first = table.column("measure")?.iter().map(|m| *m == first);
+        let points = table.points("distance", "g")?;
+        Some(points.into_iter().zip(of_first).filter(|(_, own)| *own).map(|(p, _)| p).collect())
+    });
+    let html = figures
+        + &measures(runs)
+        + &plots([
+            Plot::new(
+                "How many neighbours grains have",
+                Side::count("neighbours").with_zero(),
+                Side::new("share of the grains", "").with_zero(),
+                neighbours,
+            )
+            .figure(),
+            Plot::new(
+                "Radial distribution function of the first box",
+                Side::new("distance", "m").with_zero(),
+                Side::new("g", "").with_zero(),
+                radial,
+            )
+            .figure(),
+        ])
+        + &made(runs);
+    Section::new("packing", "Packing", html)
+}
+
+/// The boxes that the scene measures: packing and stress.
+fn measures(runs: &[RunData]) -> String {
+    let mut names = Vec::new();
+    let mut found: Vec<&Value> = Vec::new();
+    for run in runs {
+        for m in run.list("packing.measures") {
+            let name = m["name"].as_str().unwrap_or("box");
+            names.push(if runs.len() > 1 { format!("{}: {name}", run.label) } else { name.to_string() });
+            found.push(m);
+        }
+    }
+    if names.is_empty() {
+        return String::new();
+    }
+    let of = |key: &str| -> Vec<Option<f64>> { found.iter().map(|m| m[key].as_f64()).collect() };
+    let solid = of("porosity").into_iter().map(|p| Some(1.0 - p?)).collect();
+    let stress =
+        |k: usize| -> Vec<Option<f64>> { found.iter().map(|m| m["stress"].get(k)?.as_f64()).collect() };
+    let mean =
+        (0..found.len()).map(|i| Some(-(stress(0)[i]? + stress(1)[i]? + stress(2)[i]?) / 3.0)).collect();
+    let packing = [
+        ("porosity", "", of("porosity")),
+        ("solid fraction", "", solid),
+        ("grains", "", of("grains")),
+        ("neighbours", "", of("coordination")),
+        ("without rattlers", "", of("mechanical_coordination")),
+    ];
+    let stresses = [
+        ("mean pressure", "Pa", mean),
+        ("σxx", "Pa", stress(0)),
+        ("σyy", "Pa", stress(1)),
+        ("σzz", "Pa", stress(2)),
+        ("σxy", "Pa", stress(3)),
+        ("σyz", "Pa", stress(4)),
+        ("σzx", "Pa", stress(5)),
+    ];
+    format!(
+        "<h3>Measured boxes</h3>\n{}<h3>Stress in them, tension positive</h3>\n{}",
+        columns("box", &names, &packing),
+        columns("box", &names, &stresses)
+    )
+}
+
+/// Growth and compaction.
+fn made(runs: &[RunData]) -> String {
+    let several = runs.len() > 1;
+    let (mut growth, mut compaction) = (Vec::new(), Vec::new());
+    for run in runs {
+        let name = |text: &str| if several { format!("{}: {text}", run.label) } else { text.to_string() };
+        for g in run.list("growth") {
+            let number = |key: &str| Cell::of(g[key].as_f64(), "");
+            let cells = vec![number("porosity"), number("largest_overlap"), number("unbalanced_ratio")];
+            growth.push((name(g["group"].as_str().unwrap_or_default()), cells));
+        }
+        for (k, c) in run.list("compaction").iter().enumerate() {
+            let number = |key: &str, unit| Cell::of(c[key].as_f64(), unit);
+            let cells =
+                vec![number("porosity_before", ""), number("porosity_after", ""), number("wall_force", "N")];
+            compaction.push((name(&format!("{}: {}", k + 1, c["kind"].as_str().unwrap_or_default())), cells));
+        }
+    }
+    let section =
+        |head: &str, text: String| if text.is_empty() { text } else { format!("<h3>{head}</h3>\n{text}") };
+    section(
+        "Growth",
+        table(&["group", "porosity", "largest overlap over radius", "unbalanced force"], &growth),
+    ) + &section(
+        "Compaction",
+        table(&["stage", "porosity before", "porosity after", "force on the plane"], &compaction),
+    )
+}

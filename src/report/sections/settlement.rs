@@ -1,0 +1,182 @@
+//! Settlement under load cycles, with the laws fitted to it.
+
+use super::laws::Law;
+use super::overlay::{facts, one};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, columns, paragraph, plots, table};
+use crate::report::plot::{Curve, Look, Plot, Side};
+use crate::report::quantity::{exact, number};
+use serde_json::Value;
+
+/// Cycles that the table has: 1, 2, 5 of each power of ten, and the last.
+fn chosen(n: f64, last: f64) -> bool {
+    let power = libm::pow(10.0, libm::log10(n).floor());
+    n == last || [1.0, 2.0, 5.0].iter().any(|d| (n - d * power).abs() < 1e-6 * n)
+}
+
+/// Settlement against load cycles.
+pub fn settlement(runs: &[RunData]) -> Option<Section> {
+    let data = one(runs, |r| r.table("cycles")?.points("cycle", "settlement"));
+    if data.is_empty() {
+        return None;
+    }
+    let laws: Vec<Vec<Law>> =
+        runs.iter().map(|r| r.list("settlement.fits").iter().filter_map(Law::of).collect()).collect();
+    let mut curves = data;
+    if let [run] = runs {
+        curves[0].name = "simulated".into();
+        curves[0].look.marks = true;
+        curves[0].look.line = run.table("cycles").is_some_and(|t| t.rows() > 200);
+        let drawn = laws[0].iter().filter(|law| !law.curve().is_empty());
+        curves.extend(drawn.enumerate().map(|(k, law)| fitted(law, law.name.clone(), 1 + k)));
+    } else {
+        for (r, laws) in laws.iter().enumerate() {
+            let best = laws.iter().filter(|l| !l.curve().is_empty()).max_by(|a, b| a.r2.total_cmp(&b.r2));
+            let name = |law: &Law| format!("{}: {}", runs[r].label, law.name);
+            curves.extend(best.map(|law| Curve {
+                look: Look { colour: r, dash: 1, line: true, marks: false },
+                ..fitted(law, name(law), r)
+            }));
+        }
+    }
+    curves.retain(|c| !c.points.is_empty());
+    let y = || Side::new("settlement", "m").downwards().with_zero();
+    let linear =
+        Plot::new("Settlement of the sleeper", Side::count("load cycle N").with_zero(), y(), curves.clone());
+    let several = runs.iter().any(|r| r.table("cycles").is_some_and(|t| t.rows() > 2));
+    let figures = [
+        linear.figure(),
+        match several {
+            true => {
+                let x = Side::count("load cycle N").logarithmic();
+                Plot::new("The same over the logarithm of N", x, y(), curves).figure()
+            }
+            false => String::new(),
+        },
+        lowering(runs),
+    ];
+    let html = plots(figures) + &figures_of(runs) + &fits(runs, &laws) + &by_cycle(runs);
+    Section::new("settlement", "Settlement", html)
+}
+
+fn fitted(law: &Law, name: String, k: usize) -> Curve {
+    let look = Look { colour: k, dash: k, line: true, marks: false };
+    Curve { name, points: law.curve(), look }
+}
+
+/// Lowering of the sleepers against time.
+fn lowering(runs: &[RunData]) -> String {
+    let curves = super::overlay::overlay(runs, |run| {
+        let Some(table) = run.table("history") else { return Vec::new() };
+        let stems = table.before("_tilt");
+        let several = stems.len() > 1;
+        let stems = stems.into_iter().filter(|s| s.starts_with("sleeper"));
+        stems
+            .filter_map(|stem| {
+                let points = table.points("time", &format!("{stem}_z"))?;
+                let first = points.first()?[1];
+                let name = if several { stem.replace('_', " ") } else { String::new() };
+                Some((name, points.into_iter().map(|[t, z]| [t, first - z]).collect()))
+            })
+            .collect()
+    });
+    let y = Side::new("lowering since the start", "m").downwards();
+    Plot::new("Lowering of the sleeper in time", Side::new("time", "s"), y, curves).figure()
+}
+
+fn figures_of(runs: &[RunData]) -> String {
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    facts(
+        runs,
+        &[
+            ("settlement after the last cycle", &|r| Cell::of(super::compare::last_of(r, "settlement"), "m")),
+            ("settlement while the sleeper was seated, not counted", &path("settlement.seating", "m")),
+            ("increments of the later half over those of the first", &path("settlement.slowing", "")),
+            ("cycles simulated, with jumps", &path("settlement.jump.simulated", "")),
+            ("cycles jumped over", &path("settlement.jump.skipped", "")),
+            ("estimated error of the settlement by jumps", &path("settlement.jump.error_estimate", "m")),
+        ],
+    )
+}
+
+/// The laws with their parameters.
+fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> String {
+    let mut rows = Vec::new();
+    for (run, laws) in runs.iter().zip(laws) {
+        for law in laws {
+            let name = if runs.len() > 1 { format!("{}: {}", run.label, law.name) } else { law.name.clone() };
+            let parameters: Vec<String> =
+                law.parameters.iter().map(|(name, v)| format!("{name} = {}", number(*v))).collect();
+            let precise: Vec<String> =
+                law.parameters.iter().map(|(name, v)| format!("{name} = {}", exact(*v, ""))).collect();
+            let text = format!(
+                "<span title=\"{}\">{}</span>",
+                crate::report::page::escaped(&precise.join(", ")),
+                crate::report::page::escaped(&parameters.join(", "))
+            );
+            let [from, to] = law.range;
+            rows.push((
+                name,
+                vec![
+                    Cell::text(format!("s = {}", law.form)),
+                    Cell::Html(text),
+                    Cell::Value(law.r2, ""),
+                    Cell::Value(law.rms_error, "m"),
+                    Cell::text(format!("{from} to {to}")),
+                ],
+            ));
+        }
+    }
+    let note = match rows.is_empty() {
+        true => {
+            "No law was fitted: the run ended before, or there are fewer than ten cycles from the tenth on."
+        }
+        false => {
+            "Least squares in the settlement itself, cycles from the tenth on; settlements in metres. Of several runs the plot \
+             has the law with the largest R². Hettler's curve is that of Alva-Hurtado & Selig."
+        }
+    };
+    let missing = runs.iter().all(|r| r.value("settlement") == &Value::Null && r.table("cycles").is_none());
+    let note = if missing { String::new() } else { paragraph(note) };
+    let heads = ["law", "form", "parameters", "R²", "rms error", "cycles"];
+    let head = if rows.is_empty() { "" } else { "<h3>Settlement laws</h3>\n" };
+    format!("{head}{}{note}", table(&heads, &rows))
+}
+
+/// Single cycles in figures.
+fn by_cycle(runs: &[RunData]) -> String {
+    let mut html = String::new();
+    for run in runs {
+        let Some(table) = run.table("cycles") else { continue };
+        let Some(cycles) = table.column("cycle") else { continue };
+        let last = cycles.last().copied().unwrap_or(0.0);
+        let rows: Vec<usize> = (0..cycles.len()).filter(|&k| chosen(cycles[k], last)).collect();
+        let names: Vec<String> = rows.iter().map(|&k| number(cycles[k])).collect();
+        let of = |name: &str| -> Vec<Option<f64>> {
+            let column = table.column(name);
+            rows.iter().map(|&k| column.map(|c| c[k])).collect()
+        };
+        // Zero: the cycle does not tell it.
+        let known = |name: &str| -> Vec<Option<f64>> {
+            of(name).into_iter().map(|v| v.filter(|v| *v != 0.0)).collect()
+        };
+        let all = [
+            ("settlement", "m", of("settlement")),
+            ("rate per cycle", "m", of("rate")),
+            ("resilient deflection", "m", of("resilient_deflection")),
+            ("secant stiffness", "N/m", known("secant_stiffness")),
+            ("bed stiffness", "N/m", known("bed_stiffness")),
+            ("resilient modulus", "Pa", known("resilient_modulus")),
+            ("dissipated", "J", of("dissipated_energy")),
+            ("peak formation pressure", "Pa", known("peak_formation_pressure")),
+        ];
+        let some: Vec<_> = all.into_iter().filter(|c| c.2.iter().flatten().any(|v| *v != 0.0)).collect();
+        let whose = if runs.len() > 1 {
+            format!(" of {}", crate::report::page::escaped(&run.label))
+        } else {
+            String::new()
+        };
+        html += &format!("<h3>Load cycles{whose}</h3>\n{}", columns("cycle", &names, &some));
+    }
+    html
+}

@@ -1,0 +1,199 @@
+//! The solid: load against displacement, equilibrium, plastic share, factor of safety, modes.
+
+use super::overlay::{dominant, facts, one, overlay};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, columns, paragraph, plots, table};
+use crate::report::plot::{Plot, Side};
+use crate::scene::history::TimeFunction;
+
+/// The solid.
+pub fn solid(runs: &[RunData]) -> Option<Section> {
+    let time = || Side::new("time", "s");
+    let driven = overlay(runs, load_displacement);
+    let reactions = overlay(runs, |run| {
+        let stems = run.table("history").map(|t| t.before("_reaction_x")).unwrap_or_default();
+        let of = |stem: &&str| {
+            let (axis, values) = dominant(run, &format!("{stem}_reaction"))?;
+            let time = run.table("history")?.column("time")?;
+            Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, f)| [*t, *f]).collect()))
+        };
+        stems.iter().filter_map(of).collect()
+    });
+    let probes = |motion: &'static str| {
+        overlay(runs, move |run| {
+            let stems = run.table("history").map(|t| t.before("_v_x")).unwrap_or_default();
+            let of = |stem: &&str| {
+                let (axis, values) = dominant(run, &format!("{stem}_{motion}"))?;
+                let time = run.table("history")?.column("time")?;
+                Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, u)| [*t, *u]).collect()))
+            };
+            stems.iter().filter_map(of).collect()
+        })
+    };
+    let note = match driven.is_empty() {
+        true => String::new(),
+        false => paragraph(
+            "Load and displacement of supports that are moved: force of the support on the solid against its given displacement, \
+             both positive in the direction of the displacement.",
+        ),
+    };
+    let figures = plots([
+        Plot::new(
+            "Load and displacement",
+            Side::new("displacement of the support", "m"),
+            Side::new("force", "N"),
+            driven,
+        )
+        .figure(),
+        Plot::new("Reactions of named supports", time(), Side::new("force on the solid", "N"), reactions)
+            .figure(),
+        Plot::new("Displacement of probes", time(), Side::new("displacement", "m"), probes("u")).figure(),
+        Plot::new("Velocity of probes", time(), Side::new("velocity", "m/s"), probes("v")).figure(),
+    ]);
+    Section::new("solid", "Solid", figures + &note + &equilibrium(runs) + &supports(runs))
+}
+
+/// Force of moved supports against their displacement.
+fn load_displacement(run: &RunData) -> Vec<(String, Vec<[f64; 2]>)> {
+    let (Some(table), Some(scene)) = (run.table("history"), &run.scene) else { return Vec::new() };
+    let supports = scene.solid.iter().flat_map(|s| &s.support);
+    let moved = supports.filter_map(|s| {
+        let (name, size) = (s.name.as_ref()?, s.displacement?.si);
+        let [direction] = s.directions.as_slice() else { return None };
+        // A history from a file stays with the scene; the results do not have it.
+        let history = s.history.as_ref().filter(|h| h.file.is_none())?;
+        let history = TimeFunction::new(history, None).ok().filter(|_| size != 0.0)?;
+        let points = table.points("time", &format!("{name}_reaction_{direction}"))?;
+        let curve =
+            points.into_iter().map(|[t, f]| [size.abs() * history.factor(t), f * size.signum()]).collect();
+        Some((name.clone(), curve))
+    });
+    moved.collect()
+}
+
+fn equilibrium(runs: &[RunData]) -> String {
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let index = |path: &'static str, k: usize, unit: &'static str| {
+        move |r: &RunData| Cell::of(r.value(path).get(k).and_then(|v| v.as_f64()), unit)
+    };
+    facts(
+        runs,
+        &[
+            ("sum of the loads, x", &index("statics.load", 0, "N")),
+            ("sum of the loads, y", &index("statics.load", 1, "N")),
+            ("sum of the loads, z", &index("statics.load", 2, "N")),
+            ("sum of the reactions, x", &index("statics.reaction", 0, "N")),
+            ("sum of the reactions, y", &index("statics.reaction", 1, "N")),
+            ("sum of the reactions, z", &index("statics.reaction", 2, "N")),
+            ("loads and reactions over their sizes", &path("statics.equilibrium_error", "")),
+            ("largest displacement", &index("statics.largest_displacement", 0, "m")),
+            ("at node", &index("statics.largest_displacement", 1, "")),
+            ("strain energy", &path("statics.strain_energy", "J")),
+            ("Gauss points that have yielded: share of all at the end", &|r| Cell::of(plastic_share(r), "")),
+            ("largest equivalent plastic strain at the end", &|r| {
+                Cell::of(plastic(r).map(|k| k.iter().copied().fold(0.0, f64::max)), "")
+            }),
+            ("steps of Newton's method", &path("newton.steps", "")),
+            ("steps that were halved", &path("newton.halvings", "")),
+            ("iterations", &path("newton.iterations", "")),
+            ("symmetric factorizations", &path("newton.factorizations_symmetric", "")),
+            ("unsymmetric factorizations", &path("newton.factorizations_unsymmetric", "")),
+            ("shapes of the reduced solid", &path("model.reduction.shapes", "")),
+        ],
+    )
+}
+
+/// Equivalent plastic strain at the Gauss points.
+fn plastic(run: &RunData) -> Option<&[f64]> {
+    run.table("gauss")?.column("equivalent_plastic_strain")
+}
+
+fn plastic_share(run: &RunData) -> Option<f64> {
+    let all = plastic(run)?;
+    Some(all.iter().filter(|k| **k > 0.0).count() as f64 / all.len().max(1) as f64)
+}
+
+/// Sums of the reactions of named supports at the end.
+fn supports(runs: &[RunData]) -> String {
+    let mut names = Vec::new();
+    let mut forces = Vec::new();
+    for run in runs {
+        for r in run.list("reactions") {
+            let name = r["name"].as_str().unwrap_or_default();
+            names.push(if runs.len() > 1 { format!("{}: {name}", run.label) } else { name.to_string() });
+            forces.push([0, 1, 2].map(|k| r["force"].get(k).and_then(|v| v.as_f64())));
+        }
+    }
+    if names.is_empty() {
+        return String::new();
+    }
+    let of = |k: usize| forces.iter().map(|f| f[k]).collect();
+    let all = [("x", "N", of(0)), ("y", "N", of(1)), ("z", "N", of(2))];
+    format!("<h3>Reactions at the end</h3>\n{}", columns("support", &names, &all))
+}
+
+/// Factor of safety.
+pub fn safety(runs: &[RunData]) -> Option<Section> {
+    let curve = one(runs, |r| {
+        let table = r.table("safety")?;
+        table.points("factor", "largest_displacement")
+    });
+    let figure = Plot::new(
+        "Largest displacement against the factor",
+        Side::new("factor by which the strength is divided", ""),
+        Side::new("largest displacement", "m").with_zero(),
+        curve,
+    )
+    .figure();
+    let path = |path: &'static str| move |r: &RunData| Cell::of(r.number(path), "");
+    let sums = facts(
+        runs,
+        &[
+            ("largest factor that stands", &path("safety.stands_at")),
+            ("smallest factor that fails", &path("safety.fails_at")),
+        ],
+    );
+    let mut rows = Vec::new();
+    for run in runs {
+        for t in run.list("safety.trials") {
+            let number = |key: &str, unit| Cell::of(t[key].as_f64(), unit);
+            let stands = Cell::text(if t["stands"].as_bool().unwrap_or(false) { "stands" } else { "fails" });
+            let name = crate::report::quantity::number(t["factor"].as_f64().unwrap_or(0.0));
+            let name = if runs.len() > 1 { format!("{}: {name}", run.label) } else { name };
+            let cells = vec![
+                stands,
+                number("share_of_load", ""),
+                number("iterations", ""),
+                number("largest_displacement", "m"),
+            ];
+            rows.push((name, cells));
+        }
+    }
+    let heads = ["factor", "", "share of the load carried", "iterations", "largest displacement"];
+    Section::new("safety", "Factor of safety", sums + &plots([figure]) + &table(&heads, &rows))
+}
+
+/// Natural modes.
+pub fn modes(runs: &[RunData]) -> Option<Section> {
+    let mut html = String::new();
+    for run in runs {
+        let Some(table) = run.table("modes") else { continue };
+        let names: Vec<String> =
+            table.column("mode").unwrap_or_default().iter().map(|m| format!("{m}")).collect();
+        let of = |name: &str| -> Vec<Option<f64>> {
+            table.column(name).unwrap_or_default().iter().map(|v| Some(*v)).collect()
+        };
+        let all = [
+            ("frequency", "Hz", of("frequency")),
+            ("effective mass x", "kg", of("effective_mass_x")),
+            ("effective mass y", "kg", of("effective_mass_y")),
+            ("effective mass z", "kg", of("effective_mass_z")),
+            ("residual", "", of("residual")),
+        ];
+        if runs.len() > 1 {
+            html += &format!("<h3>{}</h3>\n", crate::report::page::escaped(&run.label));
+        }
+        html += &columns("mode", &names, &all);
+    }
+    Section::new("modes", "Natural modes", html)
+}

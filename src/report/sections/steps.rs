@@ -1,0 +1,75 @@
+//! Steps, windows and the exchange in figures; time of each stage.
+
+use super::overlay::facts;
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, table};
+use serde_json::Value;
+
+/// Width of the bar of the longest stage [px].
+const BAR: f64 = 220.0;
+
+/// Steps and windows.
+pub fn steps(runs: &[RunData]) -> Option<Section> {
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let text = |path: &'static str| move |r: &RunData| r.text(path).map_or(Cell::Nothing, Cell::text);
+    let sum = |key: &'static str| {
+        move |r: &RunData| {
+            let all: f64 = r.list("stages").iter().filter_map(|s| s[key].as_f64()).sum();
+            Cell::of((all > 0.0).then_some(all), "")
+        }
+    };
+    let scheme = |r: &RunData| match r.value("coupling.scheme") {
+        Value::Null => Cell::Nothing,
+        Value::String(name) => Cell::text(name),
+        other => Cell::Text(other.to_string()),
+    };
+    let html = facts(
+        runs,
+        &[
+            ("step of the grains at the end", &path("model.grain_step", "s")),
+            ("limit of that step", &path("model.grain_step_limit", "s")),
+            ("set by", &text("model.grain_step_set_by")),
+            ("step of the solid", &path("model.solid_step", "s")),
+            ("steps of the grains in all stages", &sum("grain_steps")),
+            ("steps of the solid in all stages", &sum("solid_steps")),
+            ("order of the exchange", &scheme),
+            ("steps of the grains in a window", &path("coupling.substeps", "")),
+            ("windows", &path("coupling.passes.windows", "")),
+            ("passes of windows", &path("coupling.passes.passes", "")),
+            ("windows without convergence", &path("coupling.passes.unconverged", "")),
+            ("stability of the exchange: stiffness W", &path("coupling.stability.stiffness", "")),
+            ("stability of the exchange: damping D", &path("coupling.stability.damping", "")),
+            ("transfer of contact forces", &text("coupling.transfer_kind")),
+        ],
+    );
+    Section::new("steps", "Steps and windows", html)
+}
+
+/// Time by the clock of each stage.
+pub fn timings(runs: &[RunData]) -> Option<Section> {
+    let seconds = |s: &Value| s["seconds"].as_f64().unwrap_or(0.0);
+    let longest = runs.iter().flat_map(|r| r.list("stages")).map(seconds).fold(0.0, f64::max);
+    let mut rows = Vec::new();
+    for run in runs {
+        let all: f64 = run.list("stages").iter().map(seconds).sum();
+        for s in run.list("stages") {
+            let stage = s["name"].as_str().unwrap_or_default();
+            let name = if runs.len() > 1 { format!("{}: {stage}", run.label) } else { stage.to_string() };
+            let count = |key: &str| Cell::of(s[key].as_f64().filter(|v| *v > 0.0), "");
+            let width = (BAR * seconds(s) / longest.max(f64::MIN_POSITIVE)).round();
+            let share = 100.0 * seconds(s) / all.max(f64::MIN_POSITIVE);
+            rows.push((
+                name,
+                vec![
+                    Cell::of(s["seconds"].as_f64(), "s"),
+                    Cell::Html(format!("<span class=\"bar\" style=\"width:{width}px\"></span> {share:.0} %")),
+                    count("grain_steps"),
+                    count("solid_steps"),
+                    count("windows"),
+                ],
+            ));
+        }
+    }
+    let heads = ["stage", "time by the clock", "share", "grain steps", "solid steps", "windows"];
+    Section::new("timings", "Time of the stages", table(&heads, &rows))
+}

@@ -1,0 +1,112 @@
+//! Recorded walls: forces against time and displacement; stress against strain of servo tests.
+
+use super::overlay::{dominant, overlay};
+use crate::report::data::RunData;
+use crate::report::page::{Section, paragraph, plots};
+use crate::report::plot::{Plot, Side};
+use crate::report::table::NumberTable;
+use crate::scene::walls::{Wall, WallKind};
+
+/// Share of the largest force above which a wall touches.
+const TOUCH: f64 = 0.01;
+
+/// Forces on walls.
+pub fn walls(runs: &[RunData]) -> Option<Section> {
+    let forces = overlay(runs, |run| {
+        let of = |stem: &str| {
+            let (axis, values) = dominant(run, &format!("{stem}_force"))?;
+            let time = run.table("history")?.column("time")?;
+            Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, f)| [*t, *f]).collect()))
+        };
+        stems(run).iter().filter_map(|s| of(s)).collect()
+    });
+    let ways = overlay(runs, |run| {
+        let of = |stem: &str| {
+            let (axis, way) = dominant(run, &format!("{stem}_displacement"))?;
+            let force = run.table("history")?.column(&format!("{stem}_force_{axis}"))?;
+            Some((format!("{stem}, {axis}"), way.iter().zip(force).map(|(u, f)| [*u, *f]).collect()))
+        };
+        stems(run).iter().filter_map(|s| of(s)).collect()
+    });
+    let stress = overlay(runs, |run| servos(run).into_iter().map(|s| (s.name, s.points)).collect());
+    let strained = !stress.is_empty();
+    let html = plots([
+        Plot::new(
+            "Stress and strain of servo walls",
+            Side::new("strain", ""),
+            Side::new("stress", "Pa"),
+            stress,
+        )
+        .figure(),
+        Plot::new("Force of the grains on walls", Side::new("time", "s"), Side::new("force", "N"), forces)
+            .figure(),
+        Plot::new(
+            "Force against the way of walls that move",
+            Side::new("displacement", "m"),
+            Side::new("force", "N"),
+            ways,
+        )
+        .figure(),
+    ]);
+    let note = match strained {
+        true => paragraph(
+            "Of each wall the component that varies most. Stress of a servo wall: force of the grains along its normal over its \
+             area; strain: its way towards the plane that faces it since the stress first passed 1 % of its largest, over their distance then.",
+        ),
+        false => paragraph("Of each wall the component that varies most."),
+    };
+    if html.is_empty() { None } else { Section::new("walls", "Walls", html + &note) }
+}
+
+/// Names of recorded walls.
+fn stems(run: &RunData) -> Vec<&str> {
+    run.table("history").map(|t| t.before("_moment_x")).unwrap_or_default()
+}
+
+/// Stress against strain of a wall.
+struct Servo {
+    name: String,
+    points: Vec<[f64; 2]>,
+}
+
+/// Servo walls that are planes with an area and another plane that faces them.
+fn servos(run: &RunData) -> Vec<Servo> {
+    let (Some(scene), Some(table)) = (&run.scene, run.table("history")) else { return Vec::new() };
+    scene.walls.iter().filter_map(|wall| servo(wall, &scene.walls, table)).collect()
+}
+
+fn servo(wall: &Wall, all: &[Wall], table: &NumberTable) -> Option<Servo> {
+    let area = wall.servo.as_ref()?.area?;
+    let name = wall.name.as_ref()?;
+    let (point, normal) = plane(wall)?;
+    let along = |stem: &str| -> Option<Vec<f64>> {
+        let [x, y, z] = ["x", "y", "z"].map(|axis| table.column(&format!("{name}_{stem}_{axis}")));
+        let (x, y, z) = (x?, y?, z?);
+        Some((0..x.len()).map(|k| dot([x[k], y[k], z[k]], normal)).collect())
+    };
+    let (force, way) = (along("force")?, along("displacement")?);
+    // A plate may come a long way before it touches.
+    let most = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    let start = force.iter().position(|f| f.abs() > TOUCH * most)?;
+    let first = way[start];
+    // The nearest plane on the side that the wall looks to, and that looks back.
+    let faces = all.iter().filter_map(plane).filter(|(_, n)| dot(*n, normal) < -0.999);
+    let gaps = faces.map(|(p, _)| dot([0, 1, 2].map(|d| p[d] - point[d]), normal) - first);
+    let gap = gaps.filter(|g| *g > 0.0).min_by(f64::total_cmp)?;
+    let points = way.iter().zip(&force).skip(start).map(|(u, f)| [(u - first) / gap, -f / area]).collect();
+    Some(Servo { name: name.clone(), points })
+}
+
+/// Point and unit normal of a plane.
+fn plane(wall: &Wall) -> Option<([f64; 3], [f64; 3])> {
+    if wall.kind != WallKind::Plane {
+        return None;
+    }
+    let normal = wall.normal?;
+    let length = dot(normal, normal).sqrt();
+    (length > 0.0).then_some((wall.point.map(|p| p.map(|x| x.si))?, normal.map(|n| n / length)))
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

@@ -1,0 +1,107 @@
+//! Tables of numbers as the program writes them: a head with units, rows that may still be growing.
+
+use crate::failure::Failure;
+use crate::read::source;
+use std::path::Path;
+
+/// Columns of numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NumberTable {
+    /// Name of each column, without its unit.
+    pub heads: Vec<String>,
+    /// Values by column.
+    columns: Vec<Vec<f64>>,
+    /// Rows that could not be read: with too few values, or with one that is no finite number.
+    pub skipped: usize,
+}
+
+impl NumberTable {
+    /// Reads a table; none where the file is missing. The last row is left out while it has no end, and so is every row that
+    /// has not a finite number in each column.
+    ///
+    /// # Errors
+    /// Bad input: the file is not to be read, or has no head.
+    pub fn read(file: &Path) -> Result<Option<NumberTable>, Failure> {
+        if !file.exists() {
+            return Ok(None);
+        }
+        let refused = |found: String, expected: &str| {
+            Failure::Input(format!("{}: found {found}, expected {expected}", file.display()))
+        };
+        let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
+            let (found, expected) = refusal.words(|e| e.to_string());
+            refused(found, &expected)
+        })?;
+        let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |k| k + 1);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..end]);
+        let heads: Vec<String> = match reader.headers() {
+            Ok(heads) => heads.iter().map(head).collect(),
+            Err(e) => return Err(refused(e.to_string(), "a table of numbers with a head")),
+        };
+        if heads.is_empty() {
+            return Err(refused("no head".into(), "a table of numbers with a head"));
+        }
+        let mut table = NumberTable { columns: vec![Vec::new(); heads.len()], heads, skipped: 0 };
+        let mut row = Vec::new();
+        for record in reader.records() {
+            row.clear();
+            row.extend(record.iter().flatten().filter_map(|v| v.trim().parse::<f64>().ok()));
+            match row.len() == table.columns.len() && row.iter().all(|v| v.is_finite()) {
+                true => table.columns.iter_mut().zip(&row).for_each(|(column, v)| column.push(*v)),
+                false => table.skipped += 1,
+            }
+        }
+        Ok(Some(table))
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Values of a column.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let index = self.heads.iter().position(|h| h == name)?;
+        Some(&self.columns[index])
+    }
+
+    /// Points (x, y) of two columns, where both are there.
+    pub fn points(&self, x: &str, y: &str) -> Option<Vec<[f64; 2]>> {
+        Some(self.column(x)?.iter().zip(self.column(y)?).map(|(x, y)| [*x, *y]).collect())
+    }
+
+    /// What stands before `end` in the names of columns that end so: `plate` of `plate_force_x` for `_force_x`.
+    pub fn before(&self, end: &str) -> Vec<&str> {
+        self.heads.iter().filter_map(|h| h.strip_suffix(end)).collect()
+    }
+}
+
+/// Name in a head such as `settlement [m]`.
+fn head(text: &str) -> String {
+    text.rsplit_once(" [").map_or(text, |(name, _)| name).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+    use std::fs;
+
+    #[test]
+    fn a_table_that_grows_is_read_up_to_its_last_whole_row() {
+        let dir = folder("report_table");
+        let file = dir.join("t.csv");
+        assert_eq!(NumberTable::read(&file).unwrap(), None);
+        fs::write(&file, "time [s],plate_force_x [N],n\n0,1e3,2\n1,NaN,3\n2,5\n3,-4,5\n4,12").unwrap();
+        let table = NumberTable::read(&file).unwrap().unwrap();
+        assert_eq!((table.rows(), table.skipped), (2, 2));
+        assert_eq!(table.points("time", "plate_force_x").unwrap(), [[0.0, 1e3], [3.0, -4.0]]);
+        assert_eq!(table.heads[1], "plate_force_x", "without its unit");
+        assert_eq!(table.before("_force_x"), ["plate"]);
+        fs::write(&file, "time [s],n\n").unwrap();
+        assert_eq!(NumberTable::read(&file).unwrap().unwrap().rows(), 0);
+        fs::write(&file, "time [s]").unwrap();
+        assert!(NumberTable::read(&file).is_err(), "the head is not whole yet");
+        fs::remove_dir_all(&dir).unwrap();
+    }
+}

@@ -1,0 +1,61 @@
+//! `run.json`: what a run is of, so that its results can be read without the scene at hand, and while it goes on.
+
+use crate::failure::Failure;
+use crate::read::source;
+use crate::scene::Document;
+use crate::write::{WriteError, atomic};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Name of the file.
+pub const FILE: &str = "run.json";
+
+/// The content of `run.json`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RunFile {
+    /// Version of the program.
+    pub version: String,
+    /// The scene file, as it was named on the command line.
+    pub scene: String,
+    /// Keys overridden on the command line, as key=value, in order.
+    pub overrides: Vec<String>,
+    /// Text of the scene file, without the overrides.
+    pub text: String,
+}
+
+impl RunFile {
+    /// Of a scene that is run.
+    pub fn of(document: &Document) -> RunFile {
+        RunFile {
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene: document.file().display().to_string(),
+            overrides: document.overrides().iter().map(|(key, value)| format!("{key}={value}")).collect(),
+            text: document.text().into(),
+        }
+    }
+
+    /// Writes it in a folder of results.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn write(&self, dir: &Path) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
+        let file = dir.join(FILE);
+        atomic::write(&file, |out| {
+            writeln!(out, "{text}").map_err(|source| WriteError::Io { file: file.clone(), source })
+        })?;
+        Ok(())
+    }
+
+    /// The one in a folder of results; none where there is none that can be read.
+    pub fn read(dir: &Path) -> Option<RunFile> {
+        serde_json::from_slice(&source::bytes(&dir.join(FILE), source::LARGEST).ok()?).ok()
+    }
+
+    /// The scene with its overrides; none where this program does not understand it.
+    pub fn document(&self) -> Option<Document> {
+        let mut document = Document::parse(Path::new(&self.scene), self.text.clone()).ok()?;
+        self.overrides.iter().try_for_each(|o| document.set(o)).ok()?;
+        Some(document)
+    }
+}

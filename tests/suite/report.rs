@@ -1,0 +1,372 @@
+//! `trackbed report`: pages that any program can read, with the numbers of the files.
+
+use super::support::{
+    COUPLED, Folder, GRAINS, Outcome, PLASTIC, Table, json, repository, run, scene_folder, trackbed,
+};
+use quick_xml::events::Event;
+use std::fs;
+use std::path::Path;
+
+/// A page as a reader finds it.
+struct Page {
+    /// Names of the sections.
+    sections: Vec<String>,
+    /// Text without tags.
+    text: String,
+    /// Numbers that stand behind the pointer.
+    numbers: Vec<f64>,
+    /// Plots.
+    figures: usize,
+    source: String,
+}
+
+impl Page {
+    /// Reads a page; it must be well-formed, reach for nothing outside itself, and hold no number that is none.
+    #[track_caller]
+    fn read(file: &Path) -> Page {
+        let source = fs::read_to_string(file).unwrap();
+        let mut page = Page {
+            sections: vec![],
+            text: String::new(),
+            numbers: vec![],
+            figures: 0,
+            source: source.clone(),
+        };
+        let mut reader = quick_xml::Reader::from_str(&source);
+        reader.config_mut().check_end_names = true;
+        let mut depth = 0;
+        loop {
+            let event = reader.read_event().unwrap_or_else(|e| panic!("{}: {e}", reader.buffer_position()));
+            match &event {
+                Event::Eof => break,
+                Event::Text(text) => page.text += &text.unescape().unwrap(),
+                Event::Start(tag) | Event::Empty(tag) => {
+                    let name = String::from_utf8(tag.name().as_ref().to_vec()).unwrap();
+                    depth += i32::from(matches!(event, Event::Start(_)));
+                    assert!(!matches!(name.as_str(), "script" | "img" | "link" | "iframe"), "<{name}>");
+                    page.figures += usize::from(name == "figure");
+                    for attribute in tag.attributes() {
+                        let attribute = attribute.unwrap();
+                        let value = attribute.unescape_value().unwrap().into_owned();
+                        match attribute.key.as_ref() {
+                            b"id" if name == "section" => page.sections.push(value),
+                            b"title" if name == "td" => {
+                                page.numbers.push(value.split(' ').next().unwrap().parse().unwrap());
+                            }
+                            b"src" | b"onload" | b"onclick" => panic!("{value}"),
+                            b"href" => assert!(value.starts_with('#'), "{value}"),
+                            _ => {}
+                        }
+                    }
+                }
+                Event::End(_) => depth -= 1,
+                _ => {}
+            }
+        }
+        assert_eq!(depth, 0);
+        for word in ["NaN", "undefined", "null", " inf", "\"inf"] {
+            assert!(!source.contains(word), "{word}: {}", around(&source, word));
+        }
+        assert!(!source.replace("http://www.w3.org/2000/svg", "").contains("://"), "something from outside");
+        page
+    }
+
+    #[track_caller]
+    fn has(&self, sections: &[&str]) {
+        for name in sections {
+            assert!(self.sections.iter().any(|s| s == name), "{name} in {:?}", self.sections);
+        }
+        assert_eq!(self.sections[0], "verdict", "verdict and warnings come first");
+    }
+
+    #[track_caller]
+    fn lacks(&self, sections: &[&str]) {
+        for name in sections {
+            assert!(!self.sections.iter().any(|s| s == name), "{name} in {:?}", self.sections);
+        }
+    }
+
+    #[track_caller]
+    fn says(&self, value: f64) {
+        assert!(self.numbers.contains(&value), "{value} is not on the page");
+    }
+
+    #[track_caller]
+    fn contains(&self, text: &str) {
+        assert!(self.text.contains(text), "{text:?} is not in {}", self.text);
+    }
+}
+
+fn around(text: &str, word: &str) -> String {
+    let at = text.find(word).unwrap();
+    text[at.saturating_sub(60)..].chars().take(160).collect()
+}
+
+fn report(arguments: &[&Path]) -> Outcome {
+    trackbed(std::iter::once(Path::new("report")).chain(arguments.iter().copied()))
+}
+
+/// Runs a scene of the repository and reports it.
+#[track_caller]
+fn reported(folder: &Folder, scene: &str, set: &[&str]) -> (Page, serde_json::Value) {
+    let out = folder.join("out");
+    run(&repository().join(scene), &out, set).good();
+    let said = report(&[&out]).good();
+    assert_eq!(said.stdout, format!("{} written\n", out.join("report.html").display()));
+    (Page::read(&out.join("report.html")), json(&out.join("summary.json")))
+}
+
+#[test]
+fn the_main_job() {
+    let set = [
+        "grains.0.count=200",
+        "deposition.max_time=0.1",
+        "deposition.level=0.2",
+        "track.load.cycles=3",
+        "track.load.rest=0.01",
+        "track.load.ramp=0.01",
+        "track.load.frequency=\"100 Hz\"",
+        "output.frames=1",
+    ];
+    let folder = Folder::new("report_track");
+    let (page, summary) = reported(&folder, "inputs/track/cyclic/scene.toml", &set);
+    page.has(&[
+        "overview",
+        "settlement",
+        "loops",
+        "pressure",
+        "sleepers",
+        "packing",
+        "gradation",
+        "energy",
+        "steps",
+        "timings",
+        "reproduce",
+    ]);
+    page.lacks(&["compare", "flow", "bonds", "safety", "push", "modes", "walls"]);
+    for path in [
+        "/energy/work",
+        "/energy/largest_relative_error",
+        "/model/bodies",
+        "/model/nodes",
+        "/model/grain_step",
+        "/coupling/stability/stiffness",
+        "/settlement/per_cycle/2",
+        "/track/sleepers/0/largest_force",
+        "/packing/coordination",
+        "/stages/1/seconds",
+        "/cpu_seconds",
+    ] {
+        page.says(summary.pointer(path).and_then(|v| v.as_f64()).unwrap_or_else(|| panic!("{path}")));
+    }
+    let cycles = Table::read(&folder.join("out/cycles.csv"));
+    for column in ["settlement", "secant_stiffness", "dissipated_energy", "peak_formation_pressure"] {
+        cycles.column(column).into_iter().filter(|v| *v != 0.0).for_each(|v| page.says(v));
+    }
+    page.contains("Cyclic loading of a sleeper on ballast");
+    page.contains("2650 kg/m3");
+    page.contains("trackbed run ");
+    page.contains("--set track.load.cycles=3");
+    page.contains("settlement [");
+    assert!(page.figures >= 10, "{} plots", page.figures);
+}
+
+#[test]
+fn settlement_laws_of_many_cycles() {
+    let set = [
+        "grains.0.count=120",
+        "deposition.max_time=0.3",
+        "deposition.level=0.15",
+        "track.load.cycles=24",
+        "track.load.frequency=\"80 Hz\"",
+        "track.load.rest=0.02",
+        "track.load.ramp=0.02",
+        "output.frames=0",
+    ];
+    let folder = Folder::new("report_box");
+    let (page, summary) = reported(&folder, "inputs/ballast/box.toml", &set);
+    let fits = summary["settlement"]["fits"].as_array().unwrap();
+    assert!(fits.len() >= 5, "{fits:?}");
+    for fit in fits {
+        page.contains(fit["law"].as_str().unwrap());
+        page.says(fit["r2"].as_f64().unwrap());
+        page.says(fit["rms_error"].as_f64().unwrap());
+    }
+    page.says(summary["packing"]["measures"][0]["porosity"].as_f64().unwrap());
+    page.contains("cycle 24");
+    // Dashed for the laws, on the linear and on the logarithmic plot.
+    assert!(page.source.matches("Alva-Hurtado").count() >= 3);
+    page.lacks(&["pressure", "solid"]);
+}
+
+#[test]
+fn a_solid_alone_and_its_factor_of_safety() {
+    let folder = Folder::new("report_solid");
+    let set = ["output.frames=1", "output.tables=true", "time.solid_step=0.1"];
+    let (page, summary) = reported(&folder, "inputs/solid/footing.toml", &set);
+    page.has(&["overview", "solid", "energy", "reproduce"]);
+    page.lacks(&["settlement", "packing", "loops", "sleepers", "gradation"]);
+    page.says(summary["reactions"][0]["force"][2].as_f64().unwrap());
+    page.contains("Load and displacement");
+    page.contains("share of all at the end");
+    let gauss = Table::read(&folder.join("out/gauss.csv")).column("equivalent_plastic_strain");
+    let share = gauss.iter().filter(|k| **k > 0.0).count() as f64 / gauss.len() as f64;
+    assert!(share > 0.0 && share < 1.0);
+    page.says(share);
+    let set = [
+        "solid.block.x.counts=[8]",
+        "solid.block.z.counts=[3]",
+        "solid.strength_reduction.tolerance=0.1",
+        "solid.newton.max_iterations=40",
+    ];
+    let (page, summary) = reported(&folder, "inputs/solid/slope.toml", &set);
+    page.has(&["safety"]);
+    page.says(summary["safety"]["stands_at"].as_f64().unwrap());
+    page.says(summary["safety"]["fails_at"].as_f64().unwrap());
+}
+
+#[test]
+fn grains_alone() {
+    let folder = Folder::new("report_grains");
+    let (page, summary) = reported(
+        &folder,
+        "inputs/grains/hopper_flow.toml",
+        &["time.end=0.1", "output.frames=0", "grains.0.count=600"],
+    );
+    page.has(&["overview", "walls", "packing", "flow", "energy"]);
+    page.says(summary["flow"]["mean_rate_out"].as_f64().unwrap());
+    page.lacks(&["solid", "settlement", "sleepers"]);
+    let (page, _) = reported(
+        &folder,
+        "inputs/grains/servo.toml",
+        &["grains.0.count=150", "output.frames=0", "time.end=0.6"],
+    );
+    page.contains("Stress and strain of servo walls");
+}
+
+#[test]
+fn modes_and_several_runs() {
+    let folder = scene_folder("report_several", COUPLED);
+    let [one, two] = ["a/one", "b/one"].map(|name| folder.join(name));
+    let scene = folder.join("scene.toml");
+    run(&scene, &one, &[]).good();
+    run(&scene, &two, &["track.load.maximum=\"8 kN\""]).good();
+    let page = folder.join("both.html");
+    report(&[&one, &two, Path::new("--out"), &page, Path::new("--title"), Path::new("Two loads")]).good();
+    let both = Page::read(&page);
+    both.has(&["compare", "settlement", "overview", "reproduce"]);
+    both.contains("Two loads");
+    both.contains("track.load.maximum");
+    // Folders of one name are shown with the way there.
+    both.contains(&one.display().to_string());
+    for dir in [&one, &two] {
+        both.says(json(&dir.join("summary.json"))["energy"]["work"].as_f64().unwrap());
+        Table::read(&dir.join("cycles.csv")).column("settlement").into_iter().for_each(|v| both.says(v));
+    }
+    let modes = folder.join("modes");
+    let beam = repository().join("inputs/verify/beam_modes.toml");
+    trackbed([Path::new("modal"), &beam, Path::new("-n"), Path::new("3"), Path::new("--out"), &modes]).good();
+    report(&[&modes]).good();
+    let page = Page::read(&modes.join("report.html"));
+    page.has(&["modes"]);
+    Table::read(&modes.join("modes.csv")).column("frequency").into_iter().for_each(|f| page.says(f));
+    assert_eq!(page.sections, ["verdict", "overview", "modes"]);
+}
+
+#[test]
+fn hostile_names_are_escaped() {
+    let folder = Folder::new("report_hostile");
+    let scene = folder.write("x.toml", GRAINS);
+    let out = folder.join("a<b>&\"c\" 'd'");
+    let title = "title=\"<script>alert(1)</script> & \\u0007 ]]> \\\"q\\\" </title>\"";
+    run(&scene, &out, &[title]).good();
+    report(&[&out]).good();
+    let page = Page::read(&out.join("report.html"));
+    page.contains("<script>alert(1)</script> & \\u{7} ]]> \"q\" </title>");
+    page.contains("a<b>&\"c\" 'd'");
+    report(&[&out, Path::new("--title"), Path::new("<b>\"own\"</b>")]).good();
+    Page::read(&out.join("report.html")).contains("<b>\"own\"</b>");
+}
+
+/// Runs that have no good end: interrupted, failed, killed, and still going on.
+#[test]
+fn what_is_not_done_is_reported_and_says_so() {
+    let folder = Folder::new("report_open");
+    let scene = folder.write("scene.toml", PLASTIC);
+    let out = folder.join("out");
+    run(&scene, &out, &[]).good();
+    let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+    let page = |out: &Path| {
+        report(&[out]).good();
+        Page::read(&out.join("report.html"))
+    };
+    page(&out).contains("Passed.");
+    let status = |text: &str| {
+        fs::write(
+            out.join("summary.json"),
+            summary.replace("\"status\": \"done\"", &format!("\"status\": \"{text}\"")),
+        )
+        .unwrap();
+    };
+    status("interrupted");
+    page(&out).contains("Interrupted.");
+    status("failed: at t = 0.5 s: no equilibrium <here>");
+    let failed = page(&out);
+    failed.contains("Failed.");
+    failed.contains("at t = 0.5 s: no equilibrium <here>");
+    // A run that is killed leaves no summary, and a row without its end.
+    fs::remove_file(out.join("summary.json")).unwrap();
+    let history = fs::read_to_string(out.join("history.csv")).unwrap();
+    fs::write(out.join("history.csv"), &history[..history.len() - 7]).unwrap();
+    let stopped = page(&out);
+    stopped.contains("Stopped without a summary.");
+    stopped.contains("pressed block");
+    stopped.has(&["solid", "energy", "reproduce"]);
+    fs::write(out.join("run.lock"), format!("{}\n", std::process::id())).unwrap();
+    page(&out).contains("Still running.");
+    assert!(out.join("run.lock").exists());
+    // Rows that are not whole are counted and left out; without run.json the scene is not known.
+    fs::write(out.join("history.csv"), history.replacen('\n', "\n1,2\nx\n", 1)).unwrap();
+    fs::remove_file(out.join("run.json")).unwrap();
+    let damaged = page(&out);
+    damaged.contains("history.csv: 2 rows are damaged and left out");
+    damaged.contains("the folder has no run.json");
+    damaged.lacks(&["reproduce"]);
+}
+
+#[test]
+fn what_is_no_result_is_refused_with_one_sentence() {
+    let folder = Folder::new("report_refused");
+    let scene = folder.write("scene.toml", GRAINS);
+    let out = folder.join("out");
+    run(&scene, &out, &[]).good();
+    let refused = |arguments: &[&Path], words: &str| {
+        let said = report(arguments);
+        assert_eq!((said.code, said.stdout.as_str()), (2, ""), "{said:?}");
+        assert_eq!(said.stderr.lines().count(), 1, "{}", said.stderr);
+        assert!(said.stderr.contains(words), "{}", said.stderr);
+    };
+    let expected = "expected a folder with the results of a run";
+    refused(&[&folder.join("nowhere")], &format!("nowhere: found nothing, {expected}"));
+    refused(&[&scene], &format!("scene.toml: found a file, {expected}"));
+    refused(
+        &[folder.path()],
+        &format!("found none of summary.json, run.json, history.csv and modes.csv, {expected}"),
+    );
+    refused(&[&out, &out], "--out: found nothing, expected a file such as report.html");
+    let summary = out.join("summary.json");
+    refused(&[&out, Path::new("--out"), &summary], "expected a file ending in .html");
+    fs::create_dir(folder.join("x.html")).unwrap();
+    refused(&[&out, Path::new("--out"), &folder.join("x.html")], "expected a file");
+    for (text, words) in
+        [("{\"status\": 3}", "found no status"), ("{\"status\": \"do", "expected the summary of a run")]
+    {
+        fs::write(&summary, text).unwrap();
+        refused(&[&out], words);
+    }
+    assert!(!out.join("report.html").exists());
+    let waiting = folder.join("waiting");
+    fs::create_dir(&waiting).unwrap();
+    fs::write(waiting.join("run.lock"), "1\n").unwrap();
+    refused(&[&waiting], "found a run that has written no results yet");
+}
