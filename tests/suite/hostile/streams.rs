@@ -128,14 +128,15 @@ fn an_interrupt_is_acknowledged_at_once() {
     let mut child = program(&scene, &out, &set).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
     let begun = Instant::now();
     while !out.join("run.lock").exists() {
-        assert!(begun.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
+        assert!(begun.elapsed() < Duration::from_secs(600) && child.try_wait().unwrap().is_none());
         sleep(Duration::from_millis(2));
     }
     kill("INT", &child);
     let begun = Instant::now();
     let said = child.wait_with_output().unwrap();
     let text = String::from_utf8(said.stderr).unwrap();
-    assert!(begun.elapsed() < Duration::from_secs(1), "{:?}: {text}", begun.elapsed());
+    // 50 ms and what a busy machine adds.
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}: {text}", begun.elapsed());
     assert_eq!(said.status.code(), Some(130), "{text}");
     assert!(text.lines().any(|l| l == "interrupted: nothing is under way that could be kept"), "{text}");
 }
