@@ -92,6 +92,12 @@ impl Results {
         self
     }
 
+    /// A file of the folder, where there is one that is no link to elsewhere.
+    fn own(&self, name: &str) -> Option<PathBuf> {
+        let root = self.dir.canonicalize().ok()?;
+        series::inside(&root, name).ok().flatten().filter(|file| file.is_file())
+    }
+
     fn common(&self) -> Result<&Common, Failure> {
         if let Some(common) = self.common.get() {
             return Ok(common);
@@ -112,7 +118,7 @@ impl Results {
         }
         if head == "table" {
             let known = tables::TABLES.into_iter().find(|t| Some(*t) == number);
-            let file = known.map(|t| self.dir.join(format!("{t}.csv"))).filter(|file| file.is_file());
+            let file = known.and_then(|t| self.own(&format!("{t}.csv")));
             return file.map(|file| tables::table(&file)).transpose();
         }
         let Some((part, _)) = PARTS.into_iter().find(|(_, word)| *word == head) else { return Ok(None) };
@@ -179,8 +185,9 @@ impl Results {
     /// What the page needs first.
     fn scene(&self) -> Result<Vec<u8>, Failure> {
         let common = self.common()?;
-        let summary: Value = std::fs::read(self.dir.join("summary.json"))
-            .ok()
+        let summary: Value = self
+            .own("summary.json")
+            .and_then(|file| std::fs::read(file).ok())
             .and_then(|bytes| serde_json::from_slice(&bytes).ok())
             .unwrap_or_default();
         let frames: Vec<Value> = self
@@ -191,7 +198,7 @@ impl Results {
                 json!({ "time": frame.time, "parts": parts.map(|(_, word)| *word).collect::<Vec<_>>() })
             })
             .collect();
-        let tables = tables::TABLES.iter().filter(|t| self.dir.join(format!("{t}.csv")).is_file());
+        let tables = tables::TABLES.iter().filter(|t| self.own(&format!("{t}.csv")).is_some());
         let folder = self.dir.canonicalize().unwrap_or_else(|_| self.dir.clone());
         let folder = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let mut chunk = Chunk::new(self.coding);

@@ -54,11 +54,11 @@ pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
     let fault = |found: &str, expected: &str| {
         Failure::Input(format!("{}: found {found}, expected {expected}", list.display()))
     };
-    let bytes = fs::read(&list).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => fault("no such file", "the list of frames of a run"),
-        _ => fault(&format!("that it cannot be read ({error})"), "the list of frames of a run"),
-    })?;
     let root = dir.canonicalize()?;
+    let absent = || fault("no such file", "the list of frames of a run");
+    let bytes = fs::read(inside(&root, SERIES)?.ok_or_else(absent)?).map_err(|error| {
+        fault(&format!("that it cannot be read ({error})"), "the list of frames of a run")
+    })?;
     let mut frames: Vec<Frame> = Vec::new();
     for tag in tags(&bytes).filter(|tag| tag.name == "DataSet") {
         let time = tag.attribute("timestep").and_then(|t| t.trim().parse::<f64>().ok());

@@ -339,6 +339,15 @@ fn nothing_outside_the_folder_is_read() {
         let text = String::from_utf8_lossy(&body);
         assert!(!text.contains("secret") && body.len() < 400, "{address}: {text}");
     }
+    // Nor do tables and the summary of a run that is there.
+    #[cfg(unix)]
+    for name in ["summary.json", "history.csv"] {
+        fs::remove_file(inner.join("run").join(name)).unwrap();
+        std::os::unix::fs::symlink(other.join(name), inner.join("run").join(name)).unwrap();
+    }
+    let scene = server.get("/data/scene?run=run").1;
+    assert!(!String::from_utf8_lossy(&scene).contains("secret"));
+    assert_eq!(server.get("/data/table/history?run=run").0, 404);
     // Nor does a list of frames lead out, by itself or by a link.
     let pvd = |file: &str| {
         let text = format!(
