@@ -193,7 +193,7 @@ fn quiet_prints_nothing_and_loud_prints_a_report() {
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let outcome = run(&scene, &out, &[]).good();
     assert_eq!((outcome.stdout.as_str(), outcome.stderr.as_str()), ("", ""));
-    let outcome = trackbed([Path::new("run"), &scene, Path::new("--out"), &out]).good();
+    let outcome = trackbed([Path::new("run"), &scene, Path::new("--force"), Path::new("--out"), &out]).good();
     for part in [
         "run: ",
         "grain steps",

@@ -279,7 +279,7 @@ fn output_that_is_not_wanted_is_not_written() {
     names.sort();
     assert_eq!(
         names,
-        ["cycles.csv", "history.csv", "log.txt", "settlement.svg", "sleeper.svg", "summary.json"]
+        ["cycles.csv", "history.csv", "log.txt", "run.json", "settlement.svg", "sleeper.svg", "summary.json"]
     );
 }
 
@@ -318,7 +318,10 @@ fn results_of_an_earlier_run_are_gone() {
     // A run that fails before its first file leaves no result but its summary and log.
     folder.write("scene.toml", &one_in_the_other());
     fails(&folder, &["overlap"]);
-    assert_eq!(snapshot(&out).into_keys().collect::<Vec<_>>(), ["log.txt", "notes.txt", "summary.json"]);
+    assert_eq!(
+        snapshot(&out).into_keys().collect::<Vec<_>>(),
+        ["log.txt", "notes.txt", "run.json", "summary.json"]
+    );
 }
 
 /// A run that fails numerically: code 3, one line on standard error with `what` and a time, and a summary that says the
