@@ -1,6 +1,6 @@
 //! A report of one or several runs: one page with tables and plots, made of the files in their folders alone.
 //!
-//! Every [`sections`] entry looks for its data in the folders and is left out where none of them has any, so a run that was
+//! Every `sections` entry looks for its data in the folders and is left out where none of them has any, so a run that was
 //! interrupted, has failed or still goes on is reported as far as it came.
 
 mod data;
