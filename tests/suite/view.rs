@@ -195,6 +195,7 @@ fn blocks_of_grains_hold_the_values_of_the_files() {
     assert_eq!(start.len(), 4 + 3 + 1);
     let frames = scene["frames"].as_array().unwrap().len();
     assert!(frames >= 3, "{frames} frames");
+    let mut touching = 0;
     for frame in 0..frames {
         let file = out.join(format!("frames/grains_{frame:05}.vtp"));
         let block = server.block(&format!("grains/{frame}"));
@@ -225,11 +226,19 @@ fn blocks_of_grains_hold_the_values_of_the_files() {
         assert_eq!((walls.array("points").len(), walls.array("triangles").len()), (12, 6));
         assert_eq!(walls.array("kind"), [0.0, 0.0], "a plane");
         let chains = server.block(&format!("chains/{frame}"));
-        let force = cell_values(&out.join(format!("frames/chains_{frame:05}.vtp")), "magnitude");
+        let file = out.join(format!("frames/chains_{frame:05}.vtp"));
+        // The reader of the tests takes no file without lines: the first frame, in which nothing touches yet.
+        if fs::read_to_string(&file).unwrap().contains("NumberOfLines=\"0\"") {
+            assert!(chains.array("ends").is_empty());
+            continue;
+        }
+        touching += 1;
+        let force = cell_values(&file, "magnitude");
         let single: Vec<f64> = force.iter().map(|f| f64::from(*f as f32)).collect();
         assert_eq!(chains.array("magnitude"), single);
         assert_eq!(chains.array("ends").len(), 6 * force.len());
     }
+    assert!(touching > 0, "some frame has force chains");
     assert_eq!(server.get("/data/grains/99").0, 404);
     assert_eq!(server.get("/data/grains/0/nonsense").0, 422);
     assert_eq!(server.get("/data/table/history").0, 200);
