@@ -43,7 +43,7 @@ normal = [0.0, 0.0, 1.0]
 material = "stone"
 
 [time]
-end = "0.15 s"
+end = "0.5 s"
 
 [output]
 frames = 3
