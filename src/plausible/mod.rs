@@ -1,0 +1,70 @@
+//! Whether the numbers of a scene are plausible: values that can be computed with, but that no ballast, soil or track has, as a
+//! slip of a unit makes them (80 Pa for 80 MPa, millimetres for metres).
+//!
+//! Every entry names the key, what was found and what is usual. What lies outside of the usual range by a factor of 30, or
+//! cannot be meant, is *implausible*; the rest is *unusual*. Ranges are wide on purpose: a remark on what is right is worse than
+//! none on what is odd.
+
+mod bed;
+mod findings;
+mod grains;
+mod materials;
+mod run;
+mod solid;
+mod track;
+
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::scene::{Document, Scene};
+pub use findings::Finding;
+use findings::Findings;
+
+/// Everything of a scene that is not plausible, the implausible first.
+pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
+    let mut findings = Findings::default();
+    materials::weigh(&mut findings, scene);
+    solid::weigh(&mut findings, scene, job);
+    grains::weigh(&mut findings, scene);
+    bed::weigh(&mut findings, scene, job);
+    track::weigh(&mut findings, scene, job);
+    run::weigh(&mut findings, scene, job);
+    let mut all = findings.0;
+    all.sort_by_key(|finding| !finding.serious);
+    all
+}
+
+/// Refuses a scene with values that are not plausible, by the worst of them.
+///
+/// # Errors
+/// Bad input.
+pub fn refuse(document: &Document, findings: &[Finding]) -> Result<(), Failure> {
+    let Some(worst) = findings.first() else { return Ok(()) };
+    let others = match findings.len() - 1 {
+        0 => String::new(),
+        1 => "; there is another one".into(),
+        n => format!("; there are {n} others"),
+    };
+    Err(document.error(&worst.key, &worst.found, format!("{} (--strict){others}", worst.usual)).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use findings::Usual;
+
+    #[test]
+    fn far_outside_is_serious_and_zero_may_be_usual() {
+        let mut findings = Findings::default();
+        let young = Usual::new(1e5, 1e12, "Pa");
+        for value in [1e5, 3e10, 9e4, 80.0, 4e13] {
+            findings.weigh("young", value, young);
+        }
+        findings.weigh("friction", 0.0, Usual::or_zero(0.01, 1.5, ""));
+        let serious: Vec<bool> = findings.0.iter().map(|f| f.serious).collect();
+        assert_eq!(serious, [false, true, true]);
+        assert_eq!(
+            findings.0[1].to_string(),
+            "implausible: young: found 80 Pa, usual is 1.000e5 to 1.000e12 Pa"
+        );
+    }
+}

@@ -1,0 +1,169 @@
+//! Values that are not plausible are named with their key, and no shipped scene is blamed.
+
+use super::support::{Folder, repository, trackbed};
+use std::collections::BTreeSet;
+use std::path::Path;
+use trackbed::model::Job;
+use trackbed::plausible::{Finding, weigh};
+use trackbed::scene::{Document, Scene};
+
+/// What is found in a scene with an override.
+fn found(scene: &str, set: &[&str]) -> Vec<Finding> {
+    let mut document = Document::open(&repository().join(scene)).unwrap();
+    set.iter().for_each(|s| document.set(s).unwrap());
+    let parsed: Scene = document.read().unwrap_or_else(|e| panic!("{set:?}: {e}"));
+    let job = Job::new(&document, &parsed).unwrap_or_else(|e| panic!("{set:?}: {e}"));
+    weigh(&parsed, &job)
+}
+
+const BOX: &str = "inputs/ballast/box.toml";
+const CYCLIC: &str = "inputs/track/cyclic/scene.toml";
+const SERVO: &str = "inputs/grains/servo.toml";
+const FOOTING: &str = "inputs/solid/footing.toml";
+const CLAY: &str = "inputs/solid/triaxial_drained.toml";
+const TRAIN: &str = "inputs/track/train/scene.toml";
+const GRAINS: &str = "inputs/grains/box.toml";
+const WIND: &str = "inputs/verify/wind.toml";
+
+/// Scene, override, key that must be named, whether it cannot be meant.
+const CASES: &[(&str, &str, &str, bool)] = &[
+    // Moduli, stiffnesses, densities.
+    (CYCLIC, "solid.material.0.young=80", "solid.material.0.young", true),
+    (CYCLIC, "solid.material.1.young=\"110e6 MPa\"", "solid.material.1.young", true),
+    (CYCLIC, "solid.material.0.density=1.9", "solid.material.0.density", false),
+    (CYCLIC, "solid.material.0.poisson=0.4999", "solid.material.0.poisson", false),
+    (FOOTING, "solid.material.0.cohesion=\"20 GPa\"", "solid.material.0.cohesion", true),
+    (FOOTING, "solid.material.0.friction=\"70 deg\"", "solid.material.0.friction", false),
+    (FOOTING, "solid.material.0.dilation=\"0.05 deg\"", "solid.material.0.dilation", false),
+    (CLAY, "solid.material.0.lambda=9.3", "solid.material.0.lambda", false),
+    (CLAY, "solid.material.0.void_ratio=60", "solid.material.0.void_ratio", false),
+    (BOX, "material.0.density=2.65", "material.0.density", true),
+    (BOX, "material.0.density=2650000", "material.0.density", true),
+    (BOX, "material.0.stiffness=\"5e6 MN/m\"", "material.0.stiffness", true),
+    (BOX, "material.0.friction=40", "material.0.friction", false),
+    (BOX, "material.0.restitution=0.001", "material.0.restitution", false),
+    (BOX, "material.0.rolling_friction=5", "material.0.rolling_friction", false),
+    (BOX, "material.0.tangential_ratio=0.01", "material.0.tangential_ratio", false),
+    // Sizes.
+    (SERVO, "grains.0.size=[0.000001, 0.0000012]", "grains.0.size", false),
+    (SERVO, "grains.0.size=[0.0001, 0.01]", "grains.0.size", false),
+    (BOX, "grains.0.gradation.scale=0.001", "grains.0.gradation.scale", false),
+    (GRAINS, "grains.0.velocity=[0.0, 0.0, -500.0]", "grains.0.velocity", false),
+    (WIND, "wind.velocity=[\"600 m/s\", 0, 0]", "wind.velocity", false),
+    (WIND, "wind.density=12000", "wind.density", false),
+    // Walls.
+    (SERVO, "walls.2.servo.pressure=\"20000 MPa\"", "walls.2.servo.pressure", true),
+    (SERVO, "walls.2.servo.area=78539", "walls.2.servo.area", true),
+    (SERVO, "walls.2.servo.max_speed=\"200 m/s\"", "walls.2.servo.max_speed", false),
+    (BOX, "walls.2.point=[-0.5, 0.0, 0.0]", "walls.2", true),
+    (BOX, "walls.1.normal=[-1.0, 0.0, 0.0]", "walls.1", true),
+    // Gravity and what holds the bed.
+    (BOX, "gravity=[0.0, 0.0, 9.81]", "gravity", true),
+    (BOX, "gravity=[0.0, 0.0, -9810.0]", "gravity", false),
+    (GRAINS, "walls=", "walls", true),
+    // Settling.
+    (BOX, "deposition.max_time=\"1 ms\"", "deposition.max_time", true),
+    (BOX, "deposition.settled_speed=2e-8", "deposition.settled_speed", true),
+    (BOX, "gravity=[0.0, 0.0, 0.0]", "deposition", true),
+    (BOX, "deposition.level=220", "deposition.level", true),
+    (BOX, "deposition.level=-0.1", "deposition.level", true),
+    // Places.
+    (BOX, "track.sleeper.centre=[30.0, 0.15]", "track.sleeper.centre", true),
+    (CYCLIC, "grains.0.fill={ low = [-1.5, 0.0, -2.0], high = [1.5, 0.6] }", "grains.0", true),
+    (CYCLIC, "grains.0.fill={ low = [50.0, 0.0, 0.0], high = [53.0, 0.6] }", "grains.0", true),
+    // Sleepers and loads.
+    (BOX, "track.sleeper.mass=\"85 t\"", "track.sleeper.mass", true),
+    (BOX, "track.sleeper.size=[780.0, 290.0, 150.0]", "track.sleeper.size", true),
+    (BOX, "track.load.maximum=\"40 MN\"", "track.load.maximum", false),
+    (BOX, "track.load.frequency=\"30 kHz\"", "track.load.frequency", true),
+    (BOX, "track.load.ramp=\"100 h\"", "track.load.ramp", true),
+    (TRAIN, "track.rail.bending_stiffness=6.4", "track.rail.bending_stiffness", true),
+    (TRAIN, "track.load.speed=\"2000 m/s\"", "track.load.speed", false),
+    (TRAIN, "track.load.axle_load=140", "track.load.axle_load", false),
+    // Loads and supports of the solid, time, output.
+    (FOOTING, "solid.support.6.displacement=-60", "solid.support.6.displacement", true),
+    (CLAY, "solid.load.0.pressure=\"207 GPa\"", "solid.load.0.pressure", true),
+    (CYCLIC, "output.frames=100000", "output.frames", false),
+    (BOX, "output.history_interval=1e-8", "output.history_interval", true),
+    (BOX, "track.load.cycles=100000000", "track.load.cycles", false),
+    (FOOTING, "time.end=1.5e7", "time.end", false),
+    (GRAINS, "time.end=\"1e3 h\"", "time.end", false),
+];
+
+#[test]
+fn what_is_not_plausible_is_named_with_its_key() {
+    let keys: BTreeSet<&str> = CASES.iter().map(|c| c.2).collect();
+    assert!(CASES.len() >= 50 && keys.len() >= 40, "{} cases, {} keys", CASES.len(), keys.len());
+    let mut wrong = Vec::new();
+    for (scene, set, key, serious) in CASES {
+        let all = std::panic::catch_unwind(|| found(scene, &[set]));
+        let Ok(all) = all else {
+            wrong.push(format!("{scene} {set}: refused"));
+            continue;
+        };
+        if !all.iter().any(|f| f.key == *key && (f.serious || !serious)) {
+            wrong.push(format!(
+                "{scene} {set}: {:?}",
+                all.iter().map(ToString::to_string).collect::<Vec<_>>()
+            ));
+        }
+        let order: Vec<bool> = all.iter().map(|f| !f.serious).collect();
+        assert!(order.is_sorted(), "the implausible come first: {all:?}");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Every scene below `inputs`.
+fn scenes(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            scenes(&path, out);
+        } else if path.extension().is_some_and(|e| e == "toml") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            // Studies and libraries of stones are no scenes.
+            if text.contains("[[grains]]") || text.contains("[solid]") {
+                out.push(path);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_shipped_scene_is_blamed() {
+    let mut all = Vec::new();
+    scenes(&repository().join("inputs"), &mut all);
+    assert!(all.len() > 35, "{}", all.len());
+    let mut blamed = Vec::new();
+    for scene in &all {
+        let name = scene.strip_prefix(repository()).unwrap().display().to_string();
+        // For `modal` alone: a body that nothing holds is no scene of `run`.
+        if name.ends_with("verify/free_beam.toml") {
+            continue;
+        }
+        blamed.extend(found(&name, &[]).iter().map(|f| format!("{name}: {f}")));
+    }
+    assert!(blamed.is_empty(), "{}", blamed.join("\n"));
+}
+
+#[test]
+fn check_and_run_say_it_and_strict_refuses() {
+    let folder = Folder::new("implausible");
+    let scene = repository().join(CLAY);
+    let scene = scene.to_str().unwrap();
+    let out = folder.join("out");
+    let set = ["--set", "output.history_interval=2", "--set", "time.solid_step=0.25"];
+    let words =
+        "unusual: output.history_interval: found 2 s, longer than the run of 1 s, usual is a part of the run";
+    let checked = trackbed([&["check", scene], &set[..]].concat()).good();
+    assert!(checked.stdout.contains(words), "{checked:?}");
+    let run = [&["run", scene, "--out", out.to_str().unwrap()], &set[..]].concat();
+    let strict = trackbed([&run[..], &["--strict"]].concat());
+    assert_eq!((strict.code, strict.stderr.lines().count()), (2, 1), "{strict:?}");
+    let refusal = "output.history_interval: found 2 s, longer than the run of 1 s, expected a part of the run (--strict)";
+    assert!(strict.stderr.contains(refusal) && !out.exists(), "{strict:?}");
+    assert_eq!(trackbed([&["check", scene, "--strict"], &set[..]].concat()).code, 2);
+    let said = trackbed(&run).good();
+    assert!(said.stderr.starts_with(&format!("note: {words}")), "{said:?}");
+    trackbed(["check", scene, "--strict"]).good();
+}
