@@ -19,13 +19,29 @@ pub enum Command {
     /// Run a scene: fill, settle, load, and write the results.
     Run(RunArgs),
     /// Validate a scene without running it, and say what a run would do and need.
-    Check(CheckArgs),
+    Check {
+        /// The scene.
+        #[command(flatten)]
+        args: CheckArgs,
+        /// Print JSON, for programs.
+        #[arg(long)]
+        json: bool,
+    },
     /// As `check`, with the stages, the loops, the memory per sphere and, from a short probe, the time a run may take.
     Explain(CheckArgs),
     /// Run variations of a scene, and compare error and cost of each: the trade of speed against accuracy.
     Study(StudyArgs),
     /// Make one page (HTML) with tables and plots of the results of one run, or of several beside each other.
     Report(ReportArgs),
+    /// Make a folder with a commented scene that runs, to begin with; without arguments, list what there is.
+    New(NewArgs),
+    /// Print the form of scene files as a JSON schema, by which editors complete and check keys.
+    Schema,
+    /// Print the completions of a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
     /// Natural frequencies and modes of the solid part of a scene.
     Modal(ModalArgs),
     /// Show the results of a run in a browser: grains, force chains, solid, walls; or write them as one HTML file.
@@ -49,7 +65,7 @@ pub enum Command {
 pub struct RunArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// Folder of the results; default `results/<name of the scene's folder or file>`.
+    /// Folder of the results; default `results/<name of the scene's folder or file>`, with a hash of the overrides.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads; default all cores. The results do not depend on it.
@@ -64,13 +80,27 @@ pub struct RunArgs {
     /// Go on from the last checkpoint in the folder of the results. Scene and overrides must be the same, threads need not.
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
-    /// Replace what is in the folder of the results: the checkpoint of an interrupted run, the results of another scene, files
-    /// of others.
+    /// Go on from the end of the finished run in a folder, with another load, other materials or more time; the model is the same.
+    #[arg(long, value_name = "DIR")]
+    pub from: Option<PathBuf>,
+    /// Replace what is in the folder of the results: results, the checkpoint of an interrupted run, files of others.
     #[arg(long)]
     pub force: bool,
+    /// Refuse a scene with values that are not plausible, instead of remarking on them.
+    #[arg(long)]
+    pub strict: bool,
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Arguments of `new`.
+#[derive(Debug, Args)]
+pub struct NewArgs {
+    /// What to begin with: track, box, footing, …
+    pub template: Option<String>,
+    /// Folder to write to; default the template's name.
+    pub folder: Option<PathBuf>,
 }
 
 /// Arguments of `study`.
@@ -164,6 +194,9 @@ pub struct ViewArgs {
 pub struct CheckArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
+    /// Refuse a scene with values that are not plausible, instead of remarking on them.
+    #[arg(long)]
+    pub strict: bool,
     /// Replace one key of the scene, as key.path=value; may be given again.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

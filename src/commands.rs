@@ -10,10 +10,13 @@ mod stone;
 mod study;
 mod view;
 
-use crate::cli::{Command, MeshCommand, RunArgs};
+use crate::cli::{Cli, Command, MeshCommand, NewArgs, RunArgs};
 use crate::failure::Failure;
 use crate::message;
 use crate::run;
+use crate::scene::schema;
+use crate::start;
+use clap::CommandFactory;
 use output::print;
 
 /// Carries out a command.
@@ -24,11 +27,15 @@ pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
         Command::Explain(args) => {
-            print(&explain::explain(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
+            print(&explain::explain(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?)
         }
-        Command::Check(args) => {
-            print(&check::check(&args.scene, &args.set, memory(args.memory.as_deref())?)?)
+        Command::Check { args, json } => {
+            let report = check::check(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?;
+            print(&if json { report.json() } else { report.text() })
         }
+        Command::New(args) => new(&args),
+        Command::Schema => print(&format!("{:#}\n", schema::schema())),
+        Command::Completions { shell } => completions(shell),
         Command::Study(args) => study::study(args),
         Command::Report(args) => report::report(args),
         Command::Modal(args) => print(&modal::modal(&args)?),
@@ -42,6 +49,21 @@ pub fn execute(command: Command) -> Result<(), Failure> {
     }
 }
 
+/// Makes a folder with a scene, and prints how to go on.
+fn new(args: &NewArgs) -> Result<(), Failure> {
+    let Some(template) = &args.template else { return print(&start::list()) };
+    let folder = args.folder.clone().unwrap_or_else(|| template.into());
+    let scene = start::make(template, &folder)?;
+    let scene = scene.display();
+    print(&format!("{scene} written; next: trackbed check {scene}, trackbed run {scene}\n"))
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "trackbed", &mut text);
+    print(&String::from_utf8_lossy(&text))
+}
+
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let memory = memory(args.memory.as_deref())?;
     let options = run::Options {
@@ -50,7 +72,9 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         set: args.set,
         memory,
         resume: args.resume,
+        from: args.from,
         force: args.force,
+        strict: args.strict,
         interrupt: run::Interrupt::on_signals("the present step")?,
         quiet: args.quiet,
     };

@@ -5,18 +5,42 @@ use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
+use crate::plausible;
 use crate::run::{self, stages};
 use crate::scene::{Document, Scene};
+use serde_json::{Value, json};
 use std::path::Path;
 use trackbed_dem as dem;
 
-/// Validates a scene; the text is what a run of it would do.
+/// What a run of a scene would do: as lines, and as numbers by name.
+pub struct Report {
+    title: String,
+    lines: Vec<String>,
+    numbers: Value,
+}
+
+impl Report {
+    /// For people.
+    pub fn text(&self) -> String {
+        self.lines.iter().fold(format!("{}\n", self.title), |text, line| text + "  " + line + "\n")
+    }
+
+    /// For programs: JSON with `title`, `findings`, `solid`, `grains`, `coupling` (null where a scene has none) and the `lines`.
+    pub fn json(&self) -> String {
+        let mut all = self.numbers.clone();
+        all["title"] = json!(self.title);
+        all["lines"] = json!(self.lines);
+        format!("{all:#}\n")
+    }
+}
+
+/// Validates a scene.
 ///
 /// # Errors
 /// The same bad input that a run would refuse.
-pub fn check(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String, Failure> {
+pub fn check(scene: &Path, set: &[String], memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
     let (document, job) = read(scene, set)?;
-    report(&document, &job, memory)
+    report(&document, &job, memory, strict)
 }
 
 /// A scene with overrides, resolved.
@@ -36,26 +60,37 @@ pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
 /// What a run of a scene would do.
 ///
 /// # Errors
-/// Bad input that shows only when models are made; a solid that needs more than `memory` [bytes].
-pub fn report(document: &Document, job: &Job, memory: Option<u64>) -> Result<String, Failure> {
-    let mut lines = Vec::new();
+/// Bad input that shows only when models are made; a solid that needs more than `memory` [bytes]; where it is `strict`, values
+/// that are not plausible.
+pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
+    let findings = plausible::weigh(&document.read()?, job);
+    if strict {
+        plausible::refuse(document, &findings)?;
+    }
+    let mut lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    let mut numbers = json!({ "findings": findings, "solid": null, "grains": null, "coupling": null });
     if let Some(solid) = &job.solid {
-        lines.extend(solid_lines(solid, memory)?);
+        let (own, values) = solid_lines(solid, memory)?;
+        lines.extend(own);
+        numbers["solid"] = values;
     }
     match &job.grains {
         Some(grains) => {
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
+            numbers["grains"] = grain_numbers(&model);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
-                lines.extend(coupling_lines(document, coupling, solid, grains, &model)?);
+                let (own, values) = coupling_lines(document, coupling, solid, grains, &model)?;
+                lines.extend(own);
+                numbers["coupling"] = values;
             }
         }
         None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
     }
-    Ok(lines.iter().fold(format!("{}\n", job.title), |text, line| text + "  " + line + "\n"))
+    Ok(Report { title: job.title.clone(), lines, numbers })
 }
 
-fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<Vec<String>, Failure> {
+fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, Value), Failure> {
     let prediction = run::Prediction::of(solid)?;
     prediction.check(memory)?;
     let mesh = solid.model.mesh();
@@ -79,7 +114,17 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<Vec<String>, Fa
         1e-9 * prediction.flops
     ));
     lines.extend(solid.warnings.iter().map(|warning| format!("  note: {warning}")));
-    Ok(lines)
+    let numbers = json!({
+        "nodes": mesh.node_count(),
+        "elements": mesh.element_count(),
+        "unknowns": solid.model.free_dof_count(),
+        "mass": solid.model.total_mass(),
+        "memory_bytes": prediction.total(),
+        "solver_bytes": prediction.solver,
+        "factorization_flops": prediction.flops,
+        "notes": solid.warnings,
+    });
+    Ok((lines, numbers))
 }
 
 /// The model of the grains with rigid sleepers, and its lines with those of the stages.
@@ -113,13 +158,24 @@ fn grain_lines(
     Ok((model, lines))
 }
 
+fn grain_numbers(model: &dem::Model) -> Value {
+    let longest = model.measured().map_or(model.dt(), |_| model.longest(true));
+    json!({
+        "bodies": model.body_count(),
+        "spheres": model.sphere_count(),
+        "first_step": model.dt(),
+        "longest_step": longest,
+        "step_limit": model.dt_limit().to_string(),
+    })
+}
+
 fn coupling_lines(
     document: &Document,
     coupling: &CouplingPart,
     solid: &SolidPart,
     grains: &GrainsPart,
     model: &dem::Model,
-) -> Result<Vec<String>, Failure> {
+) -> Result<(Vec<String>, Value), Failure> {
     let surface = coupling.ground(solid, grains);
     let (classes, substeps) = coupling.classes(grains, model, solid, &surface);
     coupling.refuse(document, &classes, substeps, model.dt())?;
@@ -139,5 +195,13 @@ fn coupling_lines(
     lines.extend(classes.iter().map(|c| format!("  {}", c.line())));
     let remarks = exchange::remarks(&classes, coupling.scheme, substeps);
     lines.extend(remarks.iter().map(|remark| format!("  note: {remark}")));
-    Ok(lines)
+    let numbers = json!({
+        "faces": coupling.faces.len(),
+        "substeps": substeps,
+        "window": window,
+        "stability": { "stiffness": s.stiffness, "damping": s.damping },
+        "scheme": coupling.scheme.to_string(),
+        "notes": remarks,
+    });
+    Ok((lines, numbers))
 }

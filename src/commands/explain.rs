@@ -26,9 +26,9 @@ const MEMBER: f64 = 0.34;
 ///
 /// # Errors
 /// The same bad input that a run would refuse.
-pub fn explain(scene: &Path, set: &[String], memory: Option<u64>) -> Result<String, Failure> {
+pub fn explain(scene: &Path, set: &[String], memory: Option<u64>, strict: bool) -> Result<String, Failure> {
     let (document, job) = check::read(scene, set)?;
-    let mut text = check::report(&document, &job, memory)?;
+    let mut text = check::report(&document, &job, memory, strict)?.text();
     let mut line = |t: String| writeln!(text, "  {t}").expect("writing to a string does not fail");
     let names: Vec<_> = stages::of(&job).filter_map(Stage::name).collect();
     line(format!("stages: {}", names.join(", ")));

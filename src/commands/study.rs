@@ -25,7 +25,7 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         quiet,
         interrupt: Interrupt::on_signals("the runs under way have kept where they are")?,
     };
-    let check = |scene: &Path, set: &[String]| check::check(scene, set, None).map(drop);
+    let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
     let text = study::execute(&args.study, &options, &check)?;
     // The tables are in their folder: nobody need listen.
     if !quiet && let Err(failure) = output::print(&text) {

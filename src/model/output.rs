@@ -22,6 +22,8 @@ pub struct OutputPlan {
     pub tables: bool,
     /// Grains of the last state as CSV.
     pub packing: bool,
+    /// The state at the end, in full.
+    pub state: bool,
     /// Frames show the contacts above the mean force only.
     pub strong_chains: bool,
 }
@@ -58,6 +60,7 @@ impl OutputPlan {
             formats: FORMATS.into_iter().filter(selected).collect(),
             tables: o.tables.unwrap_or(false),
             packing: o.packing.unwrap_or(false),
+            state: o.state.unwrap_or(true),
             strong_chains: o.chains == Some(Chains::Strong),
         })
     }
@@ -74,7 +77,8 @@ fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), Sc
     let mut of_solid: Vec<(&str, bool)> =
         formats.map(|format| (format.key, o.formats.contains_key(format.key))).collect();
     of_solid.push(("tables", o.tables.is_some()));
-    let of_grains = [("packing", o.packing.is_some()), ("chains", o.chains.is_some())];
+    let of_grains =
+        [("packing", o.packing.is_some()), ("state", o.state.is_some()), ("chains", o.chains.is_some())];
     let of_time = [
         ("frames", o.frames.is_some(), "time: a static solid has one frame"),
         ("history_interval", o.history_interval.is_some(), "time: a static solid has no history"),

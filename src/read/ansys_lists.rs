@@ -21,6 +21,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, Mesh};
@@ -33,7 +34,7 @@ use super::number;
 use super::table::{self, Row, Table};
 
 /// What the columns of the element list are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementColumns {
     /// Recognised by their count; of 21 columns the first is a material where its values repeat.
@@ -50,7 +51,7 @@ pub enum ElementColumns {
 }
 
 /// What a scene tells about the lists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ListLayout {
     /// Columns of the element list. Default: recognised.

@@ -1,10 +1,11 @@
 //! What goes on about the load cycles: jumps over many of them, and the lateral push at their end, as written in a scene.
 
 use super::units::{Force, Length, Quantity, Stiffness, Time, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[track.jump]`: cycles that are not simulated one by one.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CycleJump {
     /// What jumps; default `account`.
@@ -29,7 +30,7 @@ pub struct CycleJump {
 }
 
 /// What a jump extrapolates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JumpMethod {
     /// The settlement only; the grains stay where they are.
@@ -53,7 +54,7 @@ fn unity() -> f64 {
 }
 
 /// `[track.push]`: a ram pushes a sleeper sideways when the cycles are over.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Push {
     /// Horizontal direction across the track or along it, any length.

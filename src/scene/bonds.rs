@@ -1,11 +1,12 @@
 //! Bonds as written in a scene.
 
 use super::units::{Angle, Force, Length, Quantity, Stiffness, Stress};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// `[[bond]]`: a kind of bond, and which grains it joins.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BondTable {
     /// Name, for reports and for `bond` of bonded grains.
@@ -37,7 +38,7 @@ pub struct BondTable {
 }
 
 /// A parallel bond.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Parallel {
     /// Radius of the disk over the smaller radius of the two spheres; default 1.
@@ -64,7 +65,7 @@ pub struct Parallel {
 }
 
 /// A contact-point bond.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactPoint {
     /// Stiffness in tension and pressure [N/m].
@@ -78,7 +79,7 @@ pub struct ContactPoint {
 }
 
 /// A bond by its own stiffnesses and strengths.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Direct {
     /// Tension and shear [N/m], bending and twisting [N m/rad].
@@ -91,7 +92,7 @@ pub struct Direct {
 }
 
 /// When a bond breaks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriterionName {
     /// When the tensile or the shear stress reaches its strength.
@@ -102,7 +103,7 @@ pub enum CriterionName {
 }
 
 /// Spread of the strengths.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename = "SpreadTable", deny_unknown_fields)]
 pub struct StrengthSpreadTable {
     /// Distribution.
@@ -119,7 +120,7 @@ pub struct StrengthSpreadTable {
 }
 
 /// Distribution of strengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpreadKind {
     /// Normal about the strength given, cut off at zero.
@@ -129,7 +130,7 @@ pub enum SpreadKind {
 }
 
 /// A box in which bonds differ. Of several that hold a bond's middle, all factors apply.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrengthRegion {
     /// Lower corner [m].

@@ -1,10 +1,11 @@
 //! Compaction of a settled bed and boxes for measures, as written in a scene.
 
 use super::units::{Force, Frequency, Length, Mass, Quantity, Time, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[[compaction]]`: a stage between settling and the run proper.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Compaction {
     /// What is done.
@@ -53,7 +54,7 @@ pub struct Compaction {
 }
 
 /// What a stage of compaction does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CompactionKind {
     /// Planes swing.
@@ -69,7 +70,7 @@ pub enum CompactionKind {
 }
 
 /// A rigid plate that presses.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
     /// Edge lengths [m].
@@ -81,7 +82,7 @@ pub struct Plate {
 }
 
 /// `[[measure]]`: a box whose packing is measured at the start and the end of the run proper.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Measure {
     /// Name in the summary.
@@ -94,7 +95,7 @@ pub struct Measure {
 }
 
 /// `radial = { reach = …, bins = … }` of a measure.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Radial {
     /// Largest distance [m].

@@ -1,12 +1,13 @@
 //! `[coupling]`: the exchange between grains and solid.
 
 use super::units::{Angle, Length, Quantity, Time};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
 use std::fmt;
 
 /// Exchange between grains and solid.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Coupling {
     /// Steps of the grains, as long as the first, per step of the solid, 1–1000, or `"auto"`; default 10.
@@ -81,7 +82,7 @@ impl<'de> Deserialize<'de> for Substeps {
 }
 
 /// Order of the exchange.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum SchemeName {
     /// Grains first on the predicted motion of the surface.
@@ -106,7 +107,7 @@ pub enum TransferTable {
 }
 
 /// Size of the discs: one of both.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpreadTable {
     /// Radius of the discs [m].

@@ -1,10 +1,11 @@
 //! Settling of filled grains as written in a scene.
 
 use super::units::{Length, Quantity, Time, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[deposition]`: the filled grains fall and come to rest before the run proper.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Deposition {
     /// Longest time [s].

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// A parsed scene file, with the files that it includes.
 pub struct Document {
@@ -59,7 +59,8 @@ impl Document {
     }
 
     /// Replaces or adds one key, given as `key.path=value` with a TOML value; a value that is not TOML is taken
-    /// as a string, and nothing after the `=` takes the key away. Tables of an array are addressed by index: `solid.material.0.young=2e7`.
+    /// as a string, and nothing after the `=` takes the key away. Tables of an array are addressed by index, `solid.material.0.young=2e7`,
+    /// or by the name that they have: `solid.material.clay.young=2e7`.
     ///
     /// # Errors
     /// No `=`, or a path through something that is not a table or an array.
@@ -67,10 +68,38 @@ impl Document {
         let Some((path, value)) = assignment.split_once('=') else {
             return Err(override_error(assignment, assignment, "key.path=value"));
         };
-        let (path, value) = (path.trim().to_string(), value.trim().to_string());
+        let (path, value) = (self.numbered(path.trim()), value.trim().to_string());
         self.apply(self.tree().get_mut(), &path, &value)?;
         self.overrides.push((path, value));
         Ok(())
+    }
+
+    /// `path` with the names of tables of arrays replaced by their indices; what is not found stays as it is.
+    fn numbered(&self, path: &str) -> String {
+        let tree = self.tree();
+        let (mut table, mut array) = (Some(tree.get_ref()), None::<&DeArray>);
+        let mut parts: Vec<String> = path.split('.').map(String::from).collect();
+        for part in &mut parts {
+            let value = if let Some(t) = table {
+                t.get(part.as_str())
+            } else if let Some(rows) = array {
+                let named = |row: &&Spanned<DeValue>| {
+                    let name = row.get_ref().as_table().and_then(|t| t.get("name"));
+                    name.and_then(|n| n.get_ref().as_str()) == Some(part.as_str())
+                };
+                // An index is an index, whatever the names are.
+                let index = part.parse().ok().or_else(|| rows.iter().position(|row| named(&row)));
+                if let Some(index) = index {
+                    *part = index.to_string();
+                }
+                index.and_then(|index| rows.get(index))
+            } else {
+                None
+            };
+            table = value.and_then(|v| v.get_ref().as_table());
+            array = value.and_then(|v| v.get_ref().as_array());
+        }
+        parts.join(".")
     }
 
     fn apply<'a>(&self, root: &mut DeTable<'a>, path: &'a str, value: &'a str) -> Result<(), SceneError> {
@@ -98,7 +127,8 @@ impl Document {
                     match index.and_then(|i| a.get_mut(i)).map(|v| v.get_mut()) {
                         Some(DeValue::Table(t)) => t,
                         _ => {
-                            let expected = format!("an index below {count} after `{key}`");
+                            let expected =
+                                format!("an index below {count}, or the name of a table, after `{key}`");
                             return Err(override_error(path, path, &expected));
                         }
                     }
@@ -232,7 +262,7 @@ impl Document {
                 span = key.span();
                 value
             } else if let Some(a) = array.take() {
-                let a: &toml::de::DeArray = a;
+                let a: &DeArray = a;
                 let Some(value) = part.parse::<usize>().ok().and_then(|i| a.get(i)) else { break };
                 span = value.span();
                 value

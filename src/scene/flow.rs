@@ -1,10 +1,11 @@
 //! Inlets and outlets of grains as written in a scene.
 
 use super::units::{Length, MassRate, Quantity, Rate, Time, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `inlet` of a `[[grains]]`: where and how fast grains of the group come in during the run proper.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Inlet {
     /// Corners of the box that they come in at, each wholly inside and touching nothing [m].
@@ -23,7 +24,7 @@ pub struct Inlet {
 }
 
 /// `[[outlet]]`: grains whose centre gets there are taken out.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outlet {
     /// Name in reports; default `outlet<number>`, counted from 0.

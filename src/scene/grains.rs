@@ -1,11 +1,12 @@
 //! Groups of grains as written in a scene.
 
 use super::units::{Length, Quantity, Spin, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// `[[grains]]`: a group of grains.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grains {
     /// Name for reports.
@@ -63,7 +64,7 @@ fn one() -> u64 {
 }
 
 /// Shape of a group of grains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GrainShape {
     /// Single spheres.
@@ -75,7 +76,7 @@ pub enum GrainShape {
 }
 
 /// A row set of a gradation table.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GradationSource {
     /// CSV file with columns standard, grade, sieve_mm, passing_lo_pct, passing_hi_pct.
@@ -94,7 +95,7 @@ fn unity() -> f64 {
 }
 
 /// Where filled grains start.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillBox {
     /// Lower corner [m].
@@ -104,7 +105,7 @@ pub struct FillBox {
 }
 
 /// Equal spheres on a lattice.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeFill {
     /// Kind of lattice.
@@ -120,7 +121,7 @@ pub struct LatticeFill {
 }
 
 /// Kind of a lattice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LatticeKind {
     /// Simple cubic.
@@ -132,7 +133,7 @@ pub enum LatticeKind {
 }
 
 /// A container: one of its keys.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
     /// Corners of a box along the axes [m].
@@ -149,7 +150,7 @@ pub struct Region {
 }
 
 /// A cylinder or a cone that is cut off at both ends.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConeRegion {
     /// Middle of one end [m].
@@ -161,7 +162,7 @@ pub struct ConeRegion {
 }
 
 /// Growth of grains to a porosity.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrowthSource {
     /// Porosity of the container at the end, above 0 and below 1.
@@ -175,7 +176,7 @@ pub struct GrowthSource {
 }
 
 /// A law of sizes.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Sizes {
     /// All alike.
@@ -227,7 +228,7 @@ pub enum Sizes {
 }
 
 /// What a uniform law is uniform in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Share {
     /// Number of grains.

@@ -1,12 +1,13 @@
 //! How a load varies in time.
 
 use super::units::{Frequency, Quantity, Time};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 /// Shape of a load in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HistoryKind {
     /// 1 at all times.
@@ -22,7 +23,7 @@ pub enum HistoryKind {
 }
 
 /// A dimensionless factor as a function of time.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct History {
     /// Shape.

@@ -1,11 +1,12 @@
 //! Contact materials and exceptions for pairs of them, as written in a scene.
 
 use super::units::{Adhesion, Density, Quantity, Stiffness, Stress};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[[material]]`: contact by a linear spring and dashpot, or after Hertz and Mindlin where materials have a Young's
 /// modulus, unless `normal` names another law; with Coulomb friction.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainMaterial {
     /// Name by which groups and walls refer to it.
@@ -38,7 +39,7 @@ pub struct GrainMaterial {
 }
 
 /// `[[contact]]`: constants of one pair of materials.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PairContact {
     /// Names of the two materials (twice the same for a like pair).
@@ -70,7 +71,7 @@ pub struct PairContact {
 }
 
 /// `contact.damping`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingKind {
     /// The dashpot that gives the restitution.
@@ -82,7 +83,7 @@ pub enum DampingKind {
 }
 
 /// `contact.rolling` and `contact.twisting`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Resistance {
     /// A spring that yields.

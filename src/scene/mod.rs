@@ -17,6 +17,7 @@ mod include;
 pub mod material;
 mod output;
 pub mod periodic;
+pub mod schema;
 pub mod solid;
 mod table;
 pub mod track;
@@ -33,11 +34,12 @@ pub use output::{Chains, Output};
 pub use table::{Number, Table};
 pub use wind::Wind;
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use units::{Acceleration, Length, Quantity, Time, Velocity};
 
 /// A whole scene.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// One line that says what the scene is; it heads the summary.
@@ -98,7 +100,7 @@ fn earth() -> [Quantity<Acceleration>; 3] {
 }
 
 /// Time steps and duration.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeControl {
     /// Physical time of the run proper [s], deposition not counted. Not needed for a static solid, nor with a
@@ -125,7 +127,7 @@ fn yes() -> bool {
 }
 
 /// A node of the solid, by number or by the place nearest to it, whose motion goes to `history.csv`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
     /// Name used in the column heads; default `n<number>`.

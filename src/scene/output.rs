@@ -3,13 +3,15 @@
 
 use super::units::{Quantity, Time};
 use crate::write::FORMATS;
+use schemars::JsonSchema;
 use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::LazyLock;
 
 /// What a run writes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, JsonSchema)]
+#[schemars(deny_unknown_fields, transform = super::schema::formats)]
 pub struct Output {
     /// Number of frames of the animation over the run proper, 0–100000; default 20. The start is one more.
     pub frames: Option<u32>,
@@ -23,14 +25,17 @@ pub struct Output {
     pub tables: Option<bool>,
     /// Write the grains at the end as `packing.csv`, which `[[grains]] packing` reads; default false.
     pub packing: Option<bool>,
+    /// Keep the state at the end, from which another run can go on (`run NEXT --from DIR`); default true.
+    pub state: Option<bool>,
     /// Force chains of the frames: all contacts (default), or those above the mean normal force.
     pub chains: Option<Chains>,
     /// Formats of the frames by key: switched on or off.
+    #[schemars(skip)]
     pub formats: BTreeMap<&'static str, bool>,
 }
 
 /// Contacts that the frames show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Chains {
     /// All of them.
@@ -42,7 +47,7 @@ pub enum Chains {
 
 /// Every key of the table: its own, then those of the formats.
 static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "chains"];
+    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "state", "chains"];
     own.into_iter().chain(FORMATS.iter().map(|format| format.key)).collect()
 });
 
@@ -83,6 +88,7 @@ impl<'de> Deserialize<'de> for Output {
                         "checkpoint" => output.checkpoint = Some(map.next_value()?),
                         "tables" => output.tables = Some(map.next_value()?),
                         "packing" => output.packing = Some(map.next_value()?),
+                        "state" => output.state = Some(map.next_value()?),
                         "chains" => output.chains = Some(map.next_value()?),
                         format => {
                             output.formats.insert(format, map.next_value()?);

@@ -1,10 +1,11 @@
 //! Periodic axes as written in a scene.
 
 use super::units::{Length, Quantity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[periodic]`: lower and upper border [m] of the axes along which the grains repeat themselves.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Periodic {
     /// Along x.

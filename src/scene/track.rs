@@ -5,11 +5,12 @@ use super::units::{
     Bending, Dashpot, Density, Force, Frequency, Length, LineMass, Mass, Quantity, Stiffness, Stress, Time,
     Velocity,
 };
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// `[track]`: what stands on the ballast.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename = "Track", deny_unknown_fields)]
 pub struct TrackTable {
     /// The sleepers.
@@ -28,7 +29,7 @@ pub struct TrackTable {
 }
 
 /// Sleepers as boxes, rigid or meshed, placed on the settled grains.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sleeper {
     /// Edge lengths in x, y, z [m].
@@ -55,7 +56,7 @@ pub struct Sleeper {
 }
 
 /// `[track.sleeper.mesh]`: 20-node hexahedra of which each sleeper consists.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SleeperMesh {
     /// Number of elements along x, y, z.
@@ -76,7 +77,7 @@ fn one() -> u32 {
 }
 
 /// Direction of the track.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Along {
     /// Along x.
@@ -97,7 +98,7 @@ impl Along {
 }
 
 /// One rigid-body motion in world axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename = "Motion", rename_all = "snake_case")]
 pub enum HeldMotion {
     /// Translation along x.
@@ -115,7 +116,7 @@ pub enum HeldMotion {
 }
 
 /// Vertical load on the sleepers' tops, or wheels on the rail.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeatLoad {
     /// Shape of a cycle.
@@ -173,7 +174,7 @@ fn tenth() -> Quantity<Time> {
 }
 
 /// `[track.load.seating]`: pulses from the load of the first instant to `maximum` and back.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeatingTable {
     /// Number of pulses.
@@ -185,7 +186,7 @@ pub struct SeatingTable {
 }
 
 /// Shape of one cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SeatLoadKind {
     /// Mean plus amplitude times sin 2πft: starts at the mean.
@@ -205,7 +206,7 @@ pub enum SeatLoadKind {
 }
 
 /// Forces of an uneven rail: Σ M a w² sin wt with w = 2πv/L.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Excitation {
     /// Unsprung mass of an axle [kg].
@@ -215,7 +216,7 @@ pub struct Excitation {
 }
 
 /// The rail.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RailTable {
     /// How it shares the load of an axle among the sleepers.
@@ -240,7 +241,7 @@ pub struct RailTable {
 }
 
 /// How a rail works.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RailKind {
     /// Quasi-static, by the formula of a beam on a continuous elastic foundation.

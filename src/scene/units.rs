@@ -127,13 +127,10 @@ impl<'de, D: Dimension> Deserialize<'de> for Quantity<D> {
 /// Number and unit of `text` in SI, or `None` when either is not understood.
 fn parse<D: Dimension>(text: &str) -> Option<f64> {
     let text = text.trim();
-    let (number, unit) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-    let value: f64 = number.parse().ok().filter(|v: &f64| v.is_finite())?;
-    let unit = unit.trim();
-    if unit.is_empty() {
-        return Some(value);
-    }
-    D::UNITS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| value * factor)
+    let number = |text: &str| text.trim_end().parse().ok().filter(|v: &f64| v.is_finite());
+    // A unit may follow without a blank. "5mm" ends in "m" too, but "5m" is no number.
+    let with_unit = |(unit, factor): &(&str, f64)| Some(number(text.strip_suffix(unit)?)? * factor);
+    number(text).or_else(|| D::UNITS.iter().find_map(with_unit))
 }
 
 #[cfg(test)]
@@ -146,6 +143,10 @@ mod tests {
         assert_eq!(parse::<Stress>("2e7"), Some(2e7));
         assert_eq!(parse::<Velocity>("36 km/h"), Some(10.0));
         assert_eq!(parse::<Angle>("180 deg"), Some(std::f64::consts::PI));
+        assert_eq!(parse::<Stress>("20MPa"), Some(2e7));
+        assert_eq!(parse::<Length>("5mm"), Some(5.0 * 1e-3));
+        assert_eq!(parse::<Length>("1e-2 m"), Some(1e-2));
+        assert_eq!(parse::<super::Dashpot>("4 kN s/m"), Some(4e3));
     }
 
     #[test]
@@ -154,5 +155,7 @@ mod tests {
         assert_eq!(parse::<Length>("2 s"), None);
         assert_eq!(parse::<Length>("wide"), None);
         assert_eq!(parse::<Length>("nan m"), None);
+        assert_eq!(parse::<Length>("nanm"), None);
+        assert_eq!(parse::<Length>("5m m"), None);
     }
 }

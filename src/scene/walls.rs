@@ -2,11 +2,12 @@
 
 use super::track::HeldMotion;
 use super::units::{Angle, Force, Frequency, Length, Mass, Quantity, Spin, Stress, Time, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// `[[walls]]`: a plane, a round shape, or triangles.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
     /// Kind of wall.
@@ -59,7 +60,7 @@ pub struct Wall {
 }
 
 /// Kind of a wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WallKind {
     /// Infinite plane, one-sided.
@@ -77,7 +78,7 @@ pub enum WallKind {
 }
 
 /// Sine in time.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Oscillation {
     /// Amplitude [m].
@@ -91,7 +92,7 @@ pub struct Oscillation {
 }
 
 /// Drive that holds a force.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Servo {
     /// Direction in which the wall presses; default the normal of a plane.
@@ -111,7 +112,7 @@ pub struct Servo {
 }
 
 /// Rigid body of triangles.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// Mass [kg].

@@ -1,10 +1,11 @@
 //! Air or another fluid that streams past grains, as written in a scene.
 
 use super::units::{Density, Quantity, Velocity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[wind]`: a fluid with one velocity everywhere, which drags grains along or holds them back during the run proper.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wind {
     /// Velocity [m/s]; default still.

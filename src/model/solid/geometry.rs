@@ -53,6 +53,10 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
         }
         (None, None, None, Some(b)) => {
             solid.refuse(of_lists, alone)?;
+            solid.refuse(
+                [("scale", solid.scale.is_some())],
+                "no such key: lengths of a block are in metres",
+            )?;
             let file = solid.scene_file().to_path_buf();
             Geometry {
                 mesh: block(&solid.below("block", b), solid.order)?,
@@ -72,6 +76,11 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
             return Err(solid.here(found, "one source of the mesh").into());
         }
     };
+    if let Some(factor) = solid.scale {
+        solid.check("scale", factor, |v| v > 0.0, "above 0, such as 0.001 for millimetres")?;
+        geometry.mesh.coordinates.iter_mut().flatten().for_each(|x| *x *= factor);
+        geometry.constraints.iter_mut().for_each(|c| c.value *= factor);
+    }
     if !solid.support.is_empty() && solid.constraints.is_none() && geometry.constraints.is_empty() {
         geometry.constraint_file = solid.scene_file().to_path_buf();
     }

@@ -1,10 +1,11 @@
 //! How the solid is solved, as written in a scene.
 
 use crate::scene::units::{Density, Frequency, Length, Quantity, Rate, Stress, Time};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[solid.dynamics]`: Newmark's method, or that of Hilber, Hughes and Taylor, for a solid that runs alone.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dynamics {
     /// Newmark α (β elsewhere); default 0.25.
@@ -19,7 +20,7 @@ pub struct Dynamics {
 }
 
 /// `solid.rayleigh`: Rayleigh damping, by its coefficients or by a damping ratio at two frequencies.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
     /// Coefficient of the mass [1/s].
@@ -33,7 +34,7 @@ pub struct Rayleigh {
 }
 
 /// `[solid.reduction]`: an elastic solid under grains is stepped in the span of a few shapes.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reduction {
     /// What it is reduced to.
@@ -43,7 +44,7 @@ pub struct Reduction {
 }
 
 /// What a solid is reduced to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReductionKind {
     /// The dofs of the contact surface.
@@ -53,7 +54,7 @@ pub enum ReductionKind {
 }
 
 /// `[solid.quasi_static]`: equilibrium at every step of a pseudo-time, in which loads and supports vary.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QuasiStatic {
     /// Smallest part of `time.solid_step` that is tried before the run gives up; default 1/1024.
@@ -63,7 +64,7 @@ pub struct QuasiStatic {
 }
 
 /// `[solid.initial_stress]`: stress that the solid has before the run.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialStress {
     /// How it is found.
@@ -84,7 +85,7 @@ pub struct InitialStress {
 }
 
 /// How the initial stress is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InitialStressMethod {
     /// Weight of the ground above, times K₀ sideways; then brought into equilibrium.
@@ -96,7 +97,7 @@ pub enum InitialStressMethod {
 }
 
 /// `[solid.strength_reduction]`: the factor by which cohesion and tan φ can be divided before the solid fails.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrengthReduction {
     /// First factor tried; default 1.
@@ -108,7 +109,7 @@ pub struct StrengthReduction {
 }
 
 /// `[solid.newton]`: how equilibrium is found in a plastic solid.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Newton {
     /// Which matrix the iteration takes; default `full`.
@@ -125,7 +126,7 @@ pub struct Newton {
 }
 
 /// Which matrix the iteration takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NewtonVariant {
     /// The consistent tangent, new in every iteration.
@@ -137,7 +138,7 @@ pub enum NewtonVariant {
 }
 
 /// How unsymmetric equations are solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolver {
     /// `direct` for small systems, `krylov` for large ones.

@@ -2,10 +2,11 @@
 
 use crate::scene::history::History;
 use crate::scene::units::{Length, Quantity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A side of the bounding box of the mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum Side {
     /// Smallest x.
     #[serde(rename = "x-")]
@@ -43,7 +44,7 @@ impl Side {
 
 /// `[[solid.support]]`: nodes whose displacement is given. Exactly one of `side`, `nodes_in`, `set` and `node` chooses
 /// them.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
     /// Name, under which the sum of its reactions is recorded; default not recorded.
@@ -66,7 +67,7 @@ pub struct Support {
 
 /// `[[solid.absorbing]]`: dashpots that take up waves at normal incidence. Exactly one of `side`, `faces_in` and `set`
 /// chooses the faces.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Absorbing {
     /// All boundary faces on this side of the bounding box.

@@ -1,13 +1,14 @@
 //! Materials of the solid as written in a scene, and the constitutive law that each key set stands for.
 
 use crate::scene::units::{Angle, Density, Quantity, Stress};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use trackbed_fem::material::{
     self, Consolidation, DruckerPrager, Elastic, Hardening, Material, ModifiedCamClay, MohrCoulomb, Shear,
 };
 
 /// `[[solid.material]]`: one for each material number of the mesh.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidMaterial {
     /// Material number of the mesh.
@@ -63,7 +64,7 @@ pub struct SolidMaterial {
 }
 
 /// Yield criterion of a material.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MaterialModel {
     /// No yield.
@@ -82,7 +83,7 @@ pub enum MaterialModel {
 }
 
 /// Meridian of Mohr–Coulomb that the cone of Drucker–Prager passes through.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cone {
     /// That of triaxial compression: the cone around the hexagon.

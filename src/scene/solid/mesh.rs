@@ -1,10 +1,11 @@
 //! The mesh of a solid as written in a scene.
 
 use crate::scene::units::{Length, Quantity};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `[solid.block]`: bricks between grid planes.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Block {
     /// Grid along x.
@@ -21,7 +22,7 @@ pub struct Block {
 }
 
 /// Grid planes along one axis.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
     /// Ascending coordinates [m] that become grid planes.
@@ -33,7 +34,7 @@ pub struct Axis {
 }
 
 /// A layer of one material.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Layer {
     /// Material number.
@@ -43,7 +44,7 @@ pub struct Layer {
 }
 
 /// Elements with or without mid-side nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
     /// Corners only: 8-node hexahedra with mean dilatation and their companions.

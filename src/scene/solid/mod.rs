@@ -16,13 +16,14 @@ pub use mesh::{Axis, Block, Layer, Order};
 use super::history::History;
 use super::units::{Force, Length, Quantity, Stress};
 use crate::read::ListLayout;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// `[solid]`: a mesh, its materials, supports and loads, and how it is solved.
 ///
 /// The mesh comes from `mesh` (any mesh file), from `nodes` and `elements` (ANSYS lists), or from `block`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Solid {
     /// Mesh file (`.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`) or a folder with the three lists; relative to the scene.
@@ -33,6 +34,8 @@ pub struct Solid {
     pub elements: Option<PathBuf>,
     /// Constraint list, `node dir value`.
     pub constraints: Option<PathBuf>,
+    /// Factor from the lengths of the mesh's files to metres, such as 0.001 for millimetres; default 1.
+    pub scale: Option<f64>,
     /// Columns of the lists, where their number alone does not tell.
     pub layout: Option<ListLayout>,
     /// A block of bricks made on the spot.
@@ -81,7 +84,7 @@ pub struct Solid {
 }
 
 /// Mass matrix of the solid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mass {
     /// ∫ ρ Nₐ N_b dV.
@@ -92,7 +95,7 @@ pub enum Mass {
 }
 
 /// Integration rule of the element stiffness.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Integration {
     /// 2 × 2 × 2 points, the default of SOLID186.
@@ -105,7 +108,7 @@ pub enum Integration {
 }
 
 /// How quadratic elements take their volume strain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Dilatation {
     /// At the points of the rule.
@@ -116,7 +119,7 @@ pub enum Dilatation {
 }
 
 /// A load on the solid.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidLoad {
     /// What it is.
@@ -145,7 +148,7 @@ pub struct SolidLoad {
 }
 
 /// Kind of a load on the solid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolidLoadKind {
     /// Normal pressure on faces.

@@ -1,0 +1,77 @@
+//! The form of scene files as a JSON schema, by which editors complete keys, show what they mean and mark what is wrong.
+
+use super::Scene;
+use super::coupling::{SpreadTable, Substeps, TransferTable};
+use super::include;
+use super::units::{Dimension, Quantity};
+use crate::write::FORMATS;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::{Value, json};
+use std::borrow::Cow;
+
+/// The schema of a scene.
+pub fn schema() -> Value {
+    let mut schema = schemars::schema_for!(Scene).to_value();
+    schema["title"] = json!("Scene of trackbed");
+    schema["properties"][include::KEY] = json!({
+        "description": "Files whose tables are put under those of the scene; paths relative to it.",
+        "type": "array",
+        "items": { "type": "string" },
+    });
+    schema
+}
+
+/// The keys that formats of frames add to `[output]`.
+pub(super) fn formats(schema: &mut Schema) {
+    for format in FORMATS {
+        let default = if format.default { "on" } else { "off" };
+        let key = json!({
+            "description": format!("Write frames in this format; {default} by default."),
+            "type": ["boolean", "null"],
+        });
+        schema.ensure_object()["properties"][format.key] = key;
+    }
+}
+
+impl<D: Dimension> JsonSchema for Quantity<D> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Quantity".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let units: Vec<&str> = D::UNITS.iter().map(|(unit, _)| *unit).collect();
+        let number = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?";
+        json_schema!({
+            "description": D::EXPECTED,
+            "anyOf": [
+                { "type": "number" },
+                { "type": "string", "pattern": format!(r"^\s*{number}\s*({})?\s*$", units.join("|")) },
+            ],
+        })
+    }
+}
+
+impl JsonSchema for Substeps {
+    fn schema_name() -> Cow<'static, str> {
+        "Substeps".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "integer", "minimum": 1, "maximum": 1000 }, { "const": "auto" }] })
+    }
+}
+
+impl JsonSchema for TransferTable {
+    fn schema_name() -> Cow<'static, str> {
+        "Transfer".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let spread = generator.subschema_for::<SpreadTable>();
+        json_schema!({ "anyOf": [{ "const": "point" }, spread] })
+    }
+}

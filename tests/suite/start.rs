@@ -1,0 +1,157 @@
+//! What a newcomer begins with: `new`, the schema of scenes, completions, `check --json`, overrides by name.
+
+use super::support::{Folder, repository, trackbed};
+use boon::{Compiler, SchemaIndex, Schemas};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use trackbed::scene::schema;
+use trackbed::start::TEMPLATES;
+
+/// Each template makes a folder whose scene is, to the program, the one in `inputs/`; a second time nothing is replaced.
+#[test]
+fn templates_are_scenes_that_can_be_run() {
+    let folder = Folder::new("templates");
+    assert!(TEMPLATES.len() >= 6, "{}", TEMPLATES.len());
+    let all = trackbed(["new"]).good().stdout;
+    for template in TEMPLATES {
+        let name = template.name;
+        assert!(all.lines().any(|line| line.starts_with(name) && line.ends_with(template.about)), "{all}");
+        let own = folder.join(name);
+        let made = trackbed(["new", name, own.to_str().unwrap()]).good();
+        let scene = own.join("scene.toml");
+        assert!(made.stdout.starts_with(&format!("{} written; next: ", scene.display())), "{made:?}");
+        let shipped = repository().join("inputs").join(template.source);
+        // What the program itself takes varies.
+        let check = |scene: &PathBuf| {
+            let text = trackbed(["check", scene.to_str().unwrap(), "--strict"]).good().stdout;
+            text.lines().filter(|line| !line.contains("memory: ")).map(String::from).collect::<Vec<_>>()
+        };
+        assert_eq!(check(&scene), check(&shipped), "{name}");
+    }
+    let own = folder.join("box");
+    let scene = own.join("scene.toml");
+    std::fs::write(&scene, "my own work").unwrap();
+    let again = trackbed(["new", "box", own.to_str().unwrap()]);
+    assert_eq!((again.code, again.stderr.lines().count()), (2, 1), "{again:?}");
+    assert_eq!(std::fs::read_to_string(&scene).unwrap(), "my own work");
+    let unknown = trackbed(["new", "bridge", folder.join("bridge").to_str().unwrap()]);
+    assert!(unknown.code == 2 && unknown.stderr.contains("found bridge, expected one of track, box, "));
+    assert!(!folder.join("bridge").exists());
+}
+
+/// A scene file as JSON.
+fn as_json(text: &str) -> Value {
+    serde_json::to_value(toml::from_str::<toml::Table>(text).unwrap()).unwrap()
+}
+
+fn compiled(schemas: &mut Schemas) -> SchemaIndex {
+    let mut compiler = Compiler::new();
+    compiler.add_resource("scene.json", schema::schema()).unwrap();
+    compiler.compile("scene.json", schemas).unwrap()
+}
+
+/// The schema takes every scene that is shipped, and refuses what the program refuses by its form.
+#[test]
+fn the_schema_takes_every_shipped_scene_and_no_slip() {
+    let mut schemas = Schemas::new();
+    let index = compiled(&mut schemas);
+    let mut folders = vec![repository().join("inputs")];
+    let mut count = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = match path.extension() {
+                Some(ending) if ending == "toml" => std::fs::read_to_string(&path).unwrap(),
+                _ => continue,
+            };
+            let scene = as_json(&text);
+            // Studies and libraries of stones are no scenes.
+            if scene.get("title").is_some() && scene.get("scene").is_none() {
+                count += 1;
+                let result = schemas.validate(&scene, index);
+                assert!(result.is_ok(), "{}: {:#}", path.display(), result.unwrap_err());
+            }
+        }
+    }
+    assert!(count >= 40, "{count} scenes");
+    let text = std::fs::read_to_string(repository().join("inputs/ballast/box.toml")).unwrap();
+    let whole = as_json(&text);
+    for (place, value) in [
+        ("/material/0/densty", json!(2650)),
+        ("/material/0/density", json!("2650 kN")),
+        ("/material/0/density", json!("many")),
+        ("/grains/0/shape", json!("cube")),
+        ("/grains/0/count", json!("650")),
+        ("/walls/0/normal", json!([0.0, 0.0])),
+        ("/output/vtk", json!("yes")),
+        ("/output/vkt", json!(true)),
+        ("/track/sleeper/hold", json!("x")),
+    ] {
+        let mut scene = whole.clone();
+        let (table, key) = place.rsplit_once('/').unwrap();
+        scene.pointer_mut(table).unwrap()[key] = value.clone();
+        assert!(schemas.validate(&scene, index).is_err(), "{place} = {value}");
+    }
+}
+
+/// Keys of the schema say what they mean, in the words of the program's own documentation.
+#[test]
+fn the_schema_explains_keys() {
+    let printed = trackbed(["schema"]).good().stdout;
+    let schema: Value = serde_json::from_str(&printed).unwrap();
+    let text = |place: &str| schema.pointer(place).and_then(Value::as_str).unwrap_or_default().to_string();
+    assert!(text("/properties/gravity/description").starts_with("Gravity"), "{printed}");
+    assert!(text("/$defs/Wall/properties/normal/description").starts_with("Normal of a `plane`"));
+    let without: Vec<&String> = schema["$defs"]["Wall"]["properties"]
+        .as_object()
+        .unwrap()
+        .iter()
+        .filter(|(_, value)| value.get("description").is_none())
+        .map(|(key, _)| key)
+        .collect();
+    assert!(without.is_empty(), "no description: {without:?}");
+}
+
+#[test]
+fn completions_know_the_commands() {
+    for shell in ["bash", "zsh", "fish"] {
+        let text = trackbed(["completions", shell]).good().stdout;
+        assert!(
+            ["report", "view", "--resume", "--strict"]
+                .iter()
+                .all(|word| text.contains(word.trim_start_matches('-'))),
+            "{shell}"
+        );
+    }
+}
+
+#[test]
+fn check_prints_numbers_for_programs() {
+    let scene = repository().join("inputs/track/cyclic/scene.toml");
+    let done = trackbed([
+        "check",
+        scene.to_str().unwrap(),
+        "--json",
+        "--set",
+        "solid.material.subgrade.young=80",
+        "--set",
+        "material.stone.density=2700",
+    ]);
+    let report: Value = serde_json::from_str(&done.good().stdout).unwrap();
+    let finding = &report["findings"][0];
+    // Tables were named, and are reported by their place.
+    assert_eq!(finding["key"], "solid.material.0.young", "{report:#}");
+    assert_eq!((&finding["serious"], &finding["found"]), (&json!(true), &json!("80 Pa")));
+    assert_eq!(report["solid"]["elements"], 684);
+    assert!(report["solid"]["memory_bytes"].as_u64().unwrap() > 1_000_000);
+    assert!(report["grains"]["bodies"].as_u64().unwrap() >= 1200);
+    let share = report["coupling"]["stability"]["damping"].as_f64().unwrap();
+    assert!(share > 0.0 && share <= 1.0, "{report:#}");
+    let unknown = trackbed(["check", scene.to_str().unwrap(), "--set", "material.gravel.density=1"]);
+    let words = "found material.gravel.density, expected an index below ";
+    assert!(unknown.code == 2 && unknown.stderr.contains(words), "{unknown:?}");
+}
