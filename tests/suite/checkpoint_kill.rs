@@ -128,14 +128,30 @@ fn a_run_ended_before_its_first_checkpoint_starts_anew() {
     run(&scene, &whole, &set.iter().map(String::as_str).collect::<Vec<_>>()).good();
     let refused = start(&scene, &out, &set, 1, true).wait_with_output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
-    fs::create_dir_all(out.join("checkpoint")).unwrap();
-    fs::write(out.join("run.lock"), "1\n").unwrap();
-    fs::write(out.join("checkpoint/a.checkpoint.part"), "half of it").unwrap();
-    let end = start(&scene, &out, &set, 1, true).wait_with_output().unwrap();
-    let said = String::from_utf8_lossy(&end.stderr);
-    assert!(end.status.success(), "{said}");
-    assert!(said.contains("before its first checkpoint, it starts from its beginning"), "{said}");
-    same(&whole, &out);
+    let left = || {
+        fs::create_dir_all(out.join("checkpoint")).unwrap();
+        fs::write(out.join("run.lock"), "1\n").unwrap();
+        fs::write(out.join("checkpoint/a.checkpoint.part"), "half of it").unwrap();
+    };
+    let anew = || {
+        let end = start(&scene, &out, &set, 1, true).wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&end.stderr);
+        assert!(end.status.success(), "{said}");
+        assert!(said.contains("before its first checkpoint, it starts from its beginning"), "{said}");
+        same(&whole, &out);
+    };
+    left();
+    anew();
+    // Files and the first frames were there already.
+    fs::remove_file(out.join("summary.json")).unwrap();
+    left();
+    anew();
+    // Those of another scene stay.
+    fs::remove_file(out.join("summary.json")).unwrap();
+    left();
+    let other = ["grains.0.count=301", "time.end=0.02"].map(String::from);
+    let refused = start(&scene, &out, &other, 1, true).wait_with_output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
 }
 
 /// Ctrl-C: one line, exit code 130, and a run that goes on.

@@ -1,0 +1,112 @@
+"""Runs that are killed without warning at random moments, resumed and compared with runs without a break, byte by byte.
+
+    python3 tests/random_kills.py BINARY [--kills N] [--threads N] [--seed N] [--only TEXT]
+
+Takes the cases with `restart` of tests/scene_cases.toml in turn: every stage of every kind of scene. A run keeps a checkpoint
+twenty times a second; it is killed (SIGKILL) at a moment spread evenly over the time that a run without a break takes, once to
+three times, and then goes on to its end. What it leaves is compared as tests/scene_hashes.py compares it. Exit code 1 where
+anything differs or a run does not go on. Needs Python 3.11 and nothing else.
+"""
+
+import argparse
+import collections
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+import scene_hashes
+
+# Solved in one go: no checkpoint by the clock.
+STATIC = {"inputs/solid/slope.toml"}
+
+
+def command(case, binary, out, threads):
+    """The run of a case, with many checkpoints where its kind takes them by the clock."""
+    more = [] if case["scene"] in STATIC else ["output.checkpoint=0.05"]
+    sets = [f"--set={s}" for s in [*case.get("set", []), *more]]
+    scene = str(scene_hashes.ROOT / case["scene"])
+    return [binary, "run", scene, *sets, *case.get("more", []), "--threads", str(threads), "--out", str(out), "--quiet"]
+
+
+def stage(folder):
+    """The stage of the latest checkpoint, in the words of its head; "none" before the first."""
+    heads = []
+    for slot in sorted((folder / "checkpoint").glob("*")) if (folder / "checkpoint").is_dir() else []:
+        lines = slot.read_bytes()[:4096].split(b"\n", 2)
+        if len(lines) == 3 and b'"stage":"' in lines[1]:
+            heads.append(lines[1].split(b'"stage":"')[1].split(b'"')[0].decode())
+    return heads[-1] if heads else "none"
+
+
+class Case:
+    """A case and what it leaves without a break."""
+
+    def __init__(self, case, binary, threads, work):
+        self.case, self.binary, self.threads, self.work = case, binary, threads, work
+        whole = work / "whole"
+        start = time.monotonic()
+        _, self.status = scene_hashes.execute(command(case, binary, whole, threads), None)
+        self.seconds = time.monotonic() - start
+        self.files = scene_hashes.files(whole)
+
+    def attempt(self, rng, stages):
+        """Kills a run one to three times and lets it end; the number of kills that met a run, and what differs then."""
+        out, done = self.work / "killed", 0
+        shutil.rmtree(out, ignore_errors=True)
+        words = command(self.case, self.binary, out, self.threads)
+        for _ in range(rng.randint(1, 3)):
+            resume = ["--resume"] if out.is_dir() and any(out.iterdir()) else []
+            process = subprocess.Popen([*words, *resume], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            try:
+                if process.wait(rng.uniform(0.0, self.seconds)) != 0:
+                    return done, [f"exit code {process.returncode}"]
+                break
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                done += 1
+                stages[stage(out)] += 1
+        else:
+            resume = ["--resume"] if out.is_dir() and any(out.iterdir()) else []
+            finished = subprocess.run([*words, *resume], capture_output=True, text=True)
+            if finished.returncode != 0:
+                return done, [f"exit code {finished.returncode}: {finished.stderr.strip()}"]
+        found = scene_hashes.files(out)
+        return done, sorted(n for n in found.keys() | self.files.keys() if found.get(n) != self.files.get(n))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("binary")
+    parser.add_argument("--kills", type=int, default=200)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", action="append", default=[])
+    options = parser.parse_args()
+    rng, binary = random.Random(options.seed), str(pathlib.Path(options.binary).resolve())
+    chosen = [c for c in scene_hashes.cases(options.only) if c.get("restart") and c.get("verb", "run") == "run"]
+    kills, wrong, stages = 0, 0, collections.Counter()
+    share = -(-options.kills // len(chosen))
+    for at in chosen:
+        work = pathlib.Path(tempfile.mkdtemp(prefix="random_kills_"))
+        case, count = Case(at, binary, options.threads, work), 0
+        while count < share:
+            done, differing = case.attempt(rng, stages)
+            count += done
+            if differing:
+                wrong += 1
+                print(f"{at['name']}: after {done} kills: {', '.join(differing)}", flush=True)
+        shutil.rmtree(work)
+        kills += count
+        print(f"{at['name']}: {count} kills of runs of {case.seconds:.1f} s ({case.status})", file=sys.stderr, flush=True)
+    where = ", ".join(f"{name} {n}" for name, n in stages.most_common())
+    print(f"{kills} kills in {len(chosen)} cases, {wrong} runs differ afterwards; last checkpoint: {where}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
