@@ -17,6 +17,7 @@ mod suite {
     mod faces;
     mod fem_cases;
     mod flow;
+    mod go_on;
     mod grain_limits;
     mod hostile;
     mod include;
@@ -25,13 +26,16 @@ mod suite {
     mod mesh_orders;
     mod meshed_sleeper;
     mod packings;
+    mod plausible;
     mod rail;
+    mod random_runs;
     mod report;
     mod scenes;
     mod solid_edges;
     mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
+    mod start;
     mod stones;
     mod structure;
     mod study;
@@ -39,6 +43,7 @@ mod suite {
     pub mod support;
     mod track;
     mod train;
+    mod tutorials;
     mod verdict;
     mod view;
     mod walls;

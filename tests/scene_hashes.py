@@ -17,7 +17,7 @@ What is hashed, and what is left out on purpose:
 * log.txt: except the wall times of the stages and of the parts of the solver.
 * output of `check` and `explain`: except the lines on memory and on the time of the probe, and the name of the vector
   instructions.
-* checkpoint/: left out, for its layout is private; a case with `restart` is run again with two interruptions and must
+* checkpoint/, end.state: left out, for their layout is private; a case with `restart` is run again with two interruptions and must
   then leave the same files.
 * Everything else (.csv, .dat, .svg, .pvd, .toml, .stl) byte by byte.
 
@@ -160,7 +160,7 @@ def files(folder):
     """Digest of every file below a folder."""
     found = sorted(p for p in folder.rglob("*") if p.is_file())
     names = [(p.relative_to(folder).as_posix(), p) for p in found]
-    return {name: digest_of(p) for name, p in names if not name.startswith("checkpoint/")}
+    return {name: digest_of(p) for name, p in names if not name.startswith(("checkpoint/", "end.state"))}
 
 
 def execute(command, cwd):

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::message;
 use std::cell::{Cell, RefCell};
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -205,6 +206,19 @@ impl CheckpointStore {
         let done = self.slots.borrow_mut().save(moment, fill);
         self.written.set(Instant::now());
         done
+    }
+
+    /// Writes a state to a file of its own.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn save_file(
+        &self,
+        file: &Path,
+        moment: Moment,
+        fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        self.slots.borrow().save_file(file, moment, fill)
     }
 
     /// Removes the checkpoints: there is nothing to go on from.

@@ -31,6 +31,8 @@ pub struct Run<'a> {
     pub continued: bool,
     /// The solid with its meshed sleepers where they were set down.
     pub set_down: &'a OnceCell<fem::Model>,
+    /// Folder of the run from whose end this one goes on.
+    pub from: Option<&'a Path>,
 }
 
 impl Run<'_> {
@@ -61,7 +63,7 @@ impl Run<'_> {
             folder::prepare(self.dir, &self.job.output)?;
         }
         if !self.continued || !self.dir.join(run_file::FILE).exists() {
-            RunFile::of(self.document).write(self.dir)?;
+            RunFile::of(self.document, self.from).write(self.dir)?;
         }
         self.prepared.set(true);
         Ok(())

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// What a run may leave beside the files of its formats.
-const FILES: [&str; 17] = [
+const FILES: [&str; 18] = [
     "push.csv",
     "breaks.csv",
     "summary.json",
@@ -24,6 +24,7 @@ const FILES: [&str; 17] = [
     "radial.csv",
     "packing.csv",
     "run.json",
+    "end.state",
     "report.html",
 ];
 

@@ -9,6 +9,7 @@ mod energy_watch;
 mod flow;
 mod folder;
 mod frames;
+mod from;
 mod hash;
 mod initial;
 mod lock;
@@ -41,6 +42,7 @@ use crate::guard::guarded;
 use crate::machine;
 use crate::message;
 use crate::model::Job;
+use crate::plausible;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
@@ -65,8 +67,12 @@ pub struct Options {
     pub memory: Option<u64>,
     /// Go on from the last checkpoint in the folder of the results.
     pub resume: bool,
+    /// Folder of a finished run from whose end this one goes on.
+    pub from: Option<PathBuf>,
     /// Replace what is in the folder of the results: a checkpoint, results of another scene, files of others.
     pub force: bool,
+    /// Refuse values that are not plausible.
+    pub strict: bool,
     /// Request to stop with a checkpoint.
     pub interrupt: Interrupt,
     /// Print nothing.
@@ -95,7 +101,19 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let parsed: Scene = document.read()?;
     let pool = thread_pool(options.threads)?;
     let dir = options.out.clone().unwrap_or_else(|| default_folder(scene, &options.set));
-    let origin = origin::origin(&document, &parsed);
+    let mut origin = origin::origin(&document, &parsed);
+    let mut previous = None;
+    if let Some(from) = &options.from {
+        if std::fs::canonicalize(from)
+            .is_ok_and(|from| std::fs::canonicalize(&dir).is_ok_and(|dir| dir == from))
+        {
+            let found = format!("--from: found {}, where the results go", from.display());
+            return Err(Failure::Input(format!("{found}, expected another folder than --out")));
+        }
+        let before = from::open(from, &document, &origin)?;
+        origin.scene_hash = from::hash_after(&origin.scene_hash, &before.hash);
+        previous = Some(before.loaded);
+    }
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
@@ -116,8 +134,11 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
+        let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
-        if loaded.is_none() && !options.force {
+        // What a run of the same scene has left before its first checkpoint is no loss.
+        let own = options.resume && RunFile::of(&document, options.from.as_deref()).is_of(&dir);
+        if loaded.is_none() && !options.force && !own {
             occupied::check(&dir, &origin, &slots, &lock)?;
         }
         lock.name(scene);
@@ -131,7 +152,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             ..RunRecord::default()
         };
         let summary = Summary { run: record, dir: dir.clone(), ..Summary::default() };
-        let command = origin::resume_command(scene, &dir, &options.set);
+        let command = origin::resume_command(scene, &dir, &options.set, options.from.as_deref());
         let (interrupt, interval) = (options.interrupt.clone(), job.output.checkpoint);
         let set_down = OnceCell::new();
         let run = Run {
@@ -144,9 +165,27 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),
             set_down: &set_down,
+            from: options.from.as_deref(),
         };
-        carry_out(&run, loaded, summary, &lock)
+        from::check(&job, options.from.is_some(), &document)?;
+        let loaded = loaded.or(previous);
+        carry_out(&run, loaded, summary, &lock, &findings)
     })
+}
+
+/// Remarks on values of a scene that are not plausible; or refuses them.
+fn weigh(
+    document: &Document,
+    scene: &Scene,
+    job: &Job,
+    options: &Options,
+) -> Result<Vec<plausible::Finding>, Failure> {
+    let findings = plausible::weigh(scene, job);
+    if options.strict {
+        plausible::refuse(document, &findings)?;
+    }
+    // A run that is resumed has had them.
+    Ok(if options.quiet || options.resume { Vec::new() } else { findings })
 }
 
 /// Carries out the stages of a run, and writes its summary whatever becomes of them.
@@ -155,6 +194,7 @@ fn carry_out(
     loaded: Option<Loaded>,
     summary: Summary,
     lock: &Lock,
+    findings: &[plausible::Finding],
 ) -> Result<Outcome, Failure> {
     let mut state = RunState::new(loaded, summary);
     let result = guarded(|| {
@@ -162,6 +202,7 @@ fn carry_out(
         if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && state.loaded.is_none()) {
             stages::preview(run.document, run.job, grains)?;
         }
+        findings.iter().for_each(|finding| message::note(&finding.to_string()));
         describe(run, &mut state.summary)?;
         state.begin(run.job)?;
         stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state))

@@ -28,9 +28,10 @@ pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
 }
 
 /// The command that continues a run.
-pub fn resume_command(scene: &Path, dir: &Path, set: &[String]) -> String {
+pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<&Path>) -> String {
     let mut command = format!("trackbed run {} --resume --out {}", quoted(scene), quoted(dir));
     set.iter().for_each(|s| command += &format!(" --set {}", quoted(Path::new(s))));
+    from.iter().for_each(|from| command += &format!(" --from {}", quoted(from)));
     command
 }
 

@@ -19,17 +19,21 @@ pub struct RunFile {
     pub scene: String,
     /// Keys overridden on the command line, as key=value, in order.
     pub overrides: Vec<String>,
+    /// Folder of the run from whose end this one went on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
     /// Text of the scene file, without the overrides.
     pub text: String,
 }
 
 impl RunFile {
     /// Of a scene that is run.
-    pub fn of(document: &Document) -> RunFile {
+    pub fn of(document: &Document, from: Option<&Path>) -> RunFile {
         RunFile {
             version: env!("CARGO_PKG_VERSION").into(),
             scene: document.file().display().to_string(),
             overrides: document.overrides().iter().map(|(key, value)| format!("{key}={value}")).collect(),
+            from: from.map(|dir| dir.display().to_string()),
             text: document.text().into(),
         }
     }
@@ -50,6 +54,13 @@ impl RunFile {
     /// The one in a folder of results; none where there is none that can be read.
     pub fn read(dir: &Path) -> Option<RunFile> {
         serde_json::from_slice(&source::bytes(&dir.join(FILE), source::LARGEST).ok()?).ok()
+    }
+
+    /// Whether the results in a folder are of the same scene, with the same overrides.
+    pub fn is_of(&self, dir: &Path) -> bool {
+        RunFile::read(dir).is_some_and(|other| {
+            (&other.text, &other.overrides, &other.from) == (&self.text, &self.overrides, &self.from)
+        })
     }
 
     /// The scene with its overrides; none where this program does not understand it.

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::atomic;
 use super::error::WriteError;
 use super::frame::Frame;
 use super::pvd::Series;
@@ -16,9 +17,12 @@ pub const FORMAT: Format = Format {
     parts: &[Part::Solid, Part::Grains, Part::Chains, Part::Walls],
     folder: "frames",
     endings: &["vtu", "vtp"],
-    files: &["results.pvd"],
+    files: &["results.pvd", LOOK],
     begin,
 };
+
+/// A script beside the results that shows them with PyVista.
+const LOOK: &str = "look.py";
 
 struct VtkFrames {
     dir: PathBuf,
@@ -26,6 +30,8 @@ struct VtkFrames {
 }
 
 fn begin(dir: &Path, mark: Option<&Mark>) -> Result<Box<dyn Writer>, WriteError> {
+    let look = dir.join(LOOK);
+    atomic::write(&look, |out| out.write_all(include_bytes!("look.py")).map_err(WriteError::io(&look)))?;
     let file = dir.join("results.pvd");
     let series = match mark {
         None => Series::new(&file),

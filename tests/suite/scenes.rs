@@ -272,8 +272,8 @@ fn python() -> Option<PathBuf> {
 fn output_that_is_not_wanted_is_not_written() {
     let folder = scene_folder("no_output", COUPLED);
     let out = folder.join("out");
-    run(&folder.join("scene.toml"), &out, &["output.vtk=false", "output.tecplot=false", "output.frames=0"])
-        .good();
+    let set = ["output.vtk=false", "output.tecplot=false", "output.frames=0", "output.state=false"];
+    run(&folder.join("scene.toml"), &out, &set).good();
     let mut names: Vec<String> =
         fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();

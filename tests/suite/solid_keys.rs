@@ -1,6 +1,6 @@
 //! Scene keys of the solid whose effect is known in closed form, each through the program.
 
-use super::support::{Folder, Table, run};
+use super::support::{Folder, SOLID, Table, run, scene_folder, small_block, trackbed, write_lists};
 
 /// One cubic metre between smooth plates, pressed by 10 mm.
 const CUBE: &str = r#"title = "cube"
@@ -187,4 +187,36 @@ fn initial_stress_of_level_ground() {
         let nodes = Table::read(&folder.join("out/nodes.csv"));
         assert!(nodes.column("uz").iter().all(|u| u.abs() < 1e-9), "displacements are set to zero");
     }
+}
+
+/// A mesh in millimetres is, with `scale`, the one in metres.
+#[test]
+fn a_mesh_in_millimetres() {
+    let metres = scene_folder("metres", SOLID);
+    let scaled = SOLID.replace("[solid]\n", "[solid]\nscale = 0.001\n");
+    let millimetres = Folder::new("millimetres");
+    let mut mesh = small_block();
+    mesh.coordinates.iter_mut().flatten().for_each(|x| *x *= 1e3);
+    write_lists(&mesh, millimetres.path());
+    millimetres.write("scene.toml", &scaled);
+    let settlement = |folder: &Folder| {
+        run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
+        Table::read(&folder.join("out/nodes.csv")).column("uz")
+    };
+    let (a, b) = (settlement(&metres), settlement(&millimetres));
+    let largest = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    assert!(largest > 1e-5 && a.len() == b.len());
+    assert!(a.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-10 * largest));
+    let scene = millimetres.join("scene.toml");
+    millimetres.write("scene.toml", &SOLID.replace("[solid]\n", "[solid]\nscale = -1\n"));
+    let refused = trackbed(["check", scene.to_str().unwrap()]);
+    assert!(
+        refused.code == 2 && refused.stderr.contains("solid.scale: found -1, expected above 0"),
+        "{refused:?}"
+    );
+    let block = "title = \"a\"\n[solid]\nscale = 2\nblock = { x = { lines = [0, 1], counts = [1] }, y = { lines = [0, 1], counts = [1] }, z \
+                 = { lines = [0, 1], counts = [1] } }\n[[solid.material]]\nid = 1\nyoung = 1e7\npoisson = 0.2\ndensity = 2000\n";
+    millimetres.write("scene.toml", block);
+    let refused = trackbed(["check", scene.to_str().unwrap()]);
+    assert!(refused.stderr.contains("solid.scale: found a value, expected no such key"), "{refused:?}");
 }

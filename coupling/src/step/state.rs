@@ -71,6 +71,15 @@ impl State {
         }
     }
 
+    /// Lets time, steps and accounts begin anew where everything is.
+    pub fn begin_anew(&mut self) {
+        self.grains.begin_anew();
+        self.solid.time = 0.0;
+        self.audit = TransferAudit::default();
+        self.spent = Spent::default();
+        self.passes = Passes::default();
+    }
+
     /// The same with a contact load [N], shape `[3·nodes]`, that the solid carries from the start: the lagged scheme begins
     /// with it.
     pub fn carrying(self, load: Vec<f64>) -> State {

@@ -30,6 +30,7 @@ impl State {
             time: 0.0,
             pace: Pace::new(model.dt()),
             steps: 0,
+            before: 0,
             ledger: Ledger::default(),
             places: Vec::new(),
             blocks: Vec::new(),

@@ -40,8 +40,10 @@ pub(crate) struct BlockLists {
 pub struct State {
     /// Time of the positions [s].
     pub time: f64,
-    /// Steps done.
+    /// Steps done, those before [`State::begin_anew`] included.
     pub steps: u64,
+    /// Steps done before it.
+    pub(crate) before: u64,
     /// Sums of work, dissipation and impulse since the start.
     pub ledger: Ledger,
     /// Block and place of each body.
@@ -68,6 +70,11 @@ pub struct State {
 pub(crate) const NOWHERE: [u32; 2] = [u32::MAX, 0];
 
 impl State {
+    /// Steps done since the start, or since [`State::begin_anew`].
+    pub fn steps_done(&self) -> u64 {
+        self.steps - self.before
+    }
+
     /// Length of the next step [s]; [`Model::dt`] until another is set.
     pub fn dt(&self) -> f64 {
         self.pace.dt
@@ -245,6 +252,15 @@ impl State {
     pub fn open_wall(&mut self, wall: usize, open: bool) {
         self.walls[wall].open = open;
         self.stale = true;
+    }
+
+    /// Lets time, the count of steps and accounts begin anew where everything is. Offsets of walls go on from where they started.
+    pub fn begin_anew(&mut self) {
+        self.time = 0.0;
+        // Steps are counted on: every so many the bodies are put in order, and that decides the last bits of sums.
+        self.before = self.steps;
+        self.ledger = Ledger::default();
+        self.bonds.breaks.clear();
     }
 
     /// Has the neighbours searched anew before the next step: call it when the external surface has moved

@@ -11,12 +11,32 @@ pub use origin::{Origin, processor};
 
 use crate::failure::Failure;
 use crate::read::source::{self, Refusal};
+use crate::run::hash::Hash;
 use crate::scene::Document;
 use crate::write::{WriteError, atomic};
 use form::{Header, Unfit};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// Reads a state that was kept as a file of its own: what it is of, the state, and the hash of the file.
+///
+/// # Errors
+/// Bad input: it cannot be read, is damaged, or is of another program.
+pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
+    let name = file.display();
+    let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
+        let (found, expected) = refusal.words(|e| e.to_string());
+        Failure::Input(format!("{name}: found {found}, expected {expected}"))
+    })?;
+    let mut hash = Hash::default();
+    hash.add(&bytes);
+    let (header, loaded) = form::read(bytes).map_err(|unfit| match unfit {
+        Unfit::Form(text) => Failure::Input(format!("{name}: {text}")),
+        Unfit::Damaged(text) => Failure::Input(format!("{name}: damaged: {text}")),
+    })?;
+    Ok((header.origin, loaded, hash.hex()))
+}
 
 /// The folder of the checkpoints of a run.
 pub struct Slots {
@@ -77,6 +97,20 @@ impl Slots {
         self.own = true;
         self.next += 1;
         Ok(())
+    }
+
+    /// Writes a state to a file of its own.
+    ///
+    /// # Errors
+    /// What the system refuses.
+    pub fn save_file(
+        &self,
+        file: &Path,
+        moment: Moment,
+        fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let header = Header { number: 0, moment, origin: self.origin.clone() };
+        Ok(atomic::write(file, |out| form::write(out, &header, fill).map_err(WriteError::io(file)))?)
     }
 
     /// Removes the checkpoints that another run left.

@@ -9,6 +9,7 @@ use crate::model::solid::SolidPart;
 use crate::progress::Progress;
 use crate::run::checkpoint::Loaded;
 use crate::run::context::Run;
+use crate::run::from::END;
 use crate::run::initial;
 use crate::run::summary::{CouplingRecord, Summary};
 use crate::run::system::{CoupledSystem, Meshed};
@@ -53,6 +54,7 @@ impl Stage for Equilibrium {
         let (loaded, summary) = (state.loaded.as_mut(), &mut state.summary);
         let body = Body { part, model: solid };
         let system = couple(run, body, bases, model, plan, substeps, surface, load, loaded, summary)?;
+        state.loaded.take_if(|loaded| loaded.moment.stage == END);
         let substeps = system.model.substeps;
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
         if !run.quiet {
@@ -94,7 +96,7 @@ fn couple<'b>(
     let solid = body.part;
     let dead_load = solid.dead_load(body.model);
     let (reference, memory, state, seat_work) = match resumed {
-        Some(loaded) => loaded.take()?,
+        Some(loaded) => kept(loaded)?,
         None => {
             let (state, resting, contacts) = equilibrium(body, &grains, &mut surface, &dead_load)?;
             let reference = state.u.clone();
@@ -150,6 +152,19 @@ fn couple<'b>(
         work: seat_work,
     });
     Ok(CoupledSystem { model, state, work, loads: &solid.loads, ground_faces: plan.ground_faces, seats })
+}
+
+/// Displacement of the solid that its loads refer to, what its solver remembers, both states, and the work of loads on seats [J].
+type Kept = (Vec<f64>, Option<fem::nonlinear::Memory>, coupling::step::State, f64);
+
+/// What a checkpoint has kept; at the end of a run that another goes on from, accounts begin anew.
+fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
+    let (reference, memory, mut state, seat_work): Kept = loaded.take()?;
+    if loaded.moment.stage != END {
+        return Ok((reference, memory, state, seat_work));
+    }
+    state.begin_anew();
+    Ok((reference, None, state, 0.0))
 }
 
 /// The solid of a coupled run: its model has the meshed sleepers where they are set down.

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::Analysis;
 use crate::run::context::Run;
+use crate::run::from::END;
 use crate::run::packing;
 use crate::run::summary::NewtonRecord;
 use crate::run::system::{GrainsSystem, System};
@@ -67,6 +68,9 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
         Some(loaded) => GrainsSystem::resume(model, interval, loaded)?,
         None => GrainsSystem::new(model, interval)?,
     };
+    if resumed.take_if(|loaded| loaded.moment.stage == END).is_some() {
+        system.begin_anew();
+    }
     run.prepare()?;
     let grains = state.grains.as_ref().expect("a run with grains");
     time_loop::with_grains(run, &mut system, grains, resumed, &mut state.summary)?;

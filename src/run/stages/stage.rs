@@ -6,6 +6,7 @@ use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
 use crate::run::bed::Bed;
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
+use crate::run::from::END;
 use crate::run::packing::{CompactionRecord, GrowthRecord};
 use crate::run::sources;
 use crate::run::summary::{StageRecord, Summary};
@@ -104,6 +105,12 @@ impl Settled {
         self.bodies.iter().chain(&self.sleepers).cloned().collect()
     }
 
+    /// The bed without the record of its making, which belongs to the run that made it.
+    pub fn places(&self) -> Settled {
+        let Settled { bodies, sleepers, planes, time, .. } = self.clone();
+        Settled { bodies, sleepers, planes, time, ..Settled::default() }
+    }
+
     /// Takes over where a model of [`Settled::all`] has brought them, at rest.
     pub fn take(&mut self, bed: &Bed<'_>) {
         let mut all = bed.at_rest(&self.all());
@@ -200,7 +207,13 @@ impl RunState<'_> {
         };
         let (bed, bodies) = (Settled::default(), Vec::new());
         let mut grains = GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases: Vec::new() };
-        if !is_packed(job) {
+        if let Some(loaded) = self.loaded.as_mut().filter(|l| l.moment.stage == END) {
+            // The bed is the one that the run before began with; where it is now follows with its state.
+            match loaded.take::<Option<Settled>>()? {
+                Some(bed) => (grains.bed, grains.done) = (bed, Packed::Finished),
+                None => grains.bodies.clone_from(&grains.part.groups.bodies),
+            }
+        } else if !is_packed(job) {
             grains.bodies.clone_from(&grains.part.groups.bodies);
         } else if let Some(loaded) = &mut self.loaded {
             match loaded.moment.stage.as_str() {

@@ -8,6 +8,7 @@ use crate::run::bond_output;
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::flow::Flow;
+use crate::run::from::{self, END};
 use crate::run::record::Results;
 use crate::run::summary::{
     BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary,
@@ -131,6 +132,9 @@ pub fn advance<S: System>(
         outcome = looped.window(system);
     }
     run.checkpoints.end();
+    if outcome.is_ok() {
+        looped.keep_end(system)?;
+    }
     looped.finish(system, matches!(outcome, Err(Failure::Numerical(_))), summary)?;
     outcome
 }
@@ -249,6 +253,19 @@ impl<'a> TimeLoop<'a> {
                 self.recorder.save(body)
             },
         )
+    }
+
+    /// Keeps the state at the end, from which another run can go on.
+    fn keep_end<S: System>(&self, system: &S) -> Result<(), Failure> {
+        if self.grains.is_none() || !self.run.job.output.state {
+            return Ok(());
+        }
+        let done = self.place.done;
+        let moment = Moment { stage: END.into(), step: done, time: done as f64 * self.cadence.window };
+        self.run.checkpoints.save_file(&self.run.dir.join(from::FILE), moment, |body| {
+            body.put(&self.settled.map(Settled::places))?;
+            system.save_end(body)
+        })
     }
 
     /// Results of the loop; `failed` is whether a step had no solution.

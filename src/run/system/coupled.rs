@@ -85,7 +85,7 @@ impl TrackSystem for CoupledSystem<'_> {
 
 impl System for CoupledSystem<'_> {
     fn steps_done(&self, windows: u64) -> (u64, u64) {
-        (self.state.grains.steps, windows)
+        (self.state.grains.steps_done(), windows)
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
@@ -112,6 +112,11 @@ impl System for CoupledSystem<'_> {
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         let seat_work = self.seats.as_ref().map_or(0.0, |s| s.work);
         body.put(&(&self.model.reference, self.work.memory(), &self.state, seat_work))
+    }
+
+    fn save_end(&self, body: &mut Body<'_>) -> io::Result<()> {
+        let memory = self.work.memory().filter(|_| false);
+        body.put(&(&self.model.reference, memory, &self.state, 0.0))
     }
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {

@@ -47,6 +47,13 @@ impl GrainsSystem {
     }
 }
 
+impl GrainsSystem {
+    /// Lets time and accounts begin anew.
+    pub fn begin_anew(&mut self) {
+        self.state.begin_anew();
+    }
+}
+
 /// A window of grains alone: one step where the scene fixes it, else so many first steps that few long ones find room in their
 /// place, and about a whole number of windows in an interval of the history [s].
 fn window(model: &dem::Model, interval: f64) -> f64 {
@@ -78,7 +85,7 @@ impl TrackSystem for GrainsSystem {
 
 impl System for GrainsSystem {
     fn steps_done(&self, _: u64) -> (u64, u64) {
-        (self.state.steps, 0)
+        (self.state.steps_done(), 0)
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {

@@ -37,6 +37,10 @@ pub trait System: TrackSystem {
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
     /// Puts into a checkpoint what `resume` of the system goes on from.
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
+    /// Puts into a file what another run goes on from: what a solver has learnt stays behind.
+    fn save_end(&self, body: &mut Body<'_>) -> io::Result<()> {
+        self.save(body)
+    }
     /// Takes grains out and puts grains in.
     ///
     /// # Errors

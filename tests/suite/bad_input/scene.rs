@@ -105,7 +105,7 @@ fn override_below_a_value() {
 #[test]
 fn override_of_an_absent_entry() {
     solid().set("solid.material.4.young=3").refused(
-        "--set: solid.material.4.young: found solid.material.4.young, expected an index below 1 after `material`",
+        "--set: solid.material.4.young: found solid.material.4.young, expected an index below 1, or the name of a table, after `material`",
     );
 }
 

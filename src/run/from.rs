@@ -1,0 +1,216 @@
+//! Runs that go on from the end of another: `trackbed run NEXT --from DIR`.
+//!
+//! At its end a run with grains keeps its state in `end.state`: where everything is and how it moves, the memory of all contacts,
+//! broken bonds, the solid with its plastic strains. Another run begins with it in place of packing a bed, with time, accounts
+//! and settlement from zero. It is to be the same model; [`FREE`] lists what may be another.
+
+use super::checkpoint::{self, Loaded, Origin};
+use super::hash::Hash;
+use super::run_file::RunFile;
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::scene::Document;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Name of the file.
+pub const FILE: &str = "end.state";
+/// Stage of the state at the end of a run.
+pub const END: &str = "end";
+
+/// Keys that may differ from those of the run before, be new, or be missing.
+const FREE: [&str; 16] = [
+    "title",
+    "gravity",
+    "include",
+    "time",
+    "output",
+    "measure",
+    "probe",
+    "wind",
+    "track.load",
+    "track.push",
+    "solid.load",
+    "solid.newton",
+    "coupling.tolerance",
+    "coupling.max_passes",
+    "coupling.window",
+    "coupling.substeps",
+];
+/// Tables whose numbers may differ: no key may be new or missing there, and no law another.
+const CONSTANTS: [&str; 4] = ["material", "contact", "solid.material", "solid.rayleigh"];
+/// Words among them.
+const WORDS: [&str; 10] =
+    ["name", "id", "model", "between", "normal", "tangential", "damping", "rolling", "twisting", "cone"];
+/// Keys that name files, which may lie elsewhere: their content is compared.
+const FILES: [&str; 9] =
+    ["mesh", "nodes", "elements", "constraints", "library", "packing", "file", "surface", "pairs"];
+
+/// The end of another run.
+pub struct Previous {
+    /// Its state.
+    pub loaded: Loaded,
+    /// Hash of the file.
+    pub hash: String,
+}
+
+/// Reads the end of the run in `dir` and makes sure that a scene can go on from it.
+///
+/// # Errors
+/// Bad input: no such state, or the scene is another model.
+pub fn open(dir: &Path, document: &Document, origin: &Origin) -> Result<Previous, Failure> {
+    let file = dir.join(FILE);
+    if !file.is_file() {
+        let expected = "the folder of a finished run with grains that has kept it (output.state)";
+        return Err(Failure::Input(format!(
+            "--from: {}: found no {FILE}, expected {expected}",
+            dir.display()
+        )));
+    }
+    let (before, loaded, hash) =
+        checkpoint::read_file(&file).map_err(|e| Failure::Input(format!("--from: {e}")))?;
+    if let Some(wrong) = difference(dir, document, origin, &before) {
+        return Err(document.error(&wrong.key, wrong.found, wrong.expected).into());
+    }
+    Ok(Previous { loaded, hash })
+}
+
+/// The hash of what a run depends on that goes on from a state.
+pub fn hash_after(scene: &str, state: &str) -> String {
+    let mut hash = Hash::default();
+    hash.add(scene.as_bytes());
+    hash.add(state.as_bytes());
+    hash.hex()
+}
+
+/// Refuses to go on with what keeps no state, or leaves a part of it behind.
+///
+/// # Errors
+/// Bad input.
+pub fn check(job: &Job, from: bool, document: &Document) -> Result<(), Failure> {
+    let rails = job.grains.as_ref().is_some_and(|g| g.track.rail.is_some());
+    match (&job.grains, from) {
+        (None, true) => {
+            let expected = "grains: a solid alone keeps no state that --from goes on with";
+            Err(document.error("grains", "nothing", expected).into())
+        }
+        (Some(_), true) if rails => {
+            let expected = "sleepers without rails: --from does not carry the bending of rails";
+            Err(document.error("track.rail", "a rail", expected).into())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A key by which a scene is another model.
+struct Difference {
+    key: String,
+    found: String,
+    expected: String,
+}
+
+fn difference(dir: &Path, document: &Document, origin: &Origin, before: &Origin) -> Option<Difference> {
+    if before.version != origin.version {
+        let found = format!("{}, of version {} of the program", dir.display(), before.version);
+        return Some(Difference {
+            key: "--from".into(),
+            found,
+            expected: format!("version {}", origin.version),
+        });
+    }
+    // The scene that was run lies where it was, with the files that it includes.
+    let place =
+        RunFile::read(dir).map_or_else(|| document.file().to_path_buf(), |run| PathBuf::from(run.scene));
+    let old = Document::parse(&place, before.scene.clone()).ok().and_then(|mut old| {
+        before.overrides.iter().try_for_each(|o| old.set(o)).ok()?;
+        Some(old.keys())
+    });
+    let Some(old) = old else {
+        let found = format!("{}, whose scene cannot be read any more", dir.display());
+        return Some(Difference {
+            key: "--from".into(),
+            found,
+            expected: "its scene with its includes".into(),
+        });
+    };
+    let new = document.keys();
+    let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+    let other = keys.into_iter().find(|key| !may_be(key, &old, &new));
+    if let Some(key) = other {
+        let text = |keys: &BTreeMap<String, String>| keys.get(key).map_or("nothing", |v| v).to_string();
+        let (found, expected) = (
+            text(&new),
+            format!("{}, as in {}: a run goes on with the same model", text(&old), dir.display()),
+        );
+        return Some(Difference { key: key.clone(), found, expected });
+    }
+    let hashes = |files: &[(PathBuf, String)]| files.iter().map(|f| f.1.clone()).collect::<BTreeSet<_>>();
+    let known = hashes(&before.files);
+    let included = document.included().map(Path::to_path_buf);
+    let free: Vec<PathBuf> = free_files(&new).chain(included).collect();
+    let changed = origin.files.iter().find(|(file, hash)| !known.contains(hash) && !free.contains(file));
+    changed.map(|(file, _)| Difference {
+        key: "--from".into(),
+        found: format!("{}, with another content than in {}", file.display(), dir.display()),
+        expected: "the same mesh, libraries and lists".into(),
+    })
+}
+
+/// Whether a key may be what it is.
+fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {
+    let (before, now) = (old.get(key), new.get(key));
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let both = before.is_some() && now.is_some();
+    let in_table =
+        |table: &&str| key.strip_prefix(*table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    before == now
+        || FREE.iter().any(in_table)
+        || both && (FILES.contains(&last) || CONSTANTS.iter().any(in_table) && !WORDS.contains(&last))
+}
+
+/// Files that a scene names below keys that may be others.
+fn free_files(keys: &BTreeMap<String, String>) -> impl Iterator<Item = PathBuf> {
+    let free = |key: &str| FREE.iter().any(|table| key.starts_with(&format!("{table}.")) || key == *table);
+    let names = keys.iter().filter(move |(key, _)| free(key));
+    // Values are TOML: words in quotes, alone or in lists.
+    names.flat_map(|(_, value)| value.split('"').skip(1).step_by(2)).map(PathBuf::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn loads_and_constants_are_free_and_the_model_is_not() {
+        let keys = |text: &str| {
+            let document = Document::parse(Path::new("scene.toml"), text.into()).unwrap();
+            document.keys()
+        };
+        let old = keys(
+            "title = \"a\"\n[[material]]\nname = \"stone\"\nfriction = 0.5\n[track.load]\ncycles = 10\n[[grains]]\ncount = 3\n\
+             library = \"a.toml\"\n[coupling]\nscheme = \"lagged\"\n",
+        );
+        for (key, value, free) in [
+            ("title", "\"b\"", true),
+            ("track.load.cycles", "20", true),
+            ("track.load.maximum", "3.0", true),
+            ("track.loads", "3.0", false),
+            ("material.0.friction", "0.7", true),
+            ("material.0.name", "\"rock\"", false),
+            ("material.0.rolling_friction", "0.2", false),
+            ("grains.0.count", "4", false),
+            ("grains.0.library", "\"../a.toml\"", true),
+            ("coupling.scheme", "\"predicted\"", false),
+            ("walls", "[]", false),
+        ] {
+            let mut new = old.clone();
+            new.insert(key.into(), value.into());
+            assert_eq!(may_be(key, &old, &new), free, "{key} = {value}");
+        }
+        let mut fewer = old.clone();
+        fewer.remove("grains.0.count");
+        assert!(!may_be("grains.0.count", &old, &fewer));
+        let named = keys("[track.load]\nfile = \"a.csv\"\n[solid]\nmesh = \"b.cdb\"");
+        assert_eq!(free_files(&named).collect::<Vec<_>>(), [PathBuf::from("a.csv")]);
+    }
+}
