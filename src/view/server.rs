@@ -12,7 +12,8 @@ use tiny_http::{Header, Method, Request, Response, Server};
 
 use super::chunk::Coding;
 use super::results::Results;
-use super::{page, series};
+use super::page;
+use crate::results::series;
 use crate::failure::Failure;
 
 /// Requests handled at a time.
