@@ -26,6 +26,7 @@ mod suite {
     mod meshed_sleeper;
     mod packings;
     mod rail;
+    mod render;
     mod report;
     mod scenes;
     mod solid_edges;

@@ -16,6 +16,7 @@ use std::path::PathBuf;
 
 use crate::failure::Failure;
 use crate::results::series;
+use crate::write::WriteError;
 use draw::{Camera, Room, V3};
 use encode::Form;
 use options::{Frames, Options, Part, joined, refuse};
@@ -56,11 +57,18 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
         let endings = joined(encode::ENDINGS.iter().map(|(e, _)| *e));
         refuse("out", &file.display().to_string(), &format!("a name that ends in one of {endings}"))
     })?;
+    if file.is_dir() {
+        return Err(Failure::Input(format!("{}: found a folder, expected the name of a file", file.display())));
+    }
     if file.exists() && !options.force {
         return Err(Failure::Input(format!(
             "{}: found a file of this name, expected none, or --force to replace it",
             file.display()
         )));
+    }
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|p| !p.is_dir()) {
+        return Err(Failure::Input(format!("{}: found no folder {}, expected one", file.display(), folder.display())));
     }
     let run = Run::open(&options.dir)?;
     run.check_fields(options)?;
@@ -75,11 +83,43 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
     }
     let studio = Studio::new(&run, options, &frames)?;
     match form {
-        Form::Avi => encode::write_video(&file, options.size, options.rate, frames.len(), |k| studio.picture(frames[k]))?,
-        _ => encode::write(&file, form, &studio.picture(frames[0])?)?,
+        Form::Avi => {
+            let frame = |k: usize| studio.picture(frames[k]).map_err(Refused::Results);
+            encode::write_video(&file, options.size, options.rate, frames.len(), frame).map_err(Failure::from)?;
+        }
+        _ => encode::write(&file, form, &studio.picture(frames[0])?).map_err(Refused::Disk)?,
     }
     let times = frames.iter().map(|k| run.frames[*k].time).collect();
     Ok(Written { file, size: options.size, frames, times })
+}
+
+/// Why there is no file.
+enum Refused {
+    Results(Failure),
+    Disk(WriteError),
+}
+
+impl From<WriteError> for Refused {
+    fn from(error: WriteError) -> Refused {
+        Refused::Disk(error)
+    }
+}
+
+impl From<Refused> for Failure {
+    fn from(refused: Refused) -> Failure {
+        use std::io::ErrorKind::{NotFound, PermissionDenied, ReadOnlyFilesystem};
+        match refused {
+            Refused::Results(failure) => failure,
+            // The place was given by the user.
+            Refused::Disk(WriteError::Io { file, source })
+                if matches!(source.kind(), NotFound | PermissionDenied | ReadOnlyFilesystem) =>
+            {
+                let found = format!("a place that cannot be written to ({source})");
+                Failure::Input(format!("{}: found {found}, expected one that can", file.display()))
+            }
+            Refused::Disk(error) => error.into(),
+        }
+    }
 }
 
 /// What holds for all pictures of a video.
@@ -112,7 +152,7 @@ impl<'a> Studio<'a> {
                 let at = *origin.get_or_insert_with(|| middle(run, &moment));
                 let parts = Parts::of(run, &moment, options, &wanted, at, own)?;
                 shown.extend(parts.corners);
-                grains.extend(parts.grain_box.into_iter().flatten());
+                grains.extend(parts.bed.into_iter().flatten());
             }
             plane = flat(run, &moment);
             last = Some((*frame, moment));

@@ -7,7 +7,7 @@ use super::options::{Clip, Options, Part};
 use super::run::{Moment, Run, Wanted, of_elements};
 use super::sheet::{Key, Legend};
 use crate::failure::Failure;
-use crate::results::section::{Point, section};
+use crate::results::section::{Point, outlines, section};
 use crate::write::WallKind;
 
 /// Colours of what has none from values, those of the viewer.
@@ -19,9 +19,10 @@ const RAIL: &str = "5b4a3f";
 /// Shares of light and shade of contours, which are found in the legend again.
 const CONTOUR: f32 = 0.38;
 /// How much stones of one colour differ in lightness.
-const SHADES: f32 = 0.13;
-/// Radius of the strongest chain, as a share of the size of a stone; of the weakest, as a share of that.
-const CHAIN: (f64, f64) = (0.22, 0.02);
+const SHADES: f32 = 0.17;
+/// Radius of the strongest chain, as a share of the size of a stone; the section of a chain grows with its force. Radius of the weakest,
+/// as a share of that.
+const CHAIN: (f64, f64) = (0.2, 0.1);
 /// Edges of triangulated walls with more triangles would hide them.
 const MOST_EDGES: usize = 400;
 /// Number of bodies of the solid; walls follow.
@@ -94,8 +95,8 @@ pub struct Parts<'a> {
     pub legends: Vec<Legend>,
     /// Corners of boxes around what is shown.
     pub corners: Vec<V3>,
-    /// Corners of the box around the grains that are shown.
-    pub grain_box: Option<[V3; 2]>,
+    /// Corners of the box around the grains, or else the chains, that are shown.
+    pub bed: Option<[V3; 2]>,
     run: &'a Run,
     options: &'a Options,
     wanted: &'a Wanted,
@@ -137,7 +138,7 @@ impl<'a> Parts<'a> {
     ) -> Result<Parts<'a>, Failure> {
         let (scene, legends, corners) = (Scene::default(), Vec::new(), Vec::new());
         let mut parts =
-            Parts { scene, legends, corners, grain_box: None, run, options, wanted, origin, limits: limits.given(options) };
+            Parts { scene, legends, corners, bed: None, run, options, wanted, origin, limits: limits.given(options) };
         let size = parts.grain_size(moment);
         parts.scene.grain = size as f32;
         parts.grains(moment);
@@ -215,7 +216,7 @@ impl<'a> Parts<'a> {
             }
         }
         self.boxed(low, high);
-        self.grain_box = (low.x <= high.x).then_some([low, high]);
+        self.bed = (low.x <= high.x).then_some([low, high]);
         let Some(values) = &moment.grain_values else { return };
         let (label, unit) = labels::grains(field);
         let key = match field.as_str() {
@@ -255,16 +256,17 @@ impl<'a> Parts<'a> {
             if share < self.options.least || !self.kept(Part::Chains, &middle) {
                 continue;
             }
-            let radius = (CHAIN.0 * size * self.options.thickness * share.clamp(CHAIN.1, 1.0)) as f32;
+            let radius = (CHAIN.0 * size * self.options.thickness * share.sqrt().clamp(CHAIN.1, 1.0)) as f32;
             let ends = [self.near(&ends[..3]), self.near(&ends[3..])];
             for end in &ends {
                 (low, high) = (low.inf(end), high.sup(end));
             }
             self.scene.tubes.push(Tube { ends, radius, colour: paint.of(*force as f32), look });
         }
-        // Contacts with a plane end on it; beside grains these are the same place.
-        if self.grain_box.is_none() {
+        // Beside grains these are in the same place.
+        if self.bed.is_none() {
             self.boxed(low, high);
+            self.bed = (low.x <= high.x).then_some([low, high]);
         }
         let key = Key::Scale { unit: "N", range, table, bands: 0 };
         self.legends.push(Legend { title: "Contact force".to_string(), key });
@@ -307,7 +309,11 @@ impl<'a> Parts<'a> {
             let edges = skin.edges.chunks_exact(2);
             lines.extend(edges.map(|e| Line { ends: [at(e[0]), at(e[1])], look }));
         }
-        triangles.extend(self.sections(&places, moment, cells, look));
+        let (inside, around) = self.sections(&places, moment, cells, look);
+        triangles.extend(inside);
+        if self.options.shows(Part::Edges, true) {
+            lines.extend(around);
+        }
         self.cut(Part::Solid, triangles, lines);
         if moment.solid_values.is_some() {
             let (label, unit) = labels::solid(field);
@@ -320,31 +326,37 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// The inside of the solid where it is cut.
-    fn sections(&self, places: &[f64], moment: &Moment, cells: bool, look: u16) -> Vec<Triangle> {
-        let Some(skin) = &self.run.skin else { return Vec::new() };
+    /// The inside of the solid where it is cut, and the elements in it.
+    fn sections(&self, places: &[f64], moment: &Moment, cells: bool, look: u16) -> (Vec<Triangle>, Vec<Line>) {
+        let (mut out, mut lines) = (Vec::new(), Vec::new());
+        let Some(skin) = &self.run.skin else { return (out, lines) };
         let values = moment.solid_values.as_deref();
         let nodes: Vec<Point> = places
             .chunks_exact(3)
             .enumerate()
             .map(|(n, x)| [x[0], x[1], x[2], values.filter(|_| !cells).map_or(0.0, |v| v[n])])
             .collect();
-        let mut out = Vec::new();
         for clip in self.options.clips_of(Part::Solid) {
             for end in clip.range.into_iter().filter(|e| e.abs() < 1e29) {
                 let mut normal = [0.0; 3];
                 normal[clip.axis] = 1.0;
+                // What lies on the plane is not cut off by it again.
+                let on = (end - self.origin[clip.axis]) as f32;
+                let at = |x: &[f64]| {
+                    let mut place = self.near(x);
+                    place[clip.axis] = on;
+                    place
+                };
                 let found = section(&skin.mesh, &nodes, values.filter(|_| cells), normal, end);
                 out.extend(found.iter().map(|t| {
-                    let mut corners = t.map(|p| self.near(&p[..3]));
-                    // What lies on the plane is not cut off by it again.
-                    let on = (end - self.origin[clip.axis]) as f32;
-                    corners.iter_mut().for_each(|c| c[clip.axis] = on);
+                    let corners = t.map(|p| at(&p[..3]));
                     Triangle { corners, values: t.map(|p| p[3] as f32), look, body: SOLID_BODY }
                 }));
+                let found = outlines(&skin.mesh, &nodes, normal, end);
+                lines.extend(found.iter().map(|l| Line { ends: l.map(|p| at(&p)), look }));
             }
         }
-        out
+        (out, lines)
     }
 
     /// Adds what the clips of a part leave.
@@ -357,7 +369,8 @@ impl<'a> Parts<'a> {
             };
             triangles = cut(triangles, &|x| x[axis] - low);
             triangles = cut(triangles, &|x| high - x[axis]);
-            lines.retain(|l| l.ends.iter().all(|e| e[axis] >= low && e[axis] <= high));
+            lines = lines.into_iter().filter_map(|l| l.cut(|x| x[axis] - low)).collect();
+            lines = lines.into_iter().filter_map(|l| l.cut(|x| high - x[axis])).collect();
         }
         let (mut low, mut high) = (V3::repeat(f32::INFINITY), V3::repeat(f32::NEG_INFINITY));
         for corner in triangles.iter().flat_map(|t| &t.corners) {

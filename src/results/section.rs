@@ -3,6 +3,8 @@
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
 
+use super::solid::triangles;
+
 /// A point on the plane: place [m] and value.
 pub type Point = [f64; 4];
 
@@ -74,6 +76,35 @@ pub fn section(
     out
 }
 
+/// Lines in which the same plane cuts the faces of elements: both ends of each [m].
+pub fn outlines(mesh: &Mesh, nodes: &[Point], normal: [f64; 3], offset: f64) -> Vec<[[f64; 3]; 2]> {
+    let side = |p: &Point| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2] - offset;
+    let mut out = Vec::new();
+    for (element, own) in mesh.connectivity.iter().enumerate() {
+        let signs = || own.iter().map(|n| side(&nodes[*n as usize]));
+        if signs().all(|s| s > 0.0) || signs().all(|s| s <= 0.0) {
+            continue;
+        }
+        for face in mesh.connectivity.kind(element).faces() {
+            for triangle in triangles(face.len()) {
+                let p = triangle.map(|k| nodes[own[face[k]] as usize]);
+                let s = p.map(|p| side(&p));
+                let crossed = (0..3).map(|k| (k, (k + 1) % 3)).filter(|(a, b)| (s[*a] > 0.0) != (s[*b] > 0.0));
+                let ends: Vec<[f64; 3]> = crossed
+                    .map(|(a, b)| {
+                        let t = s[a] / (s[a] - s[b]);
+                        [0, 1, 2].map(|k| p[a][k] + t * (p[b][k] - p[a][k]))
+                    })
+                    .collect();
+                if let [a, b] = ends[..] {
+                    out.push([a, b]);
+                }
+            }
+        }
+    }
+    out
+}
+
 /// Adds the section of a tetrahedron: a triangle, or two.
 fn cut(corners: [Point; 4], side: impl Fn(&Point) -> f64, out: &mut Vec<[Point; 3]>) {
     let s = corners.map(|c| side(&c));
@@ -121,6 +152,9 @@ mod tests {
             let of_elements = section(&mesh, &nodes, Some(&[7.0]), [0.0, 0.0, 1.0], 0.3);
             assert!(of_elements.iter().flatten().all(|p| p[3] == 7.0));
             assert!(section(&mesh, &nodes, None, [0.0, 0.0, 1.0], 1.3).is_empty());
+            let around = outlines(&mesh, &nodes, [0.0, 0.0, 1.0], 0.3);
+            let length: f64 = around.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum();
+            assert!((length - 4.0).abs() < 1e-12, "{kind:?}: {length}");
         }
     }
 }

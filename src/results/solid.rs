@@ -40,7 +40,7 @@ pub struct Skin {
 
 /// Corner triangles of a face of so many nodes: corners first, then the mid node behind each corner. The mid nodes of a
 /// quadrilateral span two triangles more, those of a triangle one.
-fn triangles(nodes: usize) -> &'static [[usize; 3]] {
+pub(super) fn triangles(nodes: usize) -> &'static [[usize; 3]] {
     match nodes {
         8 => &[[0, 4, 7], [1, 5, 4], [2, 6, 5], [3, 7, 6], [4, 5, 6], [4, 6, 7]],
         6 => &[[0, 3, 5], [1, 4, 3], [2, 5, 4], [3, 4, 5]],

@@ -142,7 +142,8 @@ impl Results {
     ) -> Result<Vec<u8>, Failure> {
         match (part, field) {
             (Part::Grains, None) => {
-                Ok(grains::frame(&self.grains(file)?, common.bodies.as_ref(), common.origin, self.coding))
+                let read = self.grains(file)?;
+                Ok(grains::frame(&read, common.bodies.as_ref(), common.origin, self.coding))
             }
             (Part::Grains, Some(field)) => Ok(solid::field(&self.grains(file)?.field(field)?, self.coding)),
             (Part::Solid, field) => {

@@ -29,8 +29,10 @@ pub fn hit(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f32) -
             let t = &scene.tubes[k];
             let axis = t.ends[1] - t.ends[0];
             let along = (place - t.ends[0]).dot(&axis) / axis.norm_squared().max(1e-30);
-            let foot = t.ends[0] + axis * along.clamp(0.0, 1.0);
-            ((place - foot) / t.radius, t.colour, t.look)
+            let out = place - (t.ends[0] + axis * along);
+            // On a flat end, or around.
+            let flat = !(1e-3..=0.999).contains(&along) && out.norm() < 0.99 * t.radius;
+            (if flat { axis } else { out }, t.colour, t.look)
         }
         Kind::Triangle => {
             let t = &scene.triangles[k];

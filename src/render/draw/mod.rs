@@ -31,6 +31,8 @@ use shade::Lamps;
 const TILE: usize = 16;
 /// Pixels of a picture above which there are fewer samples to a pixel: they take eight bytes each.
 const LARGE: usize = 6_000_000;
+/// Bodies of this size have full outlines [pixels].
+const OUTLINED: f32 = 26.0;
 /// Corners are darkened as far as this many sizes of what is of interest.
 const REACH: f32 = 0.55;
 
@@ -99,6 +101,7 @@ pub fn draw(world: &Scene, eye: &Camera, size: [usize; 2], background: Colour) -
         lines: &lines,
         glass: &glass,
         background,
+        outlines: (scene.grain * eye.scale(eye.distance) / OUTLINED).clamp(0.25, 1.0),
     };
     let tiles: Vec<Vec<u8>> = (0..count).into_par_iter().map(|k| resolver.tile(k)).collect();
     let mut out = vec![0; 3 * size[0] * size[1]];

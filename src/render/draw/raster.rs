@@ -241,14 +241,12 @@ fn tube(fine: &Camera, t: &Tube, px: f32, py: f32) -> Option<f32> {
             best = Some(t0);
         }
     }
-    // The round ends.
+    // The flat ends.
     let found = best.or_else(|| {
-        let ends = [o, shift - t.ends[1]].map(|o| {
-            let b = along.dot(&o);
-            let h = b * b - (o.dot(&o) - rr);
-            if h > 0.0 { -b - h.sqrt() } else { f32::INFINITY }
-        });
-        Some(ends[0].min(ends[1])).filter(|t| t.is_finite())
+        let y = baoa + (-b - h.sqrt()) / a.max(1e-30) * bard;
+        let end = if y <= 0.0 { 0.0 } else { baba };
+        let t = (end - baoa) / bard;
+        (bard.abs() > 1e-12 && (b + a * t).abs() <= h.sqrt()).then_some(t)
     })?;
     Some((shift + along * found).z)
 }

@@ -30,6 +30,8 @@ pub struct Resolver<'a> {
     /// Looks that are seen through, with their things.
     pub glass: &'a [(usize, Bins)],
     pub background: Colour,
+    /// How much outlines darken: less where bodies are a few pixels large, of which they would leave nothing.
+    pub outlines: f32,
 }
 
 /// A pane of glass in a tile.
@@ -161,7 +163,7 @@ impl Resolver<'_> {
             let d = k + 1;
             let around = [(x.wrapping_sub(d), y), (x + d, y), (x, y.wrapping_sub(d)), (x, y + d)];
             if around.into_iter().any(|(x, y)| x < size[0] && y < size[1] && other(x, y)) {
-                return *left;
+                return 1.0 - self.outlines * (1.0 - left);
             }
         }
         1.0

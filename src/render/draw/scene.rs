@@ -79,7 +79,7 @@ pub struct Triangle {
     pub body: u32,
 }
 
-/// A cylinder with round ends.
+/// A cylinder.
 #[derive(Clone, Copy, Debug)]
 pub struct Tube {
     /// Ends of its axis.
@@ -131,8 +131,7 @@ impl Scene {
         let spheres = self.spheres.par_iter().map(|s| Sphere { centre: camera.view(&s.centre), ..*s });
         let tubes = self.tubes.par_iter().map(|t| Tube { ends: t.ends.map(|e| camera.view(&e)), ..*t });
         let lines = self.lines.par_iter().filter_map(|l| {
-            let ends = within(l.ends.map(|e| camera.view(&e)), near)?;
-            Some(Line { ends, ..*l })
+            Line { ends: l.ends.map(|e| camera.view(&e)), ..*l }.cut(|x| x.z - near)
         });
         let mut triangles = Vec::with_capacity(self.triangles.len());
         for t in &self.triangles {
@@ -155,14 +154,19 @@ impl Scene {
     }
 }
 
-/// The part of a line at least `near` away.
-fn within([a, b]: [V3; 2], near: f32) -> Option<[V3; 2]> {
-    let cut = |from: V3, to: V3| from + (to - from) * ((near - from.z) / (to.z - from.z));
-    match (a.z >= near, b.z >= near) {
-        (true, true) => Some([a, b]),
-        (true, false) => Some([a, cut(a, b)]),
-        (false, true) => Some([cut(b, a), b]),
-        (false, false) => None,
+impl Line {
+    /// What is left of it where `side` is not negative, which is linear in the place.
+    pub fn cut(&self, side: impl Fn(&V3) -> f32) -> Option<Line> {
+        let [a, b] = self.ends;
+        let (da, db) = (side(&a), side(&b));
+        let between = || a + (b - a) * (da / (da - db));
+        let ends = match (da >= 0.0, db >= 0.0) {
+            (true, true) => [a, b],
+            (true, false) => [a, between()],
+            (false, true) => [between(), b],
+            (false, false) => return None,
+        };
+        Some(Line { ends, ..*self })
     }
 }
 

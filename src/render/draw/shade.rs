@@ -28,7 +28,7 @@ impl Lamps {
     /// The colour of a surface. `open` is the share of the light from all around that it gets; with `relief` 0 it keeps its own colour.
     pub fn lit(&self, eye: &Camera, hit: &Hit, open: f32, relief: f32) -> Colour {
         let n = &hit.normal;
-        let around = 0.40 + 0.14 * n.dot(&self.up);
+        let around = 0.46 + 0.14 * n.dot(&self.up);
         let key = n.dot(&self.key).max(0.0);
         let fill = n.dot(&self.fill).max(0.0);
         let facing = -n.dot(&eye.ray(&hit.place));

@@ -4,7 +4,7 @@ use super::super::draw::Colour;
 use super::super::labels::{figure, scaled, ticks};
 use super::picture::Picture;
 use super::text::Text;
-use super::Ink;
+use super::{Ink, PANEL};
 
 /// What a legend explains.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ const HIGH: f32 = 150.0;
 const BAR: f32 = 18.0;
 /// Distance of rows with names.
 const ROW: f32 = 19.0;
+/// Distance of lines of a title.
+const LINE: f32 = 16.0;
 /// Size of letters.
 const LETTER: f32 = 13.0;
 /// Steps between ticks at most.
@@ -65,16 +67,20 @@ fn one(picture: &mut Picture, legend: &Legend, ink: &Ink, text: &Text, [x, y]: [
         Key::Scale { unit, range, .. } => scaled(unit, range[0].abs().max(range[1].abs())),
         Key::Names(_) => (1.0, String::new()),
     };
-    let mut y = y + LETTER * u;
     let head = if unit.is_empty() { legend.title.clone() } else { format!("{} [{unit}]", legend.title) };
-    if text.width(&head) <= WIDE * u || unit.is_empty() {
-        text.draw(picture, &text.cut(&head, WIDE * u), [x, y], ink.letters);
-    } else {
-        text.draw(picture, &text.cut(&legend.title, WIDE * u), [x, y], ink.letters);
-        y += 17.0 * u;
-        text.draw(picture, &format!("[{unit}]"), [x, y], ink.letters);
+    let title = text.lines(&head, WIDE * u);
+    let below = match &legend.key {
+        Key::Names(rows) => ROW * rows.len() as f32,
+        Key::Scale { .. } => HIGH + 8.0,
+    };
+    let end = y + (LINE * title.len() as f32 + 10.0 + below) * u;
+    picture.fill([x - 8.0 * u, y - 6.0 * u, x + (WIDE + 8.0) * u, end], ink.paper, PANEL);
+    let mut y = y;
+    for line in title {
+        y += LINE * u;
+        text.draw(picture, &line, [x, y - 3.0 * u], ink.letters);
     }
-    y += 11.0 * u;
+    y += 8.0 * u;
     match &legend.key {
         Key::Names(rows) => {
             for (colour, name) in rows {

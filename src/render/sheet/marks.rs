@@ -4,7 +4,7 @@ use super::super::draw::{Camera, Colour, V3};
 use super::super::labels::figure;
 use super::picture::Picture;
 use super::text::Text;
-use super::Ink;
+use super::{Ink, PANEL};
 
 /// Colours of the axes x, y, z.
 const AXES: [(Colour, &str); 3] =
@@ -16,10 +16,13 @@ const SCALE: f32 = 0.16;
 
 /// Draws title and remark at the upper left.
 pub fn caption(picture: &mut Picture, title: &str, remark: &str, width: f32, ink: &Ink, u: f32) {
-    let head = Text::new(16.0 * u);
-    head.draw(picture, &head.cut(title, width - 28.0 * u), [14.0 * u, 27.0 * u], ink.letters);
-    let small = Text::new(13.0 * u);
-    small.draw(picture, &small.cut(remark, width - 28.0 * u), [14.0 * u, 47.0 * u], ink.pale);
+    let (head, small) = (Text::new(16.0 * u), Text::new(13.0 * u));
+    let title = head.cut(title, width - 28.0 * u);
+    let remark = small.cut(remark, width - 28.0 * u);
+    let wide = head.width(&title).max(small.width(&remark));
+    picture.fill([8.0 * u, 9.0 * u, 20.0 * u + wide, 55.0 * u], ink.paper, PANEL);
+    head.draw(picture, &title, [14.0 * u, 27.0 * u], ink.letters);
+    small.draw(picture, &remark, [14.0 * u, 47.0 * u], ink.pale);
 }
 
 /// Draws the directions of the axes at the lower left.
@@ -53,7 +56,7 @@ pub fn scale(picture: &mut Picture, eye: &Camera, from: f32, ink: &Ink, u: f32) 
     if !(most.is_finite() && most > 0.0) {
         return;
     }
-    let mut exponent = most.log10().floor() as i32;
+    let exponent = most.log10().floor() as i32;
     let mut size = libm::powf(10.0, exponent as f32);
     let times = [5.0, 2.0, 1.0].into_iter().find(|t| t * size <= most).unwrap_or(1.0);
     size *= times;
@@ -62,15 +65,16 @@ pub fn scale(picture: &mut Picture, eye: &Camera, from: f32, ink: &Ink, u: f32) 
         s if s >= 1e-3 => (1e3, "mm"),
         _ => (1e6, "µm"),
     };
-    exponent = 0;
-    let name = format!("{} {unit}", figure(f64::from(size * factor).round(), exponent as usize));
+    let name = format!("{} {unit}", figure(f64::from(size * factor).round(), 0));
     let name = if eye.perspective { format!("{name} in the middle") } else { name };
     let (x, y) = (from, picture.height as f32 - 26.0 * u);
     let end = x + size * metre;
+    let text = Text::new(12.0 * u);
+    let wide = text.width(&name).max(end - x);
+    picture.fill([x - 5.0 * u, y - 23.0 * u, x + wide + 5.0 * u, y + 9.0 * u], ink.paper, PANEL);
     picture.fill([x, y - 0.8 * u, end, y + 0.8 * u], ink.letters, 1.0);
     for at in [x, end] {
         picture.fill([at - 0.8 * u, y - 5.0 * u, at + 0.8 * u, y + 5.0 * u], ink.letters, 1.0);
     }
-    let text = Text::new(12.0 * u);
     text.draw(picture, &name, [x, y - 9.0 * u], ink.letters);
 }

@@ -14,6 +14,9 @@ use super::draw::Colour;
 /// Height of the sheet in its units.
 const HIGH: f32 = 720.0;
 
+/// Share of the background behind letters, where the scene reaches below them.
+const PANEL: f32 = 0.82;
+
 /// Pixels to a unit of the sheet.
 pub fn unit(height: usize) -> f32 {
     (height as f32 / HIGH).max(0.55)
@@ -26,6 +29,8 @@ pub struct Ink {
     pub letters: Colour,
     /// Of what matters less.
     pub pale: Colour,
+    /// Behind letters.
+    pub paper: Colour,
     /// Whether the background is dark.
     pub dark: bool,
 }
@@ -35,8 +40,8 @@ impl Ink {
     pub fn on(background: Colour) -> Ink {
         let [r, g, b] = background;
         match 0.3 * r + 0.59 * g + 0.11 * b < 0.45 {
-            true => Ink { letters: [0.95, 0.957, 0.97], pale: [0.75, 0.78, 0.82], dark: true },
-            false => Ink { letters: [0.11, 0.153, 0.2], pale: [0.33, 0.38, 0.43], dark: false },
+            true => Ink { letters: [0.95, 0.957, 0.97], pale: [0.75, 0.78, 0.82], paper: background, dark: true },
+            false => Ink { letters: [0.11, 0.153, 0.2], pale: [0.33, 0.38, 0.43], paper: background, dark: false },
         }
     }
 }

@@ -55,6 +55,21 @@ impl Text {
         at
     }
 
+    /// A text in lines no wider than `most` [pixels], broken between words.
+    pub fn lines(&self, text: &str, most: f32) -> Vec<String> {
+        let mut lines: Vec<String> = Vec::new();
+        for word in text.split_whitespace() {
+            match lines.last_mut() {
+                Some(line) if self.width(&format!("{line} {word}")) <= most => {
+                    line.push(' ');
+                    line.push_str(word);
+                }
+                _ => lines.push(word.to_string()),
+            }
+        }
+        lines.iter().map(|line| self.cut(line, most)).collect()
+    }
+
     /// A text cut so that it is no wider than `most` [pixels].
     pub fn cut(&self, text: &str, most: f32) -> String {
         if self.width(text) <= most {
