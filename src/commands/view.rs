@@ -6,8 +6,8 @@ use super::output::print;
 use crate::cli::ViewArgs;
 use crate::failure::Failure;
 use crate::message;
-use crate::run::size;
 use crate::results::series;
+use crate::run::size;
 use crate::view::{self, Coding, Results};
 
 /// Serves the results of a folder, or writes them as one HTML file.

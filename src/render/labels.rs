@@ -42,11 +42,12 @@ pub fn grains(field: &str) -> (String, &'static str) {
 /// Label and unit of a field of the solid.
 pub fn solid(field: &str) -> (String, &'static str) {
     let known = SOLID.iter().find(|s| s.0 == field).map(|s| s.1.to_string());
-    let label = known.unwrap_or_else(|| match (field.strip_prefix("stress_"), field.strip_prefix("velocity_")) {
-        (Some(part), _) => format!("Stress σ{part}"),
-        (_, Some(part)) => format!("Velocity {part}"),
-        _ => field.to_string(),
-    });
+    let label =
+        known.unwrap_or_else(|| match (field.strip_prefix("stress_"), field.strip_prefix("velocity_")) {
+            (Some(part), _) => format!("Stress σ{part}"),
+            (_, Some(part)) => format!("Velocity {part}"),
+            _ => field.to_string(),
+        });
     let begins = |starts: &[&str]| starts.iter().any(|s| field.starts_with(s));
     let unit = match () {
         () if begins(&["displacement"]) => "m",
@@ -59,7 +60,8 @@ pub fn solid(field: &str) -> (String, &'static str) {
 
 /// The factor and the name of the unit with which numbers up to `most` read best.
 pub fn scaled(unit: &str, most: f64) -> (f64, String) {
-    const PREFIXES: [(f64, &str); 6] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ")];
+    const PREFIXES: [(f64, &str); 6] =
+        [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ")];
     let large = matches!(unit, "Pa" | "N");
     if !(large || matches!(unit, "m" | "m/s")) || most <= 0.0 {
         return (1.0, unit.to_string());
@@ -102,7 +104,11 @@ pub fn figure(value: f64, decimals: usize) -> String {
         // Rounding may leave a negative nothing.
         _ => format!("{:.*}", decimals, value + 0.0),
     };
-    let text = if text.trim_start_matches('-').bytes().all(|b| b == b'0' || b == b'.') { text.replace('-', "") } else { text };
+    let text = if text.trim_start_matches('-').bytes().all(|b| b == b'0' || b == b'.') {
+        text.replace('-', "")
+    } else {
+        text
+    };
     text.replace('-', "−")
 }
 

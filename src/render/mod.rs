@@ -58,7 +58,10 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
         refuse("out", &file.display().to_string(), &format!("a name that ends in one of {endings}"))
     })?;
     if file.is_dir() {
-        return Err(Failure::Input(format!("{}: found a folder, expected the name of a file", file.display())));
+        return Err(Failure::Input(format!(
+            "{}: found a folder, expected the name of a file",
+            file.display()
+        )));
     }
     if file.exists() && !options.force {
         return Err(Failure::Input(format!(
@@ -68,7 +71,11 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
     }
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|p| !p.is_dir()) {
-        return Err(Failure::Input(format!("{}: found no folder {}, expected one", file.display(), folder.display())));
+        return Err(Failure::Input(format!(
+            "{}: found no folder {}, expected one",
+            file.display(),
+            folder.display()
+        )));
     }
     let run = Run::open(&options.dir)?;
     run.check_fields(options)?;
@@ -85,7 +92,8 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
     match form {
         Form::Avi => {
             let frame = |k: usize| studio.picture(frames[k]).map_err(Refused::Results);
-            encode::write_video(&file, options.size, options.rate, frames.len(), frame).map_err(Failure::from)?;
+            encode::write_video(&file, options.size, options.rate, frames.len(), frame)
+                .map_err(Failure::from)?;
         }
         _ => encode::write(&file, form, &studio.picture(frames[0])?).map_err(Refused::Disk)?,
     }

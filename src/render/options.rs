@@ -229,7 +229,8 @@ pub fn frames(word: &str) -> Result<Frames, Failure> {
             }
             Ok(Frames::Range(from, to, step))
         }
-        text => match text.strip_suffix("ms").map(|t| (t, 1e-3)).or(text.strip_suffix('s').map(|t| (t, 1.0))) {
+        text => match text.strip_suffix("ms").map(|t| (t, 1e-3)).or(text.strip_suffix('s').map(|t| (t, 1.0)))
+        {
             Some((time, unit)) => Ok(Frames::Time(unit * number("frame", time, expected)?)),
             None => whole(text).map(Frames::Number),
         },
@@ -253,8 +254,10 @@ pub fn towards(word: &str) -> Result<V3, Failure> {
     if let Some((_, side)) = SIDES.iter().find(|(name, _)| *name == word) {
         return Ok(V3::from(*side));
     }
-    let expected =
-        format!("one of {}, or AZIMUTH:ELEVATION in degrees, such as -60:30", joined(SIDES.iter().map(|s| s.0)));
+    let expected = format!(
+        "one of {}, or AZIMUTH:ELEVATION in degrees, such as -60:30",
+        joined(SIDES.iter().map(|s| s.0))
+    );
     let wrong = || refuse("view", &format!("\"{word}\""), &expected);
     let (azimuth, elevation) = word.split_once(':').ok_or_else(wrong)?;
     let [a, e] = [number("view", azimuth, &expected)?, number("view", elevation, &expected)?];
@@ -278,7 +281,9 @@ pub fn background(word: &str) -> Result<Colour, Failure> {
         "dark" => colours::parse("1f2730"),
         _ => colours::parse(word),
     };
-    known.ok_or_else(|| refuse("background", &format!("\"{word}\""), "white, dark or a colour such as #e8edf2"))
+    known.ok_or_else(|| {
+        refuse("background", &format!("\"{word}\""), "white, dark or a colour such as #e8edf2")
+    })
 }
 
 /// A name of a map.

@@ -55,9 +55,11 @@ impl Limits {
     /// Of a frame.
     pub fn of(run: &Run, moment: &Moment, wanted: &Wanted) -> Limits {
         let forces = moment.chains.as_ref().map(forces);
-        let of_skin = moment.solid_values.as_ref().zip(run.skin.as_ref()).map(|(values, skin)| {
-            skin.shown(values, wanted.solid.as_deref().is_some_and(of_elements))
-        });
+        let of_skin = moment
+            .solid_values
+            .as_ref()
+            .zip(run.skin.as_ref())
+            .map(|(values, skin)| skin.shown(values, wanted.solid.as_deref().is_some_and(of_elements)));
         Limits {
             grains: moment.grain_values.as_deref().and_then(ends),
             chains: forces.as_deref().and_then(ends),
@@ -137,8 +139,17 @@ impl<'a> Parts<'a> {
         limits: Limits,
     ) -> Result<Parts<'a>, Failure> {
         let (scene, legends, corners) = (Scene::default(), Vec::new(), Vec::new());
-        let mut parts =
-            Parts { scene, legends, corners, bed: None, run, options, wanted, origin, limits: limits.given(options) };
+        let mut parts = Parts {
+            scene,
+            legends,
+            corners,
+            bed: None,
+            run,
+            options,
+            wanted,
+            origin,
+            limits: limits.given(options),
+        };
         let size = parts.grain_size(moment);
         parts.scene.grain = size as f32;
         parts.grains(moment);
@@ -181,14 +192,16 @@ impl<'a> Parts<'a> {
     /// A box counts for the place of the picture.
     fn boxed(&mut self, low: V3, high: V3) {
         if low.x <= high.x {
-            let corner = |c: usize| V3::from([0, 1, 2].map(|k| if c >> k & 1 == 1 { high[k] } else { low[k] }));
+            let corner =
+                |c: usize| V3::from([0, 1, 2].map(|k| if c >> k & 1 == 1 { high[k] } else { low[k] }));
             self.corners.extend((0..8).map(corner));
         }
     }
 
     fn grains(&mut self, moment: &Moment) {
         let (Some(grains), Some(field)) = (&moment.grains, &self.wanted.grains) else { return };
-        let look = Look { paint: Paint::Own(plain(STONE)), opacity: self.opacity(Part::Grains, 1.0), relief: 1.0 };
+        let look =
+            Look { paint: Paint::Own(plain(STONE)), opacity: self.opacity(Part::Grains, 1.0), relief: 1.0 };
         let look = self.scene.look(look);
         let table = self.table(Part::Grains);
         let range = self.limits.grains.unwrap_or([0.0, 1.0]);
@@ -210,7 +223,8 @@ impl<'a> Parts<'a> {
                 }
             };
             for s in first..end {
-                let (centre, radius) = (self.near(&grains.centres()[3 * s..3 * s + 3]), grains.bodies.radius[s] as f32);
+                let (centre, radius) =
+                    (self.near(&grains.centres()[3 * s..3 * s + 3]), grains.bodies.radius[s] as f32);
                 (low, high) = (low.inf(&centre.add_scalar(-radius)), high.sup(&centre.add_scalar(radius)));
                 self.scene.spheres.push(Sphere { centre, radius, colour, look, body: body as u32 });
             }
@@ -224,14 +238,19 @@ impl<'a> Parts<'a> {
                 let mut groups: Vec<usize> = values.iter().map(|v| *v as usize).collect();
                 groups.sort_unstable();
                 groups.dedup();
-                Key::Names(groups.iter().take(8).map(|g| (colours::group(*g), format!("group {g}"))).collect())
+                Key::Names(
+                    groups.iter().take(8).map(|g| (colours::group(*g), format!("group {g}"))).collect(),
+                )
             }
             "piece" => {
                 let largest = values.iter().filter(|v| **v == 0.0).count();
                 let others = values.iter().fold(0.0, |m: f64, v| m.max(*v)) as usize;
                 let mut rows = vec![(colours::piece(0), format!("largest: {largest} of {}", values.len()))];
                 if others > 0 {
-                    rows.push((colours::piece(3), format!("{others} other{}", if others > 1 { "s" } else { "" })));
+                    rows.push((
+                        colours::piece(3),
+                        format!("{others} other{}", if others > 1 { "s" } else { "" }),
+                    ));
                 }
                 Key::Names(rows)
             }
@@ -244,7 +263,8 @@ impl<'a> Parts<'a> {
         let Some(chains) = &moment.chains else { return };
         let forces = forces(chains);
         let Some(range) = self.limits.chains else { return };
-        let look = Look { paint: Paint::Own([0.0; 3]), opacity: self.opacity(Part::Chains, 1.0), relief: 0.75 };
+        let look =
+            Look { paint: Paint::Own([0.0; 3]), opacity: self.opacity(Part::Chains, 1.0), relief: 0.75 };
         let look = self.scene.look(look);
         let table = self.table(Part::Chains);
         let paint = Paint::Map { table: table.clone(), range: range.map(|v| v as f32), bands: 0 };
@@ -273,11 +293,19 @@ impl<'a> Parts<'a> {
     }
 
     fn solid(&mut self, moment: &Moment) {
-        let (Some(skin), Some(u), Some(field)) = (&self.run.skin, &moment.displacement, &self.wanted.solid) else {
+        let (Some(skin), Some(u), Some(field)) = (&self.run.skin, &moment.displacement, &self.wanted.solid)
+        else {
             return;
         };
         let cells = of_elements(field);
-        let places: Vec<f64> = skin.mesh.coordinates.as_flattened().iter().zip(u).map(|(x, u)| x + self.options.deform * u).collect();
+        let places: Vec<f64> = skin
+            .mesh
+            .coordinates
+            .as_flattened()
+            .iter()
+            .zip(u)
+            .map(|(x, u)| x + self.options.deform * u)
+            .collect();
         let range = self.limits.solid.unwrap_or([0.0, 1.0]);
         let paint = match moment.solid_values {
             None => Paint::Own(plain(GROUND)),
@@ -327,7 +355,13 @@ impl<'a> Parts<'a> {
     }
 
     /// The inside of the solid where it is cut, and the elements in it.
-    fn sections(&self, places: &[f64], moment: &Moment, cells: bool, look: u16) -> (Vec<Triangle>, Vec<Line>) {
+    fn sections(
+        &self,
+        places: &[f64],
+        moment: &Moment,
+        cells: bool,
+        look: u16,
+    ) -> (Vec<Triangle>, Vec<Line>) {
         let (mut out, mut lines) = (Vec::new(), Vec::new());
         let Some(skin) = &self.run.skin else { return (out, lines) };
         let values = moment.solid_values.as_deref();

@@ -131,13 +131,17 @@ impl Run {
                 None => lists,
                 Some(Part::Grains) => &lists[..1],
                 Some(Part::Solid) => &lists[1..],
-                Some(_) => return Err(refuse("field", &format!("\"{field}\""), "a field of grains or of solid")),
+                Some(_) => {
+                    return Err(refuse("field", &format!("\"{field}\""), "a field of grains or of solid"));
+                }
             };
             if !lists.iter().any(|(_, known)| known.contains(field)) {
                 let known = lists.iter().filter(|(_, known)| !known.is_empty());
-                let known: Vec<String> =
-                    known.map(|(name, all)| format!("of {name} {}", joined(all.iter().map(String::as_str)))).collect();
-                let expected = if known.is_empty() { "results with that part".into() } else { known.join("; ") };
+                let known: Vec<String> = known
+                    .map(|(name, all)| format!("of {name} {}", joined(all.iter().map(String::as_str))))
+                    .collect();
+                let expected =
+                    if known.is_empty() { "results with that part".into() } else { known.join("; ") };
                 return Err(refuse("field", &format!("\"{field}\""), &expected));
             }
         }
@@ -161,7 +165,11 @@ impl Run {
                 // Half a step beyond the ends is nearest to them.
                 let slack = 0.5 * (to - from) / last.max(1) as f64 + 1e-12;
                 if *time < from - slack || *time > to + slack {
-                    return Err(refuse("frame", &format!("{time} s"), &format!("a time from {from} to {to} s")));
+                    return Err(refuse(
+                        "frame",
+                        &format!("{time} s"),
+                        &format!("a time from {from} to {to} s"),
+                    ));
                 }
                 let far = |k: usize| (self.frames[k].time - time).abs();
                 Ok((0..=last).min_by(|a, b| far(*a).total_cmp(&far(*b))).into_iter().collect())
@@ -200,7 +208,8 @@ impl Run {
     fn peak(&self) -> usize {
         let last = self.frames.len() - 1;
         let loads: Option<Vec<f64>> = (0..=last).map(|k| self.load(k)).collect();
-        let largest = |loads: Vec<f64>| (0..=last).max_by(|a, b| loads[*a].total_cmp(&loads[*b]).then(b.cmp(a)));
+        let largest =
+            |loads: Vec<f64>| (0..=last).max_by(|a, b| loads[*a].total_cmp(&loads[*b]).then(b.cmp(a)));
         loads.and_then(largest).unwrap_or(last)
     }
 
@@ -209,7 +218,8 @@ impl Run {
         let numbers = self.cycles.as_ref()?.column("cycle")?;
         let loads = self.loads()?;
         let row = self.row(self.frames[frame].time)?;
-        let (low, high) = loads.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |b, l| (b.0.min(*l), b.1.max(*l)));
+        let (low, high) =
+            loads.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |b, l| (b.0.min(*l), b.1.max(*l)));
         let middle = 0.5 * (low + high);
         let ended = loads[..=row].windows(2).filter(|w| w[0] > middle && w[1] <= middle).count();
         numbers.get(ended.min(numbers.len().checked_sub(1)?)).map(|n| *n as u64)
@@ -231,7 +241,8 @@ impl Run {
         let chains = open(wanted.chains, series::Part::Chains).map(Chains::open).transpose()?;
         let walls = open(wanted.walls, series::Part::Walls).map(Walls::open).transpose()?;
         let (mut displacement, mut solid_values) = (None, None);
-        if let (Some(field), Some(skin), Some(file)) = (&wanted.solid, &self.skin, file(series::Part::Solid)) {
+        if let (Some(field), Some(skin), Some(file)) = (&wanted.solid, &self.skin, file(series::Part::Solid))
+        {
             let before = wanted.since.and_then(|k| self.frames[k].file(series::Part::Solid));
             let change = |read: &dyn Fn(&Path) -> Result<Vec<f64>, Failure>| {
                 let mut values = read(file)?;
@@ -252,13 +263,19 @@ impl Run {
     }
 
     /// One number per grain; `None` for a constant colour.
-    fn grain_values(&self, grains: &GrainFile, field: &str, since: usize) -> Result<Option<Vec<f64>>, Failure> {
+    fn grain_values(
+        &self,
+        grains: &GrainFile,
+        field: &str,
+        since: usize,
+    ) -> Result<Option<Vec<f64>>, Failure> {
         Ok(match field {
             "constant" => None,
             "diameter" => Some(grains.bodies.extents()),
             "piece" => Some(pieces(grains, &grains.field("fragment")?)),
             "displacement" => {
-                let before = self.frames[since].file(series::Part::Grains).map(GrainFile::open).transpose()?;
+                let before =
+                    self.frames[since].file(series::Part::Grains).map(GrainFile::open).transpose()?;
                 Some(moved(grains, before.as_ref()))
             }
             field => Some(grains.field(field)?),

@@ -89,7 +89,8 @@ pub fn outlines(mesh: &Mesh, nodes: &[Point], normal: [f64; 3], offset: f64) -> 
             for triangle in triangles(face.len()) {
                 let p = triangle.map(|k| nodes[own[face[k]] as usize]);
                 let s = p.map(|p| side(&p));
-                let crossed = (0..3).map(|k| (k, (k + 1) % 3)).filter(|(a, b)| (s[*a] > 0.0) != (s[*b] > 0.0));
+                let crossed =
+                    (0..3).map(|k| (k, (k + 1) % 3)).filter(|(a, b)| (s[*a] > 0.0) != (s[*b] > 0.0));
                 let ends: Vec<[f64; 3]> = crossed
                     .map(|(a, b)| {
                         let t = s[a] / (s[a] - s[b]);

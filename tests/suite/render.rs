@@ -46,7 +46,8 @@ fn a_sphere_covers_its_circle_within_a_pixel() {
         }
     }
     // In perspective it stays round, and in the middle.
-    let seen = picture(&folder, &[&SQUARE[..], &["--projection", "perspective", "--view", "-70:20"]].concat());
+    let seen =
+        picture(&folder, &[&SQUARE[..], &["--projection", "perspective", "--view", "-70:20"]].concat());
     let [x0, y0, x1, y1] = seen.covered().expect("a sphere");
     assert!((x1 - x0).abs_diff(y1 - y0) <= 1 && x1 - x0 > 80, "{x0} {y0} {x1} {y1}");
     let area = seen.count() as f64 / (0.25 * std::f64::consts::PI * ((x1 - x0 + 1) as f64).powi(2));
@@ -196,7 +197,8 @@ fn pictures_are_the_same_bytes_on_any_number_of_threads() {
         let of = |threads: &str, run: usize| {
             let file = folder.join(&format!("{threads}_{run}.{ending}"));
             let dir = folder.path().to_str().unwrap();
-            let look = ["--show", "chains", "--opacity", "grains=0.6", "--field", "heat", "--size", "333x250"];
+            let look =
+                ["--show", "chains", "--opacity", "grains=0.6", "--field", "heat", "--size", "333x250"];
             let fixed = ["render", dir, "--out", file.to_str().unwrap(), "--threads", threads];
             trackbed(fixed.iter().chain(&look)).good();
             fs::read(file).unwrap()
@@ -222,7 +224,8 @@ fn a_video_has_a_frame_for_each_entry_of_its_index() {
     crowd(&folder);
     let file = folder.join("a.avi");
     let dir = folder.path().to_str().unwrap();
-    let said = trackbed(["render", dir, "--out", file.to_str().unwrap(), "--size", "161x99", "--fps", "4"]).good();
+    let said =
+        trackbed(["render", dir, "--out", file.to_str().unwrap(), "--size", "161x99", "--fps", "4"]).good();
     assert!(said.stdout.contains("161 x 99 pixels, 2 frames, t = 0 to 1 s"), "{}", said.stdout);
     let bytes = fs::read(&file).unwrap();
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
@@ -270,7 +273,10 @@ fn bad_input_is_one_clear_error_and_writes_nothing() {
         (&["--frame", "soon"], "--frame: found \"soon\", expected a number from 0, a time"),
         (&["--frame", "all"], "found 2 frames for a picture, expected one, or a file that ends in avi"),
         (&["--since", "7"], "--since: found 7, expected 0 to 1"),
-        (&["--field", "solid=cold"], "--field: found \"cold\", expected of the solid constant, displacement,"),
+        (
+            &["--field", "solid=cold"],
+            "--field: found \"cold\", expected of the solid constant, displacement,",
+        ),
         (&["--field", "cold"], "of grains constant, diameter, displacement, part"),
         (&["--field", "chains=force"], "expected a field of grains or of solid"),
         (&["--range", "solid=2:1"], "--range: found \"2:1\", expected LOW below HIGH"),

@@ -54,9 +54,9 @@ impl Camera {
         let up = if away.z.abs() > 0.999 { V3::y() } else { V3::z() };
         let right = away.cross(&up).normalize();
         let up = right.cross(&away);
-        let [low, high] = corners.iter().fold([V3::repeat(f32::INFINITY), V3::repeat(-f32::INFINITY)], |b, c| {
-            [b[0].inf(c), b[1].sup(c)]
-        });
+        let [low, high] = corners
+            .iter()
+            .fold([V3::repeat(f32::INFINITY), V3::repeat(-f32::INFINITY)], |b, c| [b[0].inf(c), b[1].sup(c)]);
         let middle = 0.5 * (low + high);
         let radius = (0.5 * (high - low).norm()).max(1e-9);
         let free = [

@@ -118,14 +118,7 @@ pub fn draw(world: &Scene, eye: &Camera, size: [usize; 2], background: Colour) -
 }
 
 /// The light from all around, from the middle sample of each pixel.
-fn surroundings(
-    scene: &Scene,
-    eye: &Camera,
-    fine: &Camera,
-    grid: &Grid,
-    depth: &[f32],
-    id: &[u32],
-) -> Light {
+fn surroundings(scene: &Scene, eye: &Camera, fine: &Camera, grid: &Grid, depth: &[f32], id: &[u32]) -> Light {
     let width = grid.size[0];
     let mut surfaces = vec![(f32::INFINITY, V3::zeros()); width * grid.size[1]];
     surfaces.par_chunks_mut(width).enumerate().for_each(|(y, row)| {

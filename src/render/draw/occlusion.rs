@@ -85,7 +85,15 @@ impl Light {
 }
 
 /// Share of the light that a pixel gets.
-fn open(depth: &[f32], width: usize, eye: &Camera, [x, y]: [usize; 2], n: &V3, reach: f32, taps: &[[f32; 2]]) -> f32 {
+fn open(
+    depth: &[f32],
+    width: usize,
+    eye: &Camera,
+    [x, y]: [usize; 2],
+    n: &V3,
+    reach: f32,
+    taps: &[[f32; 2]],
+) -> f32 {
     let height = depth.len() / width;
     let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
     let z = depth[y * width + x];

@@ -3,7 +3,7 @@
 //! Spheres and tubes are cut with the ray of every sample, so that outlines and depths are exact at any size; triangles are
 //! found by their edges.
 
-use super::bins::{Bins, Id, Kind, NONE, thing};
+use super::bins::{Bins, Id, Kind, thing};
 use super::camera::{Camera, V3};
 use super::scene::{Scene, Sphere, Triangle, Tube};
 
@@ -36,7 +36,10 @@ impl Tile<'_> {
             }
             let rect = [0, 1].map(|a| {
                 let o = self.origin[a] as i32;
-                [(item.rect[a] - o).max(0) as usize, (item.rect[a + 2] - o).min(self.side as i32 - 1) as usize]
+                [
+                    (item.rect[a] - o).max(0) as usize,
+                    (item.rect[a + 2] - o).min(self.side as i32 - 1) as usize,
+                ]
             });
             let (kind, k) = thing(item.id);
             match kind {
@@ -162,12 +165,6 @@ impl Tile<'_> {
                 }
             }
         }
-    }
-
-    /// Makes it empty.
-    pub fn clear(&mut self) {
-        self.depth.fill(f32::INFINITY);
-        self.id.fill(NONE);
     }
 }
 

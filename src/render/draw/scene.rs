@@ -130,9 +130,10 @@ impl Scene {
         let near = camera.near();
         let spheres = self.spheres.par_iter().map(|s| Sphere { centre: camera.view(&s.centre), ..*s });
         let tubes = self.tubes.par_iter().map(|t| Tube { ends: t.ends.map(|e| camera.view(&e)), ..*t });
-        let lines = self.lines.par_iter().filter_map(|l| {
-            Line { ends: l.ends.map(|e| camera.view(&e)), ..*l }.cut(|x| x.z - near)
-        });
+        let lines = self
+            .lines
+            .par_iter()
+            .filter_map(|l| Line { ends: l.ends.map(|e| camera.view(&e)), ..*l }.cut(|x| x.z - near));
         let mut triangles = Vec::with_capacity(self.triangles.len());
         for t in &self.triangles {
             let corners = t.corners.map(|c| camera.view(&c));

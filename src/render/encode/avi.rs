@@ -36,7 +36,8 @@ pub fn write<E: From<WriteError>>(
             let jpeg = jpg(file, &frame(k)?)?;
             sum += jpeg.len() as u64 + 24;
             if sum > MOST {
-                let found = format!("more than 2 GiB after {k} frames, expected less: take fewer or smaller ones");
+                let found =
+                    format!("more than 2 GiB after {k} frames, expected less: take fewer or smaller ones");
                 return Err(WriteError::format(file, found).into());
             }
             one(out, &jpeg).map_err(WriteError::io(file))?;
@@ -55,7 +56,12 @@ fn one(out: &mut impl Write, jpeg: &[u8]) -> std::io::Result<()> {
 }
 
 /// Adds the index, and the lengths at the head.
-fn finish(out: &mut (impl Write + Seek), size: [usize; 2], rate: f64, lengths: &[u32]) -> std::io::Result<()> {
+fn finish(
+    out: &mut (impl Write + Seek),
+    size: [usize; 2],
+    rate: f64,
+    lengths: &[u32],
+) -> std::io::Result<()> {
     let index = index(lengths);
     out.write_all(&index)?;
     out.seek(SeekFrom::Start(0))?;

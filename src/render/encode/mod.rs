@@ -47,7 +47,9 @@ pub fn write(file: &Path, form: Form, picture: &Picture) -> Result<(), WriteErro
         Form::Png => png(file, picture)?,
         Form::Jpg => jpg(file, picture)?,
         Form::Bmp => bmp::bytes(picture),
-        Form::Avi => return write_video(file, [picture.width, picture.height], 1.0, 1, |_| Ok(picture.clone())),
+        Form::Avi => {
+            return write_video(file, [picture.width, picture.height], 1.0, 1, |_| Ok(picture.clone()));
+        }
     };
     atomic::write(file, |out| out.write_all(&bytes).map_err(WriteError::io(file)))
 }

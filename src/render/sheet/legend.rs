@@ -109,7 +109,11 @@ fn one(picture: &mut Picture, legend: &Legend, ink: &Ink, text: &Text, [x, y]: [
             for mark in marks {
                 let share = if top > low { ((mark - low) / (top - low)) as f32 } else { 0.5 };
                 let at = y + high * (1.0 - share);
-                picture.fill([x + BAR * u, at - 0.5 * u, x + (BAR + 5.0) * u, at + 0.5 * u], ink.letters, 1.0);
+                picture.fill(
+                    [x + BAR * u, at - 0.5 * u, x + (BAR + 5.0) * u, at + 0.5 * u],
+                    ink.letters,
+                    1.0,
+                );
                 let place = [x + (BAR + 10.0) * u, at + 0.36 * LETTER * u];
                 text.draw(picture, &figure(mark, decimals), place, ink.letters);
             }

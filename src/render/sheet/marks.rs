@@ -43,7 +43,10 @@ pub fn axes(picture: &mut Picture, eye: &Camera, ink: &Ink, u: f32) {
         let (colour, name) = AXES[k];
         let colour = if ink.dark { colour.map(|c| c + 0.45 * (1.0 - c)) } else { colour };
         picture.line(from, to, 2.2 * u, colour);
-        let tip = [from[0] + (ARM + 10.0) * u * arm.x / long.max(0.55), from[1] - (ARM + 10.0) * u * arm.y / long.max(0.55)];
+        let tip = [
+            from[0] + (ARM + 10.0) * u * arm.x / long.max(0.55),
+            from[1] - (ARM + 10.0) * u * arm.y / long.max(0.55),
+        ];
         let wide = text.width(name);
         text.draw(picture, name, [tip[0] - 0.5 * wide, tip[1] + 4.5 * u], colour);
     }

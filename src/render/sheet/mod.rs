@@ -40,8 +40,12 @@ impl Ink {
     pub fn on(background: Colour) -> Ink {
         let [r, g, b] = background;
         match 0.3 * r + 0.59 * g + 0.11 * b < 0.45 {
-            true => Ink { letters: [0.95, 0.957, 0.97], pale: [0.75, 0.78, 0.82], paper: background, dark: true },
-            false => Ink { letters: [0.11, 0.153, 0.2], pale: [0.33, 0.38, 0.43], paper: background, dark: false },
+            true => {
+                Ink { letters: [0.95, 0.957, 0.97], pale: [0.75, 0.78, 0.82], paper: background, dark: true }
+            }
+            false => {
+                Ink { letters: [0.11, 0.153, 0.2], pale: [0.33, 0.38, 0.43], paper: background, dark: false }
+            }
         }
     }
 }

@@ -9,7 +9,9 @@ fn joined<T: ToString>(values: impl IntoIterator<Item = T>) -> String {
 }
 
 fn array(kind: &str, name: &str, components: usize, text: &str) -> String {
-    format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">{text}</DataArray>")
+    format!(
+        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">{text}</DataArray>"
+    )
 }
 
 fn file(folder: &Folder, name: &str, kind: &str, piece: &str, body: &str) {
@@ -26,10 +28,8 @@ pub fn grains(folder: &Folder, frame: usize, spheres: &[[f64; 4]], parts: &[u32]
     let data = array("Float64", "radius", 1, &joined(spheres.iter().map(|s| s[3])))
         + &array("UInt32", "id", 1, &joined(0..spheres.len()))
         + &array("UInt32", "part", 1, &joined(parts));
-    let body = format!(
-        "<PointData>{data}</PointData><Points>{}</Points>",
-        array("Float64", "Points", 3, &points)
-    );
+    let body =
+        format!("<PointData>{data}</PointData><Points>{}</Points>", array("Float64", "Points", 3, &points));
     let piece = format!("NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\"", spheres.len());
     file(folder, &format!("grains_{frame}.vtp"), "PolyData", &piece, &body);
 }
@@ -48,7 +48,12 @@ pub fn chains(folder: &Folder, frame: usize, ends: &[[f64; 6]], forces: &[f64]) 
 }
 
 /// A unit cube of one element with a nodal field `heat` and displacements.
-pub fn solid(folder: &Folder, frame: usize, heat: impl Fn([f64; 3]) -> f64, moved: impl Fn([f64; 3]) -> [f64; 3]) {
+pub fn solid(
+    folder: &Folder,
+    frame: usize,
+    heat: impl Fn([f64; 3]) -> f64,
+    moved: impl Fn([f64; 3]) -> [f64; 3],
+) {
     let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
     let corners = corners.map(|c| c.map(f64::from));
     let body = format!(
@@ -60,7 +65,13 @@ pub fn solid(folder: &Folder, frame: usize, heat: impl Fn([f64; 3]) -> f64, move
         array("Int64", "offsets", 1, "8"),
         array("UInt8", "types", 1, "12"),
     );
-    file(folder, &format!("solid_{frame}.vtu"), "UnstructuredGrid", "NumberOfPoints=\"8\" NumberOfCells=\"1\"", &body);
+    file(
+        folder,
+        &format!("solid_{frame}.vtu"),
+        "UnstructuredGrid",
+        "NumberOfPoints=\"8\" NumberOfCells=\"1\"",
+        &body,
+    );
 }
 
 /// The list of `count` frames, a second apart, of those files that were written.
@@ -94,7 +105,8 @@ impl Pixels {
         let row = (3 * width).next_multiple_of(4);
         assert_eq!((&bytes[..2], word(2), start + row * height), (&b"BM"[..], bytes.len(), bytes.len()));
         let line = |y: usize| &bytes[start + row * (height - 1 - y)..][..3 * width];
-        let rows = (0..height).flat_map(|y| line(y).chunks_exact(3).flat_map(|p| [p[2], p[1], p[0]])).collect();
+        let rows =
+            (0..height).flat_map(|y| line(y).chunks_exact(3).flat_map(|p| [p[2], p[1], p[0]])).collect();
         Pixels { width, height, rows }
     }
 
