@@ -7,13 +7,14 @@
 
 mod bins;
 mod camera;
-mod hit;
+
 mod lines;
 mod occlusion;
 mod raster;
 mod resolve;
 mod scene;
 mod shade;
+mod surface;
 
 use rayon::prelude::*;
 
@@ -127,7 +128,7 @@ fn surroundings(scene: &Scene, eye: &Camera, fine: &Camera, grid: &Grid, depth: 
             let at = grid.place(s[0], s[1]);
             if id[at] != NONE {
                 let middle = s.map(|v| v as f32 + 0.5);
-                *out = (depth[at], hit::hit(scene, fine, id[at], middle, depth[at]).normal);
+                *out = (depth[at], surface::surface(scene, fine, id[at], middle, depth[at]).normal);
             }
         }
     });

@@ -2,12 +2,12 @@
 
 use super::bins::{self, Bins, Id, NONE};
 use super::camera::Camera;
-use super::hit::{self, hit};
 use super::lines::Lines;
 use super::occlusion::Light;
 use super::raster::Tile;
 use super::scene::{Colour, Paint, Scene};
 use super::shade::Lamps;
+use super::surface::{self, surface};
 use super::{Grid, TILE};
 
 /// What is left of a colour beside the outline of a body before it, by distance in samples.
@@ -133,11 +133,11 @@ impl Resolver<'_> {
         if let Some((_, colour)) = known.iter().find(|k| k.0 == id) {
             return *colour;
         }
-        let surface = hit(self.scene, self.fine, id, place.map(|v| v as f32 + 0.5), depth);
-        let look = &self.scene.looks[surface.look];
+        let found = surface(self.scene, self.fine, id, place.map(|v| v as f32 + 0.5), depth);
+        let look = &self.scene.looks[found.look];
         let [x, y] = place.map(|v| v / self.grid.samples);
         let open = self.light.at(x, y, depth);
-        let colour = self.lamps.lit(self.fine, &surface, open, look.relief);
+        let colour = self.lamps.lit(self.fine, &found, open, look.relief);
         if !matches!(look.paint, Paint::Map { bands: 1.., .. }) {
             known.push((id, colour));
         }
@@ -146,7 +146,7 @@ impl Resolver<'_> {
 
     /// What an outline leaves of the colour of a sample: bodies before it cast one.
     fn outline(&self, [x, y]: [usize; 2], id: Id, depth: f32) -> f32 {
-        let own = hit::body(self.scene, id);
+        let own = surface::body(self.scene, id);
         let step = STEP * self.scene.grain;
         let size = self.grid.tiles.map(|t| t * self.grid.side);
         let other = |x: usize, y: usize| {
@@ -156,7 +156,7 @@ impl Resolver<'_> {
                 return false;
             }
             // Bodies end at the background as well.
-            there == NONE || (self.depth[at] < depth - step && hit::body(self.scene, there) != own)
+            there == NONE || (self.depth[at] < depth - step && surface::body(self.scene, there) != own)
         };
         let reach = if self.grid.samples > 2 { 2 } else { 1 };
         for (k, left) in OUTLINE.iter().enumerate().take(reach) {

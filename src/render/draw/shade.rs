@@ -1,8 +1,8 @@
 //! Light and shade.
 
 use super::camera::{Camera, V3};
-use super::hit::Hit;
 use super::scene::Colour;
+use super::surface::Surface;
 
 /// Light as the eye sees it.
 pub struct Lamps {
@@ -26,20 +26,20 @@ impl Lamps {
     }
 
     /// The colour of a surface. `open` is the share of the light from all around that it gets; with `relief` 0 it keeps its own colour.
-    pub fn lit(&self, eye: &Camera, hit: &Hit, open: f32, relief: f32) -> Colour {
-        let n = &hit.normal;
+    pub fn lit(&self, eye: &Camera, surface: &Surface, open: f32, relief: f32) -> Colour {
+        let n = &surface.normal;
         let around = 0.46 + 0.14 * n.dot(&self.up);
         let key = n.dot(&self.key).max(0.0);
         let fill = n.dot(&self.fill).max(0.0);
-        let facing = -n.dot(&eye.ray(&hit.place));
+        let facing = -n.dot(&eye.ray(&surface.place));
         let rim = 0.78 + 0.22 * smooth(facing / 0.5);
         let light = (around * open + (0.62 * key + 0.12 * fill) * (0.45 + 0.55 * open)) * rim;
-        let gloss = 0.10 * libm::powf((n.dot(&self.half(eye, hit))).max(0.0), 24.0) * open;
-        hit.colour.map(|c| (c * (1.0 + relief * (light - 1.0)) + relief * gloss).clamp(0.0, 1.0))
+        let gloss = 0.10 * libm::powf((n.dot(&self.half(eye, surface))).max(0.0), 24.0) * open;
+        surface.colour.map(|c| (c * (1.0 + relief * (light - 1.0)) + relief * gloss).clamp(0.0, 1.0))
     }
 
-    fn half(&self, eye: &Camera, hit: &Hit) -> V3 {
-        (self.key - eye.ray(&hit.place)).normalize()
+    fn half(&self, eye: &Camera, surface: &Surface) -> V3 {
+        (self.key - eye.ray(&surface.place)).normalize()
     }
 }
 

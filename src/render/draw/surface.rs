@@ -5,7 +5,7 @@ use super::camera::{Camera, V3};
 use super::scene::{Colour, Paint, Scene};
 
 /// A piece of surface.
-pub struct Hit {
+pub struct Surface {
     /// Place, seen from the eye.
     pub place: V3,
     /// Direction away from the surface, to the side of the eye.
@@ -17,7 +17,7 @@ pub struct Hit {
 }
 
 /// The surface of a thing at a depth in a sample.
-pub fn hit(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f32) -> Hit {
+pub fn surface(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f32) -> Surface {
     let place = fine.at(x, y, depth);
     let (kind, k) = thing(id);
     let (normal, colour, look) = match kind {
@@ -55,7 +55,7 @@ pub fn hit(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f32) -
     };
     let normal = normal / normal.norm().max(1e-30);
     let away = normal.dot(&fine.ray(&place)) > 0.0;
-    Hit { place, normal: if away { -normal } else { normal }, colour, look: usize::from(look) }
+    Surface { place, normal: if away { -normal } else { normal }, colour, look: usize::from(look) }
 }
 
 /// What outlines are drawn between: 0 for tubes, which have none among themselves.
