@@ -1,8 +1,12 @@
 //! The command line.
 
+mod render;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+
+pub use render::RenderArgs;
 
 /// Coupled DEM–FEM solver for ballasted railway track.
 #[derive(Debug, Parser)]
@@ -46,6 +50,8 @@ pub enum Command {
     Modal(ModalArgs),
     /// Show the results of a run in a browser: grains, force chains, solid, walls; or write them as one HTML file.
     View(ViewArgs),
+    /// Draw a picture, or a video, of the results of a run into a file: no display, no browser.
+    Render(Box<RenderArgs>),
     /// Read a mesh: count and measure it, find its faults, or convert it.
     Mesh {
         /// What to do with the mesh.

@@ -5,6 +5,7 @@ mod explain;
 mod mesh;
 mod modal;
 mod output;
+mod render;
 mod report;
 mod stone;
 mod study;
@@ -46,6 +47,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         }
         Command::Stone { command } => stone::stone(&command),
         Command::View(args) => view::view(&args),
+        Command::Render(args) => render::render(&args),
     }
 }
 

@@ -29,6 +29,7 @@ mod suite {
     mod plausible;
     mod rail;
     mod random_runs;
+    mod render;
     mod report;
     mod scenes;
     mod solid_edges;

@@ -6,6 +6,7 @@ use super::output::print;
 use crate::cli::ViewArgs;
 use crate::failure::Failure;
 use crate::message;
+use crate::results::series;
 use crate::run::size;
 use crate::view::{self, Coding, Results};
 
@@ -44,7 +45,7 @@ fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
 
 fn serve(args: &ViewArgs) -> Result<(), Failure> {
     // A folder with runs below it, as a study leaves it, is shown run by run.
-    if view::folders(&args.dir).is_empty() {
+    if series::folders(&args.dir).is_empty() {
         Results::open(&args.dir, Coding::Exact)?;
     }
     let (server, port) = view::server::bind(args.port)?;

@@ -9,11 +9,9 @@ mod grains;
 mod lines;
 mod page;
 mod results;
-mod series;
 pub mod server;
 mod solid;
 mod tables;
 
 pub use chunk::Coding;
 pub use results::Results;
-pub use series::folders;

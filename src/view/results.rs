@@ -14,11 +14,12 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use serde_json::{Value, json};
 
 use super::chunk::{Chunk, Coding};
-use super::grains::{Bodies, GrainFile};
-use super::series::{self, Frame, PARTS, Part};
-use super::solid::Skin;
-use super::{lines, solid, tables};
+use super::{grains, lines, solid, tables};
 use crate::failure::Failure;
+use crate::results::grains::{Bodies, GrainFile};
+use crate::results::lines::{Chains, Walls};
+use crate::results::series::{self, Frame, PARTS, Part};
+use crate::results::solid::{Skin, fields};
 
 /// The results of one run.
 pub struct Results {
@@ -54,7 +55,7 @@ impl Common {
         }
         let skin = first(Part::Solid).map(Skin::open).transpose()?;
         bounds.extend(skin.as_ref().map(Skin::bounds));
-        let solid_fields = first(Part::Solid).map(solid::fields).transpose()?.unwrap_or_default();
+        let solid_fields = first(Part::Solid).map(fields).transpose()?.unwrap_or_default();
         let whole = |a: [[f64; 3]; 2], b: [[f64; 3]; 2]| {
             [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
         };
@@ -92,12 +93,6 @@ impl Results {
         self
     }
 
-    /// A file of the folder, where there is one that is no link to elsewhere.
-    fn own(&self, name: &str) -> Option<PathBuf> {
-        let root = self.dir.canonicalize().ok()?;
-        series::inside(&root, name).ok().flatten().filter(|file| file.is_file())
-    }
-
     fn common(&self) -> Result<&Common, Failure> {
         if let Some(common) = self.common.get() {
             return Ok(common);
@@ -118,7 +113,7 @@ impl Results {
         }
         if head == "table" {
             let known = tables::TABLES.into_iter().find(|t| Some(*t) == number);
-            let file = known.and_then(|t| self.own(&format!("{t}.csv")));
+            let file = known.and_then(|t| series::own(&self.dir, &format!("{t}.csv")));
             return file.map(|file| tables::table(&file)).transpose();
         }
         let Some((part, _)) = PARTS.into_iter().find(|(_, word)| *word == head) else { return Ok(None) };
@@ -132,12 +127,8 @@ impl Results {
     /// What holds for all frames of a part.
     fn whole(&self, part: Part, common: &Common) -> Option<Vec<u8>> {
         match part {
-            Part::Grains => common.bodies.as_ref().map(|bodies| {
-                let mut chunk = Chunk::new(self.coding);
-                bodies.write(&mut chunk);
-                chunk.finish()
-            }),
-            Part::Solid => common.skin.as_ref().map(|skin| skin.chunk(common.origin, self.coding)),
+            Part::Grains => common.bodies.as_ref().map(|bodies| grains::common(bodies, self.coding)),
+            Part::Solid => common.skin.as_ref().map(|skin| solid::common(skin, common.origin, self.coding)),
             _ => None,
         }
     }
@@ -151,22 +142,19 @@ impl Results {
     ) -> Result<Vec<u8>, Failure> {
         match (part, field) {
             (Part::Grains, None) => {
-                Ok(self.grains(file)?.chunk(common.bodies.as_ref(), common.origin, self.coding))
+                let read = self.grains(file)?;
+                Ok(grains::frame(&read, common.bodies.as_ref(), common.origin, self.coding))
             }
-            (Part::Grains, Some(field)) => {
-                let mut chunk = Chunk::new(self.coding);
-                chunk.numbers("value", &self.grains(file)?.field(field)?, 1);
-                Ok(chunk.finish())
-            }
+            (Part::Grains, Some(field)) => Ok(solid::field(&self.grains(file)?.field(field)?, self.coding)),
             (Part::Solid, field) => {
                 let skin = common.skin.as_ref().ok_or_else(|| Failure::Other("no mesh".to_string()))?;
-                match field {
-                    None => skin.displacement(file, self.coding),
-                    Some(field) => skin.field(file, field, self.coding),
-                }
+                Ok(match field {
+                    None => solid::displacement(&skin.displacement(file)?, self.coding),
+                    Some(field) => solid::field(&skin.field(file, field)?, self.coding),
+                })
             }
-            (Part::Chains, _) => lines::chains(file, common.origin, self.coding),
-            (Part::Walls, _) => lines::walls(file, common.origin, self.coding),
+            (Part::Chains, _) => Ok(lines::chains(&Chains::open(file)?, common.origin, self.coding)),
+            (Part::Walls, _) => Ok(lines::walls(&Walls::open(file)?, common.origin, self.coding)),
         }
     }
 
@@ -185,11 +173,7 @@ impl Results {
     /// What the page needs first.
     fn scene(&self) -> Result<Vec<u8>, Failure> {
         let common = self.common()?;
-        let summary: Value = self
-            .own("summary.json")
-            .and_then(|file| std::fs::read(file).ok())
-            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
-            .unwrap_or_default();
+        let about = series::About::of(&self.dir);
         let frames: Vec<Value> = self
             .frames
             .iter()
@@ -198,14 +182,11 @@ impl Results {
                 json!({ "time": frame.time, "parts": parts.map(|(_, word)| *word).collect::<Vec<_>>() })
             })
             .collect();
-        let tables = tables::TABLES.iter().filter(|t| self.own(&format!("{t}.csv")).is_some());
-        let folder = self.dir.canonicalize().unwrap_or_else(|_| self.dir.clone());
-        let folder = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let tables = tables::TABLES.iter().filter(|t| series::own(&self.dir, &format!("{t}.csv")).is_some());
         let mut chunk = Chunk::new(self.coding);
-        chunk.meta("title", summary.get("title").cloned().unwrap_or_else(|| json!(folder)));
-        // Without a summary the run was interrupted, or goes on.
-        chunk.meta("status", summary.get("status").cloned().unwrap_or_else(|| json!("not finished")));
-        chunk.meta("folder", json!(folder));
+        chunk.meta("title", json!(about.title));
+        chunk.meta("status", json!(about.status));
+        chunk.meta("folder", json!(about.folder));
         chunk.meta("frames", json!(frames));
         chunk.meta("origin", json!(common.origin));
         chunk.meta("bounds", json!(common.bounds));

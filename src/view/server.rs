@@ -11,9 +11,10 @@ use serde_json::json;
 use tiny_http::{Header, Method, Request, Response, Server};
 
 use super::chunk::Coding;
+use super::page;
 use super::results::Results;
-use super::{page, series};
 use crate::failure::Failure;
+use crate::results::series;
 
 /// Requests handled at a time.
 const THREADS: usize = 4;

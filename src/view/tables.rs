@@ -6,35 +6,19 @@ use serde_json::json;
 
 use super::chunk::{Chunk, Coding};
 use crate::failure::Failure;
+use crate::results::tables::Table;
 
 /// The tables that are plotted.
 pub const TABLES: [&str; 3] = ["history", "cycles", "push"];
 /// Rows that a plot gets at most: more than it has pixels.
 const MOST: usize = 4000;
 
-/// The block of a table: one array per column, rows left out evenly beyond a number that no plot can show; the last row of a
-/// run that is being written may not be whole and is left out.
+/// The block of a table: one array per column, rows left out evenly beyond a number that no plot can show.
 ///
 /// # Errors
 /// The file cannot be read or holds words.
 pub fn table(file: &Path) -> Result<Vec<u8>, Failure> {
-    let bad = |what: String| Failure::Input(format!("{}: {what}", file.display()));
-    let mut reader =
-        csv::ReaderBuilder::new().flexible(true).from_path(file).map_err(|e| bad(e.to_string()))?;
-    let names: Vec<String> =
-        reader.headers().map_err(|e| bad(e.to_string()))?.iter().map(String::from).collect();
-    let mut columns = vec![Vec::new(); names.len()];
-    for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(|e| bad(e.to_string()))?;
-        if record.len() != names.len() {
-            break;
-        }
-        for ((column, text), name) in columns.iter_mut().zip(&record).zip(&names) {
-            let value = text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-            let number = || bad(format!("line {}: {name}: found {text:?}, expected a number", row + 2));
-            column.push(value.ok_or_else(number)?);
-        }
-    }
+    let Table { names, columns } = Table::open(file)?;
     let rows = columns.first().map_or(0, Vec::len);
     let step = rows.div_ceil(MOST).max(1);
     let mut chunk = Chunk::new(Coding::Exact);

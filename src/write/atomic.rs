@@ -17,9 +17,20 @@ pub fn write(
     file: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
+    write_in_places(file, |out| fill(out))
+}
+
+/// As [`write`]; `fill` may go back in the file, and fail in ways of its own.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_in_places<E: From<WriteError>>(
+    file: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+) -> Result<(), E> {
     let part = part_name(file);
-    let result =
-        write_part(file, &part, fill).and_then(|()| fs::rename(&part, file).map_err(WriteError::io(file)));
+    let result = write_part(file, &part, fill)
+        .and_then(|()| fs::rename(&part, file).map_err(|error| WriteError::io(file)(error).into()));
     if result.is_err() {
         // The part file may not even exist; its loss is no second error.
         let _ = fs::remove_file(&part);
@@ -27,15 +38,16 @@ pub fn write(
     result
 }
 
-fn write_part(
+fn write_part<E: From<WriteError>>(
     file: &Path,
     part: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
-) -> Result<(), WriteError> {
-    let mut out = BufWriter::with_capacity(1 << 16, File::create(part).map_err(WriteError::io(file))?);
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+) -> Result<(), E> {
+    let raw = File::create(part).map_err(WriteError::io(file))?;
+    let mut out = BufWriter::with_capacity(1 << 16, raw);
     fill(&mut out)?;
     let raw = out.into_inner().map_err(|error| WriteError::io(file)(error.into_error()))?;
-    raw.sync_data().map_err(WriteError::io(file))
+    Ok(raw.sync_data().map_err(WriteError::io(file))?)
 }
 
 /// The name under which a file is written.

@@ -102,6 +102,37 @@ pub fn inside(root: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     }
 }
 
+/// What a folder says of its run.
+pub struct About {
+    /// Title of the scene; the folder's name where there is none.
+    pub title: String,
+    /// How the run ended; `not finished` without a summary: it was interrupted, or goes on.
+    pub status: String,
+    /// Name of the folder.
+    pub folder: String,
+}
+
+impl About {
+    /// From the summary in the folder.
+    pub fn of(dir: &Path) -> About {
+        let summary: serde_json::Value = own(dir, "summary.json")
+            .and_then(|file| fs::read(file).ok())
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+            .unwrap_or_default();
+        let folder = dir.canonicalize().unwrap_or_else(|_| dir.to_path_buf());
+        let folder = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let text = |key: &str| summary.get(key).and_then(|v| v.as_str()).map(String::from);
+        let title = text("title").unwrap_or_else(|| folder.clone());
+        About { title, status: text("status").unwrap_or_else(|| "not finished".to_string()), folder }
+    }
+}
+
+/// A file of the folder, where there is one that is no link to elsewhere.
+pub fn own(dir: &Path, name: &str) -> Option<PathBuf> {
+    let root = dir.canonicalize().ok()?;
+    inside(&root, name).ok().flatten().filter(|file| file.is_file())
+}
+
 /// Folders with results in `root` and below it, as names from there ("" is `root` itself), in order. Links are not followed.
 pub fn folders(root: &Path) -> Vec<String> {
     let mut found = Vec::new();

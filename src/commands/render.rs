@@ -1,0 +1,96 @@
+//! `trackbed render`: pictures and videos of results.
+
+use super::output::print;
+use crate::cli::RenderArgs;
+use crate::failure::Failure;
+use crate::render::options::{self, Options, Part, refuse};
+use crate::render::{self, Written};
+
+/// Writes a picture or a video of the results of a folder.
+///
+/// # Errors
+/// Bad input; a file that cannot be written.
+pub fn render(args: &RenderArgs) -> Result<(), Failure> {
+    if !args.dir.is_dir() {
+        let found = if args.dir.exists() { "a file" } else { "no such folder" };
+        return Err(Failure::Input(format!(
+            "{}: found {found}, expected the folder of the results of a run",
+            args.dir.display()
+        )));
+    }
+    let options = chosen(args)?;
+    let threads = args.threads.unwrap_or(0);
+    if args.threads == Some(0) {
+        return Err(refuse("threads", "0", "1 or more"));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::Other(format!("threads: {error}")))?;
+    let Written { file, size, frames, times } = pool.install(|| render::render(&options))?;
+    let what = match (&frames[..], &times[..]) {
+        ([frame], [time]) => format!("frame {frame}, t = {time} s"),
+        _ => format!("{} frames, t = {} to {} s", frames.len(), times[0], times[times.len() - 1]),
+    };
+    print(&format!("{}: {} x {} pixels, {what}\n", file.display(), size[0], size[1]))
+}
+
+/// The options of a picture from the words of the command line.
+fn chosen(args: &RenderArgs) -> Result<Options, Failure> {
+    let within = |option: &str, value: f64, low: f64, high: f64| match (low..=high).contains(&value) {
+        true => Ok(value),
+        false => Err(refuse(option, &value.to_string(), &format!("{low} to {high}"))),
+    };
+    let perspective = match args.projection.as_deref() {
+        None => None,
+        Some("perspective") => Some(true),
+        Some("parallel") => Some(false),
+        Some(other) => return Err(refuse("projection", &format!("\"{other}\""), "perspective or parallel")),
+    };
+    let near_grains = match args.focus.as_str() {
+        "all" => false,
+        "grains" => true,
+        other => return Err(refuse("focus", &format!("\"{other}\""), "all or grains")),
+    };
+    let opacity = |text: &str| {
+        let share = options::number("opacity", text, "a number from 0 to 1")?;
+        Ok(within("opacity", share, 0.0, 1.0)? as f32)
+    };
+    let colour_map = |name: &str| options::map(name).map(|()| name.to_string());
+    Ok(Options {
+        dir: args.dir.clone(),
+        out: args.out.clone(),
+        force: args.force,
+        frames: args.frame.as_deref().map(options::frames).transpose()?,
+        size: options::size(&args.size)?,
+        show: options::parts("show", &args.show)?,
+        hide: options::parts("hide", &args.hide)?,
+        fields: by_part("field", &args.field, |name| Ok(name.to_string()))?,
+        ranges: by_part("range", &args.range, |text| options::limits("range", text))?,
+        maps: by_part("colour-map", &args.colour_map, colour_map)?,
+        opacities: by_part("opacity", &args.opacity, opacity)?,
+        towards: args.view.as_deref().map(options::towards).transpose()?,
+        perspective,
+        zoom: within("zoom", args.zoom, 0.01, 1000.0)? as f32,
+        near_grains,
+        background: options::background(&args.background)?,
+        clips: args.clip.iter().map(|word| options::clip(word)).collect::<Result<_, _>>()?,
+        deform: within("deform", args.deform, -1e6, 1e6)?,
+        since: args.since,
+        bands: within("bands", args.bands as f64, 0.0, 256.0)? as usize,
+        least: within("least", args.least, 0.0, 1.0)?,
+        thickness: within("thickness", args.thickness, 0.01, 100.0)?,
+        rate: within("fps", args.fps, 0.1, 240.0)?,
+    })
+}
+
+/// `PART=VALUE` words with their values read.
+fn by_part<T>(
+    option: &str,
+    words: &[String],
+    read: impl Fn(&str) -> Result<T, Failure>,
+) -> Result<Vec<(Option<Part>, T)>, Failure> {
+    let one = |word: &String| {
+        let (part, value) = options::of_part(option, word)?;
+        Ok((part, read(&value)?))
+    };
+    words.iter().map(one).collect()
+}

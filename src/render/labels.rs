@@ -1,0 +1,138 @@
+//! Names and units of fields as people read them, and numbers of legends.
+
+/// Fields of grains: name, label, unit.
+const GRAINS: [(&str, &str, &str); 10] = [
+    ("speed", "Speed", "m/s"),
+    ("diameter", "Diameter", "m"),
+    ("mean_stress", "Mean stress", "Pa"),
+    ("force", "Contact force", "N"),
+    ("spin", "Spin", "rad/s"),
+    ("coordination", "Coordination", ""),
+    ("fragment", "Fragment", ""),
+    ("displacement", "Displacement", "m"),
+    ("part", "Group", ""),
+    ("piece", "Piece", ""),
+];
+
+/// Fields of the solid: name, label.
+const SOLID: [(&str, &str); 15] = [
+    ("von_mises", "Von Mises stress"),
+    ("stress_zz", "Vertical stress σzz"),
+    ("stress_1", "Largest principal stress"),
+    ("stress_2", "Middle principal stress"),
+    ("stress_3", "Smallest principal stress"),
+    ("stress_mean", "Mean stress"),
+    ("displacement", "Displacement"),
+    ("displacement_x", "Displacement x"),
+    ("displacement_y", "Displacement y"),
+    ("displacement_z", "Displacement z"),
+    ("velocity", "Speed"),
+    ("equivalent_plastic_strain", "Equivalent plastic strain"),
+    ("yield_function", "Yield function"),
+    ("element:material", "Material of the element"),
+    ("element:yielded", "Yielded"),
+];
+
+/// Label and unit of a field of grains.
+pub fn grains(field: &str) -> (String, &'static str) {
+    let known = GRAINS.iter().find(|g| g.0 == field);
+    known.map_or_else(|| (field.to_string(), ""), |(_, label, unit)| (label.to_string(), *unit))
+}
+
+/// Label and unit of a field of the solid.
+pub fn solid(field: &str) -> (String, &'static str) {
+    let known = SOLID.iter().find(|s| s.0 == field).map(|s| s.1.to_string());
+    let label =
+        known.unwrap_or_else(|| match (field.strip_prefix("stress_"), field.strip_prefix("velocity_")) {
+            (Some(part), _) => format!("Stress σ{part}"),
+            (_, Some(part)) => format!("Velocity {part}"),
+            _ => field.to_string(),
+        });
+    let begins = |starts: &[&str]| starts.iter().any(|s| field.starts_with(s));
+    let unit = match () {
+        () if begins(&["displacement"]) => "m",
+        () if begins(&["velocity"]) => "m/s",
+        () if begins(&["stress", "von_mises", "yield_function"]) => "Pa",
+        () => "",
+    };
+    (label, unit)
+}
+
+/// The factor and the name of the unit with which numbers up to `most` read best.
+pub fn scaled(unit: &str, most: f64) -> (f64, String) {
+    const PREFIXES: [(f64, &str); 6] =
+        [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ")];
+    let large = matches!(unit, "Pa" | "N");
+    if !(large || matches!(unit, "m" | "m/s")) || most <= 0.0 {
+        return (1.0, unit.to_string());
+    }
+    let known = || PREFIXES.iter().filter(|(f, _)| if large { *f >= 1.0 } else { *f <= 1.0 });
+    let fits = known().find(|(f, _)| most >= 1.1 * f).or_else(|| known().last());
+    fits.map_or((1.0, unit.to_string()), |(factor, prefix)| (*factor, format!("{prefix}{unit}")))
+}
+
+/// Round numbers from `low` to `high`, `most` steps of them at most, with the decimals that they need.
+pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
+    if high <= low || !(high - low).is_finite() {
+        return (vec![low], 3);
+    }
+    let rough = (high - low) / most as f64;
+    let mut exponent = rough.log10().floor() as i32;
+    let mut step = 10.0;
+    for k in [1.0, 2.0, 5.0] {
+        if k * libm::pow(10.0, f64::from(exponent)) >= rough * (1.0 - 1e-9) {
+            step = k;
+            break;
+        }
+    }
+    if step == 10.0 {
+        (step, exponent) = (1.0, exponent + 1);
+    }
+    let size = step * libm::pow(10.0, f64::from(exponent));
+    let first = (low / size - 1e-6).ceil() as i64;
+    let last = (high / size + 1e-6).floor() as i64;
+    ((first..=last).map(|k| k as f64 * size).collect(), usize::try_from(-exponent).unwrap_or(0))
+}
+
+/// A number with so many decimals; very large and very small ones with an exponent. The minus is a true one.
+pub fn figure(value: f64, decimals: usize) -> String {
+    let text = match value.abs() {
+        a if a >= 1e6 || decimals > 6 => {
+            let text = format!("{value:.2e}");
+            text.replace(".00e", "e").replace("0e", "e")
+        }
+        // Rounding may leave a negative nothing.
+        _ => format!("{:.*}", decimals, value + 0.0),
+    };
+    let text = if text.trim_start_matches('-').bytes().all(|b| b == b'0' || b == b'.') {
+        text.replace('-', "")
+    } else {
+        text
+    };
+    text.replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(ticks(-93.0, 12.0, 6), (vec![-80.0, -60.0, -40.0, -20.0, 0.0], 0));
+        let (found, decimals) = ticks(0.0, 0.31, 6);
+        assert_eq!((found.len(), decimals), (4, 1));
+        assert_eq!(figure(found[3], decimals), "0.3");
+        assert_eq!(ticks(1.0, 1.0, 6).0, [1.0]);
+        assert_eq!(ticks(0.0, 5.0, 5).0, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    }
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(figure(-0.0, 1), "0.0");
+        assert_eq!(figure(-12.5, 1), "−12.5");
+        assert_eq!(figure(3e9, 0), "3e9");
+        assert_eq!(scaled("Pa", 93e3), (1e3, "kPa".to_string()));
+        assert_eq!(scaled("m", 4e-3), (1e-3, "mm".to_string()));
+        assert_eq!(solid("stress_xy"), ("Stress σxy".to_string(), "Pa"));
+    }
+}

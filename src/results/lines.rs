@@ -1,0 +1,122 @@
+//! Force chains and walls of a frame.
+
+use std::path::Path;
+
+use crate::failure::Failure;
+use crate::read::ReadError;
+use crate::read::vtk_arrays::Arrays;
+use crate::write::WallKind;
+
+/// Force chains: lines between the partners of contacts.
+pub struct Chains {
+    /// Both ends of each, six numbers [m].
+    pub ends: Vec<f64>,
+    /// `normal_force`, `tangential_force`, `magnitude` [N], those that the file has.
+    pub forces: Vec<(&'static str, Vec<f64>)>,
+    /// `kind` and `strong`, those that the file has.
+    pub marks: Vec<(&'static str, Vec<u8>)>,
+}
+
+impl Chains {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// The file is not one of chains.
+    pub fn open(file: &Path) -> Result<Chains, Failure> {
+        let arrays = Arrays::open(file, "PolyData")?;
+        let points = arrays.values("Points", "Points")?;
+        let ends = arrays.indices("Lines", "connectivity")?;
+        if ends.iter().any(|e| *e as usize >= arrays.points) || !ends.len().is_multiple_of(2) {
+            let found = format!("{} ends in {} points", ends.len(), arrays.points);
+            return Err(ReadError::whole(file, "Lines", found, "two points of the file for each").into());
+        }
+        let ends: Vec<f64> =
+            ends.iter().flat_map(|e| &points[3 * *e as usize..3 * *e as usize + 3]).copied().collect();
+        let (mut forces, mut marks) = (Vec::new(), Vec::new());
+        for name in ["normal_force", "tangential_force", "magnitude"] {
+            if arrays.components("CellData", name) == Some(1) {
+                forces.push((name, arrays.values("CellData", name)?));
+            }
+        }
+        for name in ["kind", "strong"] {
+            if arrays.components("CellData", name) == Some(1) {
+                marks.push((name, arrays.values("CellData", name)?.iter().map(|v| *v as u8).collect()));
+            }
+        }
+        Ok(Chains { ends, forces, marks })
+    }
+}
+
+/// Walls: planes, surfaces, sleepers, rails.
+pub struct Walls {
+    /// Places of the points, three numbers each [m].
+    pub points: Vec<f64>,
+    /// Three points of each triangle.
+    pub triangles: Vec<u32>,
+    /// Two points of each edge of the polygons.
+    pub edges: Vec<u32>,
+    /// Wall that each triangle belongs to.
+    pub id: Vec<u32>,
+    /// [`WallKind`] of each triangle.
+    pub kind: Vec<u8>,
+}
+
+impl Walls {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// The file is not one of walls.
+    pub fn open(file: &Path) -> Result<Walls, Failure> {
+        let arrays = Arrays::open(file, "PolyData")?;
+        let points = arrays.values("Points", "Points")?;
+        let corners = arrays.indices("Polys", "connectivity")?;
+        let ends = arrays.indices("Polys", "offsets")?;
+        let of_polygons = |name: &str| match arrays.components("CellData", name) {
+            Some(1) => Ok(Some(arrays.indices("CellData", name)?)),
+            _ => Ok::<_, ReadError>(None),
+        };
+        let ids = of_polygons("id")?.unwrap_or_else(|| vec![0; ends.len()]);
+        let kinds = of_polygons("kind")?.unwrap_or_else(|| kinds(&ids, &ends));
+        let sorted = ends.is_sorted() && ends.last().is_none_or(|last| *last as usize <= corners.len());
+        if !sorted || corners.iter().any(|c| *c as usize >= arrays.points) || ids.len() != ends.len() {
+            let found = format!("{} corners of {} polygons", corners.len(), ends.len());
+            return Err(ReadError::whole(file, "Polys", found, "points of the file for each").into());
+        }
+        let mut walls =
+            Walls { points, triangles: Vec::new(), edges: Vec::new(), id: Vec::new(), kind: Vec::new() };
+        let mut begin = 0;
+        for (p, end) in ends.iter().enumerate() {
+            let polygon = &corners[begin as usize..*end as usize];
+            for k in 1..polygon.len().saturating_sub(1) {
+                walls.triangles.extend([polygon[0], polygon[k], polygon[k + 1]]);
+                walls.id.push(ids[p]);
+                walls.kind.push(kinds.get(p).map_or(1, |k| *k as u8));
+            }
+            for k in 0..polygon.len() {
+                walls.edges.extend([polygon[k], polygon[(k + 1) % polygon.len()]]);
+            }
+            begin = *end;
+        }
+        Ok(walls)
+    }
+}
+
+/// What walls are in files that do not say so: one square is a plane, six are a box.
+fn kinds(ids: &[u32], ends: &[u32]) -> Vec<u32> {
+    let squares = |id: u32| {
+        let corners = (0..ends.len().min(ids.len())).filter(|p| ids[*p] == id);
+        let corners = corners.map(|p| ends[p] - if p == 0 { 0 } else { ends[p - 1].min(ends[p]) });
+        let (mut count, mut all) = (0, true);
+        corners.for_each(|c| (count, all) = (count + 1, all && c == 4));
+        if all { count } else { 0 }
+    };
+    let mut known = std::collections::HashMap::new();
+    let kind = |id: &u32| {
+        *known.entry(*id).or_insert_with(|| match squares(*id) {
+            1 => WallKind::Plane,
+            6 => WallKind::Box,
+            _ => WallKind::Wall,
+        } as u32)
+    };
+    ids.iter().map(kind).collect()
+}

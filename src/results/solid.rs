@@ -1,0 +1,235 @@
+//! The solid: its skin, displacements and fields of the nodes and elements of the skin.
+
+use std::path::Path;
+
+use nalgebra::Matrix3;
+use trackbed_fem::mesh::Mesh;
+
+use crate::failure::Failure;
+use crate::read::vtk_arrays::Arrays;
+use crate::read::{ReadError, read_vtu};
+
+/// Names of the stresses of a tensor field, by place in its 3x3 matrix.
+const TENSOR: [(&str, usize); 6] = [("xx", 0), ("yy", 4), ("zz", 8), ("xy", 1), ("yz", 5), ("zx", 6)];
+/// Principal values from the largest on, and their mean.
+const PRINCIPAL: [&str; 4] = ["1", "2", "3", "mean"];
+/// Arrays that are no fields to colour by.
+const NUMBERS: [&str; 2] = ["node_id", "element_id"];
+/// What marks a field of elements.
+pub const CELL: &str = "element:";
+
+/// The skin: faces that belong to one element only.
+pub struct Skin {
+    /// Node of the mesh behind each node of the skin.
+    nodes: Vec<u32>,
+    /// Element of the mesh behind each triangle.
+    element: Vec<u32>,
+    /// Three nodes of the skin for each triangle.
+    pub triangles: Vec<u32>,
+    /// Two nodes of the skin for each piece of an edge of an element.
+    pub edges: Vec<u32>,
+    /// Number of each node of the skin in the user's mesh.
+    pub node_ids: Vec<u32>,
+    /// Number of the element of each triangle in the user's mesh.
+    pub element_ids: Vec<u32>,
+    /// Places of the nodes, three numbers each [m].
+    pub points: Vec<f64>,
+    /// The mesh that it is of.
+    pub mesh: Mesh,
+}
+
+/// Corner triangles of a face of so many nodes: corners first, then the mid node behind each corner. The mid nodes of a
+/// quadrilateral span two triangles more, those of a triangle one.
+pub(super) fn triangles(nodes: usize) -> &'static [[usize; 3]] {
+    match nodes {
+        8 => &[[0, 4, 7], [1, 5, 4], [2, 6, 5], [3, 7, 6], [4, 5, 6], [4, 6, 7]],
+        6 => &[[0, 3, 5], [1, 4, 3], [2, 5, 4], [3, 4, 5]],
+        4 => &[[0, 1, 2], [0, 2, 3]],
+        _ => &[[0, 1, 2]],
+    }
+}
+
+impl Skin {
+    /// The skin of the mesh of a file.
+    ///
+    /// # Errors
+    /// The file holds no mesh.
+    pub fn open(file: &Path) -> Result<Skin, Failure> {
+        let mesh = read_vtu(file)?.mesh;
+        let mut of_mesh = vec![u32::MAX; mesh.node_count()];
+        let mut skin = Skin {
+            nodes: Vec::new(),
+            element: Vec::new(),
+            triangles: Vec::new(),
+            edges: Vec::new(),
+            node_ids: Vec::new(),
+            element_ids: Vec::new(),
+            points: Vec::new(),
+            mesh: Mesh::default(),
+        };
+        let mut edges = Vec::new();
+        for face in mesh.boundary_faces() {
+            let own: Vec<u32> = face
+                .nodes()
+                .iter()
+                .map(|n| {
+                    let place = &mut of_mesh[*n as usize];
+                    if *place == u32::MAX {
+                        *place = skin.nodes.len() as u32;
+                        skin.nodes.push(*n);
+                    }
+                    *place
+                })
+                .collect();
+            let corners = face.corners().len();
+            for triangle in triangles(own.len()) {
+                skin.triangles.extend(triangle.map(|k| own[k]));
+                skin.element.push(face.element);
+            }
+            for k in 0..corners {
+                let (a, b) = (own[k], own[(k + 1) % corners]);
+                let along = match own.get(corners + k) {
+                    Some(middle) => vec![[a, *middle], [*middle, b]],
+                    None => vec![[a, b]],
+                };
+                edges.extend(along.into_iter().map(|[a, b]| [a.min(b), a.max(b)]));
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        skin.edges = edges.into_flattened();
+        skin.node_ids = skin.nodes.iter().map(|n| mesh.node_ids[*n as usize]).collect();
+        skin.element_ids = skin.element.iter().map(|e| mesh.element_ids[*e as usize]).collect();
+        skin.points = skin.nodes.iter().flat_map(|n| mesh.coordinates[*n as usize]).collect();
+        skin.mesh = mesh;
+        Ok(skin)
+    }
+
+    /// Corners of the box around the mesh [m].
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for (k, x) in self.points.iter().enumerate() {
+            bounds[0][k % 3] = bounds[0][k % 3].min(*x);
+            bounds[1][k % 3] = bounds[1][k % 3].max(*x);
+        }
+        bounds
+    }
+
+    /// The displacement of a frame at the nodes of the skin, three numbers each [m]; zeros where the file has none.
+    ///
+    /// # Errors
+    /// The file is of another mesh, or damaged.
+    pub fn displacement(&self, file: &Path) -> Result<Vec<f64>, Failure> {
+        Ok(self.shown_places(&self.displacement_of_mesh(file)?))
+    }
+
+    /// The same at all nodes of the mesh.
+    ///
+    /// # Errors
+    /// As [`Skin::displacement`].
+    pub fn displacement_of_mesh(&self, file: &Path) -> Result<Vec<f64>, Failure> {
+        let arrays = self.arrays(file)?;
+        Ok(match arrays.components("PointData", "displacement") {
+            Some(3) => arrays.values("PointData", "displacement")?,
+            _ => vec![0.0; 3 * self.mesh.node_count()],
+        })
+    }
+
+    /// Of numbers of all nodes, or all elements, those of the nodes or triangles of the skin.
+    pub fn shown(&self, values: &[f64], of_elements: bool) -> Vec<f64> {
+        let places = if of_elements { &self.element } else { &self.nodes };
+        places.iter().map(|n| values[*n as usize]).collect()
+    }
+
+    /// Of three numbers for each node of the mesh, those of the nodes of the skin.
+    pub fn shown_places(&self, values: &[f64]) -> Vec<f64> {
+        self.nodes.iter().flat_map(|n| &values[3 * *n as usize..3 * *n as usize + 3]).copied().collect()
+    }
+
+    fn arrays(&self, file: &Path) -> Result<Arrays, Failure> {
+        let arrays = Arrays::open(file, "UnstructuredGrid")?;
+        if arrays.points != self.mesh.node_count() {
+            let (found, expected) = (format!("{} nodes", arrays.points), self.mesh.node_count());
+            return Err(
+                ReadError::whole(file, "mesh", found, format!("{expected} as in the first frame")).into()
+            );
+        }
+        Ok(arrays)
+    }
+
+    /// A field of a frame: one number per node of the skin, or per triangle for a field of elements.
+    ///
+    /// # Errors
+    /// As [`Skin::displacement`]; there is no such field.
+    pub fn field(&self, file: &Path, name: &str) -> Result<Vec<f64>, Failure> {
+        Ok(self.shown(&self.field_of_mesh(file, name)?, name.starts_with(CELL)))
+    }
+
+    /// The same for all nodes, or all elements, of the mesh.
+    ///
+    /// # Errors
+    /// As [`Skin::field`].
+    pub fn field_of_mesh(&self, file: &Path, name: &str) -> Result<Vec<f64>, Failure> {
+        let arrays = self.arrays(file)?;
+        let (section, stored, count) = match name.strip_prefix(CELL) {
+            Some(stored) => ("CellData", stored, self.mesh.element_count()),
+            None => ("PointData", name, self.mesh.node_count()),
+        };
+        let (stored, part) = match arrays.components(section, stored) {
+            Some(_) => (stored, ""),
+            None => stored.rsplit_once('_').unwrap_or((stored, "")),
+        };
+        let values = arrays.values(section, stored)?;
+        let width = arrays.components(section, stored).unwrap_or(1);
+        let found: Option<Vec<f64>> = values.chunks_exact(width).map(|item| reduced(item, part)).collect();
+        Ok(found.filter(|f| f.len() == count).ok_or_else(|| {
+            ReadError::whole(file, name, "no such field", "one of those that the frame has")
+        })?)
+    }
+}
+
+/// Names of the fields of a file, parts of vectors and tensors among them; those of elements are marked.
+///
+/// # Errors
+/// The file is not one of a solid.
+pub fn fields(file: &Path) -> Result<Vec<String>, Failure> {
+    let arrays = Arrays::open(file, "UnstructuredGrid")?;
+    let mut names = Vec::new();
+    for (section, mark) in [("PointData", ""), ("CellData", CELL)] {
+        for (name, components) in arrays.names(section).filter(|(name, _)| !NUMBERS.contains(name)) {
+            let name = format!("{mark}{name}");
+            match components {
+                9 => {
+                    names.extend(TENSOR.iter().map(|(part, _)| format!("{name}_{part}")));
+                    names.extend(PRINCIPAL.iter().map(|part| format!("{name}_{part}")));
+                }
+                // Who draws makes the parts of the displacement: it may be counted from another frame.
+                3 if name == "displacement" => {}
+                3 => {
+                    names.extend(["x", "y", "z"].map(|part| format!("{name}_{part}")));
+                    names.push(name);
+                }
+                _ => names.push(name),
+            }
+        }
+    }
+    Ok(names)
+}
+
+/// One number of an item: itself, a part of a vector or its length, a part or a principal value of a tensor.
+fn reduced(item: &[f64], part: &str) -> Option<f64> {
+    match (item.len(), part) {
+        (1, "") => Some(item[0]),
+        (3, "") => Some(item.iter().map(|v| v * v).sum::<f64>().sqrt()),
+        (3, _) => ["x", "y", "z"].iter().position(|p| *p == part).map(|k| item[k]),
+        (9, "mean") => Some((item[0] + item[4] + item[8]) / 3.0),
+        (9, "1" | "2" | "3") => {
+            let mut values: Vec<f64> =
+                Matrix3::from_row_slice(item).symmetric_eigenvalues().iter().copied().collect();
+            values.sort_by(|a, b| b.total_cmp(a));
+            part.parse::<usize>().ok().map(|k| values[k - 1])
+        }
+        (9, _) => TENSOR.iter().find(|(p, _)| *p == part).map(|(_, k)| item[*k]),
+        _ => None,
+    }
+}
