@@ -67,7 +67,7 @@ pub fn scaled(unit: &str, most: f64) -> (f64, String) {
         return (1.0, unit.to_string());
     }
     let known = || PREFIXES.iter().filter(|(f, _)| if large { *f >= 1.0 } else { *f <= 1.0 });
-    let fits = known().find(|(f, _)| most >= 1.1 * f).or_else(|| known().last());
+    let fits = known().find(|(f, _)| most >= 1.1 * f).or_else(|| known().next_back());
     fits.map_or((1.0, unit.to_string()), |(factor, prefix)| (*factor, format!("{prefix}{unit}")))
 }
 

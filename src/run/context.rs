@@ -5,7 +5,9 @@ use super::folder;
 use super::origin::quoted;
 use super::run_file::{self, RunFile};
 use crate::failure::Failure;
+use crate::message;
 use crate::model::Job;
+use crate::plausible::Finding;
 use crate::scene::Document;
 use std::cell::{Cell, OnceCell};
 use std::path::Path;
@@ -33,9 +35,16 @@ pub struct Run<'a> {
     pub set_down: &'a OnceCell<fem::Model>,
     /// Folder of the run from whose end this one goes on.
     pub from: Option<&'a Path>,
+    /// Values that are not plausible, until they are remarked on.
+    pub findings: Cell<Vec<Finding>>,
 }
 
 impl Run<'_> {
+    /// Remarks on values that are not plausible, once: when it is sure that the scene is not refused.
+    pub fn remark(&self) {
+        self.findings.take().iter().for_each(|finding| message::note(&finding.to_string()));
+    }
+
     /// The folder of the results is no longer where it was; `place` is where it is now, if that is known.
     pub fn gone(&self, place: Option<&Path>) -> Failure {
         let dir = self.dir.display();
@@ -56,6 +65,7 @@ impl Run<'_> {
     /// # Errors
     /// The disk refuses.
     pub fn prepare(&self) -> Result<(), Failure> {
+        self.remark();
         if self.continued {
             folder::resume(self.dir, &self.job.output)?;
         } else {

@@ -166,10 +166,11 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),
             set_down: &set_down,
             from: options.from.as_deref(),
+            findings: Cell::new(findings),
         };
         from::check(&job, options.from.is_some(), &document)?;
         let loaded = loaded.or(previous);
-        carry_out(&run, loaded, summary, &lock, &findings)
+        carry_out(&run, loaded, summary, &lock)
     })
 }
 
@@ -194,15 +195,14 @@ fn carry_out(
     loaded: Option<Loaded>,
     summary: Summary,
     lock: &Lock,
-    findings: &[plausible::Finding],
 ) -> Result<Outcome, Failure> {
     let mut state = RunState::new(loaded, summary);
     let result = guarded(|| {
         // What the main loop would refuse is refused before hours of packing.
         if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && state.loaded.is_none()) {
             stages::preview(run.document, run.job, grains)?;
+            run.remark();
         }
-        findings.iter().for_each(|finding| message::note(&finding.to_string()));
         describe(run, &mut state.summary)?;
         state.begin(run.job)?;
         stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state))
