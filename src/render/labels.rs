@@ -77,7 +77,7 @@ pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
         return (vec![low], 3);
     }
     let rough = (high - low) / most as f64;
-    let mut exponent = rough.log10().floor() as i32;
+    let mut exponent = libm::log10(rough).floor() as i32;
     let mut step = 10.0;
     for k in [1.0, 2.0, 5.0] {
         if k * libm::pow(10.0, f64::from(exponent)) >= rough * (1.0 - 1e-9) {

@@ -59,7 +59,7 @@ pub fn scale(picture: &mut Picture, eye: &Camera, from: f32, ink: &Ink, u: f32) 
     if !(most.is_finite() && most > 0.0) {
         return;
     }
-    let exponent = most.log10().floor() as i32;
+    let exponent = libm::log10f(most).floor() as i32;
     let mut size = libm::powf(10.0, exponent as f32);
     let times = [5.0, 2.0, 1.0].into_iter().find(|t| t * size <= most).unwrap_or(1.0);
     size *= times;
