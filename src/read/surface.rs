@@ -103,7 +103,10 @@ pub fn read_plain(file: &Path) -> Result<Surface, ReadError> {
     let base = u32::from(!numbers.iter().any(|(_, t)| t.contains(&0)));
     for (line, corners) in numbers {
         if let Some(bad) = corners.iter().find(|v| **v as usize >= vertices + base as usize) {
-            let expected = format!("{base} to {}", vertices + base as usize - 1);
+            let expected = match vertices {
+                0 => "no triangles: there are no vertices".to_string(),
+                _ => format!("{base} to {}", vertices - 1 + base as usize),
+            };
             return Err(ReadError::at(file, line, "vertex of a triangle", bad.to_string(), expected));
         }
         surface.triangles.push(corners.map(|v| v - base));
