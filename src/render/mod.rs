@@ -1,7 +1,7 @@
 //! Pictures of results: drawn by the processor alone, without a display, into PNG, JPEG, BMP or AVI files.
 //!
-//! A frame of results ([`run`]) becomes things to draw ([`parts`]), these become pixels ([`mod@draw`]), with a caption, legends and axes
-//! around them ([`sheet`]), and a file ([`encode`]).
+//! A frame of results (`run`) becomes things to draw (`parts`), these become pixels (`draw`), with a caption, legends and axes
+//! around them (`sheet`), and a file (`encode`).
 
 mod colours;
 mod draw;
