@@ -31,6 +31,12 @@ impl Refusal {
             Refusal::Unfit(found, expected) => (found, expected),
         }
     }
+
+    /// The same in one sentence about `file`.
+    pub fn sentence(self, file: &Path) -> String {
+        let (found, expected) = self.words(|e| e.to_string());
+        format!("{}: found {found}, expected {expected}", file.display())
+    }
 }
 
 impl From<io::Error> for Refusal {

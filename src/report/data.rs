@@ -163,10 +163,7 @@ fn summary(file: &Path) -> Result<Value, Failure> {
     let refused = |found: String, expected: &str| {
         Failure::Input(format!("{}: found {found}, expected {expected}", file.display()))
     };
-    let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
-        let (found, expected) = refusal.words(|e| e.to_string());
-        refused(found, &expected)
-    })?;
+    let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
     match serde_json::from_slice::<Value>(&bytes) {
         Ok(value) if value.get("status").is_some_and(Value::is_string) => Ok(value),
         Ok(_) => Err(refused("no status".into(), "the summary of a run")),

@@ -28,10 +28,7 @@ impl NumberTable {
         let refused = |found: String, expected: &str| {
             Failure::Input(format!("{}: found {found}, expected {expected}", file.display()))
         };
-        let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
-            let (found, expected) = refusal.words(|e| e.to_string());
-            refused(found, &expected)
-        })?;
+        let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
         let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |k| k + 1);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..end]);
         let heads: Vec<String> = match reader.headers() {

@@ -48,8 +48,7 @@ pub fn section(
     let side = |p: &Point| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2] - offset;
     let mut out = Vec::new();
     for (element, own) in mesh.connectivity.iter().enumerate() {
-        let signs = || own.iter().map(|n| side(&nodes[*n as usize]));
-        if signs().all(|s| s > 0.0) || signs().all(|s| s <= 0.0) {
+        if !crossed(own, nodes, side) {
             continue;
         }
         let kind = mesh.connectivity.kind(element);
@@ -76,13 +75,18 @@ pub fn section(
     out
 }
 
+/// Whether nodes lie on both sides.
+fn crossed(own: &[u32], nodes: &[Point], side: impl Fn(&Point) -> f64) -> bool {
+    let above = own.iter().filter(|n| side(&nodes[**n as usize]) > 0.0).count();
+    above > 0 && above < own.len()
+}
+
 /// Lines in which the same plane cuts the faces of elements: both ends of each [m].
 pub fn outlines(mesh: &Mesh, nodes: &[Point], normal: [f64; 3], offset: f64) -> Vec<[[f64; 3]; 2]> {
     let side = |p: &Point| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2] - offset;
     let mut out = Vec::new();
     for (element, own) in mesh.connectivity.iter().enumerate() {
-        let signs = || own.iter().map(|n| side(&nodes[*n as usize]));
-        if signs().all(|s| s > 0.0) || signs().all(|s| s <= 0.0) {
+        if !crossed(own, nodes, side) {
             continue;
         }
         for face in mesh.connectivity.kind(element).faces() {

@@ -83,23 +83,16 @@ pub fn hash_after(scene: &str, state: &str) -> String {
     hash.hex()
 }
 
-/// Refuses to go on with what keeps no state, or leaves a part of it behind.
+/// Refuses a scene of whose state a part would stay behind.
 ///
 /// # Errors
 /// Bad input.
-pub fn check(job: &Job, from: bool, document: &Document) -> Result<(), Failure> {
-    let rails = job.grains.as_ref().is_some_and(|g| g.track.rail.is_some());
-    match (&job.grains, from) {
-        (None, true) => {
-            let expected = "grains: a solid alone keeps no state that --from goes on with";
-            Err(document.error("grains", "nothing", expected).into())
-        }
-        (Some(_), true) if rails => {
-            let expected = "sleepers without rails: --from does not carry the bending of rails";
-            Err(document.error("track.rail", "a rail", expected).into())
-        }
-        _ => Ok(()),
+pub fn check(job: &Job, document: &Document) -> Result<(), Failure> {
+    if job.grains.as_ref().is_some_and(|g| g.track.rail.is_some()) {
+        let expected = "sleepers without rails: --from does not carry the bending of rails";
+        return Err(document.error("track.rail", "a rail", expected).into());
     }
+    Ok(())
 }
 
 /// A key by which a scene is another model.

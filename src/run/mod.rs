@@ -134,6 +134,9 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
+        if options.from.is_some() {
+            from::check(&job, &document)?;
+        }
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
         // What a run of the same scene has left before its first checkpoint is no loss.
@@ -168,7 +171,6 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             from: options.from.as_deref(),
             findings: Cell::new(findings),
         };
-        from::check(&job, options.from.is_some(), &document)?;
         let loaded = loaded.or(previous);
         carry_out(&run, loaded, summary, &lock)
     })

@@ -7,7 +7,8 @@ use std::path::Path;
 use super::atomic;
 use super::error::{WriteError, check_field};
 use super::svg::{
-    BOTTOM, COLOURS, FONT, HEIGHT, SAMPLE, TITLE_FONT, TOP, WIDTH, fitted, minus, round, text, text_width,
+    BOTTOM, COLOURS, FONT, HEIGHT, SAMPLE, TITLE_FONT, TOP, WIDTH, fitted, power_of_ten, round, text,
+    text_width,
 };
 
 /// Shape of a point.
@@ -225,21 +226,12 @@ impl LogAxis {
         let first = all.iter().rposition(|t| value(t) < low).unwrap_or(0);
         let last = all.iter().position(|t| value(t) > high).unwrap_or(all.len() - 1);
         let ticks: Vec<(f64, String)> =
-            all[first..=last].iter().map(|t| (value(t), label(t.0, t.1))).collect();
+            all[first..=last].iter().map(|t| (value(t), power_of_ten(t.0, t.1))).collect();
         LogAxis { low: ticks[0].0, high: ticks[ticks.len() - 1].0, ticks }
     }
 
     fn fraction(&self, value: f64) -> f64 {
         libm::log(value / self.low) / libm::log(self.high / self.low)
-    }
-}
-
-/// A digit times a power of ten, in plain form where that is short.
-fn label(decade: i32, digit: u32) -> String {
-    match decade {
-        0..=4 => format!("{digit}{}", "0".repeat(decade as usize)),
-        -3..=-1 => format!("0.{}{digit}", "0".repeat((-decade - 1) as usize)),
-        _ => minus(&format!("{digit}e{decade}")),
     }
 }
 

@@ -212,6 +212,15 @@ pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
+/// A digit times a power of ten, in plain form where that is short: the label of a logarithmic tick.
+pub(crate) fn power_of_ten(decade: i32, digit: u32) -> String {
+    match decade {
+        0..=4 => format!("{digit}{}", "0".repeat(decade as usize)),
+        -3..=-1 => format!("0.{}{digit}", "0".repeat((-decade - 1) as usize)),
+        _ => minus(&format!("{digit}e{decade}")),
+    }
+}
+
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
 fn nice_step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::log10(least).floor());

@@ -307,7 +307,7 @@ fn nothing_to_go_on_from() {
     folder.edit("scene.toml", "mass = 400", "mass = 401");
     refused(&scene, &out, &[], &["track.sleeper.mass was 400, now 401"]);
     folder.edit("scene.toml", "mass = 401", "mass = 400 # kg");
-    refused(&scene, &out, &[], &["its text or its overrides have changed, though no key has"]);
+    refused(&scene, &out, &[], &["its text, its overrides or --from have changed, though no key has"]);
     folder.edit("scene.toml", "mass = 400 # kg", "mass = 400");
     let lists = fs::read_to_string(folder.join("DOF.DAT")).unwrap();
     fs::write(folder.join("DOF.DAT"), format!("{lists}\n")).unwrap();

@@ -90,6 +90,11 @@ fn a_track_goes_on_with_another_load_and_ground() {
     let height = |out: &Path| Table::read(&out.join("history.csv")).column("sleeper_z");
     let (before, after) = (height(&first), height(&more));
     assert!((before[before.len() - 1] - after[0]).abs() < 1e-12, "{} {}", before[before.len() - 1], after[0]);
+    // The report says how the run comes again, where it came from included.
+    let page = folder.join("report.html");
+    trackbed(["report", more.to_str().unwrap(), "--out", page.to_str().unwrap()]).good();
+    let page = std::fs::read_to_string(&page).unwrap();
+    assert!(page.contains(&format!(" --from {}", first.display())), "no --from in the report");
     // Another model is refused, by its key, and nothing is written.
     for (set, words) in [
         ("grains.0.count=151", "grains.0.count: found 151, expected 150, as in "),

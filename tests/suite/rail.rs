@@ -391,6 +391,12 @@ fn rails_go_on_bit_for_bit() {
     goes_on_bit_for_bit(&scene, &folder, &[300, 900, 2000]);
     let walls = std::fs::read_to_string(folder.join("whole/frames/walls_00001.vtp")).unwrap();
     assert!(walls.contains("NumberOfPolys"), "a picture with sleepers and rail");
+    // Another run cannot go on with a bent rail.
+    let from = Some(folder.join("whole"));
+    let next = trackbed::run::Options { from, ..options(&folder.join("next"), 1) };
+    let refused = trackbed::run::run(&scene, &next).expect_err("a rail is refused");
+    assert!(refused.to_string().contains("expected sleepers without rails"), "{refused}");
+    assert!(refused.code() == 2 && !folder.join("next").exists());
 }
 
 /// A line on standard error for a scene with one thing broken; nothing is written.

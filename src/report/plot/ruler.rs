@@ -1,6 +1,6 @@
 //! Values along one side of a plot: from a tick to a tick, linear or by their logarithms.
 
-use crate::write::svg::minus;
+use crate::write::svg::{minus, power_of_ten};
 
 /// A mark at a value; without a text it is a thin line only.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl Ruler {
                 if end {
                     ends.push(value);
                 }
-                let label = named.then(|| decimal(decade, digit));
+                let label = named.then(|| power_of_ten(decade, digit));
                 if every == 1 || label.is_some() {
                     ticks.push(Tick { value, label });
                 }
@@ -124,15 +124,6 @@ fn label(value: f64, step: f64, largest: f64) -> String {
     }
     let digits = (-power(step)).max(0.0) as usize;
     minus(&format!("{value:.digits$}"))
-}
-
-/// A digit times a power of ten, in plain form where that is short.
-fn decimal(decade: i32, digit: i32) -> String {
-    match decade {
-        0..=4 => format!("{digit}{}", "0".repeat(decade as usize)),
-        -3..=-1 => format!("0.{}{digit}", "0".repeat((-decade - 1) as usize)),
-        _ => minus(&format!("{digit}e{decade}")),
-    }
 }
 
 #[cfg(test)]

@@ -25,10 +25,7 @@ use std::path::{Path, PathBuf};
 /// Bad input: it cannot be read, is damaged, or is of another program.
 pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
     let name = file.display();
-    let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
-        let (found, expected) = refusal.words(|e| e.to_string());
-        Failure::Input(format!("{name}: found {found}, expected {expected}"))
-    })?;
+    let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
     let mut hash = Hash::default();
     hash.add(&bytes);
     let (header, loaded) = form::read(bytes).map_err(|unfit| match unfit {

@@ -75,7 +75,7 @@ impl Origin {
         let changed = self.files.iter().find(|f| !old.files.contains(f));
         Some(match changed {
             Some((file, _)) => format!("{wrong}: {} has changed", file.display()),
-            None => format!("{wrong}: its text or its overrides have changed, though no key has"),
+            None => format!("{wrong}: its text, its overrides or --from have changed, though no key has"),
         })
     }
 }

@@ -9,6 +9,7 @@ use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
+use trackbed_fem as fem;
 
 /// Meshed sleepers of a running system.
 pub struct Meshed<'a> {
@@ -52,6 +53,18 @@ pub struct CoupledSystem<'a> {
     pub ground_faces: usize,
     /// Meshed sleepers.
     pub seats: Option<Meshed<'a>>,
+}
+
+impl CoupledSystem<'_> {
+    /// Puts what the system goes on from: `memory` of the solver and the work of loads on meshed sleepers so far [J] beside the states.
+    fn put(
+        &self,
+        memory: Option<fem::nonlinear::Memory>,
+        seat_work: f64,
+        body: &mut Body<'_>,
+    ) -> io::Result<()> {
+        body.put(&(&self.model.reference, memory, &self.state, seat_work))
+    }
 }
 
 impl TrackSystem for CoupledSystem<'_> {
@@ -111,12 +124,11 @@ impl System for CoupledSystem<'_> {
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         let seat_work = self.seats.as_ref().map_or(0.0, |s| s.work);
-        body.put(&(&self.model.reference, self.work.memory(), &self.state, seat_work))
+        self.put(self.work.memory(), seat_work, body)
     }
 
     fn save_end(&self, body: &mut Body<'_>) -> io::Result<()> {
-        let memory = self.work.memory().filter(|_| false);
-        body.put(&(&self.model.reference, memory, &self.state, 0.0))
+        self.put(None, 0.0, body)
     }
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
