@@ -50,7 +50,10 @@ impl Run<'_> {
         let dir = self.dir.display();
         let head =
             format!("{dir}: the folder of the results was renamed or removed while the run wrote there");
+        // A run that has neither is not gone on with: it is begun again.
+        let begun = self.prepared.get() || self.checkpoints.kept().is_some();
         Failure::Other(match place {
+            _ if !begun => format!("{head}; nothing was written until then"),
             None => format!("{head}; what was written until then is gone with it"),
             Some(place) => format!(
                 "{head}; what was written until then, and the last checkpoint if there is one, is in {}: go on with --resume --out {}",

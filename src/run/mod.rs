@@ -117,20 +117,13 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
+    // What a run of the same scene has left before its first checkpoint is no loss.
+    let own = options.resume && RunFile::of(&document, options.from.as_deref()).is_of(&dir);
     if options.resume {
         if origin::was_done(&dir, &scene_hash)? {
             return Ok(Outcome::WasDone(dir));
         }
-        if slots.any() || !lock::is_there(&dir) {
-            let (checkpoint, remarks) = slots.load(&document)?;
-            remarks.iter().for_each(|remark| message::note(remark));
-            loaded = Some(checkpoint);
-        } else {
-            message::note(&format!(
-                "{}: the run was ended before its first checkpoint, it starts from its beginning",
-                dir.display()
-            ));
-        }
+        loaded = resumed(&mut slots, &dir, &document, own)?;
     }
     pool.install(|| {
         let job = Job::new(&document, &parsed)?;
@@ -139,8 +132,6 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         }
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
-        // What a run of the same scene has left before its first checkpoint is no loss.
-        let own = options.resume && RunFile::of(&document, options.from.as_deref()).is_of(&dir);
         if loaded.is_none() && !options.force && !own {
             occupied::check(&dir, &origin, &slots, &lock)?;
         }
@@ -174,6 +165,23 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         let loaded = loaded.or(previous);
         carry_out(&run, loaded, summary, &lock)
     })
+}
+
+/// The checkpoint that a run goes on from; none where it was ended before its first: `own` says that its files are there.
+///
+/// # Errors
+/// Bad input: no run of this scene was begun in the folder; a checkpoint that does not fit.
+fn resumed(slots: &mut Slots, dir: &Path, document: &Document, own: bool) -> Result<Option<Loaded>, Failure> {
+    if !slots.any() && (own || lock::is_there(dir)) {
+        message::note(&format!(
+            "{}: the run was ended before its first checkpoint, it starts from its beginning",
+            dir.display()
+        ));
+        return Ok(None);
+    }
+    let (checkpoint, remarks) = slots.load(document)?;
+    remarks.iter().for_each(|remark| message::note(remark));
+    Ok(Some(checkpoint))
 }
 
 /// Remarks on values of a scene that are not plausible; or refuses them.
