@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::message;
 use crate::model::Job;
 use crate::plausible::Finding;
+use crate::progress::Verbosity;
 use crate::scene::Document;
 use std::cell::{Cell, OnceCell};
 use std::path::Path;
@@ -21,8 +22,8 @@ pub struct Run<'a> {
     pub job: &'a Job,
     /// Folder of the results.
     pub dir: &'a Path,
-    /// Whether nothing is printed.
-    pub quiet: bool,
+    /// How much is printed.
+    pub verbosity: Verbosity,
     /// Most memory that a solid may need [bytes].
     pub memory: Option<u64>,
     /// Whether the folder is cleared of earlier results and holds those of this run.

@@ -37,11 +37,13 @@ pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
+pub use crate::progress::Verbosity;
+
 use crate::failure::Failure;
 use crate::guard::guarded;
 use crate::machine;
 use crate::message;
-use crate::model::Job;
+use crate::model::{self, Job};
 use crate::plausible;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
@@ -75,8 +77,8 @@ pub struct Options {
     pub strict: bool,
     /// Request to stop with a checkpoint.
     pub interrupt: Interrupt,
-    /// Print nothing.
-    pub quiet: bool,
+    /// How much is printed.
+    pub verbosity: Verbosity,
 }
 
 /// What became of a run.
@@ -98,7 +100,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     for assignment in &options.set {
         document.set(assignment)?;
     }
-    let parsed: Scene = document.read()?;
+    let parsed = model::read_scene(&document)?;
     let pool = thread_pool(options.threads)?;
     let dir = options.out.clone().unwrap_or_else(|| default_folder(scene, &options.set));
     let mut origin = origin::origin(&document, &parsed);
@@ -126,7 +128,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         loaded = resumed(&mut slots, &dir, &document, own)?;
     }
     pool.install(|| {
-        let job = Job::new(&document, &parsed)?;
+        let job = model::resolve(&document, &parsed)?;
         if options.from.is_some() {
             from::check(&job, &document)?;
         }
@@ -153,7 +155,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             document: &document,
             job: &job,
             dir: &dir,
-            quiet: options.quiet,
+            verbosity: options.verbosity,
             memory: options.memory,
             prepared: Cell::new(false),
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
@@ -196,7 +198,7 @@ fn weigh(
         plausible::refuse(document, &findings)?;
     }
     // A run that is resumed has had them.
-    Ok(if options.quiet || options.resume { Vec::new() } else { findings })
+    Ok(if options.verbosity == Verbosity::Quiet || options.resume { Vec::new() } else { findings })
 }
 
 /// Carries out the stages of a run, and writes its summary whatever becomes of them.
@@ -228,13 +230,14 @@ fn carry_out(
     match &result {
         Ok(()) => summary.run.status = "done".into(),
         // Bad input leaves nothing behind, not even a summary.
-        Err(Failure::Input(_)) => {}
+        Err(failure) if failure.is_input() => {}
         Err(Failure::Interrupted(_)) => summary.run.status = "interrupted".into(),
         Err(failure) => summary.run.status = format!("failed: {failure}"),
     }
-    if let Err(failure @ Failure::Input(_)) = result {
-        return Err(failure);
-    }
+    let result = match result {
+        Err(failure) if failure.is_input() => return Err(failure),
+        other => other,
+    };
     // Nothing is written where another folder may be by now.
     if let Some(place) = lock.moved() {
         return Err(run.gone(place.as_deref()));
