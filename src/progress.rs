@@ -89,7 +89,7 @@ impl Progress {
         self.before + self.begun.elapsed().as_secs_f64()
     }
 
-    /// Reports how far the stage is, in the unit of `total`; `details` is asked for where a line is due.
+    /// Reports how far the stage is, in the unit of `total`; `details` is called where a line is due.
     pub fn at(&mut self, done: f64, details: impl FnOnce() -> String) {
         self.share = (done / self.total).clamp(0.0, 1.0);
         self.bar.set_position((self.share * TICKS as f64) as u64);
@@ -154,7 +154,7 @@ mod tests {
             shown.chars().count() <= 80 && shown.contains(" 50%") && shown.contains("cycle 12345"),
             "{shown}"
         );
-        assert!(shown.starts_with("     running [=========>"), "{shown}");
+        assert!(shown.starts_with("     running [==========>"), "{shown}");
     }
 
     /// A line says how far the stage is, what it takes, and what it does.
@@ -169,12 +169,12 @@ mod tests {
         assert_eq!(line, "    settling   25 %  2 minutes of about 7 minutes  rms 2e-3 m/s  12 contacts");
         let nothing = Progress::to("settling", 10.0, Verbosity::Normal, hidden(), Some(Duration::ZERO));
         assert!(nothing.line("").starts_with("    settling    0 %  0 seconds"), "{}", nothing.line(""));
-        let mut asked = false;
+        let mut called = false;
         let mut due = nothing;
         due.at(1.0, || {
-            asked = true;
+            called = true;
             "for a line".into()
         });
-        assert!(asked);
+        assert!(called);
     }
 }

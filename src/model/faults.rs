@@ -29,8 +29,11 @@ pub fn resolve(document: &Document, scene: &Scene) -> Result<Job, Failure> {
     Job::new(document, scene).map_err(|first| all(document, first, again, apart))
 }
 
-/// A failure with the further faults that `again` finds where those before are taken away, as long as they are `independent` of
-/// them. A key that is missing then may follow from what was taken away: the search ends there.
+/// What is put in the place of a value that is at fault, one after the other, where a scene must have one.
+const PLACEHOLDERS: [&str; 5] = ["1", "\"1\"", "true", "[1, 1, 1]", "[]"];
+
+/// A failure with the further faults that `again` finds where those before are mended, as long as they are `independent` of
+/// them and about values that the scene has.
 fn all(
     document: &Document,
     first: Failure,
@@ -41,15 +44,19 @@ fn all(
     let (mut rest, begun) = (document.clone(), Instant::now());
     while faults.len() < MOST && begun.elapsed() < LONGEST {
         let last = faults.last().expect("the first one");
-        // What others are called by is not to be missed by them.
-        let name = last.key.rsplit('.').next() == Some("name");
-        if name || !rest.has(&last.key) || rest.set(&format!("{}=", last.key)).is_err() {
-            break;
-        }
-        match again(&rest) {
-            Err(Failure::Faults(next))
-                if next.iter().all(|n| rest.has(&n.key) && faults.iter().all(|f| independent(f, n))) =>
-            {
+        let mended = mendings(document, last).into_iter().find_map(|mending| {
+            let mut trial = rest.clone();
+            mending.iter().try_for_each(|assignment| trial.set(assignment)).ok()?;
+            match again(&trial) {
+                Err(Failure::Faults(next)) if next.iter().all(|n| n.key != last.key && trial.has(&n.key)) => {
+                    Some((trial, next))
+                }
+                _ => None,
+            }
+        });
+        match mended {
+            Some((trial, next)) if next.iter().all(|n| faults.iter().all(|f| independent(f, n))) => {
+                rest = trial;
                 faults.extend(next);
             }
             _ => break,
@@ -58,9 +65,32 @@ fn all(
     Failure::Faults(faults)
 }
 
-/// Whether two faults are in tables apart from each other: within one, values may depend on each other.
+/// Overrides that may mend a fault: the key that was meant in the place of an unknown one, none, or another value.
+fn mendings(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
+    let key = &fault.key;
+    // What others are called by is not to be missed by them.
+    if !document.has(key) || key.rsplit('.').next() == Some("name") {
+        return Vec::new();
+    }
+    let gone = format!("{key}=");
+    let meant = fault.expected.strip_prefix('`').and_then(|e| e.strip_suffix('`'));
+    let meant = meant.filter(|_| fault.found.starts_with("the unknown key")).zip(document.value(key));
+    let renamed = meant.map(|(meant, value)| {
+        let table = key.rsplit_once('.').map_or(String::new(), |(table, _)| format!("{table}."));
+        vec![gone.clone(), format!("{table}{meant}={value}")]
+    });
+    let others = PLACEHOLDERS.iter().map(|value| vec![format!("{key}={value}")]);
+    renamed.into_iter().chain([vec![gone.clone()]]).chain(others).collect()
+}
+
+/// Whether two faults are in tables apart from each other: within one, and between a table and what holds it, values may depend
+/// on each other.
 fn apart(before: &SceneError, next: &SceneError) -> bool {
     let table = |key: &str| key.rsplit_once('.').map_or(String::new(), |(table, _)| table.to_string());
-    let within = |key: &str, table: &str| key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'));
-    !within(&next.key, &table(&before.key)) && !within(&before.key, &table(&next.key))
+    let within = |key: &str, table: &str| {
+        key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    !within(&next.key, &table(&before.key))
+        && !within(&before.key, &table(&next.key))
+        && !within(&before.key, &next.key)
 }

@@ -190,6 +190,11 @@ impl Document {
         value_at(self.tree().get_ref(), &parts).is_some()
     }
 
+    /// A value as TOML; none where the scene does not have the key.
+    pub fn value(&self, path: &str) -> Option<String> {
+        self.keys().remove(path)
+    }
+
     /// File that was read.
     pub fn file(&self) -> &Path {
         &self.file

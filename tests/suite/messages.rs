@@ -46,7 +46,7 @@ fn values_of_tables_apart_are_named_at_once() {
         let set = set.iter().flat_map(|s| ["--set", *s]);
         trackbed(["check", scene.to_str().unwrap()].into_iter().chain(set))
     };
-    let outcome = check(&["solid.material.0.young=-5", "probe.0.node=77777"]);
+    let outcome = check(&["solid.material.0.young=-5", "probe.0.node=77777", "output.frames=2000000"]);
     let both = faults(&outcome);
     assert!(
         both.len() == 2 && both[0].contains("material.0.young") && both[1].contains("probe.0"),
@@ -62,9 +62,9 @@ fn values_of_tables_apart_are_named_at_once() {
     assert_eq!(faults(&outcome).len(), 1, "{outcome:?}");
 }
 
-/// Colours are for terminals, and for those who ask for them; `NO_COLOR` has the last word.
+/// Colours are for terminals, and for those who force them; `NO_COLOR` has the last word.
 #[test]
-fn colours_are_asked_for() {
+fn colours_are_for_terminals() {
     let folder = Folder::new("colours");
     let scene = folder.write("scene.toml", &GRAINS.replace("0.05]", "-0.05]"));
     let said = |variables: &[(&str, &str)]| {
