@@ -48,7 +48,7 @@ fn all(
             let mut trial = rest.clone();
             mending.iter().try_for_each(|assignment| trial.set(assignment)).ok()?;
             match again(&trial) {
-                Err(Failure::Faults(next)) if next.iter().all(|n| n.key != last.key && trial.has(&n.key)) => {
+                Err(Failure::Faults(next)) if next.iter().all(|n| is_new(document, &faults, n)) => {
                     Some((trial, next))
                 }
                 _ => None,
@@ -63,6 +63,16 @@ fn all(
         }
     }
     Failure::Faults(faults)
+}
+
+/// Whether a fault is about a value that the scene has, and not about what took the place of another.
+fn is_new(document: &Document, faults: &[SceneError], next: &SceneError) -> bool {
+    document.has(&next.key) && faults.iter().all(|fault| !within(&next.key, &fault.key))
+}
+
+/// Whether a key is another one, or in its table.
+fn within(key: &str, table: &str) -> bool {
+    key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// Overrides that may mend a fault: the key that was meant in the place of an unknown one, none, or another value.
@@ -87,9 +97,6 @@ fn mendings(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
 /// on each other.
 fn apart(before: &SceneError, next: &SceneError) -> bool {
     let table = |key: &str| key.rsplit_once('.').map_or(String::new(), |(table, _)| table.to_string());
-    let within = |key: &str, table: &str| {
-        key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-    };
     !within(&next.key, &table(&before.key))
         && !within(&before.key, &table(&next.key))
         && !within(&before.key, &next.key)

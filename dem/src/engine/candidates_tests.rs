@@ -15,7 +15,7 @@ fn thrown(seed: u64) -> ModelInput {
     let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let mut clump = |n: usize| {
         let spheres: Vec<_> =
-            (0..n).map(|_| ([unit(), unit(), unit()].map(|x| 0.02 * x), 0.004 + 0.01 * unit())).collect();
+            (0..n).map(|_| ([unit(), unit(), unit()].map(|x| 0.008 * x), 0.007 + 0.005 * unit())).collect();
         Shape::Clump(Clump::from_spheres(&spheres).unwrap())
     };
     let shapes = vec![clump(2), clump(6), Shape::Sphere { radius: 0.008 }, clump(4)];
