@@ -1,7 +1,8 @@
 //! What a run writes, resolved.
 
 use crate::scene::{Chains, Output, Scene, SceneError, Table};
-use crate::write::{FORMATS, Format, Part};
+use crate::write::{CHOSEN, FORMATS, Format, Part};
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 /// Time by the clock between two checkpoints where the scene does not say [s].
@@ -24,6 +25,8 @@ pub struct OutputPlan {
     pub packing: bool,
     /// The state at the end, in full.
     pub state: bool,
+    /// Fields that frames hold of those that may be chosen; none: all.
+    pub fields: Option<Vec<String>>,
     /// Frames show the contacts above the mean force only.
     pub strong_chains: bool,
 }
@@ -61,9 +64,28 @@ impl OutputPlan {
             tables: o.tables.unwrap_or(false),
             packing: o.packing.unwrap_or(false),
             state: o.state.unwrap_or(true),
+            fields: fields(scene, &o)?,
             strong_chains: o.chains == Some(Chains::Strong),
         })
     }
+}
+
+/// Fields that frames hold.
+///
+/// # Errors
+/// One that this scene has not.
+fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, SceneError> {
+    let [solid, grains] = CHOSEN;
+    let has = |present: bool, names: &'static [&'static str]| names.iter().filter(move |_| present);
+    let known: BTreeSet<&str> =
+        has(scene.solid.is_some(), solid).chain(has(!scene.grains.is_empty(), grains)).copied().collect();
+    for (k, name) in o.fields.iter().flatten().enumerate() {
+        if !known.contains(name.as_str()) {
+            let expected = format!("one of {}", known.iter().copied().collect::<Vec<_>>().join(", "));
+            return Err(o.error(&format!("fields.{k}"), format!("\"{name}\""), expected));
+        }
+    }
+    Ok(o.fields.clone())
 }
 
 /// Whether a format shows nothing but the solid.

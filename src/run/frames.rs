@@ -3,8 +3,9 @@
 use super::system::{GrainsView, SolidView};
 use super::wall_output;
 use crate::failure::Failure;
+use crate::model::OutputPlan;
 use crate::model::grains::GrainsPart;
-use crate::write::{ChainFrame, Format, Frame, GrainFrame, Part, SolidFrame, WallFrame, WallKind, Writers};
+use crate::write::{ChainFrame, Frame, GrainFrame, Part, SolidFrame, WallFrame, WallKind, Writers};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::shape::Shape;
@@ -99,8 +100,8 @@ pub fn write(
 ///
 /// # Errors
 /// As [`write`].
-pub fn write_state(dir: &Path, formats: &[&'static Format], view: SolidView<'_>) -> Result<(), Failure> {
-    let mut writers = Writers::begin(dir, formats)?;
+pub fn write_state(dir: &Path, output: &OutputPlan, view: SolidView<'_>) -> Result<(), Failure> {
+    let mut writers = Writers::begin(dir, &output.formats)?.only(&output.fields);
     write(&mut writers, (0, 0.0), Some(view), None)?;
     Ok(writers.end()?)
 }

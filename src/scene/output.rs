@@ -29,6 +29,8 @@ pub struct Output {
     pub state: Option<bool>,
     /// Force chains of the frames: all contacts (default), or those above the mean normal force.
     pub chains: Option<Chains>,
+    /// Fields of solid and grains that frames hold beside what they need to be drawn; default all.
+    pub fields: Option<Vec<String>>,
     /// Formats of the frames by key: switched on or off.
     #[schemars(skip)]
     pub formats: BTreeMap<&'static str, bool>,
@@ -47,7 +49,7 @@ pub enum Chains {
 
 /// Every key of the table: its own, then those of the formats.
 static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "state", "chains"];
+    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "state", "chains", "fields"];
     own.into_iter().chain(FORMATS.iter().map(|format| format.key)).collect()
 });
 
@@ -90,6 +92,7 @@ impl<'de> Deserialize<'de> for Output {
                         "packing" => output.packing = Some(map.next_value()?),
                         "state" => output.state = Some(map.next_value()?),
                         "chains" => output.chains = Some(map.next_value()?),
+                        "fields" => output.fields = Some(map.next_value()?),
                         format => {
                             output.formats.insert(format, map.next_value()?);
                         }

@@ -1,5 +1,6 @@
 //! What a result file shows of one moment, as plain arrays: the solid, the grains, the contacts, the walls.
 
+use super::choice::Choice;
 use trackbed_fem::mesh::Mesh;
 
 /// One moment of a run. A part that the run has not, or that no writer shows, is absent.
@@ -9,6 +10,8 @@ pub struct Frame<'a> {
     pub number: usize,
     /// Simulated time [s].
     pub time: f64,
+    /// Fields of the solid and of the grains that are written.
+    pub fields: Choice<'a>,
     /// The solid.
     pub solid: Option<SolidFrame<'a>>,
     /// The grains, one item per sphere.

@@ -8,6 +8,7 @@ mod abaqus;
 pub mod ansys_lists;
 pub mod atomic;
 mod cdb;
+mod choice;
 pub mod csv;
 pub mod error;
 mod frame;
@@ -31,6 +32,7 @@ pub mod vtp;
 pub mod vtu;
 pub mod writer;
 
+pub use choice::{CHOSEN, Choice};
 pub use error::WriteError;
 pub use frame::{ChainFrame, Frame, GrainFrame, SolidFrame, WallFrame, WallKind};
 pub use mesh_file::{MeshOptions, write_mesh_file};

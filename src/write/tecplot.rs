@@ -44,7 +44,7 @@ const LOWEST: [usize; 8] = [0, 1, 3, 4, 9, 10, 12, 13];
 /// The solid as one file per frame.
 pub const FORMAT: Format = Format {
     key: "tecplot",
-    default: true,
+    default: false,
     parts: &[Part::Solid],
     folder: "tecplot",
     endings: &["dat"],

@@ -13,6 +13,7 @@ use quick_xml::events::BytesText;
 use rayon::prelude::*;
 
 use super::atomic;
+use super::choice::Choice;
 use super::error::{WriteError, check_field};
 
 /// zlib level: result fields are noise in their low bits, so higher levels cost time and gain little.
@@ -122,21 +123,30 @@ impl Section {
 }
 
 /// Named, checked fields of the points or of the cells of one file.
-pub struct Fields {
+pub struct Fields<'a> {
     file: PathBuf,
     count: usize,
     section: Section,
+    choice: Choice<'a>,
 }
 
-impl Fields {
+impl<'a> Fields<'a> {
     /// Fields of the `count` points of `file`.
     pub fn of_points(file: &Path, count: usize) -> Self {
-        Fields { file: file.to_path_buf(), count, section: Section::new("PointData", Vec::new()) }
+        let section = Section::new("PointData", Vec::new());
+        Fields { file: file.to_path_buf(), count, section, choice: Choice::default() }
     }
 
     /// Fields of the `count` cells of `file`.
     pub fn of_cells(file: &Path, count: usize) -> Self {
-        Fields { file: file.to_path_buf(), count, section: Section::new("CellData", Vec::new()) }
+        let section = Section::new("CellData", Vec::new());
+        Fields { file: file.to_path_buf(), count, section, choice: Choice::default() }
+    }
+
+    /// The same; fields that are not chosen are checked and left out.
+    #[must_use]
+    pub fn only(self, choice: Choice<'a>) -> Self {
+        Fields { choice, ..self }
     }
 
     /// One number per item.
@@ -154,6 +164,9 @@ impl Fields {
     /// Any number of components per item.
     pub fn generic(&mut self, name: &str, values: &[f64], components: usize) -> Result<(), WriteError> {
         check_field(&self.file, name, values, components, self.count)?;
+        if !self.choice.has(name) {
+            return Ok(());
+        }
         self.section.arrays.push(Array::doubles(name, values, components));
         Ok(())
     }
@@ -170,13 +183,16 @@ impl Fields {
             let (file, field) = (self.file.clone(), name.to_string());
             return Err(WriteError::Length { file, field, found: values.len(), expected: self.count });
         }
+        if !self.choice.has(name) {
+            return Ok(());
+        }
         self.section.arrays.push(Array::ids(name, values));
         Ok(())
     }
 
     /// The first field of a kind is the one that a viewer shows.
     fn show_first(&mut self, kind: &'static str, name: &str) {
-        if self.section.active.iter().all(|(k, _)| *k != kind) {
+        if self.choice.has(name) && self.section.active.iter().all(|(k, _)| *k != kind) {
             self.section.active.push((kind, name.to_string()));
         }
     }

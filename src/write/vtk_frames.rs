@@ -51,12 +51,12 @@ impl Writer for VtkFrames {
         let name = |part: &str, ending: &str| format!("{}/{part}_{number:05}.{ending}", FORMAT.folder);
         if let Some(solid) = &frame.solid {
             let name = name("solid", "vtu");
-            vtu::write_solid(&self.dir.join(&name), solid)?;
+            vtu::write_solid(&self.dir.join(&name), solid, frame.fields)?;
             self.series.push(time, 0, "solid", &name);
         }
         if let Some(grains) = frame.grains {
             let name = name("grains", "vtp");
-            vtp::write_grains(&self.dir.join(&name), grains)?;
+            vtp::write_grains(&self.dir.join(&name), grains, frame.fields)?;
             self.series.push(time, 1, "grains", &name);
         }
         if let Some(chains) = frame.chains {

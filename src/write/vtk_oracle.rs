@@ -3,6 +3,7 @@
 //! Runs where Python with the package `vtk` is: `TRACKBED_PYTHON` names the interpreter and makes the test
 //! binding; without it `python3` is tried, and the test says so when that has no VTK.
 
+use super::choice::Choice;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -60,7 +61,7 @@ fn write_solid(file: &Path, mesh: &Mesh) {
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
     };
-    vtu::write_solid(file, &frame).unwrap();
+    vtu::write_solid(file, &frame, Choice::default()).unwrap();
 }
 
 fn grains(count: usize) -> GrainFrame {
@@ -105,7 +106,7 @@ fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
         let time = 0.25 * frame as f64;
         let name = |kind: &str, ending: &str| format!("{kind}_{frame}.{ending}");
         write_solid(&path(&name("solid", "vtu")), &mesh);
-        vtp::write_grains(&path(&name("grains", "vtp")), &grains(grain_count)).unwrap();
+        vtp::write_grains(&path(&name("grains", "vtp")), &grains(grain_count), Choice::default()).unwrap();
         vtp::write_chains(&path(&name("chains", "vtp")), &chains(chain_count)).unwrap();
         let walls = WallFrame {
             points: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],

@@ -1,3 +1,4 @@
+use super::super::choice::Choice;
 use super::*;
 use crate::write::{SolidFrame, sample, vtu};
 use std::time::Instant;
@@ -55,7 +56,7 @@ fn time_of_a_field_and_of_a_frame() {
         yield_function: &scalar,
     };
     let file = dir.join("solid.vtu");
-    let whole = fastest(&|| vtu::write_solid(&file, &frame).unwrap());
+    let whole = fastest(&|| vtu::write_solid(&file, &frame, Choice::default()).unwrap());
     let size = std::fs::metadata(&file).unwrap().len();
     println!("field of 13480 vectors: {one:?}; frame of a solid of {n} nodes: {whole:?}, {size} bytes");
     std::fs::remove_dir_all(&dir).unwrap();

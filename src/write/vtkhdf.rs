@@ -8,6 +8,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use super::choice::Choice;
 use super::error::{WriteError, check_field};
 use super::frame::{Frame, GrainFrame, SolidFrame};
 use super::hdf5::{Attribute, File, GroupId, Kind};
@@ -53,11 +54,11 @@ impl Writer for VtkHdf {
         let [solid, grains] = &mut self.series;
         if let Some(shown) = &frame.solid {
             let series = Series::at(solid, &files[0], "UnstructuredGrid")?;
-            series.solid(frame.time, shown)?;
+            series.solid(frame.time, shown, frame.fields)?;
         }
         if let Some(shown) = frame.grains {
             let series = Series::at(grains, &files[1], "PolyData")?;
-            series.grains(frame.time, shown)?;
+            series.grains(frame.time, shown, frame.fields)?;
         }
         Ok(())
     }
@@ -86,6 +87,11 @@ fn doubles<'a>(name: &'static str, components: u32, values: &'a [f64]) -> Field<
 
 fn ids<'a>(name: &'static str, values: &'a [u32]) -> Field<'a> {
     Field { name, values: Values::Ids(values) }
+}
+
+/// The fields that are written.
+fn chosen<'a, const N: usize>(fields: [Field<'a>; N], choice: Choice<'_>) -> Vec<Field<'a>> {
+    fields.into_iter().filter(|field| choice.has(field.name)).collect()
 }
 
 fn points(points: &[[f64; 3]]) -> Field<'_> {
@@ -221,7 +227,7 @@ impl Series {
     }
 
     /// Adds a step of the solid.
-    fn solid(&mut self, time: f64, frame: &SolidFrame<'_>) -> Result<(), WriteError> {
+    fn solid(&mut self, time: f64, frame: &SolidFrame<'_>, choice: Choice<'_>) -> Result<(), WriteError> {
         let mesh = frame.mesh;
         let stress = Values::Doubles(9, Cow::Owned(matrices(frame.stress)));
         let fields = [
@@ -236,6 +242,7 @@ impl Series {
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", mesh.coordinates.as_flattened(), 3, nodes)?;
         fields.iter().try_for_each(|field| field.check(&self.path, nodes))?;
+        let chosen = chosen(fields, choice);
         if self.steps == 0 {
             let connectivity = mesh.connectivity.nodes();
             self.field(ROOT, &points(&mesh.coordinates))?;
@@ -260,11 +267,11 @@ impl Series {
         let place = Place { part: 0, points: 0, cells: vec![0] };
         let fixed: [(&str, &[&'static str]); 2] =
             [("PointDataOffsets", &["node_id"]), ("CellDataOffsets", &["material", "element_id"])];
-        self.step(time, &place, &fields, fixed)
+        self.step(time, &place, &chosen, fixed)
     }
 
     /// Adds a step of the grains.
-    fn grains(&mut self, time: f64, frame: &GrainFrame) -> Result<(), WriteError> {
+    fn grains(&mut self, time: f64, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
         let fields = [
             doubles("radius", 1, &frame.radius),
             doubles("velocity", 3, frame.velocity.as_flattened()),
@@ -281,6 +288,7 @@ impl Series {
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", frame.position.as_flattened(), 3, count)?;
         fields.iter().try_for_each(|field| field.check(&self.path, count))?;
+        let chosen = chosen(fields, choice);
         let count = count as i64;
         if self.points != Some(count) {
             // A part of other vertices; it serves all steps until their number changes.
@@ -299,7 +307,7 @@ impl Series {
         let first = self.whole(vertices, "Connectivity", [])? - count;
         let points = self.field(ROOT, &points(&frame.position))?;
         let place = Place { part, points, cells: vec![first, 0, 0, 0] };
-        self.step(time, &place, &fields, [("PointDataOffsets", &[]), ("CellDataOffsets", &[])])
+        self.step(time, &place, &chosen, [("PointDataOffsets", &[]), ("CellDataOffsets", &[])])
     }
 }
 

@@ -5,17 +5,18 @@
 
 use std::path::Path;
 
+use super::choice::Choice;
 use super::error::WriteError;
 use super::frame::{ChainFrame, GrainFrame, WallFrame};
 use super::vtk::{self, Fields, Section};
 
-/// Writes the grains: point data of the names of [`GrainFrame`].
+/// Writes the grains: point data of the names of [`GrainFrame`], as far as they are chosen.
 ///
 /// # Errors
 /// A field of the wrong length or with a number that is not finite, and what the system refuses.
-pub fn write_grains(file: &Path, frame: &GrainFrame) -> Result<(), WriteError> {
+pub fn write_grains(file: &Path, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     let count = frame.position.len();
-    let mut fields = Fields::of_points(file, count);
+    let mut fields = Fields::of_points(file, count).only(choice);
     fields.scalar("radius", &frame.radius)?;
     fields.vector("velocity", frame.velocity.as_flattened())?;
     fields.vector("spin", frame.spin.as_flattened())?;
@@ -117,18 +118,18 @@ mod tests {
         let file = dir.join("grains.vtp");
         let mut frame = grains(5);
         frame.orientation[3][2] = f64::NAN;
-        let error = write_grains(&file, &frame).unwrap_err();
+        let error = write_grains(&file, &frame, Choice::default()).unwrap_err();
         assert_eq!(
             error.to_string(),
             format!("{}: orientation at index 3 is NaN: not written", file.display())
         );
         let mut frame = grains(5);
         frame.position[4][0] = f64::NEG_INFINITY;
-        let error = write_grains(&file, &frame).unwrap_err();
+        let error = write_grains(&file, &frame, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("points at index 4 is -inf"), "{error}");
         let mut frame = grains(5);
         frame.id.pop();
-        let error = write_grains(&file, &frame).unwrap_err();
+        let error = write_grains(&file, &frame, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("id has 4 values, expected 5"), "{error}");
         assert!(!file.exists());
         std::fs::remove_dir_all(&dir).unwrap();

@@ -11,17 +11,18 @@ use crate::read::vtk_grid::TYPES;
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
 
+use super::choice::Choice;
 use super::error::WriteError;
 use super::frame::SolidFrame;
 use super::vtk::{self, Array, Fields, Section};
 
 /// Writes the solid: point data `displacement`, `velocity`, `stress` (3x3), `von_mises`,
-/// `equivalent_plastic_strain`, `yield_function`, `node_id`; cell data `material`, `element_id`.
+/// `equivalent_plastic_strain`, `yield_function`, as far as they are chosen, `node_id`; cell data `material`, `element_id`.
 ///
 /// # Errors
 /// A field of the wrong length or with a number that is not finite, and what the system refuses.
-pub fn write_solid(file: &Path, frame: &SolidFrame) -> Result<(), WriteError> {
-    let mut fields = Fields::of_points(file, frame.mesh.node_count());
+pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Result<(), WriteError> {
+    let mut fields = Fields::of_points(file, frame.mesh.node_count()).only(choice);
     fields.vector("displacement", frame.displacement)?;
     fields.vector("velocity", frame.velocity)?;
     fields.tensor("stress", frame.stress)?;
@@ -145,16 +146,18 @@ mod tests {
         };
         let mut bad = stress.clone();
         bad[5][4] = f64::NAN;
-        let error = write_solid(&file, &SolidFrame { stress: &bad, ..good }).unwrap_err();
+        let error = write_solid(&file, &SolidFrame { stress: &bad, ..good }, Choice::default()).unwrap_err();
         assert_eq!(error.to_string(), format!("{}: stress at index 5 is NaN: not written", file.display()));
         let mut bad = u.clone();
         bad[3 * 7 + 1] = f64::INFINITY;
-        let error = write_solid(&file, &SolidFrame { velocity: &bad, ..good }).unwrap_err();
+        let error =
+            write_solid(&file, &SolidFrame { velocity: &bad, ..good }, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("velocity at index 7 is inf"), "{error}");
-        let error = write_solid(&file, &SolidFrame { von_mises: &scalar[1..], ..good }).unwrap_err();
+        let error = write_solid(&file, &SolidFrame { von_mises: &scalar[1..], ..good }, Choice::default())
+            .unwrap_err();
         assert!(error.to_string().contains(&format!("von_mises has {} values", n - 1)), "{error}");
         assert!(!file.exists());
-        write_solid(&file, &good).unwrap();
+        write_solid(&file, &good, Choice::default()).unwrap();
         assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 1);
         std::fs::remove_dir_all(&dir).unwrap();
     }

@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use super::choice::Choice;
 use super::error::WriteError;
 use super::frame::Frame;
 
@@ -88,6 +89,8 @@ pub trait Writer {
 pub struct Writers {
     formats: Vec<&'static Format>,
     writers: Vec<Box<dyn Writer>>,
+    /// Names of the fields that are written of those that may be chosen; none: all.
+    fields: Option<Vec<String>>,
 }
 
 impl Writers {
@@ -97,7 +100,13 @@ impl Writers {
     /// What the system refuses.
     pub fn begin(dir: &Path, formats: &[&'static Format]) -> Result<Self, WriteError> {
         let writers = formats.iter().map(|format| (format.begin)(dir, None)).collect::<Result<_, _>>()?;
-        Ok(Writers { formats: formats.to_vec(), writers })
+        Ok(Writers { formats: formats.to_vec(), writers, fields: None })
+    }
+
+    /// The same; of the fields that may be chosen these alone are written.
+    #[must_use]
+    pub fn only(self, fields: &Option<Vec<String>>) -> Self {
+        Writers { fields: fields.clone(), ..self }
     }
 
     /// Goes on after the [`Writers::marks`] of an earlier run.
@@ -107,7 +116,7 @@ impl Writers {
     pub fn resume(dir: &Path, formats: &[&'static Format], marks: &[Mark]) -> Result<Self, WriteError> {
         let resume = |(format, mark): (&&'static Format, &Mark)| (format.begin)(dir, Some(mark));
         let writers = formats.iter().zip(marks).map(resume).collect::<Result<_, _>>()?;
-        Ok(Writers { formats: formats.to_vec(), writers })
+        Ok(Writers { formats: formats.to_vec(), writers, fields: None })
     }
 
     /// Whether any format shows a part.
@@ -120,7 +129,8 @@ impl Writers {
     /// # Errors
     /// As [`Writer::frame`].
     pub fn frame(&mut self, frame: &Frame<'_>) -> Result<(), WriteError> {
-        self.writers.iter_mut().try_for_each(|writer| writer.frame(frame))
+        let frame = Frame { fields: Choice(self.fields.as_deref()), ..*frame };
+        self.writers.iter_mut().try_for_each(|writer| writer.frame(&frame))
     }
 
     /// How far they have come.

@@ -47,6 +47,7 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
         grains: Some(&grains),
         chains: Some(&chains),
         walls: Some(&walls),
+        ..Frame::default()
     });
 }
 

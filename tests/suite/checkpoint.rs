@@ -175,6 +175,7 @@ fn grains_shared_among_threads_on_a_solid() {
         "track.load.rest=0.002",
         "track.load.ramp=0.002",
         "output.frames=2",
+        "output.tecplot=true",
     ];
     let scene = repository().join("inputs/track/cyclic/scene.toml");
     broken(&scene, &set, &[0.2, 0.992, 0.996, 1.0], &["cycles.csv", "tecplot/solid_00002.dat"]);

@@ -6,7 +6,7 @@ use super::support::{Folder, SOLID, json, repository, results, scene_folder, tra
 use std::path::Path;
 
 /// Makes the main scene small, yet with more than the 2500 spheres from which on the grains share their work.
-pub(super) const SMALL: [&str; 11] = [
+pub(super) const SMALL: [&str; 12] = [
     "grains.0.count=250",
     "grains.1.count=10",
     "grains.2.count=10",
@@ -18,6 +18,7 @@ pub(super) const SMALL: [&str; 11] = [
     "track.load.rest=0.004",
     "track.load.ramp=0.004",
     "output.frames=2",
+    "output.tecplot=true",
 ];
 
 /// Runs a scene with 1, 2 and 3 threads; all files must be the same, and those of `expected` must be there.
@@ -75,6 +76,7 @@ fn embankment_in_motion() {
         "time.end=0.02",
         "time.solid_step=0.001",
         "output.frames=2",
+        "output.tecplot=true",
     ];
     let scene = repository().join("tests/data/fem/E3_embankment_patch/scene.toml");
     same_bits(

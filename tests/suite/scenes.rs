@@ -1,7 +1,9 @@
 //! What runs leave on disk: the fields that every file must hold, no number that is not finite, and an honest end
 //! when a run blows up (exit code 3: what, where, when; the summary says that it failed).
 
-use super::support::{COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, snapshot};
+use super::support::{
+    COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, snapshot, trackbed,
+};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -281,6 +283,43 @@ fn output_that_is_not_wanted_is_not_written() {
         names,
         ["cycles.csv", "history.csv", "log.txt", "run.json", "settlement.svg", "sleeper.svg", "summary.json"]
     );
+}
+
+/// Of the fields that may be left out those that are named are written, in every format; all others always.
+#[test]
+fn frames_hold_the_fields_that_are_chosen() {
+    let folder = scene_folder("fields", COUPLED);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    let names = |file: &str| -> Vec<String> {
+        let bytes = fs::read(out.join(file)).unwrap();
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        text.split("<DataArray ")
+            .skip(1)
+            .filter_map(|array| array.split("Name=\"").nth(1)?.split('"').next().map(String::from))
+            .filter(|name| !["Points", "connectivity", "offsets", "types"].contains(&name.as_str()))
+            .collect()
+    };
+    let (grains, solid) = ("frames/grains_00001.vtp", "frames/solid_00001.vtu");
+    run(&scene, &out, &[]).good();
+    assert_eq!((names(grains).len(), names(solid).len()), (10, 9));
+    let chosen = ["output.fields=[\"von_mises\", \"force\"]", "output.vtkhdf=true"];
+    run(&scene, &out, &chosen).good();
+    assert_eq!(names(grains), ["radius", "id", "part", "force"]);
+    assert_eq!(names(solid), ["displacement", "von_mises", "node_id", "material", "element_id"]);
+    for (file, there, gone) in [("grains", "force", "velocity"), ("solid", "von_mises", "yield_function")] {
+        let bytes = fs::read(out.join(format!("{file}.vtkhdf"))).unwrap();
+        let has = |name: &str| bytes.windows(name.len()).any(|w| w == name.as_bytes());
+        assert!(has(there) && !has(gone), "{file}");
+    }
+    let refused = run(&scene, &out, &["output.fields=[\"force\", \"colour\"]"]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.stderr.contains("output.fields.1: found \"colour\", expected one of coordination,"),
+        "{refused:?}"
+    );
+    // Pictures and pages are made of them as they are.
+    trackbed(["render", out.to_str().unwrap(), "--out", folder.join("one.png").to_str().unwrap()]).good();
+    trackbed(["view", out.to_str().unwrap(), "--export", folder.join("one.html").to_str().unwrap()]).good();
 }
 
 #[test]

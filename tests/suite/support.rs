@@ -399,6 +399,7 @@ at = [1.0, 1.0, 0.0]
 
 [output]
 frames = 2
+tecplot = true
 "#;
 
 /// A folder with the small block's lists and `text` as `scene.toml`.

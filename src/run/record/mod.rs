@@ -88,7 +88,7 @@ impl<'a> Results<'a> {
         let history = History::create(&dir.join("history.csv"), columns::columns(&now))?;
         let cycles_file =
             load.map(|_| History::create(&dir.join("cycles.csv"), cycle_file::columns(job))).transpose()?;
-        let writers = Writers::begin(dir, &job.output.formats)?;
+        let writers = Writers::begin(dir, &job.output.formats)?.only(&job.output.fields);
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, cycles_file, course })
     }
 
@@ -116,6 +116,7 @@ impl<'a> Results<'a> {
             .transpose()
             .map_err(unfit)?;
         let writers = Writers::resume(dir, &job.output.formats, &marks.writers).map_err(unfit)?;
+        let writers = writers.only(&job.output.fields);
         folder::remove_later_frames(dir, course.frame)?;
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, cycles_file, course })
     }

@@ -67,7 +67,7 @@ fn solve(
     summary.warnings.extend(solid_remarks::large(model, &state.u));
     prepare()?;
     let view = SolidView { model, state: &state };
-    frames::write_state(dir, &job.output.formats, view)?;
+    frames::write_state(dir, &job.output, view)?;
     if job.output.tables {
         write_tables(model, &state, &result.reactions, dir)?;
     }

@@ -83,7 +83,7 @@ fn bracket(
     stage.prepare()?;
     write_table(&stage.dir.join("safety.csv"), &TRIALS, &found.trials)?;
     let view = SolidView { model: &weaker, state: &standing };
-    frames::write_state(stage.dir, &stage.job.output.formats, view)?;
+    frames::write_state(stage.dir, &stage.job.output, view)?;
     summary.solid.safety = Some(SafetyRecord {
         stands_at: found.converged,
         fails_at: found.failed,
