@@ -6,7 +6,7 @@
 //! ```
 
 use std::path::Path;
-use trackbed::run::{Options, Outcome, run};
+use trackbed::run::{Options, Outcome, Verbosity, run};
 
 /// Contacts per sphere of the bed that settles with each friction.
 pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
@@ -17,7 +17,13 @@ pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> 
         // As `--set` on the command line; one frame, for only the summary counts here.
         let set = vec![format!("contact.0.friction={friction}"), "output.frames=1".into()];
         // Each variant takes the place of the one before.
-        let options = Options { out: Some(out.clone()), set, quiet: true, force: true, ..Options::default() };
+        let options = Options {
+            out: Some(out.clone()),
+            set,
+            verbosity: Verbosity::Quiet,
+            force: true,
+            ..Options::default()
+        };
         if let Outcome::Done(summary) = run(&scene, &options)? {
             found.push(summary.bed.packing.ok_or("a run without grains")?.coordination);
         }

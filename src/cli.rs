@@ -2,6 +2,7 @@
 
 mod render;
 
+use crate::progress::Verbosity;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -98,6 +99,20 @@ pub struct RunArgs {
     /// Print nothing but errors.
     #[arg(long)]
     pub quiet: bool,
+    /// Print a line each second of what the run does, in place of the bar.
+    #[arg(long, conflicts_with = "quiet")]
+    pub verbose: bool,
+}
+
+impl RunArgs {
+    /// How much is printed.
+    pub fn verbosity(&self) -> Verbosity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (_, true) => Verbosity::Verbose,
+            _ => Verbosity::Normal,
+        }
+    }
 }
 
 /// Arguments of `new`.

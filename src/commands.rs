@@ -68,6 +68,7 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
 
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let memory = memory(args.memory.as_deref())?;
+    let verbosity = args.verbosity();
     let options = run::Options {
         out: args.out,
         threads: args.threads,
@@ -78,7 +79,7 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         force: args.force,
         strict: args.strict,
         interrupt: run::Interrupt::on_signals("the present step")?,
-        quiet: args.quiet,
+        verbosity,
     };
     match run::run(&args.scene, &options)? {
         run::Outcome::Done(_) if args.quiet => Ok(()),

@@ -8,6 +8,8 @@ use std::fmt;
 pub enum Failure {
     /// Bad input: exit code 2. One sentence with file, line, key, found and expected.
     Input(String),
+    /// Faults of keys of a scene, or of a place in a file: exit code 2. Each is a sentence as of [`Failure::Input`].
+    Faults(Vec<ReadError>),
     /// Numerical failure: exit code 3. What, where and when.
     Numerical(String),
     /// Stopped by the user after a checkpoint was written: exit code 130. Where the run stands and how to go on.
@@ -20,10 +22,23 @@ impl Failure {
     /// The program's exit code.
     pub fn code(&self) -> u8 {
         match self {
-            Failure::Input(_) => 2,
+            Failure::Input(_) | Failure::Faults(_) => 2,
             Failure::Numerical(_) => 3,
             Failure::Interrupted(_) => 130,
             Failure::Other(_) => 1,
+        }
+    }
+
+    /// Whether the input is wrong.
+    pub fn is_input(&self) -> bool {
+        matches!(self, Failure::Input(_) | Failure::Faults(_))
+    }
+
+    /// The sentences, one for each fault.
+    pub fn sentences(&self) -> Vec<String> {
+        match self {
+            Failure::Faults(faults) => faults.iter().map(ToString::to_string).collect(),
+            other => vec![other.to_string()],
         }
     }
 
@@ -53,6 +68,7 @@ impl fmt::Display for Failure {
             | Failure::Numerical(text)
             | Failure::Interrupted(text)
             | Failure::Other(text) => f.write_str(text),
+            Failure::Faults(_) => f.write_str(&self.sentences().join("; ")),
         }
     }
 }
@@ -61,7 +77,7 @@ impl std::error::Error for Failure {}
 
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Failure {
-        Failure::Input(error.to_string())
+        Failure::Faults(vec![error])
     }
 }
 

@@ -11,9 +11,11 @@ fn main() -> ExitCode {
     match guard::guarded(|| trackbed::commands::execute(trackbed::cli::Cli::parse().command)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            // What the user asked for is no error.
-            let head = if matches!(failure, Failure::Interrupted(_)) { "" } else { "error: " };
-            message::say(&format!("{head}{failure}"));
+            match failure {
+                // What the user asked for is no error.
+                Failure::Interrupted(_) => message::say(&failure.to_string()),
+                _ => failure.sentences().iter().for_each(|sentence| message::error(sentence)),
+            }
             ExitCode::from(failure.code())
         }
     }

@@ -3,6 +3,8 @@
 //! Nobody may listen: the terminal is gone, the pipe closed, the disk full. That ends no run, so nothing here fails;
 //! `println!` and `eprintln!`, which panic then, are refused by a lint in this crate.
 
+use anstream::{AutoStream, ColorChoice};
+use anstyle::{AnsiColor, Style};
 use std::io::Write;
 
 /// Longest message [characters].
@@ -10,13 +12,29 @@ const LONGEST: usize = 8000;
 
 /// Says one line.
 pub fn say(line: &str) {
-    // In one piece, so that lines of several processes do not mix; what cannot be said is dropped.
-    let _ = std::io::stderr().write_all(format!("{}\n", shown(line, LONGEST)).as_bytes());
+    write(&format!("{}\n", shown(line, LONGEST)));
+}
+
+/// Says what is wrong.
+pub fn error(sentence: &str) {
+    headed("error:", AnsiColor::Red.on_default().bold(), sentence);
 }
 
 /// Says a remark.
 pub(crate) fn note(remark: &str) {
-    say(&format!("note: {remark}"));
+    headed("note:", AnsiColor::Yellow.on_default().bold(), remark);
+}
+
+/// Says a line whose head is coloured on a terminal that shows colours, unless `NO_COLOR` is set.
+fn headed(head: &str, style: Style, line: &str) {
+    let colours = AutoStream::choice(&std::io::stderr()) != ColorChoice::Never;
+    let style = if colours { style } else { Style::new() };
+    write(&format!("{style}{head}{style:#} {}\n", shown(line, LONGEST)));
+}
+
+fn write(text: &str) {
+    // In one piece, so that lines of several processes do not mix; what cannot be said is dropped.
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// A text of others, such as a token of a file, as it can be shown in one line: control characters escaped, and of more than

@@ -25,6 +25,7 @@ mod suite {
     mod mesh_forms_files;
     mod mesh_orders;
     mod meshed_sleeper;
+    mod messages;
     mod packings;
     mod plausible;
     mod rail;

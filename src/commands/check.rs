@@ -1,13 +1,13 @@
 //! `trackbed check`: reads and resolves everything that a run would, runs nothing, and reports what would happen.
 
 use crate::failure::Failure;
-use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
+use crate::model::{self, Job};
 use crate::plausible;
 use crate::run::{self, stages};
-use crate::scene::{Document, Scene};
+use crate::scene::Document;
 use serde_json::{Value, json};
 use std::path::Path;
 use trackbed_dem as dem;
@@ -52,8 +52,8 @@ pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
     for assignment in set {
         document.set(assignment)?;
     }
-    let parsed: Scene = document.read()?;
-    let job = Job::new(&document, &parsed)?;
+    let parsed = model::read_scene(&document)?;
+    let job = model::resolve(&document, &parsed)?;
     Ok((document, job))
 }
 

@@ -2,10 +2,10 @@
 
 use crate::cli::ModalArgs;
 use crate::failure::Failure;
-use crate::model::solid;
+use crate::model::{read_scene, solid};
 use crate::run;
+use crate::scene::Document;
 use crate::scene::units::vector;
-use crate::scene::{Document, Scene};
 use crate::write;
 use crate::write::csv::{Field, write_table};
 use crate::write::pvd;
@@ -23,7 +23,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
     for assignment in &args.set {
         document.set(assignment)?;
     }
-    let scene: Scene = document.read()?;
+    let scene = read_scene(&document)?;
     let Some(part) = &scene.solid else {
         return Err(document.error("solid", "nothing", "a solid").into());
     };

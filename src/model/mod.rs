@@ -2,12 +2,14 @@
 //! key of the scene was set.
 
 pub mod exchange;
+mod faults;
 pub mod grains;
 mod output;
 pub mod solid;
 mod tables;
 pub mod track;
 
+pub use faults::{read_scene, resolve};
 pub use output::OutputPlan;
 
 use crate::failure::Failure;

@@ -21,6 +21,8 @@ pub struct Interrupt {
     keeps: Arc<AtomicBool>,
     /// Whether a stage has seen the request.
     seen: Arc<AtomicBool>,
+    /// Whether it is acknowledged, or need not be any more.
+    acknowledged: Arc<AtomicBool>,
     /// Steps after which the run stops by itself.
     steps: Option<u64>,
 }
@@ -63,6 +65,9 @@ impl Interrupt {
     fn watch(&self, after: &str) {
         while !self.stopped() {
             std::thread::sleep(WATCH);
+        }
+        if self.acknowledged.swap(true, Ordering::Relaxed) {
+            return;
         }
         if self.keeps.load(Ordering::Relaxed) || self.seen.load(Ordering::Relaxed) {
             message::say(&format!("stopping after {after}; press again to abort"));
@@ -161,6 +166,8 @@ impl CheckpointStore {
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         if self.stopped() {
+            // A run that stops at once says so in one line.
+            self.interrupt.acknowledged.store(true, Ordering::Relaxed);
             let moment = moment();
             let place =
                 format!("stage \"{}\", step {}, t = {:.6e} s", moment.stage, moment.step, moment.time);
@@ -179,6 +186,7 @@ impl CheckpointStore {
         if !self.stopped() {
             return Ok(());
         }
+        self.interrupt.acknowledged.store(true, Ordering::Relaxed);
         let again = "the stage starts again from its beginning";
         Err(Failure::Interrupted(format!(
             "interrupted: stage \"{stage}\"; {again}; go on with: {}",

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::message;
 use crate::model::Job;
 use crate::plausible::Finding;
+use crate::progress::Verbosity;
 use crate::scene::Document;
 use std::cell::{Cell, OnceCell};
 use std::path::Path;
@@ -21,8 +22,8 @@ pub struct Run<'a> {
     pub job: &'a Job,
     /// Folder of the results.
     pub dir: &'a Path,
-    /// Whether nothing is printed.
-    pub quiet: bool,
+    /// How much is printed.
+    pub verbosity: Verbosity,
     /// Most memory that a solid may need [bytes].
     pub memory: Option<u64>,
     /// Whether the folder is cleared of earlier results and holds those of this run.
@@ -50,7 +51,10 @@ impl Run<'_> {
         let dir = self.dir.display();
         let head =
             format!("{dir}: the folder of the results was renamed or removed while the run wrote there");
+        // A run that has neither is not gone on with: it is begun again.
+        let begun = self.prepared.get() || self.checkpoints.kept().is_some();
         Failure::Other(match place {
+            _ if !begun => format!("{head}; nothing was written until then"),
             None => format!("{head}; what was written until then is gone with it"),
             Some(place) => format!(
                 "{head}; what was written until then, and the last checkpoint if there is one, is in {}: go on with --resume --out {}",

@@ -95,7 +95,7 @@ pub fn prepare(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
     for format in FORMATS {
         remove(&dir.join(format.folder), |file| format.is_frame(file)).map_err(&fail)?;
     }
-    make(dir, output).map_err(&fail)
+    make(dir, output).and_then(|()| remove_halves(dir)).map_err(&fail)
 }
 
 /// Makes the folder of the results ready for a run that goes on there: files that a stopped program left half-written go.
@@ -103,16 +103,18 @@ pub fn prepare(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
 /// # Errors
 /// The folder cannot be made or cleaned.
 pub fn resume(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
-    let fail = failure(dir);
-    make(dir, output).map_err(&fail)?;
+    make(dir, output).and_then(|()| remove_halves(dir)).map_err(failure(dir))
+}
+
+/// Removes files that a stopped program left half-written.
+fn remove_halves(dir: &Path) -> io::Result<()> {
     let halves = files().map(|name| PathBuf::from(format!("{name}.part"))).collect::<Vec<_>>();
     let half =
         |file: &Path| file.file_name().is_some_and(|name| halves.iter().any(|h| h.as_os_str() == name));
-    remove(dir, half).map_err(&fail)?;
+    remove(dir, half)?;
     for format in FORMATS {
         let part = |file: &Path| file.extension().is_some_and(|ending| ending == "part");
-        remove(&dir.join(format.folder), |file| half(file) || format.is_frame(file) && part(file))
-            .map_err(&fail)?;
+        remove(&dir.join(format.folder), |file| half(file) || format.is_frame(file) && part(file))?;
     }
     Ok(())
 }

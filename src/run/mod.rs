@@ -37,11 +37,13 @@ pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
+pub use crate::progress::Verbosity;
+
 use crate::failure::Failure;
 use crate::guard::guarded;
 use crate::machine;
 use crate::message;
-use crate::model::Job;
+use crate::model::{self, Job};
 use crate::plausible;
 use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
@@ -75,8 +77,8 @@ pub struct Options {
     pub strict: bool,
     /// Request to stop with a checkpoint.
     pub interrupt: Interrupt,
-    /// Print nothing.
-    pub quiet: bool,
+    /// How much is printed.
+    pub verbosity: Verbosity,
 }
 
 /// What became of a run.
@@ -98,7 +100,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     for assignment in &options.set {
         document.set(assignment)?;
     }
-    let parsed: Scene = document.read()?;
+    let parsed = model::read_scene(&document)?;
     let pool = thread_pool(options.threads)?;
     let dir = options.out.clone().unwrap_or_else(|| default_folder(scene, &options.set));
     let mut origin = origin::origin(&document, &parsed);
@@ -117,30 +119,21 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
+    // What a run of the same scene has left before its first checkpoint is no loss.
+    let own = options.resume && RunFile::of(&document, options.from.as_deref()).is_of(&dir);
     if options.resume {
         if origin::was_done(&dir, &scene_hash)? {
             return Ok(Outcome::WasDone(dir));
         }
-        if slots.any() || !lock::is_there(&dir) {
-            let (checkpoint, remarks) = slots.load(&document)?;
-            remarks.iter().for_each(|remark| message::note(remark));
-            loaded = Some(checkpoint);
-        } else {
-            message::note(&format!(
-                "{}: the run was ended before its first checkpoint, it starts from its beginning",
-                dir.display()
-            ));
-        }
+        loaded = resumed(&mut slots, &dir, &document, own)?;
     }
     pool.install(|| {
-        let job = Job::new(&document, &parsed)?;
+        let job = model::resolve(&document, &parsed)?;
         if options.from.is_some() {
             from::check(&job, &document)?;
         }
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
-        // What a run of the same scene has left before its first checkpoint is no loss.
-        let own = options.resume && RunFile::of(&document, options.from.as_deref()).is_of(&dir);
         if loaded.is_none() && !options.force && !own {
             occupied::check(&dir, &origin, &slots, &lock)?;
         }
@@ -162,7 +155,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             document: &document,
             job: &job,
             dir: &dir,
-            quiet: options.quiet,
+            verbosity: options.verbosity,
             memory: options.memory,
             prepared: Cell::new(false),
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
@@ -174,6 +167,23 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         let loaded = loaded.or(previous);
         carry_out(&run, loaded, summary, &lock)
     })
+}
+
+/// The checkpoint that a run goes on from; none where it was ended before its first: `own` says that its files are there.
+///
+/// # Errors
+/// Bad input: no run of this scene was begun in the folder; a checkpoint that does not fit.
+fn resumed(slots: &mut Slots, dir: &Path, document: &Document, own: bool) -> Result<Option<Loaded>, Failure> {
+    if !slots.any() && (own || lock::is_there(dir)) {
+        message::note(&format!(
+            "{}: the run was ended before its first checkpoint, it starts from its beginning",
+            dir.display()
+        ));
+        return Ok(None);
+    }
+    let (checkpoint, remarks) = slots.load(document)?;
+    remarks.iter().for_each(|remark| message::note(remark));
+    Ok(Some(checkpoint))
 }
 
 /// Remarks on values of a scene that are not plausible; or refuses them.
@@ -188,7 +198,7 @@ fn weigh(
         plausible::refuse(document, &findings)?;
     }
     // A run that is resumed has had them.
-    Ok(if options.quiet || options.resume { Vec::new() } else { findings })
+    Ok(if options.verbosity == Verbosity::Quiet || options.resume { Vec::new() } else { findings })
 }
 
 /// Carries out the stages of a run, and writes its summary whatever becomes of them.
@@ -220,13 +230,14 @@ fn carry_out(
     match &result {
         Ok(()) => summary.run.status = "done".into(),
         // Bad input leaves nothing behind, not even a summary.
-        Err(Failure::Input(_)) => {}
+        Err(failure) if failure.is_input() => {}
         Err(Failure::Interrupted(_)) => summary.run.status = "interrupted".into(),
         Err(failure) => summary.run.status = format!("failed: {failure}"),
     }
-    if let Err(failure @ Failure::Input(_)) = result {
-        return Err(failure);
-    }
+    let result = match result {
+        Err(failure) if failure.is_input() => return Err(failure),
+        other => other,
+    };
     // Nothing is written where another folder may be by now.
     if let Some(place) = lock.moved() {
         return Err(run.gone(place.as_deref()));

@@ -13,6 +13,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 /// A parsed scene file, with the files that it includes.
+#[derive(Clone)]
 pub struct Document {
     file: PathBuf,
     text: String,
@@ -181,6 +182,17 @@ impl Document {
             found: found.into(),
             expected: expected.into(),
         }
+    }
+
+    /// Whether the scene has a key.
+    pub fn has(&self, path: &str) -> bool {
+        let parts: Vec<String> = path.split('.').map(String::from).collect();
+        value_at(self.tree().get_ref(), &parts).is_some()
+    }
+
+    /// A value as TOML; none where the scene does not have the key.
+    pub fn value(&self, path: &str) -> Option<String> {
+        self.keys().remove(path)
     }
 
     /// File that was read.

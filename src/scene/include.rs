@@ -13,6 +13,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 pub(super) const KEY: &str = "include";
 
 /// A file that a scene includes.
+#[derive(Clone)]
 pub(super) struct Included {
     /// Its name in the scene.
     pub named: PathBuf,

@@ -21,8 +21,9 @@ mod text;
 
 use crate::failure::Failure;
 use crate::message;
+use crate::model::read_scene;
 use crate::run::{self, Interrupt, Lock};
-use crate::scene::{Document, Scene};
+use crate::scene::Document;
 use file::StudyFile;
 use outcome::Outcome;
 use plan::{Plan, Run};
@@ -157,7 +158,7 @@ fn refusal(document: &Document, refused: &[(&str, String)]) -> Failure {
 fn scene_hash(scene: &Path, set: &[String]) -> Result<String, Failure> {
     let mut document = Document::open(scene)?;
     set.iter().try_for_each(|assignment| document.set(assignment))?;
-    let parsed: Scene = document.read()?;
+    let parsed = read_scene(&document)?;
     Ok(run::scene_hash(&document, &parsed))
 }
 

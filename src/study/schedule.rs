@@ -5,7 +5,7 @@ use super::process::{self, Beginning};
 use super::store::{Found, NUMERICAL, Record, Store};
 use crate::failure::Failure;
 use crate::message;
-use crate::progress::Progress;
+use crate::progress::{Progress, Verbosity};
 use crate::run::Interrupt;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -71,7 +71,8 @@ impl Schedule<'_> {
         let mut active: Vec<Active<'_>> = Vec::new();
         let (mut ended, mut seen) = (0, false);
         let mut failure = None;
-        let bar = Progress::start("study", total as f64, self.quiet);
+        let verbosity = if self.quiet { Verbosity::Quiet } else { Verbosity::Normal };
+        let mut bar = Progress::start("study", total as f64, verbosity);
         loop {
             if failure.is_none() && self.interrupt.stopped() {
                 failure = Some(Failure::Interrupted(String::new()));
@@ -103,7 +104,7 @@ impl Schedule<'_> {
                     }
                 }
             }
-            bar.at(ended as f64);
+            bar.at(ended as f64, String::new);
             bar.message(active.iter().map(|a| a.run.label.as_str()).collect::<Vec<_>>().join(" | "));
             std::thread::sleep(LOOK);
         }

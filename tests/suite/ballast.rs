@@ -3,7 +3,7 @@
 use super::support::{Folder, Outcome, Table, json, repository, results, run};
 use std::path::Path;
 use trackbed::failure::Failure;
-use trackbed::run::{Interrupt, Options};
+use trackbed::run::{Interrupt, Options, Verbosity};
 
 /// A small bed of spheres in a box under a plate, with 40 load cycles. More lines may follow.
 const BED: &str = r#"title = "bed"
@@ -305,7 +305,13 @@ fn jumps_reach_the_last_cycle_with_fewer_cycles_and_a_closed_account() {
 /// Options of a run within this process.
 fn options(out: &Path, set: &[&str], threads: usize) -> Options {
     let set = set.iter().map(|s| s.to_string()).collect();
-    Options { out: Some(out.to_path_buf()), threads: Some(threads), set, quiet: true, ..Options::default() }
+    Options {
+        out: Some(out.to_path_buf()),
+        threads: Some(threads),
+        set,
+        verbosity: Verbosity::Quiet,
+        ..Options::default()
+    }
 }
 
 #[test]

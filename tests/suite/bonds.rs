@@ -3,7 +3,7 @@
 use super::support::{Folder, Table, json, repository, run};
 use std::fs;
 use std::path::Path;
-use trackbed::run::{Interrupt, Options};
+use trackbed::run::{Interrupt, Options, Verbosity};
 
 /// Two groups of spheres in a row, 2 cm apart, the ends held and pulled; `bond` is the table of bonds.
 fn row(bond: &str, end: &str) -> String {
@@ -241,7 +241,7 @@ fn breaking_is_resumed() {
         out: Some(out.to_path_buf()),
         threads: Some(threads),
         set: ["output.frames=1", "time.end=0.12"].map(String::from).to_vec(),
-        quiet: true,
+        verbosity: Verbosity::Quiet,
         ..Options::default()
     };
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));

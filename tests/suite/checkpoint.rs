@@ -7,7 +7,7 @@ use super::support::{
 use std::fs;
 use std::path::{Path, PathBuf};
 use trackbed::failure::Failure;
-use trackbed::run::{Interrupt, Options, Outcome};
+use trackbed::run::{Interrupt, Options, Outcome, Verbosity};
 
 /// A bed of clumps and spheres that settles in a box with a moving flap, then carries a sleeper under two cycles of a load.
 fn bed() -> String {
@@ -91,7 +91,7 @@ fn options(out: &Path, set: &[&str], threads: usize) -> Options {
         out: Some(out.to_path_buf()),
         threads: Some(threads),
         set: set.iter().map(|s| s.to_string()).collect(),
-        quiet: true,
+        verbosity: Verbosity::Quiet,
         ..Options::default()
     }
 }

@@ -146,6 +146,12 @@ fn a_run_ended_before_its_first_checkpoint_starts_anew() {
     fs::remove_file(out.join("summary.json")).unwrap();
     left();
     anew();
+    // Of a run whose folder was renamed meanwhile no lock is left.
+    fs::remove_file(out.join("summary.json")).unwrap();
+    left();
+    fs::remove_file(out.join("run.lock")).unwrap();
+    fs::write(out.join("frames/grains_0000.vtp.part"), "half of it").unwrap();
+    anew();
     // Those of another scene stay.
     fs::remove_file(out.join("summary.json")).unwrap();
     left();

@@ -2,7 +2,7 @@
 
 use super::support::{Folder, Table, json, results};
 use std::path::Path;
-use trackbed::run::{Interrupt, Options};
+use trackbed::run::{Interrupt, Options, Verbosity};
 
 /// Stiffness of the bed under a sleeper [N/m]: four held balls, each a spring.
 pub const BED: f64 = 40e6;
@@ -66,7 +66,12 @@ pub fn written(text: &str) -> (Folder, std::path::PathBuf) {
 
 /// Options of a quiet run.
 pub fn options(out: &Path, threads: usize) -> Options {
-    Options { out: Some(out.to_path_buf()), threads: Some(threads), quiet: true, ..Options::default() }
+    Options {
+        out: Some(out.to_path_buf()),
+        threads: Some(threads),
+        verbosity: Verbosity::Quiet,
+        ..Options::default()
+    }
 }
 
 const HAVERSINE: &str = r#"

@@ -2,6 +2,7 @@
 //! skin up, which `near.rs` checks against the positions kept here.
 
 use super::block_work::{BlockWork, Candidates};
+use super::hulls::Hulls;
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
@@ -78,6 +79,8 @@ struct All<'a> {
     first: Vec<u32>,
     cells: Cells,
     space: Option<Space>,
+    /// Where bodies of many spheres are searched body by body first.
+    hulls: Option<Hulls>,
 }
 
 impl<'a> All<'a> {
@@ -90,8 +93,12 @@ impl<'a> All<'a> {
             names.extend((0..own.count as u32).map(|k| [b as u32, k]));
         }
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
-        cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
-        All { model, state, members, held, points, names, first, cells, space }
+        let rigid = space.is_none() && members.iter().any(|own| own.rigid);
+        let hulls = rigid.then(|| Hulls::new(members, &points, &first, model.skin));
+        if hulls.is_none() {
+            cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
+        }
+        All { model, state, members, held, points, names, first, cells, space, hulls }
     }
 
     /// The spheres of a block.
@@ -117,37 +124,93 @@ impl<'a> All<'a> {
 
     /// Partners of the spheres of a block: spheres and planes.
     fn spheres(&self, b: usize, c: &mut Candidates) {
-        let (model, skin) = (self.model, self.model.skin);
         c.pairs.clear();
         c.cross.clear();
         c.images.clear();
         c.planes.clear();
-        let own = self.of_block(b);
-        c.reference.start(own.first());
-        for (i, p) in (0..).zip(own) {
-            let global = self.first[b] + i;
-            c.reference.push(&xyz(p));
-            let me = self.body(global);
-            let fixed = self.still(me);
-            self.round(global, i, me, c);
-            for &j in &c.row {
-                let [block_j, j] = self.names[j as usize];
-                if block_j == b as u32 {
-                    c.pairs.push([i as u16, j as u16]);
-                } else {
-                    c.cross.push([i, block_j, j]);
+        c.reference.start(self.of_block(b).first());
+        match &self.hulls {
+            Some(hulls) => {
+                let mut near = Vec::new();
+                for body in hulls.of_block(b) {
+                    let me = self.body(hulls.spheres(body).start);
+                    self.near_hulls(hulls, body, me, &mut near);
+                    for global in hulls.spheres(body) {
+                        self.within_hulls(hulls, &near, global, &mut c.row);
+                        self.list(b, global, me, c);
+                    }
                 }
             }
-            if !fixed {
-                for (k, plane) in model.planes.iter().enumerate() {
-                    let origin = plane.point + self.state.planes[k].offset;
-                    if (xyz(p) - origin).dot(&plane.normal) < p[3] + skin {
-                        c.planes.push([i, k as u32]);
-                    }
+            None => {
+                for global in (self.first[b]..).take(self.members[b].count) {
+                    let me = self.body(global);
+                    self.round(global, global - self.first[b], me, c);
+                    self.list(b, global, me, c);
                 }
             }
         }
         c.images.sort_unstable();
+    }
+
+    /// Puts down what is near a sphere: its later partners, of `row`, and planes.
+    fn list(&self, b: usize, global: u32, me: (u32, u32), c: &mut Candidates) {
+        let (model, p, i) = (self.model, &self.points[global as usize], global - self.first[b]);
+        c.reference.push(&xyz(p));
+        for &j in &c.row {
+            let [block_j, j] = self.names[j as usize];
+            if block_j == b as u32 {
+                c.pairs.push([i as u16, j as u16]);
+            } else {
+                c.cross.push([i, block_j, j]);
+            }
+        }
+        if !self.still(me) {
+            for (k, plane) in model.planes.iter().enumerate() {
+                let origin = plane.point + self.state.planes[k].offset;
+                if (xyz(p) - origin).dot(&plane.normal) < p[3] + model.skin {
+                    c.planes.push([i, k as u32]);
+                }
+            }
+        }
+    }
+
+    /// Whether two bodies may touch: neither both are held in place, nor is their contact a bond.
+    fn may_touch(&self, me: (u32, u32), other: (u32, u32)) -> bool {
+        let held = || self.held.has(self.number(me), self.number(other));
+        !(self.still(me) && self.still(other)) && !held()
+    }
+
+    /// Later bodies whose hulls are near that of a body, in `near`.
+    fn near_hulls(&self, hulls: &Hulls, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
+        let (skin, p) = (self.model.skin, &hulls.around[body as usize]);
+        near.clear();
+        hulls.cells.near(p, skin, |other| {
+            let q = &hulls.around[other as usize];
+            let reach = p[3] + q[3] + skin;
+            if other > body
+                && (xyz(p) - xyz(q)).norm_squared() < reach * reach
+                && self.may_touch(me, self.body(hulls.spheres(other).start))
+            {
+                near.push(other);
+            }
+        });
+        near.sort_unstable();
+    }
+
+    /// Spheres of the bodies `near` that are near one, in `row`, in their order.
+    #[inline(always)]
+    fn within_hulls(&self, hulls: &Hulls, near: &[u32], global: u32, row: &mut Vec<u32>) {
+        let (skin, p) = (self.model.skin, &self.points[global as usize]);
+        let close = |q: &Record| {
+            let reach = p[3] + q[3] + skin;
+            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+        };
+        row.clear();
+        for &body in near {
+            if close(&hulls.around[body as usize]) {
+                row.extend(hulls.spheres(body).filter(|&j| close(&self.points[j as usize])));
+            }
+        }
     }
 
     /// Later spheres near one, in `row`; images of them go to their own list.
@@ -174,8 +237,7 @@ impl<'a> All<'a> {
                 let reach = p[3] + q[3] + skin;
                 if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
                     let other = self.body(j);
-                    let held = || self.held.has(self.number(me), self.number(other));
-                    if other != me && !(fixed && self.still(other)) && !held() {
+                    if other != me && self.may_touch(me, other) {
                         row.push(j);
                     }
                 }
@@ -194,3 +256,7 @@ pub(crate) fn now<'a>(model: &'a Model, state: &'a State, members: &'a [Members]
         planes: (&model.planes, &state.planes),
     }
 }
+
+#[cfg(test)]
+#[path = "candidates_tests.rs"]
+mod tests;

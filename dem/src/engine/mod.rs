@@ -9,6 +9,7 @@ pub(crate) mod candidates;
 mod check;
 mod check_periodic;
 pub(crate) mod collision;
+mod hulls;
 pub mod input;
 pub mod model;
 pub(crate) mod neighbours;

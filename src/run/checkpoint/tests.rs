@@ -77,7 +77,7 @@ fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
     }
     fs::write(&b, "nonsense").unwrap();
     let error = load().unwrap_err();
-    assert!(matches!(error, Failure::Input(_)), "{error}");
+    assert!(error.is_input(), "{error}");
     assert!(error.to_string().contains("b.checkpoint is damaged"), "{error}");
     // One that goes on writes over the damaged slot first.
     fs::write(&a, &whole).unwrap();

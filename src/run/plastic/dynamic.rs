@@ -119,6 +119,10 @@ impl TrackSystem for PlasticDynamics<'_> {
 }
 
 impl System for PlasticDynamics<'_> {
+    fn progress(&self) -> Option<String> {
+        Some(super::iterations(&self.statistics()))
+    }
+
     fn steps_done(&self, windows: u64) -> (u64, u64) {
         (0, windows)
     }

@@ -8,7 +8,7 @@ pub use quasi_static::QuasiStaticSystem;
 
 use super::checkpoint_store::Interrupt;
 use crate::model::solid::SolidPart;
-use trackbed_fem::nonlinear::Loading;
+use trackbed_fem::nonlinear::{Loading, Statistics};
 
 /// Loads and supports of a solid in time; before time 0 they are brought on from nothing.
 pub struct Course<'a> {
@@ -50,4 +50,13 @@ impl Loading for Course<'_> {
     fn stopped(&self) -> bool {
         self.interrupt.stopped()
     }
+}
+
+/// Newton iterations so far, in a few words.
+fn iterations(statistics: &Statistics) -> String {
+    let repeated = match statistics.halvings {
+        0 => String::new(),
+        n => format!(", {n} halved"),
+    };
+    format!("{} iterations{repeated}", statistics.iterations)
 }

@@ -134,6 +134,10 @@ impl TrackSystem for QuasiStaticSystem<'_> {
 }
 
 impl System for QuasiStaticSystem<'_> {
+    fn progress(&self) -> Option<String> {
+        Some(super::iterations(&self.statistics()))
+    }
+
     fn steps_done(&self, windows: u64) -> (u64, u64) {
         (0, windows)
     }

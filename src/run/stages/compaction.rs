@@ -80,7 +80,7 @@ fn compact(
     settled: &mut Settled,
 ) -> Result<(), Failure> {
     let plan = grains.packing.compaction[index].clone();
-    let progress = Progress::start("compacting", 1.0, run.quiet);
+    let progress = Progress::start("compacting", 1.0, run.verbosity);
     let mut bed = new_bed(run, grains, &plan, settled.all(), surface)?;
     let before = porosity(&bed, settled.bodies.len(), &plan.region);
     let region = plan.region;

@@ -6,7 +6,7 @@ use crate::message;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart};
 use crate::model::solid::SolidPart;
-use crate::progress::Progress;
+use crate::progress::{Progress, Verbosity};
 use crate::run::checkpoint::Loaded;
 use crate::run::context::Run;
 use crate::run::from::END;
@@ -57,7 +57,7 @@ impl Stage for Equilibrium {
         state.loaded.take_if(|loaded| loaded.moment.stage == END);
         let substeps = system.model.substeps;
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
-        if !run.quiet {
+        if run.verbosity > Verbosity::Quiet {
             // Before anything can blow up.
             remarks.iter().for_each(|r| message::note(r));
         }
@@ -92,7 +92,7 @@ fn couple<'b>(
     resumed: Option<&mut Loaded>,
     summary: &mut Summary,
 ) -> Result<CoupledSystem<'b>, Failure> {
-    let progress = Progress::start("equilibrium", 1.0, run.quiet);
+    let progress = Progress::start("equilibrium", 1.0, run.verbosity);
     let solid = body.part;
     let dead_load = solid.dead_load(body.model);
     let (reference, memory, state, seat_work) = match resumed {
@@ -131,7 +131,7 @@ fn couple<'b>(
                 1e-6 * c.full
             )
         });
-        if !run.quiet {
+        if run.verbosity > Verbosity::Quiet {
             slower.iter().for_each(|r| message::note(r));
         }
         summary.warnings.extend(slower);

@@ -35,7 +35,7 @@ impl Stage for Growth {
 /// Grows the groups that are to grow.
 fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Result<(), Failure> {
     for plan in grains.groups.growths.clone() {
-        let progress = Progress::start("growing", 1.0, run.quiet);
+        let progress = Progress::start("growing", 1.0, run.verbosity);
         let bodies = &grains.groups.bodies[plan.bodies.clone()];
         let material = grains.material(&bodies[0]);
         let grown = grow(&plan.container, &grains.groups.shapes, bodies, material, &plan.how);

@@ -35,7 +35,7 @@ pub fn drop_layers(
         return Ok(());
     }
     let layers: Vec<&[usize]> = order.chunks(order.len().div_ceil(plan.layers as usize)).collect();
-    let progress = Progress::start("layers", layers.len() as f64, run.quiet);
+    let mut progress = Progress::start("layers", layers.len() as f64, run.verbosity);
     let mut steps = 0;
     let mut below: Vec<usize> = Vec::new();
     for (k, layer) in layers.iter().enumerate() {
@@ -61,7 +61,7 @@ pub fn drop_layers(
             grains.groups.bodies[b] = now;
         }
         steps += falling.state.steps;
-        progress.at(k as f64 + 1.0);
+        progress.at(k as f64 + 1.0, String::new);
     }
     let seconds = progress.finish(&format!("{} layers at rest", layers.len() - 1));
     bed.stages.push(StageRecord {

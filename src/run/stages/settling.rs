@@ -74,7 +74,7 @@ fn settle(
         None => (dem::State::new(&model), 0.0),
     };
     let mut work = dem::Work::new(&model, &state);
-    let progress = Progress::start(SETTLING, plan.max_time, run.quiet).resumed(state.time, seconds);
+    let mut progress = Progress::start(SETTLING, plan.max_time, run.verbosity).resumed(state.time, seconds);
     let mut settled = false;
     let mut going = true;
     run.checkpoints.begin();
@@ -92,8 +92,8 @@ fn settle(
             // Everything starts at rest: free fall has to be under way before slowness means anything.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
             going = !settled && state.time < plan.max_time;
-            progress.at(state.time);
-            progress.message(format!("rms speed {speed:.2e} m/s"));
+            progress.message(format!("rms {speed:.2e} m/s"));
+            progress.at(state.time, || format!("{} steps, {:.4} s", state.steps, state.time));
         }
         if going {
             run.checkpoints.step(

@@ -72,7 +72,7 @@ fn bracket(
     let mut load = weight.clone();
     part.add_loads(0.0, &mut load);
     let (state, _) = initial::state(part, &part.model, &weight)?;
-    let progress = Progress::start("strength reduction", 1.0, stage.quiet);
+    let progress = Progress::start("strength reduction", 1.0, stage.verbosity);
     let found =
         strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
     progress.finish(&format!("factor of safety between {:.4} and {:.4}", found.converged, found.failed));

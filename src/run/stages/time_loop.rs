@@ -178,7 +178,7 @@ impl<'a> TimeLoop<'a> {
         };
         let (begun, whole) = share(&cadence, &recorder, &place);
         let progress =
-            Progress::start("running", whole as f64, run.quiet).resumed(begun as f64, place.seconds);
+            Progress::start("running", whole as f64, run.verbosity).resumed(begun as f64, place.seconds);
         Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress })
     }
 
@@ -211,14 +211,17 @@ impl<'a> TimeLoop<'a> {
             self.recorder.frame(time, system, &self.track).map_err(|e| e.at(time))?;
             self.place.next_frame = reached * frames / whole + 1;
         }
-        self.progress.at(reached as f64);
+        if let Some(text) = system.progress() {
+            self.progress.message(text);
+        }
+        self.progress.at(reached as f64, || details(system, time, k));
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
     }
 
     /// After a load cycle that ended with window `k`.
     fn after_cycle(&mut self, cycle: &Cycle, k: u64, time: f64) {
         let settlement = 1e3 * cycle.settlement;
-        self.progress.message(format!("cycle {}: settlement {settlement:.3} mm", cycle.number));
+        self.progress.message(format!("cycle {}: {settlement:.3} mm", cycle.number));
         if self.recorder.progress().is_some_and(|(number, total)| number >= total) {
             self.track.end_cycles(time);
             if self.cadence.jumps {
@@ -367,4 +370,18 @@ fn settlement(
     let seated = grains.and_then(|g| g.track.load.as_ref()).is_some_and(|l| l.seating.is_some());
     let seating = seated.then(|| recorder.seating());
     Some(SettlementRecord { seating, per_cycle, increments, slowing, fits, bed_stiffness, jump })
+}
+
+/// Where a system is after window `k`, at `time` [s], in words for a line of progress.
+fn details<S: System>(system: &S, time: f64, k: u64) -> String {
+    let (grain_steps, solid_steps) = system.steps_done(k);
+    let mut parts = vec![format!("{time:.4e} s")];
+    if let Some(grains) = system.grains() {
+        parts.push(format!("{grain_steps} grain steps"));
+        parts.push(format!("{} contacts", dem::measure::contacts(grains.model, grains.state).len()));
+    }
+    if system.solid().is_some() {
+        parts.push(format!("{solid_steps} solid steps"));
+    }
+    parts.join(", ")
 }

@@ -76,6 +76,10 @@ pub trait System: TrackSystem {
     fn peak_pressure(&self) -> f64 {
         0.0
     }
+    /// What the user sees of it while it runs, in a few words: the work of an iteration.
+    fn progress(&self) -> Option<String> {
+        None
+    }
     /// Work of the loads on the sleepers' seats so far [J].
     fn seat_work(&self) -> f64 {
         self.grains().map_or(0.0, |g| g.state.ledger.work_applied)

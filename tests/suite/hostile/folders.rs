@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-use trackbed::run::{Interrupt, Options};
+use trackbed::run::{Interrupt, Options, Verbosity};
 
 fn arguments<'a>(scene: &'a Path, out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
     let own = ["run", scene.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()];
@@ -53,7 +53,7 @@ fn a_checkpoint_is_not_replaced_in_silence() {
     let options = Options {
         out: Some(out.clone()),
         threads: Some(1),
-        quiet: true,
+        verbosity: Verbosity::Quiet,
         interrupt: Interrupt::after(20),
         ..Options::default()
     };
@@ -243,7 +243,7 @@ fn every_file_of_a_mesh_is_in_the_hash() {
         let options = Options {
             out: Some(out.clone()),
             threads: Some(1),
-            quiet: true,
+            verbosity: Verbosity::Quiet,
             interrupt: Interrupt::after(20),
             ..Options::default()
         };
@@ -265,7 +265,7 @@ fn a_flipped_digit_in_one_slot_leaves_the_other() {
         let options = Options {
             out: Some(out.clone()),
             threads: Some(1),
-            quiet: true,
+            verbosity: Verbosity::Quiet,
             resume,
             interrupt: Interrupt::after(steps),
             ..Options::default()
