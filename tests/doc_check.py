@@ -1,0 +1,126 @@
+"""Checks the pages: python3 tests/doc_check.py [PROGRAM]
+
+Every relative link of a page leads to a file, and its #anchor to a heading there. With PROGRAM, `trackbed check` reads the examples
+of docs/scene.md, put together into small scenes; an example that is in none of them is a fault. Exit code 1 where there is a fault.
+"""
+import os, re, shutil, subprocess, sys, tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+
+def lines(page):
+    """Numbered lines outside of blocks of code."""
+    code = False
+    for number, line in enumerate(open(page, encoding="utf-8"), 1):
+        if line.startswith("```"):
+            code = not code
+        elif not code:
+            yield number, line
+
+
+def anchors(page):
+    found = {}
+    for _, line in lines(page):
+        if heading := re.match(r"#+ (.*)", line):
+            text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading[1].strip()).lower()
+            slug = "".join(c for c in text if c.isalnum() or c in " -_").replace(" ", "-")
+            found[slug] = found.get(slug, 0) + 1
+    return {s if k == 0 else f"{s}-{k}" for s, n in found.items() for k in range(n)}
+
+
+def links():
+    names = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=ROOT, capture_output=True, text=True, check=True)
+    for name in names.stdout.split():
+        page = os.path.join(ROOT, name)
+        for number, line in lines(page) if os.path.exists(page) else []:
+            for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", line)):
+                path, _, anchor = target.partition("#")
+                if re.match(r"https?:", target):
+                    continue
+                file = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
+                if not os.path.exists(file):
+                    yield f"{name}:{number}: {target}: no such file"
+                elif anchor and file.endswith(".md") and anchor not in anchors(file):
+                    yield f"{name}:{number}: {target}: no such heading"
+
+
+def scenes(page):
+    """Small scenes of the examples of the page, by name, and all examples."""
+    blocks = {}
+    for part in re.split(r"\n(?=#{2,3} )", page):
+        blocks[part.split("\n")[0].split(":")[0].lstrip("# ")] = re.findall(r"```toml\n(.*?)```", part, re.S)
+    e = lambda heading, k=0: blocks[heading][k] + "\n"
+    top, supports, walls = e("Top level"), e("`[[solid.support]]`").split("[[solid.support]]"), e("`[[walls]]`")
+    base, footing = ("[[solid.support]]" + s for s in supports[1:])
+    plastic = e("`[solid.block]`") + e("`[[solid.material]]`")
+    elastic = re.sub(r"(model|cohesion|friction|dilation) = .*\n", "", plastic)
+    solid = 'young = "100 MPa"\npoisson = 0.3\ndensity = 2000\n'
+    lists = '[solid]\nnodes = "NODECOORD.DAT"\nelements = "ELEMENTNUM.DAT"\nconstraints = "DOF.DAT"\n'
+    lists += "".join(f"[[solid.material]]\nid = {k}\n{solid}" for k in (1, 2))
+    contacts = e("`[[material]]`") + e("`[[contact]]`")
+    spheres = '[[grains]]\nname = "a"\nshape = "sphere"\nmaterial = "stone"\nspheres = [[0.1, 0.1, 0.05, 0.01], [0.119, 0.1, 0.05, 0.01]]\n'
+    group = '[[grains]]\nname = "a"\nshape = "sphere"\nmaterial = "stone"\n'
+    box = "region = { box = [[0.0, 0.0, 0.0], [2.0, 2.0, 2.0]] }\n"
+    size, count, end = 'size = ["90 mm", "110 mm"]\n', "count = 100\n", '[time]\nend = "0.01 s"\n'
+    plane = 'kind = "plane"\npoint = [0.0, 0.0, -0.2]\nnormal = [0.0, 0.0, 1.0]\nmaterial = "steel"\n'
+    tetrahedron = 'kind = "triangles"\nmaterial = "stone"\nvertices = [[0, 0, 1], [1, 0, 1], [0, 1, 1], [0, 0, 2]]\n'
+    tetrahedron += "triangles = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]\n"
+    others = "".join(f'[[material]]\nname = "{n}"\ndensity = 2500\nstiffness = 1e7\nfriction = 0.5\nrestitution = 0.3\n' for n in ("concrete", "formation"))
+    stones = e("`[[grains]]`").replace("[0.0, 0.0, 0.0], high = [0.5, 0.5]", "[-1.4, 0.0, 0.0], high = [1.4, 0.6]").replace('"A" }', '"A", scale = 2.2 }')
+    bed = top + lists + others + contacts + stones + e("`[deposition]`") + e("`[coupling]`") + e("`[track.sleeper]`")
+    bogie = '[track.load]\nkind = "bogie"\naxle_load = 14e4\nwheelbase = 2.5\nspeed = 50.0\nseats = [[-0.75, 0.0], [0.75, 0.0]]\n'
+    history = re.sub("history = .*", lambda _: e("`[[solid.load]]`", 1).strip(), e("`[[solid.load]]`"))
+    servo = re.sub("servo = .*", lambda _: e("`[[walls]]`", 1).strip(), walls)
+    floor = walls.split('[[walls]]\nname = "drum"')[0]
+    grains = lambda text: top + contacts + text + end
+    made = {
+        "quasi_static": top + plastic + base + footing + e("`[solid.initial_stress]`") + e("`[solid.quasi_static]`") + e("`[solid.newton]`") + e("`[output]`") + e("`[[probe]]`"),
+        "dynamics": top + elastic + base + e("`[[solid.absorbing]]`") + e("`solid.rayleigh`") + e("`[solid.dynamics]`") + e("`[[solid.load]]`"),
+        "history": top + elastic + base + e("`[solid.dynamics]`") + history,
+        "strength_reduction": top + plastic + base + e("`[solid.strength_reduction]`"),
+        "mesh": e("`[solid]`") + "[[solid.material]]\nid = 1\n" + solid + base,
+        "layout": lists + e("`[solid.layout]`"),
+        "bed": top + contacts + e("`[[grains]]`") + floor + e("`[deposition]`") + e("`[[compaction]]`") + e("`[[measure]]`") + e("`[time]`"),
+        "walls": grains(spheres + walls),
+        "servo": grains(spheres + servo),
+        "body": grains(spheres + "[[walls]]\n" + tetrahedron + e("`[[walls]]`", 2) + "[[walls]]\n" + plane),
+        "flow": grains(e("`[[outlet]]` and `inlet`") + "[[walls]]\n" + plane),
+        "bond": grains(spheres + e("`[[bond]]`") + floor),
+        "contact_point": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 1)),
+        "direct": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 2)),
+        "periodic": grains(spheres + e("`[periodic]`") + floor + e("`[wind]`")),
+        "lattice": grains(group + e("`[[grains]]`", 1)),
+        "region": grains(group + count + 'size = ["9 mm", "11 mm"]\n' + e("`[[grains]]`", 2)),
+        "growth": grains(group + size + box + e("`[[grains]]`", 3)),
+        "sizes": grains(group + count + box + e("`[[grains]]`", 4)),
+        "gradation": grains(group + count + box + e("`[[grains]]`", 5)),
+        "track": bed + e("`[track.load]`").replace("cycles = 10", "cycles = 1000") + e("`[track.load.seating]`") + e("`[track.jump]`") + e("`[track.push]`"),
+        "load": bed + e("`[track.load]`") + e("`[solid.reduction]`"),
+        "rail": bed.replace("hold =", "spacing = 0.6\nhold =") + bogie + e("`[track.rail]`"),
+        "meshed_sleeper": bed + e("`[track.sleeper.mesh]`") + e("`[track.load]`"),
+    }
+    # A stone library is a file of its own.
+    return made, [b for heading in blocks for b in blocks[heading] if not b.startswith("name = ")]
+
+
+def examples(program):
+    made, all_examples = scenes(open(os.path.join(ROOT, "docs/scene.md"), encoding="utf-8").read())
+    whole = "".join(made.values())
+    for example in all_examples:
+        if example.strip() not in whole:
+            yield f"docs/scene.md: in no scene of this script: {example.splitlines()[0]}"
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("coupled/embankment_tet10/embankment.msh", "data/gradations.csv", "track/cyclic/stones.toml", "track/cyclic/NODECOORD.DAT",
+                     "track/cyclic/ELEMENTNUM.DAT", "track/cyclic/DOF.DAT"):
+            shutil.copy(os.path.join(ROOT, "inputs", name), folder)
+        for name, text in made.items():
+            scene = os.path.join(folder, name + ".toml")
+            open(scene, "w", encoding="utf-8").write(text)
+            done = subprocess.run([program, "check", scene], capture_output=True, text=True)
+            if done.returncode:
+                yield f"docs/scene.md: the examples as scene {name}: {done.stderr.strip()}"
+
+
+faults = list(links()) + (list(examples(sys.argv[1])) if len(sys.argv) > 1 else [])
+print("\n".join(faults) or "links" + (" and examples" if len(sys.argv) > 1 else "") + " are right")
+sys.exit(bool(faults))
