@@ -56,6 +56,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     gravity(findings, scene);
     held(findings, scene, job);
     behind_walls(findings, scene, job);
+    beside_containers(findings, scene, job);
     in_the_solid(findings, scene, job);
     scales(findings, scene, job);
     settling(findings, scene, job);
@@ -130,6 +131,39 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
         if share > SHARE && !lid {
             let found = format!("{:.0} % of the grains behind the plane", 100.0 * share);
             findings.add(true, format!("walls.{k}"), found, "all in front of it, where its normal points");
+        }
+    }
+}
+
+/// Grains of which some are in a closed container and some beside it.
+fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
+    let Some(part) = &job.grains else { return };
+    let present = || part.groups.bodies.iter().filter(|b| !b.absent).map(place);
+    for (k, wall) in scene.walls.iter().enumerate() {
+        let (Some(base), Some(radius)) = (&wall.base, &wall.radius) else { continue };
+        let closed = match wall.kind {
+            WallKind::Sphere => true,
+            WallKind::Cylinder => wall.caps == Some([true, true]),
+            _ => false,
+        };
+        if !closed {
+            continue;
+        }
+        let axis = wall.axis.unwrap_or([0.0, 0.0, 1.0]);
+        let length = dot(axis, axis).sqrt();
+        let height = wall.height.map_or(0.0, |h| h.si);
+        let inside = |x: &[f64; 3]| {
+            let r = [0, 1, 2].map(|d| x[d] - base[d].si);
+            if wall.kind == WallKind::Sphere {
+                return dot(r, r) < radius.si * radius.si;
+            }
+            let along = dot(r, axis) / length;
+            dot(r, r) - along * along < radius.si * radius.si && (0.0..=height).contains(&along)
+        };
+        let (all, held) = (present().count(), present().filter(inside).count());
+        if held > 0 && held < all {
+            let found = format!("{} of {all} grains beside it, the others in it", all - held);
+            findings.add(true, format!("walls.{k}"), found, "all grains in the closed container, or all beside it");
         }
     }
 }

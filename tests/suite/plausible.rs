@@ -22,6 +22,7 @@ const SERVO: &str = "inputs/grains/servo.toml";
 const FOOTING: &str = "inputs/solid/footing.toml";
 const CLAY: &str = "inputs/solid/triaxial_drained.toml";
 const TRAIN: &str = "inputs/track/train/scene.toml";
+const DRUM: &str = "inputs/grains/drum.toml";
 const GRAINS: &str = "inputs/grains/box.toml";
 const WIND: &str = "inputs/verify/wind.toml";
 
@@ -57,6 +58,7 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (SERVO, "walls.2.servo.max_speed=\"200 m/s\"", "walls.2.servo.max_speed", false),
     (BOX, "walls.2.point=[-0.5, 0.0, 0.0]", "walls.2", true),
     (BOX, "walls.1.normal=[-1.0, 0.0, 0.0]", "walls.1", true),
+    (DRUM, "grains.0.fill.low=[-0.05, 0.005, -0.06]", "walls.0", true),
     // Gravity and what holds the bed.
     (BOX, "gravity=[0.0, 0.0, 9.81]", "gravity", true),
     (BOX, "gravity=[0.0, 0.0, -9810.0]", "gravity", false),
