@@ -163,7 +163,12 @@ fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
         let (all, held) = (present().count(), present().filter(inside).count());
         if held > 0 && held < all {
             let found = format!("{} of {all} grains beside it, the others in it", all - held);
-            findings.add(true, format!("walls.{k}"), found, "all grains in the closed container, or all beside it");
+            findings.add(
+                true,
+                format!("walls.{k}"),
+                found,
+                "all grains in the closed container, or all beside it",
+            );
         }
     }
 }

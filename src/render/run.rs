@@ -88,7 +88,7 @@ impl Run {
             solid_fields = ["constant"].iter().chain(&DISPLACEMENTS).map(|f| f.to_string()).collect();
             solid_fields.extend(solid::fields(file)?);
         }
-        let table = |name: &str| series::own(dir, name).map(|file| Table::open(&file)).transpose();
+        let table = |name: &str| series::own(dir, name).map_or(Ok(None), |file| Table::read(&file));
         let (history, cycles) = (table("history.csv")?, table("cycles.csv")?);
         Ok(Run { about: About::of(dir), frames, skin, grain_fields, solid_fields, history, cycles })
     }
@@ -195,7 +195,7 @@ impl Run {
     /// Loads by rows of the history [N].
     fn loads(&self) -> Option<&[f64]> {
         let history = self.history.as_ref()?;
-        history.column("load [").or_else(|| history.column("load_1 ["))
+        history.column("load").or_else(|| history.column("load_1"))
     }
 
     /// Load at a frame [N].

@@ -1,8 +1,8 @@
 //! What the folder of a run offers for a report: its files, read as far as they are there.
 
-use super::table::NumberTable;
 use crate::failure::Failure;
 use crate::read::source;
+use crate::results::tables::Table;
 use crate::run::RunFile;
 use crate::scene::{Document, Scene};
 use serde_json::Value;
@@ -46,7 +46,7 @@ pub struct RunData {
     pub keys: BTreeMap<String, String>,
     /// The scene, where this program understands it.
     pub scene: Option<Scene>,
-    tables: BTreeMap<&'static str, NumberTable>,
+    tables: BTreeMap<&'static str, Table>,
     /// Process that holds the lock, and whether it is there.
     lock: Option<(u32, bool)>,
 }
@@ -67,7 +67,7 @@ impl RunData {
         let summary = summary(&dir.join("summary.json"))?;
         let mut tables = BTreeMap::new();
         for name in TABLES {
-            if let Some(table) = NumberTable::read(&dir.join(format!("{name}.csv")))? {
+            if let Some(table) = Table::read(&dir.join(format!("{name}.csv")))? {
                 tables.insert(name, table);
             }
         }
@@ -97,7 +97,7 @@ impl RunData {
     }
 
     /// A table of the folder.
-    pub fn table(&self, name: &str) -> Option<&NumberTable> {
+    pub fn table(&self, name: &str) -> Option<&Table> {
         self.tables.get(name).filter(|t| t.rows() > 0)
     }
 

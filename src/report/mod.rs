@@ -8,7 +8,6 @@ mod page;
 mod plot;
 mod quantity;
 mod sections;
-mod table;
 
 use crate::failure::Failure;
 use crate::write::{WriteError, atomic};

@@ -1,46 +1,108 @@
-//! Tables of a run: `history.csv`, `cycles.csv`, `push.csv`.
-
-use std::path::Path;
+//! Tables of a run, such as `history.csv` and `cycles.csv`: a head with units, rows that may still be growing.
 
 use crate::failure::Failure;
+use crate::read::source;
+use std::path::Path;
 
-/// Columns with their names.
+/// Columns of numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Names, with units in brackets.
+    /// Name of each column with its unit in brackets.
     pub names: Vec<String>,
-    /// Numbers of each column.
+    /// Name of each column, without its unit.
+    pub heads: Vec<String>,
+    /// Values by column.
     pub columns: Vec<Vec<f64>>,
+    /// Rows that could not be read: with too few values, or with one that is no finite number.
+    pub skipped: usize,
 }
 
 impl Table {
-    /// Reads a table; the last row of a run that is being written may not be whole and is left out.
+    /// Reads a table; none where the file is missing. The last row is left out while it has no end, and so is every row that
+    /// has not a finite number in each column.
     ///
     /// # Errors
-    /// The file cannot be read or holds words.
-    pub fn open(file: &Path) -> Result<Table, Failure> {
-        let bad = |what: String| Failure::Input(format!("{}: {what}", file.display()));
-        let mut reader =
-            csv::ReaderBuilder::new().flexible(true).from_path(file).map_err(|e| bad(e.to_string()))?;
-        let names: Vec<String> =
-            reader.headers().map_err(|e| bad(e.to_string()))?.iter().map(String::from).collect();
-        let mut columns = vec![Vec::new(); names.len()];
-        for (row, record) in reader.records().enumerate() {
-            let record = record.map_err(|e| bad(e.to_string()))?;
-            if record.len() != names.len() {
-                break;
-            }
-            for ((column, text), name) in columns.iter_mut().zip(&record).zip(&names) {
-                let value = text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-                let number = || bad(format!("line {}: {name}: found {text:?}, expected a number", row + 2));
-                column.push(value.ok_or_else(number)?);
+    /// Bad input: the file is not to be read, or has no head.
+    pub fn read(file: &Path) -> Result<Option<Table>, Failure> {
+        if !file.exists() {
+            return Ok(None);
+        }
+        let refused = |found: String, expected: &str| {
+            Failure::Input(format!("{}: found {found}, expected {expected}", file.display()))
+        };
+        let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
+        let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |k| k + 1);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..end]);
+        let names: Vec<String> = match reader.headers() {
+            Ok(names) => names.iter().map(String::from).collect(),
+            Err(e) => return Err(refused(e.to_string(), "a table of numbers with a head")),
+        };
+        if names.is_empty() {
+            return Err(refused("no head".into(), "a table of numbers with a head"));
+        }
+        let heads = names.iter().map(|name| head(name)).collect();
+        let mut table = Table { columns: vec![Vec::new(); names.len()], names, heads, skipped: 0 };
+        let mut row = Vec::new();
+        for record in reader.records() {
+            row.clear();
+            row.extend(record.iter().flatten().filter_map(|v| v.trim().parse::<f64>().ok()));
+            match row.len() == table.columns.len() && row.iter().all(|v| v.is_finite()) {
+                true => table.columns.iter_mut().zip(&row).for_each(|(column, v)| column.push(*v)),
+                false => table.skipped += 1,
             }
         }
-        Ok(Table { names, columns })
+        Ok(Some(table))
     }
 
-    /// The first column whose name begins so.
-    pub fn column(&self, begin: &str) -> Option<&[f64]> {
-        let at = self.names.iter().position(|name| name.starts_with(begin))?;
-        Some(&self.columns[at])
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Values of a column.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let index = self.heads.iter().position(|h| h == name)?;
+        Some(&self.columns[index])
+    }
+
+    /// Points (x, y) of two columns, where both are there.
+    pub fn points(&self, x: &str, y: &str) -> Option<Vec<[f64; 2]>> {
+        Some(self.column(x)?.iter().zip(self.column(y)?).map(|(x, y)| [*x, *y]).collect())
+    }
+
+    /// What stands before `end` in the names of columns that end so: `plate` of `plate_force_x` for `_force_x`.
+    pub fn before(&self, end: &str) -> Vec<&str> {
+        self.heads.iter().filter_map(|h| h.strip_suffix(end)).collect()
+    }
+}
+
+/// Name in a head such as `settlement [m]`.
+fn head(text: &str) -> String {
+    text.rsplit_once(" [").map_or(text, |(name, _)| name).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+    use std::fs;
+
+    #[test]
+    fn a_table_that_grows_is_read_up_to_its_last_whole_row() {
+        let dir = folder("table");
+        let file = dir.join("t.csv");
+        assert_eq!(Table::read(&file).unwrap(), None);
+        fs::write(&file, "time [s],plate_force_x [N],n\n0,1e3,2\n1,NaN,3\n2,5\n3,-4,5\n4,12").unwrap();
+        let table = Table::read(&file).unwrap().unwrap();
+        assert_eq!((table.rows(), table.skipped), (2, 2));
+        assert_eq!(table.points("time", "plate_force_x").unwrap(), [[0.0, 1e3], [3.0, -4.0]]);
+        assert_eq!(table.heads[1], "plate_force_x", "without its unit");
+        assert_eq!(table.names[1], "plate_force_x [N]");
+        assert_eq!(table.before("_force_x"), ["plate"]);
+        fs::write(&file, "time [s],n\n").unwrap();
+        assert_eq!(Table::read(&file).unwrap().unwrap().rows(), 0);
+        fs::write(&file, "time [s]").unwrap();
+        assert!(Table::read(&file).is_err(), "the head is not whole yet");
+        fs::remove_dir_all(&dir).unwrap();
     }
 }

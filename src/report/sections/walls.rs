@@ -4,7 +4,7 @@ use super::overlay::{dominant, overlay};
 use crate::report::data::RunData;
 use crate::report::page::{Section, paragraph, plots};
 use crate::report::plot::{Plot, Side};
-use crate::report::table::NumberTable;
+use crate::results::tables::Table;
 use crate::scene::walls::{Wall, WallKind};
 
 /// Share of the largest force above which a wall touches.
@@ -75,7 +75,7 @@ fn servos(run: &RunData) -> Vec<Servo> {
     scene.walls.iter().filter_map(|wall| servo(wall, &scene.walls, table)).collect()
 }
 
-fn servo(wall: &Wall, all: &[Wall], table: &NumberTable) -> Option<Servo> {
+fn servo(wall: &Wall, all: &[Wall], table: &Table) -> Option<Servo> {
     let area = wall.servo.as_ref()?.area?;
     let name = wall.name.as_ref()?;
     let (point, normal) = plane(wall)?;
