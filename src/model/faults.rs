@@ -1,4 +1,4 @@
-//! All faults of a scene at once: what is at fault is taken away, and the rest read again.
+//! All faults of a scene at once: what is at fault is mended, and the rest read again.
 
 use super::Job;
 use crate::failure::Failure;
@@ -17,7 +17,7 @@ const LONGEST: Duration = Duration::from_secs(2);
 pub fn read_scene(document: &Document) -> Result<Scene, Failure> {
     let again = |rest: &Document| Ok(rest.read::<Scene>().map(drop)?);
     // Forms of keys do not depend on each other.
-    document.read().map_err(|first| all(document, first.into(), again, |_, _| true))
+    document.read().map_err(|first| all(document, first.into(), again, of_form, |_, _| true))
 }
 
 /// Resolves a scene.
@@ -26,18 +26,22 @@ pub fn read_scene(document: &Document) -> Result<Scene, Failure> {
 /// Bad input, as far as one fault does not follow from another: [`Job::new`].
 pub fn resolve(document: &Document, scene: &Scene) -> Result<Job, Failure> {
     let again = |rest: &Document| Job::new(rest, &rest.read()?).map(drop);
-    Job::new(document, scene).map_err(|first| all(document, first, again, apart))
+    Job::new(document, scene).map_err(|first| all(document, first, again, of_value, apart))
 }
 
-/// What is put in the place of a value that is at fault, one after the other, where a scene must have one.
-const PLACEHOLDERS: [&str; 5] = ["1", "\"1\"", "true", "[1, 1, 1]", "[]"];
+/// What is put in the place of a value of a wrong form, one after the other, where a scene must have one.
+const FORMS: [&str; 5] = ["1", "\"1\"", "true", "[1, 1, 1]", "[]"];
 
-/// A failure with the further faults that `again` finds where those before are mended, as long as they are `independent` of
-/// them and about values that the scene has.
+/// The same of a number out of its range.
+const VALUES: [&str; 3] = ["1", "0.3", "1000"];
+
+/// A failure with the further faults that `again` finds where those before are mended by one of `mendings`, as long as they
+/// are `independent` of them and about values that the scene has.
 fn all(
     document: &Document,
     first: Failure,
     again: impl Fn(&Document) -> Result<(), Failure>,
+    mendings: impl Fn(&Document, &SceneError) -> Vec<Vec<String>>,
     independent: impl Fn(&SceneError, &SceneError) -> bool,
 ) -> Failure {
     let Failure::Faults(mut faults) = first else { return first };
@@ -75,11 +79,18 @@ fn within(key: &str, table: &str) -> bool {
     key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Overrides that may mend a fault: the key that was meant in the place of an unknown one, none, or another value.
-fn mendings(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
+/// Overrides that may mend a value out of its range: another number. What is no number decides what else a scene must have.
+fn of_value(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
+    let value = document.value(&fault.key).unwrap_or_default();
+    let number = value.trim_matches('"').starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+');
+    let others = VALUES.iter().filter(|_| number);
+    others.map(|value| vec![format!("{}={value}", fault.key)]).collect()
+}
+
+/// Overrides that may mend the form of a key: the key that was meant in the place of an unknown one, none, or another value.
+fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     let key = &fault.key;
-    // What others are called by is not to be missed by them.
-    if !document.has(key) || key.rsplit('.').next() == Some("name") {
+    if !document.has(key) {
         return Vec::new();
     }
     let gone = format!("{key}=");
@@ -89,7 +100,7 @@ fn mendings(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
         let table = key.rsplit_once('.').map_or(String::new(), |(table, _)| format!("{table}."));
         vec![gone.clone(), format!("{table}{meant}={value}")]
     });
-    let others = PLACEHOLDERS.iter().map(|value| vec![format!("{key}={value}")]);
+    let others = FORMS.iter().map(|value| vec![format!("{key}={value}")]);
     renamed.into_iter().chain([vec![gone.clone()]]).chain(others).collect()
 }
 

@@ -74,7 +74,7 @@ async function shoot(view, file) {
   await view.run(() => trackbed.peak());
   await view.set({ 'grains.show': true, 'grains.opacity': 0.3, 'solid.bands': true });
   await view.page.screenshot({ path: file });
-  expect(fs.statSync(file).size < 200e3, `${file} has ${fs.statSync(file).size} bytes`);
+  expect(fs.statSync(file).size < 300e3, `${file} has ${fs.statSync(file).size} bytes`);
   await view.page.setViewportSize(size);
   await view.page.reload();
   await view.page.waitForFunction('window.trackbed');

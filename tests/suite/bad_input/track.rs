@@ -78,19 +78,19 @@ fn a_meshed_sleeper_without_a_solid() {
 fn what_a_meshed_sleeper_has_no_use_for() {
     meshed()
         .append(SCENE, "[track.push]\ndirection = [1, 0]\nspeed = 0.01\ndisplacement = 0.01")
-        .refused("scene.toml:60: track.push: found a push, expected no such table beside meshed sleepers");
+        .refused("scene.toml:61: track.push: found a push, expected no such table beside meshed sleepers");
     meshed()
         .append(SCENE, "[track.jump]\nmethod = \"grains\"")
         .refused(
-            "scene.toml:61: track.jump.method: found \"grains\", expected \"account\": sleepers of elements are not moved",
+            "scene.toml:62: track.jump.method: found \"grains\", expected \"account\": sleepers of elements are not moved",
         );
     meshed()
         .append(SCENE, "[track.rail]\nkind = \"beam\"\nbending_stiffness = 6e6\nfoundation = 2e7")
         .refused(
-            "scene.toml:61: track.rail.kind: found \"beam\" on meshed sleepers, expected \"winkler\": a rail with mass needs rigid \
+            "scene.toml:62: track.rail.kind: found \"beam\" on meshed sleepers, expected \"winkler\": a rail with mass needs rigid \
              sleepers",
         );
     meshed().append(SCENE, "[solid.reduction]\nkind = \"surface\"").refused(
-        "scene.toml:60: solid.reduction: found a reduction, expected no such table beside meshed sleepers",
+        "scene.toml:61: solid.reduction: found a reduction, expected no such table beside meshed sleepers",
     );
 }

@@ -120,7 +120,7 @@ fn sleeper_on_a_recorded_plane() {
     coupled()
         .append(SCENE, "[[walls]]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"stone\"\nrecord = true")
         .refused(
-            "scene.toml:55: walls.0: found a plane that is more, expected a plane without `record` and motions other than \
+            "scene.toml:56: walls.0: found a plane that is more, expected a plane without `record` and motions other than \
              `velocity`: a sleeper touches no other",
         );
 }
