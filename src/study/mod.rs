@@ -128,7 +128,7 @@ fn prepare(
         });
         match verdict {
             Ok(hash) => hashes.push(hash),
-            Err(Failure::Input(text)) => refused.push((run.label.as_str(), text)),
+            Err(fault) if fault.is_input() => refused.push((run.label.as_str(), fault.to_string())),
             Err(other) => return Err(other),
         }
     }
