@@ -56,7 +56,7 @@ def run(program, scene, sets, out):
     summary = json.load(open(os.path.join(out, "results", "summary.json")))
     said = subprocess.run([program, "explain", scene] + sets, capture_output=True, text=True, check=True).stdout
     lines = [line.strip() for line in said.splitlines() if re.match(r"\s*(stages|contact loop|memory of a packed bed):", line)]
-    # What is told of the run itself differs by its clock.
+    # What these say of the run itself differs by its clock.
     kept = lambda names: (f for f in names if f not in ("summary.json", "log.txt", "run.json"))
     paths = [os.path.join(base, f) for base, _, names in os.walk(os.path.join(out, "results")) for f in kept(names)]
     files = sorted(f"{path[len(out) + 9:]} {os.path.getsize(path)}" for path in paths)
