@@ -176,8 +176,8 @@ impl<'a> All<'a> {
 
     /// Whether two bodies may touch: neither both are held in place, nor is their contact a bond.
     fn may_touch(&self, me: (u32, u32), other: (u32, u32)) -> bool {
-        let held = || self.held.has(self.number(me), self.number(other));
-        !(self.still(me) && self.still(other)) && !held()
+        let both_still = self.still(me) && self.still(other);
+        !both_still && !self.held.has(self.number(me), self.number(other))
     }
 
     /// Later bodies whose hulls are near that of a body, in `near`.
