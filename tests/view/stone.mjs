@@ -67,4 +67,78 @@ export async function onStone(view) {
     expect(await view.hash() === without, 'the walls are gone');
     return `${solid} blue pixels, ${faint} when transparent`;
   });
+
+  await check('S1-19', 'background, colours of grains, light, section, transparent boundary, play speed', async () => {
+    await view.page.keyboard.press('End');
+    await view.idle();
+    await view.click('fit');
+    const seen = [];
+    const differs = async (what) => {
+      const now = await view.hash();
+      expect(!seen.includes(now), `${what} changes nothing`);
+      seen.push(now);
+    };
+    await differs('the picture');
+    for (const colour of ['speed', 'diameter', 'constant']) {
+      await view.select('grains-colour', colour);
+      await differs(`colour by ${colour}`);
+    }
+    for (const light of ['x', 'y', 'z']) {
+      await view.select('view-light', light);
+      await differs(`light along ${light}`);
+    }
+    await view.control('view-background');
+    await view.page.locator('#view-background-33414f').click();
+    await view.idle();
+    await differs('the background');
+    await view.slide('section-front', 0.5);
+    expect((await view.state()).section.removed > 0, 'nothing is cut off');
+    await view.slide('section-front', 0);
+    await view.check('walls-boundary-show', true);
+    await view.slide('walls-boundary-opacity', 0.5);
+    await differs('a transparent boundary');
+    await view.check('walls-boundary-show', false);
+    await view.slide('speed', 0.5);
+    expect((await view.state()).speed > 20, `${(await view.state()).speed} frames a second`);
+    await view.control('view-background');
+    await view.page.locator('#view-background-ffffff').click();
+    await view.idle();
+    return `${seen.length} different pictures`;
+  });
+
+  await check('S1-20', 'force chains with thickness and colour, transparent grains', async () => {
+    await view.page.keyboard.press('Home');
+    await view.idle();
+    await view.click('fit');
+    await view.check('chains-show', true);
+    await view.select('chains-map', 'blue-red');
+    expect((await view.state()).chains.count > 0, 'no chains');
+    await view.slide('chains-thickness', 1);
+    await view.slide('grains-opacity', 1);
+    const hidden = await view.count('coloured');
+    await view.slide('grains-opacity', 0.1);
+    const thick = await view.count('coloured');
+    await view.slide('chains-thickness', 0.05);
+    const thin = await view.count('coloured');
+    expect(thick > 1.5 * hidden && thick > 1.5 * thin, `${hidden} behind opaque grains, ${thick} thick, ${thin} thin`);
+    await view.slide('grains-opacity', 1);
+    await view.check('chains-show', false);
+    return `${hidden} coloured pixels, ${thick} behind glass, ${thin} of thin ones`;
+  });
+
+  await check('S1-22', 'rotate, zoom, pan, print and save', async () => {
+    const before = await view.camera();
+    await view.drag([400, 200], [480, 240]);
+    expect((await view.camera()).place[0] !== before.place[0], 'drag turns');
+    const turned = await view.camera();
+    await view.drag([400, 200], [460, 210], 'right');
+    expect(Math.hypot(...(await view.camera()).target.map((v, k) => v - turned.target[k])) > 1e-4, 'right button pans');
+    await view.fill('save-time', '');
+    const [file] = await Promise.all([view.page.waitForEvent('download'), view.page.locator('#save-png').click()]);
+    expect(/\.png$/.test(file.suggestedFilename()), file.suggestedFilename());
+    await view.run(() => { window.printed = 0; window.print = () => { window.printed = document.getElementById('print-image').src.length; }; });
+    await view.page.locator('#button-print').click();
+    await view.page.waitForFunction(() => window.printed > 1000);
+    return file.suggestedFilename();
+  });
 }
