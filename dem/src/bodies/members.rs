@@ -46,6 +46,12 @@ pub(crate) fn common<T: Copy + PartialEq>(mut all: impl Iterator<Item = T>) -> O
 }
 
 impl Members {
+    /// Number of spheres in bodies of several.
+    pub fn in_clumps(&self) -> usize {
+        let counts = self.first.windows(2).map(|w| (w[1] - w[0]) as usize);
+        counts.filter(|count| *count > 1).sum()
+    }
+
     /// Lays the constants out in the block's present order, and places the spheres.
     pub fn arrange(&mut self, table: &Bodies, shapes: &[Shape], block: &Block) {
         *self = Members::default();

@@ -79,7 +79,7 @@ struct All<'a> {
     first: Vec<u32>,
     cells: Cells,
     space: Option<Space>,
-    /// Where bodies of many spheres are searched body by body first.
+    /// Where most spheres are in clumps, which are searched body by body first.
     hulls: Option<Hulls>,
 }
 
@@ -93,8 +93,10 @@ impl<'a> All<'a> {
             names.extend((0..own.count as u32).map(|k| [b as u32, k]));
         }
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
-        let rigid = space.is_none() && members.iter().any(|own| own.rigid);
-        let hulls = rigid.then(|| Hulls::new(members, &points, &first, model.skin));
+        // Single spheres beside a sleeper, or a few clumps, would only pay for a second level.
+        let in_clumps: usize = members.iter().map(Members::in_clumps).sum();
+        let by_bodies = space.is_none() && 2 * in_clumps > points.len();
+        let hulls = by_bodies.then(|| Hulls::new(members, &points, &first, model.skin));
         if hulls.is_none() {
             cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
         }
