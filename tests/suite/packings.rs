@@ -226,6 +226,36 @@ fn compaction_of_the_shipped_bed() {
     assert!(stages[3]["wall_force"].as_f64().unwrap() > 1.0);
 }
 
+/// A wall is meant by its number whatever stands before it: with a recorded plane far below in the first place, the same bed is
+/// squeezed in the same way.
+#[test]
+fn walls_before_the_one_that_squeezes() {
+    let fewer = [
+        ("low = \"20 mm\", high = \"30 mm\"", "low = \"32 mm\", high = \"42 mm\""),
+        ("cycles = 12", "cycles = 2"),
+        ("cycles = 20", "cycles = 2"),
+        ("layers = 3", "layers = 1"),
+    ];
+    let (plain, _) = shipped("compaction.toml", &fewer);
+    let recorded = "[[walls]]\nrecord = true\nkind = \"plane\"\npoint = [0, 0, -9]\nnormal = [0, 0, 1]\nmaterial = \"stone\"\n\n[[walls]]\n\
+                    kind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]";
+    let edits = [
+        ("[[walls]]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]", recorded),
+        (
+            "x\nkind = \"vibration\"\nwalls = [0, 1, 2, 3, 4]",
+            "x\nkind = \"vibration\"\nwalls = [1, 2, 3, 4, 5]",
+        ),
+        (
+            "gravity\nkind = \"vibration\"\nwalls = [0, 1, 2, 3, 4]",
+            "gravity\nkind = \"vibration\"\nwalls = [1, 2, 3, 4, 5]",
+        ),
+        ("wall = 5", "wall = 6"),
+    ];
+    let (other, _) = shipped("compaction.toml", &[&fewer[..], &edits[..]].concat());
+    let positions = |folder: &Folder| rows(&folder.join("out/packing.csv"));
+    assert_eq!(positions(&plain), positions(&other));
+}
+
 /// The funnel of the shipped scene, with fewer spheres.
 #[test]
 fn growth_of_the_shipped_funnel() {

@@ -3,7 +3,7 @@
 use super::check::{find, region};
 use super::deposition::{DepositionPlan, SETTLED_SPEED, SOFTER};
 use super::groups::GroupsPart;
-use super::walls::WallsPart;
+use super::walls::{WallsPart, is_plain};
 use crate::scene::compaction::{Compaction, CompactionKind};
 use crate::scene::grains::GrainShape;
 use crate::scene::units::vector;
@@ -278,11 +278,14 @@ fn squeeze(scene: &Table<Scene>, c: &Table<Compaction>, walls: &WallsPart) -> Re
     Ok(Press::Squeeze { plane, velocity: normal * speed, porosity, max_travel })
 }
 
-/// Number of a plane among the planes, from its number among the walls.
+/// Number of a plane among the plain ones, from its number among the walls.
 fn plane(scene: &Table<Scene>, c: &Table<Compaction>, key: &str, wall: usize) -> Result<usize, SceneError> {
-    let is_plane = |w: &&crate::scene::walls::Wall| w.kind == WallKind::Plane;
-    if scene.walls.get(wall).as_ref().is_some_and(is_plane) {
-        return Ok(scene.walls[..wall].iter().filter(is_plane).count());
+    match scene.walls.get(wall) {
+        Some(it) if is_plain(it) => Ok(scene.walls[..wall].iter().filter(|w| is_plain(w)).count()),
+        Some(it) if it.kind == WallKind::Plane => {
+            let expected = "a plane without `servo`, `body`, `oscillation`, `angular_velocity` and `record`";
+            Err(c.error(key, format!("{wall}, a plane that is more"), expected))
+        }
+        _ => Err(c.error(key, wall.to_string(), "the number of a plane in [[walls]], counted from 0")),
     }
-    Err(c.error(key, wall.to_string(), "the number of a plane in [[walls]], counted from 0"))
 }

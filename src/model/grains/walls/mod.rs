@@ -9,7 +9,7 @@ use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{Scene, Table};
 use motion::{body, motion, servo};
 use shape::shape;
-use trackbed_dem::{Plane, Vec3, WallInput, WallShape};
+use trackbed_dem::{Plane, WallInput, WallShape};
 
 /// The walls of a scene.
 #[derive(Clone, Default)]
@@ -65,6 +65,17 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
     Ok(part)
 }
 
+/// Whether a wall is a plane that stands still or moves at its velocity, and nothing more: sleepers touch these, and compaction moves
+/// them. They are numbered by themselves.
+pub(super) fn is_plain(wall: &Wall) -> bool {
+    wall.kind == WallKind::Plane
+        && wall.angular_velocity.is_none_or(|turn| turn.iter().all(|w| w.si == 0.0))
+        && wall.oscillation.is_none()
+        && wall.servo.is_none()
+        && wall.body.is_none()
+        && !wall.record
+}
+
 /// Adds wall `index`.
 fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) -> Result<(), Failure> {
     let present = |k: &str| match k {
@@ -90,12 +101,7 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
     if wall.record && part.recorded.iter().any(|r| r.name == name) {
         return Err(wall.error("name", format!("\"{name}\""), "a name of its own").into());
     }
-    let plain = motion.angular_velocity == Vec3::zeros()
-        && motion.oscillation.is_none()
-        && wall.servo.is_none()
-        && wall.body.is_none()
-        && !wall.record;
-    if let (WallShape::Plane { point, normal }, true) = (&shape, plain) {
+    if let (WallShape::Plane { point, normal }, true) = (&shape, is_plain(wall)) {
         part.planes.push(Plane { point: *point, normal: *normal, material, velocity: motion.velocity });
         return Ok(());
     }
