@@ -269,6 +269,25 @@ fn bonded_stones() {
     }
 }
 
+/// From one look at the limit to the next the step grows by a quarter at most.
+#[test]
+fn steps_grow_by_a_quarter_at_most() {
+    let model = Model::new(bed(balls(), same, stone(), 0.02)).expect("a good input");
+    let mut state = State::new(&model);
+    let mut work = Work::new(&model, &state);
+    let mut grown = 0;
+    while state.time < 0.2 {
+        let before = state.dt();
+        if stability::follow(&model, &mut state) {
+            let factor = state.dt() / before;
+            assert!(factor <= 1.25 * (1.0 + 1e-12), "from {before:e} s by {factor} at {} s", state.time);
+            grown += usize::from(factor > 1.05);
+        }
+        trackbed_dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a good step");
+    }
+    assert!(grown >= 3, "{grown}");
+}
+
 /// Momentum balances to rounding and the energy account as well as with steps of one length when the length changes often.
 #[test]
 fn steps_of_changing_length() {
