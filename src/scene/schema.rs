@@ -18,6 +18,10 @@ pub fn schema() -> Value {
         "type": "array",
         "items": { "type": "string" },
     });
+    // What a file that is taken in has, a material of the same name need not have.
+    let required = std::mem::replace(&mut schema["$defs"]["GrainMaterial"]["required"], json!(["name"]));
+    schema["if"] = json!({ "not": { "required": [include::KEY] } });
+    schema["then"] = json!({ "properties": { "material": { "items": { "required": required } } } });
     schema
 }
 

@@ -299,6 +299,17 @@ fn vibration_of_a_wall_that_is_not_there() {
 }
 
 #[test]
+fn vibration_of_a_plane_that_is_recorded() {
+    grains_scene()
+        .scene("[[walls]]\n", "[[walls]]\nrecord = true\n")
+        .scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nwalls = [0]"))
+        .refused(
+            "scene.toml:29: compaction.0.walls: found 0, a plane that is more, expected a plane without `servo`, `body`, \
+             `oscillation`, `angular_velocity` and `record`",
+        );
+}
+
+#[test]
 fn vibration_without_an_amplitude() {
     grains_scene()
         .scene("[time]", &VIBRATION.replace("amplitude = 0.001\n", ""))
