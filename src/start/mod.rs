@@ -66,7 +66,21 @@ pub const TEMPLATES: &[Template] = &[
         "ballast stones in a box, a plate loaded in cycles",
         "ballast",
         "box.toml",
-        ["../data/clumps.toml", "../data/gradations.csv"]
+        ["granite.toml", "../data/clumps_six.toml", "../data/gradations.csv"]
+    ),
+    template!(
+        "bay",
+        "a sleeper bay at full scale with a free shoulder, half of the track",
+        "track/bay",
+        "scene.toml",
+        [
+            "../../ballast/granite.toml",
+            "../../data/clumps_six.toml",
+            "../../data/gradations.csv",
+            "NODECOORD.DAT",
+            "ELEMENTNUM.DAT",
+            "DOF.DAT"
+        ]
     ),
     template!(
         "shear",
@@ -157,7 +171,7 @@ pub fn make(name: &str, folder: &Path) -> Result<PathBuf, Failure> {
 
 /// The templates, a line each.
 pub fn list() -> String {
-    TEMPLATES.iter().map(|t| format!("{:<10}{}\n", t.name, t.about)).collect()
+    TEMPLATES.iter().map(|t| format!("{:<18}{}\n", t.name, t.about)).collect()
 }
 
 #[cfg(test)]

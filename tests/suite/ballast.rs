@@ -387,14 +387,18 @@ box = [[0.0, 0.0, 0.0], [0.25, 0.25, 2.0]]
 }
 
 #[test]
-#[ignore = "the box test of the guide, 500 cycles, 5 min"]
-fn the_box_test_settles_by_the_logarithm() {
+#[ignore = "the box test of the guide, 100 cycles, 3 min"]
+fn the_box_test_settles_as_measured() {
     let folder = Folder::new("box");
     let scene = repository().join("inputs/ballast/box.toml");
-    run(&scene, &folder.join("out"), &["track.load.cycles=500", "output.vtk=false"]).good();
-    let summary = json(&folder.join("out/summary.json"));
-    let fit = &summary["settlement"]["fits"][0];
-    assert!(fit["r2"].as_f64().unwrap() > 0.95, "{fit}");
-    let c = fit["parameters"][1][1].as_f64().unwrap();
-    assert!((0.15..=0.6).contains(&c), "{fit}");
+    run(&scene, &folder.join("out"), &["output.vtk=false"]).good();
+    let cycles = Table::read(&folder.join("out/cycles.csv"));
+    let settlement = cycles.column("settlement");
+    let (tenth, last) = (settlement[9], settlement[99]);
+    assert!((5e-3..=20e-3).contains(&last), "{last}");
+    // Large cyclic triaxials: 0.20 to 0.40 over N = 10 to 100; other packings of the box scatter beyond.
+    let exponent = (last / tenth).log10();
+    assert!((0.1..=0.5).contains(&exponent), "{exponent}");
+    let moduli = &cycles.column("resilient_modulus")[50..];
+    assert!(moduli.iter().all(|m| (30e6..=300e6).contains(m)), "{moduli:?}");
 }

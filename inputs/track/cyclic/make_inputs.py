@@ -182,7 +182,8 @@ def shape_gradients(xi):
     return g
 
 
-def make_mesh():
+def grid():
+    """Points, numbered from 1, and elements (material, their 20 nodes) of the slice."""
     levels = SUBGRADE + EMBANKMENT[1:]
     lines = [column_lines(z) for z in levels]
     ys = np.linspace(0.0, LENGTH, NY + 1)
@@ -208,12 +209,20 @@ def make_mesh():
     elements = [(material, [number[n] for n in names]) for material, names in elements]
 
     check(points, elements)
+    return points, elements
+
+
+def write_mesh(folder, points, elements, sides):
+    """The three lists; the base is fixed, planes across x at `sides` and the ends of the slice are planes of symmetry."""
     x, y, z = points.T
     fixed = []
     for i in range(len(points)):
         base = z[i] == SUBGRADE[0]
-        held = [base or abs(x[i]) == HALF_WIDTH, base or y[i] in (0.0, ys[-1]), base]
+        held = [base or x[i] in sides, base or y[i] in (0.0, LENGTH), base]
         fixed += [(i + 1, k + 1) for k in range(3) if held[k]]
+
+    def write(name, lines):
+        (folder / name).write_text("\n".join(lines) + "\n")
 
     write("NODECOORD.DAT", ("%8d%22.13e%22.13e%22.13e" % (i + 1, *p) for i, p in enumerate(points)))
     write("ELEMENTNUM.DAT", ("%8d%5d" % (i + 1, m) + "%8d" * 20 % tuple(n) for i, (m, n) in enumerate(elements)))
@@ -262,10 +271,6 @@ def face_loop(p):
     return p[np.argsort(np.arctan2(q @ axes[1], q @ axes[0]))]
 
 
-def write(name, lines):
-    (HERE / name).write_text("\n".join(lines) + "\n")
-
-
 if __name__ == "__main__":
-    make_mesh()
+    write_mesh(HERE, *grid(), (-HALF_WIDTH, HALF_WIDTH))
     make_stones()
