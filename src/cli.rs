@@ -32,8 +32,21 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// As `check`, with the stages, the loops, the memory per sphere and, from a short probe, the time a run may take.
-    Explain(CheckArgs),
+    /// As `check`, with the stages, the loops, the memory per sphere and, from a short rehearsal, the time that a run will take.
+    Explain {
+        /// The scene.
+        #[command(flatten)]
+        args: CheckArgs,
+        /// Threads that the run will have; default: all cores.
+        #[arg(long)]
+        threads: Option<usize>,
+        /// Longest time of the rehearsal [s]; 0: none, and no estimate of the time.
+        #[arg(long, value_name = "SECONDS", default_value_t = 3.0)]
+        rehearse: f64,
+        /// Print JSON, for programs.
+        #[arg(long)]
+        json: bool,
+    },
     /// Run variations of a scene, and compare error and cost of each: the trade of speed against accuracy.
     Study(StudyArgs),
     /// Make one page (HTML) with tables and plots of the results of one run, or of several beside each other.

@@ -27,8 +27,11 @@ use output::print;
 pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
-        Command::Explain(args) => {
-            print(&explain::explain(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?)
+        Command::Explain { args, threads, rehearse, json } => {
+            let memory = memory(args.memory.as_deref())?;
+            let how = explain::How { memory, strict: args.strict, threads, rehearse };
+            let report = explain::explain(&args.scene, &args.set, &how)?;
+            print(&if json { report.json() } else { report.text() })
         }
         Command::Check { args, json } => {
             let report = check::check(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?;

@@ -6,6 +6,7 @@ use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
 use crate::model::{self, Job};
 use crate::plausible;
+use crate::run::estimate::Estimate;
 use crate::run::{self, stages};
 use crate::scene::Document;
 use serde_json::{Value, json};
@@ -31,6 +32,21 @@ impl Report {
         all["title"] = json!(self.title);
         all["lines"] = json!(self.lines);
         format!("{all:#}\n")
+    }
+
+    /// Adds a line.
+    pub(super) fn add(&mut self, line: String) {
+        self.lines.push(line);
+    }
+
+    /// Adds how long a run will take.
+    pub(super) fn estimate(&mut self, estimate: &Estimate) {
+        self.lines.push(estimate.line());
+        self.numbers["time"] = json!({
+            "threads": estimate.threads,
+            "seconds": estimate.seconds(),
+            "stages": estimate.stages,
+        });
     }
 }
 

@@ -1,58 +1,71 @@
 //! `trackbed explain`: the report of `check`, and which stages a run will go through, with which loops, how much memory, and
 //! how long it may take on this machine.
 
-use super::check;
+use super::check::{self, Report};
 use crate::failure::Failure;
-use crate::model::Job;
 use crate::model::grains::{GrainsPart, refused};
-use crate::run::size;
-use crate::run::stages::{self, GrainTime, Stage};
+use crate::run::estimate::Estimate;
+use crate::run::stages::{self, Stage};
+use crate::run::{self, size};
 use std::error::Error;
-use std::fmt::Write;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use trackbed_dem as dem;
 
 /// Spheres along a side of the probe.
 const SIDE: usize = 16;
 /// Steps that are timed.
 const STEPS: u32 = 200;
-/// Mean step of beds over the first one where steps follow the contacts: 1.5 to 6 (guide, "Step limit").
-const GROWTH: f64 = 4.0;
-/// What a clump costs, in spheres, per member: ten-sphere clumps cost 3.4 spheres (guide, speed).
-const MEMBER: f64 = 0.34;
+/// Longest rehearsal [s].
+const LONGEST: f64 = 3600.0;
 
-/// The text of `check`, and what a run will do and cost.
+/// How a scene is explained.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct How {
+    /// Most memory that a solid may need [bytes].
+    pub memory: Option<u64>,
+    /// Refuse values that are not plausible.
+    pub strict: bool,
+    /// Threads that the run will have; none: all cores.
+    pub threads: Option<usize>,
+    /// Longest time of the rehearsal [s]; 0: none.
+    pub rehearse: f64,
+}
+
+/// The report of `check`, and what a run will do and cost.
 ///
 /// # Errors
 /// The same bad input that a run would refuse.
-pub fn explain(scene: &Path, set: &[String], memory: Option<u64>, strict: bool) -> Result<String, Failure> {
+pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failure> {
+    if !(0.0..=LONGEST).contains(&how.rehearse) {
+        let found = how.rehearse;
+        return Err(Failure::Input(format!("--rehearse: found {found}, expected 0 to {LONGEST:.0} seconds")));
+    }
     let (document, job) = check::read(scene, set)?;
-    let mut text = check::report(&document, &job, memory, strict)?.text();
-    let mut line = |t: String| writeln!(text, "  {t}").expect("writing to a string does not fail");
+    let mut report = check::report(&document, &job, how.memory, how.strict)?;
     let names: Vec<_> = stages::of(&job).filter_map(Stage::name).collect();
-    line(format!("stages: {}", names.join(", ")));
+    report.add(format!("stages: {}", names.join(", ")));
     if let Some(grains) = &job.grains {
         let model = dem::Model::new(grains.input(grains.groups.bodies.clone()))
             .map_err(|e| refused(&document, &e))?;
-        line(format!("contact loop: {}", dem::measure::kernels(&model)));
+        report.add(format!("contact loop: {}", dem::measure::kernels(&model)));
         match Probe::run(grains, &model) {
-            Ok(probe) => probe.report(&job, &model).into_iter().for_each(line),
-            Err(error) => {
-                line(format!("no estimate of memory and time: a probe of the grains fails: {error}"))
-            }
+            Ok(probe) => report.add(probe.line(&model)),
+            Err(error) => report.add(format!("no estimate of memory: a probe of the grains fails: {error}")),
         }
     }
-    Ok(text)
+    if how.rehearse > 0.0 {
+        let pool = run::thread_pool(how.threads)?;
+        let budget = Duration::from_secs_f64(how.rehearse);
+        match pool.install(|| Estimate::of(scene, set, &job, how.threads, budget)) {
+            Ok(estimate) => report.estimate(&estimate),
+            Err(failure) => report.add(format!("no estimate of the time: the rehearsal ended: {failure}")),
+        }
+    }
+    Ok(report)
 }
 
-/// How many spheres' worth of work a step of all bodies is.
-fn share(model: &dem::Model) -> f64 {
-    let cost = |n: usize| if n <= 1 { 1.0 } else { MEMBER * n as f64 };
-    (0..model.body_count()).map(|b| cost(model.members(b).len())).sum()
-}
-
-/// A small bed with the scene's law, timed.
+/// A small bed with the scene's law.
 struct Probe {
     /// Seconds of one step of one sphere.
     seconds: f64,
@@ -61,33 +74,16 @@ struct Probe {
 }
 
 impl Probe {
-    /// Memory and time of a run.
-    fn report(&self, job: &Job, model: &dem::Model) -> [String; 2] {
-        let memory = format!(
-            "memory of a packed bed: {:.0} B per sphere and contacts, {} in all, constants and results apart",
+    /// Memory and speed.
+    fn line(&self, model: &dem::Model) -> String {
+        format!(
+            "packed bed: {:.0} B per sphere and contacts, {} in all, constants and results apart; {:.1} M sphere-steps/s on one \
+             core, by a probe of {} spheres",
             self.bytes,
-            size((self.bytes * model.sphere_count() as f64) as u64)
-        );
-        let step = match model.measured() {
-            None => model.dt(),
-            Some(_) => (GROWTH * model.dt()).min(model.longest(true)),
-        };
-        let time = |simulated: f64| duration(simulated / step * self.seconds * share(model));
-        let times = stages::of(job).rev().filter_map(|stage| {
-            let name = stage.name()?;
-            Some(match stage.grain_time(job)? {
-                GrainTime::Exactly(simulated) => format!("{name} {}", time(simulated)),
-                GrainTime::AtMost(simulated) => format!("{name} at most {}", time(simulated)),
-            })
-        });
-        let times: Vec<String> = times.collect();
-        let time = format!(
-            "time of the grains on one core, from {:.1} M sphere-steps/s of a probe of {} spheres: {}",
+            size((self.bytes * model.sphere_count() as f64) as u64),
             1e-6 / self.seconds,
             SIDE.pow(3),
-            times.join(", ")
-        );
-        [memory, time]
+        )
     }
 
     /// Spheres of the scene's mean size on a simple cubic lattice, each pressed against six: about the contacts of a
@@ -134,16 +130,5 @@ impl Probe {
         };
         let bytes = dem::measure::bytes(&state, &work) as f64 / count;
         Ok(Probe { seconds: elapsed / (f64::from(STEPS) * count), bytes })
-    }
-}
-
-/// A time for people.
-fn duration(seconds: f64) -> String {
-    if seconds < 100.0 {
-        format!("{seconds:.1} s")
-    } else if seconds < 6000.0 {
-        format!("{:.0} min", seconds / 60.0)
-    } else {
-        format!("{:.1} h", seconds / 3600.0)
     }
 }

@@ -6,8 +6,8 @@ use crate::message;
 use std::cell::{Cell, RefCell};
 use std::io;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time between two looks at a request from outside.
@@ -25,7 +25,15 @@ pub struct Interrupt {
     acknowledged: Arc<AtomicBool>,
     /// Steps after which the run stops by itself.
     steps: Option<u64>,
+    /// Where the run was when, if that is wanted.
+    trace: Option<Trace>,
 }
+
+/// Moments of a run and when it was there by the clock, some 20 ms apart.
+pub(crate) type Trace = Arc<Mutex<Vec<(Instant, Moment)>>>;
+
+/// Time between two moments of a trace.
+const TRACE: Duration = Duration::from_millis(20);
 
 impl Interrupt {
     /// A request that comes with Ctrl-C (SIGINT), SIGTERM, or SIGHUP, of a terminal that is closed, unless it is ignored as
@@ -87,6 +95,17 @@ impl Interrupt {
     /// Whether a signal has come.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+
+    /// None until [`Interrupt::request`]; and a trace of the run.
+    pub(crate) fn traced() -> (Interrupt, Trace) {
+        let trace = Trace::default();
+        (Interrupt { trace: Some(trace.clone()), ..Interrupt::default() }, trace)
+    }
+
+    /// Makes the request.
+    pub(crate) fn request(&self) {
+        self.stop.store(true, Ordering::Relaxed);
     }
 
     /// A request that comes of itself after so many steps of the program, in whatever stages they are.
@@ -174,7 +193,16 @@ impl CheckpointStore {
             self.save(moment, fill)?;
             return Err(Failure::Interrupted(format!("interrupted: {place}; go on with: {}", self.command)));
         }
-        if self.due() { self.save(moment(), fill) } else { Ok(()) }
+        let due = self.due();
+        // A run that is traced is thrown away: it needs no checkpoint but the one at its end.
+        if let Some(trace) = &self.interrupt.trace {
+            let mut trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
+            if trace.last().is_none_or(|(then, _)| self.looked.get() - *then > TRACE) {
+                trace.push((self.looked.get(), moment()));
+            }
+            return Ok(());
+        }
+        if due { self.save(moment(), fill) } else { Ok(()) }
     }
 
     /// After a step of a stage that only starts again from its beginning, where a checkpoint was written.

@@ -6,6 +6,7 @@ mod checkpoint;
 mod checkpoint_store;
 mod context;
 mod energy_watch;
+pub mod estimate;
 mod flow;
 mod folder;
 mod frames;

@@ -6,6 +6,7 @@ use super::support::{
 };
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 #[test]
 fn help_names_every_command_and_option() {
@@ -23,7 +24,7 @@ fn help_names_every_command_and_option() {
     }
 }
 
-/// `explain` reports what `check` reports, then the stages, the loops, the memory and the time of the grains.
+/// `explain` reports what `check` reports, then the stages, the loops, the memory and the time of the run.
 #[test]
 fn explain_reports_more_than_check() {
     let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
@@ -103,14 +104,17 @@ fn inputs() -> Vec<PathBuf> {
     found
 }
 
-/// Every shipped scene has a list of stages, and one with grains an estimate of their time.
+/// Every shipped scene has a list of stages and an estimate of its time, and one with grains a probe of their speed.
 #[test]
 fn explain_reports_every_scene_that_is_shipped() {
     let scenes = inputs();
     assert!(scenes.len() >= 35, "{scenes:?}");
     for scene in scenes {
-        let explained = trackbed([Path::new("explain"), &scene]).good().stdout;
+        let words = [Path::new("explain"), &scene, Path::new("--rehearse"), Path::new("0.1")];
+        let explained = trackbed(words).good().stdout;
         assert!(explained.contains("\n  stages: "), "{scene:?}: {explained}");
+        assert!(explained.contains(", by a rehearsal: "), "{scene:?}: {explained}");
+        assert!(!explained.contains("NaN") && !explained.contains("inf "), "{scene:?}: {explained}");
         assert_eq!(
             explained.contains("\n  grains: "),
             explained.contains("M sphere-steps/s"),
@@ -125,10 +129,50 @@ fn explain_survives_materials_beyond_reason() {
     let scene = repository().join("inputs/grains/column.toml").display().to_string();
     for stiffness in ["1e-300", "1e300"] {
         let set = format!("material.0.stiffness={stiffness}");
-        let outcome = trackbed(["explain", &scene, "--set", &set]);
+        let outcome = trackbed(["explain", &scene, "--set", &set, "--rehearse", "0.2"]);
         assert!(!outcome.stderr.contains("panicked"), "{outcome:?}");
         assert!(outcome.code == 2 || outcome.stdout.contains("stages: "), "{outcome:?}");
     }
+}
+
+/// A run that is over within the rehearsal is timed whole, and nothing is left of it; without a rehearsal there is no time.
+#[test]
+fn a_short_run_is_rehearsed_whole() {
+    let scene = repository().join("inputs/verify/bounce.toml").display().to_string();
+    let folder = Folder::new("rehearsed");
+    let explain = |more: &[&str]| -> serde_json::Value {
+        let words = ["explain", &scene, "--json", "--threads", "1"].into_iter().chain(more.iter().copied());
+        let words: Vec<&str> = words.collect();
+        let program = env!("CARGO_BIN_EXE_trackbed");
+        let outcome = Command::new(program).args(&words).env("TMPDIR", folder.path()).output().unwrap();
+        serde_json::from_slice(&outcome.stdout).unwrap()
+    };
+    let time = &explain(&["--rehearse", "60"])["time"];
+    assert_eq!(time["threads"], 1);
+    let stages = time["stages"].as_array().unwrap();
+    assert!(stages.iter().all(|s| s["known"] == "measured"), "{time}");
+    assert_eq!(stages.last().unwrap()["name"], "run");
+    let sum: f64 = stages.iter().map(|s| s["seconds"].as_f64().unwrap()).sum();
+    assert!(sum > 0.0 && (time["seconds"].as_f64().unwrap() - sum).abs() < 1e-9 * sum, "{time}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "the folder of the rehearsal is removed");
+    assert!(explain(&["--rehearse", "0"]).get("time").is_none());
+    let refused = trackbed(["explain", &scene, "--rehearse=-1"]);
+    assert!(
+        refused.code == 2 && refused.stderr.contains("--rehearse: found -1, expected 0 to"),
+        "{refused:?}"
+    );
+}
+
+/// Of a run that is longer than its rehearsal the time is expected.
+#[test]
+fn a_long_run_is_estimated_from_its_beginning() {
+    let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
+    let words =
+        ["explain", &scene, "--json", "--threads", "1", "--rehearse", "0.2", "--set", "time.end=1000"];
+    let report: serde_json::Value = serde_json::from_str(&trackbed(words).good().stdout).unwrap();
+    let last = report["time"]["stages"].as_array().unwrap().last().unwrap();
+    assert_eq!((last["name"].as_str(), last["known"].as_str()), (Some("run"), Some("expected")), "{report}");
+    assert!(last["seconds"].as_f64().unwrap() > 1.0, "{report}");
 }
 
 #[test]

@@ -35,6 +35,14 @@ pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
     Ok((header.origin, loaded, hash.hex()))
 }
 
+/// The latest good checkpoint of whatever run in a folder of results; none where there is none.
+pub fn latest(results: &Path) -> Option<Loaded> {
+    let bytes =
+        SLOTS.iter().filter_map(|slot| source::bytes(&results.join(FOLDER).join(slot), source::LARGEST).ok());
+    let read = bytes.filter_map(|bytes| form::read(bytes).ok());
+    read.max_by_key(|(header, _)| header.number).map(|(_, loaded)| loaded)
+}
+
 /// The folder of the checkpoints of a run.
 pub struct Slots {
     dir: PathBuf,

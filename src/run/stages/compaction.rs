@@ -30,7 +30,7 @@ struct Pressed<'a> {
 }
 
 /// Longest simulated time of one press with the rests that follow it [s].
-fn longest(plan: &CompactionPlan) -> f64 {
+pub fn longest(plan: &CompactionPlan) -> f64 {
     let rest = plan.rest.max_time;
     match &plan.press {
         Press::Vibration { frequency, cycles, .. } => f64::from(*cycles) / frequency + rest,

@@ -18,7 +18,8 @@ mod statics;
 mod strength_reduction;
 mod time_loop;
 
-pub use stage::{GrainTime, RUN, RunState, Stage};
+pub use compaction::longest;
+pub use stage::{GrainTime, RUN, RunState, Stage, reached};
 
 use crate::model::Job;
 use crate::model::grains::{self, GrainsPart, Preview};

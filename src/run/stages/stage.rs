@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
 use crate::run::bed::Bed;
-use crate::run::checkpoint::{Loaded, Moment};
+use crate::run::checkpoint::{self, Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::from::END;
 use crate::run::packing::{CompactionRecord, GrowthRecord};
@@ -12,6 +12,7 @@ use crate::run::sources;
 use crate::run::summary::{StageRecord, Summary};
 use crate::run::system::CoupledSystem;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
@@ -126,6 +127,19 @@ struct Packing {
     /// The grains that are to settle.
     bodies: Vec<BodyInput>,
     bed: Settled,
+}
+
+/// How far the run came whose checkpoint is in the folder `dir`: the stages of packing that it finished, and the time that the
+/// main loop had reached [s], if that had begun.
+pub fn reached(dir: &Path, job: &Job) -> (Vec<StageRecord>, Option<f64>) {
+    let Some(mut loaded) = checkpoint::latest(dir) else { return Default::default() };
+    let time = loaded.moment.time;
+    match loaded.moment.stage.as_str() {
+        RUN if !is_packed(job) => (Vec::new(), Some(time)),
+        RUN => (loaded.take().map_or_else(|_| Vec::new(), |bed: Settled| bed.stages), Some(time)),
+        SETTLED => (loaded.take().map_or_else(|_| Vec::new(), |bed: Settled| bed.stages), None),
+        _ => (loaded.take().map_or_else(|_| Vec::new(), |packing: Packing| packing.bed.stages), None),
+    }
 }
 
 /// The grains on their way to the main loop.

@@ -1,0 +1,189 @@
+//! A column of the bed: some of the grains of a scene, as high as all of them, settle between smooth planes. It shows how long the
+//! bed takes to come to rest, which steps it allows, and what a step costs.
+
+use crate::model::grains::{DepositionPlan, GrainsPart};
+use crate::run::bed::rms_speed;
+use std::error::Error;
+use std::time::{Duration, Instant};
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::{BackEnd, BodyInput, Material, ModelInput, Plane, Shape, Vec3};
+
+/// Spheres that a column has, if the scene has as many.
+const SPHERES: usize = 2000;
+/// Time between two looks at the speed [s].
+const LOOK: f64 = 1e-3;
+/// Simulated time before slowness counts as rest [s].
+const START: f64 = 0.05;
+/// Simulated time that the settled bed is followed with the contacts of the run proper [s].
+const AT_REST: f64 = 0.1;
+/// Steps between two looks at the clock.
+const STRIDE: u32 = 50;
+
+/// What a column of a bed did.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Spheres of the scene for each of the column.
+    pub share: f64,
+    /// Time until it lay at rest [s]; what was simulated of it where the clock ran out.
+    pub rest: f64,
+    /// Whether it came to rest.
+    pub rested: bool,
+    /// Seconds by the clock that it took, on one thread.
+    pub seconds: f64,
+    /// Seconds by the clock of a simulated second of the settled bed with the contacts of the run proper, on one thread.
+    pub pace: f64,
+    /// The same from its beginning on, where steps are short.
+    pub first: f64,
+}
+
+impl Column {
+    /// Lets a column of the bed settle, if the scene lets its bed do so, for about `budget` by the clock.
+    ///
+    /// # Errors
+    /// Contacts for which no step can be made.
+    pub fn settle(
+        grains: &GrainsPart,
+        plan: Option<&DepositionPlan>,
+        surface: Option<&SolidSurface>,
+        budget: Duration,
+    ) -> Result<Column, Box<dyn Error>> {
+        let bodies = || grains.groups.bodies.clone();
+        let mut input = plan.map_or_else(|| grains.input(bodies()), |plan| grains.deposition_input(plan));
+        let spheres = |bodies: &[BodyInput]| -> usize {
+            bodies.iter().filter(|b| !b.absent).map(|b| members(&grains.groups.shapes[b.shape])).sum()
+        };
+        let all = spheres(&input.bodies);
+        // Bonds name bodies of the whole bed.
+        let whole = !grains.bonds.is_empty();
+        let (bodies, planes) = if whole { (bodies(), Vec::new()) } else { cut(&input, all) };
+        let share = all as f64 / spheres(&bodies).max(1) as f64;
+        input.bodies.clone_from(&bodies);
+        input.planes.extend(planes.iter().copied());
+        smooth(&mut input, planes.len());
+        let model = dem::Model::new(input)?;
+        let (mut state, begun) = (dem::State::new(&model), Instant::now());
+        let mut work = dem::Work::new(&model, &state);
+        let mut rested = false;
+        let mut looked = 0.0;
+        let longest = plan.map_or(0.0, |plan| plan.max_time);
+        while !rested && state.time < longest && begun.elapsed() < budget {
+            step(&model, &mut state, &mut work, surface)?;
+            if state.time >= looked + LOOK {
+                looked = state.time;
+                let settled = |plan: &DepositionPlan| plan.settled(rms_speed(&model, &state), &model, &state);
+                rested = state.time > START && plan.is_some_and(settled);
+            }
+        }
+        let (seconds, rest) = (begun.elapsed().as_secs_f64(), state.time);
+        rested |= rest >= longest;
+        let place = |(b, input): (usize, BodyInput)| BodyInput {
+            position: state.position(b),
+            orientation: state.orientation(&model, b),
+            ..input
+        };
+        let level = plan.and_then(|plan| plan.level).unwrap_or(f64::INFINITY);
+        let below = |b: &BodyInput| whole || b.position.z <= level;
+        let bodies = bodies.into_iter().enumerate().map(place).filter(below).collect();
+        let mut input = ModelInput { body_forces: Vec::new(), other_surface: None, ..grains.input(bodies) };
+        input.planes.extend(planes.iter().copied());
+        smooth(&mut input, planes.len());
+        // A bed that was cut out, or has not settled in time, may not be where the walls of the run proper leave room: it costs what it did
+        // before.
+        let so_far = seconds / rest.max(f64::MIN_POSITIVE);
+        let (pace, first) = match paces(input, surface, budget) {
+            Err(_) if plan.is_some() => (so_far, so_far),
+            paces => paces?,
+        };
+        Ok(Column { share, rest, rested, seconds, pace, first })
+    }
+}
+
+/// Spheres of a shape.
+fn members(shape: &Shape) -> usize {
+    if let Shape::Clump(clump) = shape { clump.spheres.len() } else { 1 }
+}
+
+/// The grains that lie within a square about the middle of all in plan, and the planes around it; all, and none, where there are
+/// few.
+fn cut(input: &ModelInput, all: usize) -> (Vec<BodyInput>, Vec<Plane>) {
+    let there: Vec<&BodyInput> = input.bodies.iter().filter(|b| !b.absent).collect();
+    if all <= SPHERES {
+        return (there.into_iter().cloned().collect(), Vec::new());
+    }
+    let reach = |b: &BodyInput| {
+        b.scale
+            * match &input.shapes[b.shape] {
+                Shape::Sphere { radius } => *radius,
+                Shape::Clump(clump) => clump.bounding_radius(),
+                Shape::Box { half } => Vec3::from(*half).norm(),
+            }
+    };
+    let ends = |d: usize| {
+        let x = there.iter().map(|b| b.position[d]);
+        x.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    };
+    let ends = [ends(0), ends(1)];
+    let middle = ends.map(|[low, high]| 0.5 * (low + high));
+    let sides = ends.map(|[low, high]| high - low);
+    // A bed that is narrow one way keeps that width.
+    let area = sides[0] * sides[1] * SPHERES as f64 / all as f64;
+    let narrow = sides[0].min(sides[1]);
+    let largest = there.iter().map(|b| reach(b)).fold(0.0, f64::max);
+    let side = if narrow * narrow < area { area / narrow } else { area.sqrt() } + 2.0 * largest;
+    let within = |b: &&BodyInput| (0..2).all(|d| (b.position[d] - middle[d]).abs() + reach(b) <= 0.5 * side);
+    let bodies = there.iter().copied().filter(within).cloned().collect();
+    let plane = |d: usize, sign: f64| {
+        let (mut point, mut normal) = (Vec3::new(middle[0], middle[1], 0.0), Vec3::zeros());
+        point[d] += sign * 0.5 * side;
+        normal[d] = -sign;
+        Plane { point, normal, material: 0, velocity: Vec3::zeros() }
+    };
+    (bodies, [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(d, sign)| plane(d, sign)).to_vec())
+}
+
+/// Gives the last planes, those around the column, a material of their own without friction.
+fn smooth(input: &mut ModelInput, count: usize) {
+    let of = input.bodies.first().map_or(0, |b| b.material);
+    input.materials.push(Material { friction: 0.0, ..input.materials[of] });
+    let (material, first) = (input.materials.len() - 1, input.planes.len() - count);
+    input.planes[first..].iter_mut().for_each(|plane| plane.material = material);
+}
+
+/// One step of the length that the contacts allow.
+fn step(
+    model: &dem::Model,
+    state: &mut dem::State,
+    work: &mut dem::Work,
+    surface: Option<&SolidSurface>,
+) -> Result<(), dem::StepError> {
+    dem::stability::follow(model, state);
+    match surface {
+        Some(s) => work.step(model, state, s, &[]),
+        None => work.step(model, state, &dem::surface::NoSurface, &[]),
+    }
+}
+
+/// Seconds by the clock of a simulated second of a bed at rest, on one thread: in the end, and on the whole.
+///
+/// # Errors
+/// Contacts for which no step can be made.
+fn paces(
+    input: ModelInput,
+    surface: Option<&SolidSurface>,
+    budget: Duration,
+) -> Result<(f64, f64), Box<dyn Error>> {
+    let model = dem::Model::new(input)?;
+    let (mut state, begun) = (dem::State::new(&model), Instant::now());
+    let mut work = dem::Work::new(&model, &state);
+    let mut looks = vec![(0.0, 0.0)];
+    // With other friction and stiffness than the bed had while it settled it moves again, and steps are short at first.
+    while looks.len() < 2 || (state.time < AT_REST && begun.elapsed() < budget) {
+        for _ in 0..STRIDE {
+            step(&model, &mut state, &mut work, surface)?;
+        }
+        looks.push((state.time, begun.elapsed().as_secs_f64()));
+    }
+    let (middle, end) = (looks[(looks.len() - 1) / 2], looks[looks.len() - 1]);
+    Ok(((end.1 - middle.1) / (end.0 - middle.0), end.1 / end.0))
+}

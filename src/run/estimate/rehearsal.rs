@@ -1,0 +1,114 @@
+//! A rehearsal: the first seconds of a run, carried out in a folder of its own that is thrown away.
+
+use crate::failure::Failure;
+use crate::model::Job;
+use crate::run::checkpoint::Moment;
+use crate::run::stages::{self, RUN};
+use crate::run::{self, Interrupt, Options, Outcome, Verbosity};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{PoisonError, mpsc};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How far a rehearsal came.
+#[derive(Debug, Default)]
+pub struct Rehearsal {
+    /// Stages that it finished: name, seconds by the clock.
+    pub done: Vec<(String, f64)>,
+    /// Whether the run was over in time.
+    pub whole: bool,
+    /// Seconds in the stage that it was stopped in.
+    pub seconds: f64,
+    /// Simulated time that the main loop had reached [s], and seconds by the clock of a simulated second from halfway there on;
+    /// none where it had not begun.
+    pub reached: Option<(f64, f64)>,
+}
+
+/// Runs a scene for at most about `budget` by the clock.
+///
+/// # Errors
+/// What the run itself would end with; a folder for temporary files that cannot be written.
+pub fn rehearse(
+    scene: &Path,
+    set: &[String],
+    job: &Job,
+    threads: Option<usize>,
+    budget: Duration,
+) -> Result<Rehearsal, Failure> {
+    let folder = Folder::new().map_err(|e| Failure::Other(format!("folder for temporary files: {e}")))?;
+    let (interrupt, trace) = Interrupt::traced();
+    let (ended, over) = mpsc::channel::<()>();
+    let watched = interrupt.clone();
+    let timer = thread::spawn(move || {
+        if over.recv_timeout(budget) == Err(mpsc::RecvTimeoutError::Timeout) {
+            watched.request();
+        }
+    });
+    let begun = Instant::now();
+    let options = Options {
+        out: Some(folder.0.clone()),
+        threads,
+        set: set.to_vec(),
+        interrupt,
+        verbosity: Verbosity::Quiet,
+        ..Options::default()
+    };
+    let outcome = run::run(scene, &options);
+    let elapsed = begun.elapsed().as_secs_f64();
+    drop(ended);
+    // It holds nothing that could fail.
+    let _ = timer.join();
+    match outcome {
+        Ok(Outcome::Done(summary)) => {
+            let stages = summary.stages.iter().map(|s| (s.name.clone(), s.seconds));
+            Ok(Rehearsal { done: stages.collect(), whole: true, ..Rehearsal::default() })
+        }
+        Ok(Outcome::WasDone(_)) | Err(Failure::Interrupted(_)) => {
+            let (stages, reached) = stages::reached(&folder.0, job);
+            let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
+            let reached = reached.and_then(|time| Some((time, pace(&trace)?)));
+            let done: Vec<_> = stages.into_iter().map(|s| (s.name, s.seconds)).collect();
+            let before: f64 = done.iter().map(|(_, seconds)| seconds).sum();
+            Ok(Rehearsal { done, whole: false, seconds: (elapsed - before).max(0.0), reached })
+        }
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Seconds by the clock of a simulated second in the second half of a trace's main loop.
+fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
+    let begun = trace.iter().position(|(_, moment)| moment.stage == RUN)?;
+    let (middle, end) = (&trace[(begun + trace.len()) / 2], trace.last()?);
+    let (middle, time) = match end.1.time - middle.1.time {
+        0.0 => (trace.get(begun)?, end.1.time - trace.get(begun)?.1.time),
+        time => (middle, time),
+    };
+    (time > 0.0).then(|| (end.0 - middle.0).as_secs_f64() / time)
+}
+
+/// A new folder for temporary files, removed with all that is in it when it is dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> io::Result<Folder> {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        loop {
+            let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+            let dir = std::env::temp_dir().join(format!("trackbed-{}-{number}", std::process::id()));
+            match std::fs::create_dir(&dir) {
+                // Left by a program of the same number.
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
+                made => return made.map(|()| Folder(dir)),
+            }
+        }
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What cannot be removed is the system's to clear away.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
