@@ -44,17 +44,19 @@ impl ContactClass {
     /// The class in a line.
     pub fn line(&self) -> String {
         let limit = |v: f64| if v < 1e-12 { "0".into() } else { format!("{v:.2}") };
+        // A mesh need not have points of every kind.
+        let mass = |v: f64| if v.is_finite() { format!("{v:.3e}") } else { "none".into() };
         format!(
-            "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {:.3e} kg at a corner, {:.3e} at a side, {:.3e} in the \
-             middle, {:.3e} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}",
+            "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {} kg at a corner, {} at a side, {} in the \
+             middle, {} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}",
             self.grains,
             self.solid,
             self.stiffness,
             self.damping_ratio,
-            self.masses.corner,
-            self.masses.side,
-            self.masses.middle,
-            self.masses.border,
+            mass(self.masses.corner),
+            mass(self.masses.side),
+            mass(self.masses.middle),
+            mass(self.masses.border),
             self.stones[0],
             self.stones[1],
             if self.stones[0] < 0.3 * self.masses.least() {
