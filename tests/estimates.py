@@ -3,7 +3,7 @@
     python3 tests/estimates.py BINARY [--threads N] [--only TEXT] [--most SECONDS]
 
 Runs `explain --json` and then `run` for every scene in inputs/, one after the other, and prints the estimate, the time by the
-clock of all stages, and their ratio. --most: leave out scenes that are estimated to take longer (900 s). --only TEXT (it may be
+clock of all stages, their ratio, and both times stage by stage. --most: leave out scenes that are estimated to take longer (900 s). --only TEXT (it may be
 given again): scenes whose path contains the text. Exit code 1 where a ratio is outside 1/1.5 to 1.5 and more than a second is in
 between. Nothing else should run on the machine meanwhile. Needs Python 3.11 and nothing else.
 """
@@ -64,7 +64,8 @@ def main():
         ratio = time["seconds"] / run if run > 0 else 1.0
         if not 1 / FACTOR <= ratio <= FACTOR and abs(time["seconds"] - run) > FLOOR:
             wrong.append(name)
-        stages = ", ".join(f"{s['name']} {s['seconds']:.1f}" for s in time["stages"])
+        took = {stage["name"]: stage["seconds"] for stage in summary["stages"]}
+        stages = ", ".join(f"{s['name']} {s['seconds']:.1f}/{took.get(s['name'], 0):.1f}" for s in time["stages"])
         print(f"{name:42} {time['seconds']:12.1f} {run:9.1f} {ratio:6.2f}  {', '.join(known)} ({stages})", flush=True)
     print(f"{len(wrong)} off by more than a factor of {FACTOR}: {', '.join(wrong)}" if wrong else "all within the factor")
     return 1 if wrong else 0

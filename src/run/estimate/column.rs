@@ -21,7 +21,7 @@ const AT_REST: f64 = 0.1;
 const STRIDE: u32 = 50;
 
 /// What a column of a bed did.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Column {
     /// Spheres of the scene for each of the column.
     pub share: f64,
@@ -35,6 +35,8 @@ pub struct Column {
     pub pace: f64,
     /// The same from its beginning on, where steps are short.
     pub first: f64,
+    /// Simulated time and seconds by the clock while it settled.
+    course: Vec<[f64; 2]>,
 }
 
 impl Column {
@@ -64,13 +66,14 @@ impl Column {
         let model = dem::Model::new(input)?;
         let (mut state, begun) = (dem::State::new(&model), Instant::now());
         let mut work = dem::Work::new(&model, &state);
-        let mut rested = false;
+        let (mut rested, mut course) = (false, vec![[0.0, 0.0]]);
         let mut looked = 0.0;
         let longest = plan.map_or(0.0, |plan| plan.max_time);
         while !rested && state.time < longest && begun.elapsed() < budget {
             step(&model, &mut state, &mut work, surface)?;
             if state.time >= looked + LOOK {
                 looked = state.time;
+                course.push([looked, begun.elapsed().as_secs_f64()]);
                 let settled = |plan: &DepositionPlan| plan.settled(rms_speed(&model, &state), &model, &state);
                 rested = state.time > START && plan.is_some_and(settled);
             }
@@ -95,7 +98,17 @@ impl Column {
             Err(_) if plan.is_some() => (so_far, so_far),
             paces => paces?,
         };
-        Ok(Column { share, rest, rested, seconds, pace, first })
+        Ok(Column { share, rest, rested, seconds, pace, first, course })
+    }
+
+    /// Seconds by the clock that it took from one simulated time to another [s], on one thread; none where it did not come so far.
+    pub fn between(&self, [from, to]: [f64; 2]) -> Option<f64> {
+        let at = |time: f64| {
+            let k = self.course.partition_point(|c| c[0] < time);
+            let [[t0, s0], [t1, s1]] = [*self.course.get(k.checked_sub(1)?)?, *self.course.get(k)?];
+            Some(s0 + (s1 - s0) * (time - t0) / (t1 - t0))
+        };
+        Some(at(to)? - at(from)?).filter(|seconds| *seconds > 0.0)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::model::Job;
 use crate::model::grains::GrainsPart;
 use crate::model::solid::Analysis;
 use crate::run;
-use crate::run::stages::{RUN, longest};
+use crate::run::stages::{RUN, SETTLING, longest};
 use column::Column;
 use rehearsal::{Rehearsal, rehearse};
 use serde::Serialize;
@@ -145,7 +145,7 @@ fn left(
         (Some(plan), Some(solid)) => Some(plan.ground(solid, grains)),
         _ => None,
     };
-    let deposition = grains.packing.deposition.as_ref().filter(|_| !is_done("settling"));
+    let deposition = grains.packing.deposition.as_ref().filter(|_| !is_done(SETTLING));
     // On one thread: a column is too small to be shared among as many as the bed.
     let settle = || Column::settle(grains, deposition, ground.as_ref(), 2 * budget).ok();
     let Some(column) = run::thread_pool(Some(1))?.install(settle) else {
@@ -153,6 +153,7 @@ fn left(
         return Ok(vec![unknown(RUN.into(), rehearsed.seconds)]);
     };
     let whole = column.share / cores(threads);
+    let whole = whole * beside(&column, rehearsed, whole);
     if let Some(plan) = deposition {
         // Each layer falls on those before it.
         let layers = f64::from(plan.layers);
@@ -164,7 +165,7 @@ fn left(
             true => (Known::Expected, 1.0),
             false => (Known::AtMost, plan.max_time / column.rest.max(plan.max_time * 1e-3)),
         };
-        stages.push(StageTime { name: "settling".into(), seconds: longer * whole * column.seconds, known });
+        stages.push(StageTime { name: SETTLING.into(), seconds: longer * whole * column.seconds, known });
     }
     for (k, plan) in grains.packing.compaction.iter().enumerate() {
         let name = format!("compaction {}: {}", k + 1, plan.press.name());
@@ -178,6 +179,13 @@ fn left(
     }
     stages.push(expected(RUN, seconds));
     Ok(stages)
+}
+
+/// What the settling of the bed took over what the column's makes expect, as far as the rehearsal came: grains of many sizes, and
+/// memory that caches do not hold, cost more in a bed than in a column.
+fn beside(column: &Column, rehearsed: &Rehearsal, whole: f64) -> f64 {
+    let pair = rehearsed.settling.and_then(|(stretch, took)| Some((took, column.between(stretch)?)));
+    pair.map_or(1.0, |(took, seconds)| (took / (whole * seconds)).clamp(0.3, 5.0))
 }
 
 /// How many cores' worth of work some threads do.

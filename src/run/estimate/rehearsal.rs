@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::run::checkpoint::Moment;
-use crate::run::stages::{self, RUN};
+use crate::run::stages::{self, RUN, SETTLING};
 use crate::run::{self, Interrupt, Options, Outcome, Verbosity};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -24,6 +24,8 @@ pub struct Rehearsal {
     /// Simulated time that the main loop had reached [s], and seconds by the clock of a simulated second from halfway there on;
     /// none where it had not begun.
     pub reached: Option<(f64, f64)>,
+    /// A stretch of the settling: from and to [s], and the seconds by the clock that it took; none where there was none.
+    pub settling: Option<([f64; 2], f64)>,
 }
 
 /// Runs a scene for at most about `budget` by the clock.
@@ -71,7 +73,8 @@ pub fn rehearse(
             let reached = reached.and_then(|time| Some((time, pace(&trace)?)));
             let done: Vec<_> = stages.into_iter().map(|s| (s.name, s.seconds)).collect();
             let before: f64 = done.iter().map(|(_, seconds)| seconds).sum();
-            Ok(Rehearsal { done, whole: false, seconds: (elapsed - before).max(0.0), reached })
+            let seconds = (elapsed - before).max(0.0);
+            Ok(Rehearsal { done, whole: false, seconds, reached, settling: settling(&trace) })
         }
         Err(failure) => Err(failure),
     }
@@ -86,6 +89,13 @@ fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
         time => (middle, time),
     };
     (time > 0.0).then(|| (end.0 - middle.0).as_secs_f64() / time)
+}
+
+/// The stretch of the settling that a trace has.
+fn settling(trace: &[(Instant, Moment)]) -> Option<([f64; 2], f64)> {
+    let mut moments = trace.iter().filter(|(_, moment)| moment.stage == SETTLING);
+    let (first, last) = (moments.next()?, moments.next_back()?);
+    Some(([first.1.time, last.1.time], (last.0 - first.0).as_secs_f64()))
 }
 
 /// A new folder for temporary files, removed with all that is in it when it is dropped.

@@ -19,12 +19,11 @@ mod strength_reduction;
 mod time_loop;
 
 pub use compaction::longest;
-pub use stage::{GrainTime, RUN, RunState, Stage, reached};
+pub use stage::{GrainTime, RUN, RunState, SETTLING, Stage, reached};
 
 use crate::model::Job;
 use crate::model::grains::{self, GrainsPart, Preview};
 use crate::scene::{Document, SceneError};
-use stage::SETTLING;
 
 /// All stages, in order.
 static STAGES: [&dyn Stage; 9] = [
