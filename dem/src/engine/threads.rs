@@ -151,7 +151,7 @@ fn run(
 fn runs(count: usize, threads: usize) -> impl Iterator<Item = Range<usize>> {
     let mut at = 0;
     std::iter::from_fn(move || {
-        let size = ((count - at) / (SHARE * threads)).max(1);
+        let size = (count.saturating_sub(at) / (SHARE * threads)).max(1);
         at += size;
         (at <= count).then(|| at - size..at)
     })
