@@ -188,6 +188,10 @@ fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
             radius = half.norm();
             (Kind::Solid, cuboid::inertia(&half))
         }
+        Shape::Polyhedron(it) => {
+            radius = it.bounding_radius();
+            (Kind::Solid, Vec3::from(it.inertia) / it.volume)
+        }
     };
     Class {
         kind,
@@ -208,7 +212,7 @@ pub(crate) fn for_members(shape: &Shape, scale: f64, mut f: impl FnMut(Vec3, f64
     match shape {
         Shape::Sphere { radius } => f(Vec3::zeros(), radius * scale),
         Shape::Clump(clump) => clump.spheres.iter().for_each(|(c, r)| f(Vec3::from(*c) * scale, r * scale)),
-        Shape::Box { .. } => {}
+        Shape::Box { .. } | Shape::Polyhedron(_) => {}
     }
 }
 
@@ -217,6 +221,7 @@ pub(crate) fn volume(shape: &Shape, scale: f64) -> f64 {
         Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
         Shape::Clump(clump) => clump.volume,
         Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
+        Shape::Polyhedron(it) => it.volume,
     };
     unit * scale.powi(3)
 }

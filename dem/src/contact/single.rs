@@ -29,16 +29,18 @@ pub(crate) struct PairForce {
     pub friction: f64,
 }
 
-/// The force between bodies that move as `a` and `b` at the contact point, of the given materials, over a step `dt` [s].
+/// The force between bodies that move as `a` and `b` at the contact point, of the given materials, over a step `dt` [s]. `share`:
+/// contacts of the two that carry their mass together.
 pub(crate) fn between(
     laws: &Laws,
     materials: [u32; 2],
     geometry: &ContactGeometry,
     (a, b): (&PointMotion, &PointMotion),
+    share: f64,
     history: &mut History,
     dt: f64,
 ) -> PairForce {
-    let inverse_mass = a.inverse_mass() + b.inverse_mass();
+    let inverse_mass = (a.inverse_mass() + b.inverse_mass()) * share;
     let (velocity, spin) = (a.at_point() - b.at_point(), a.spin() - b.spin());
     let f = evaluate(laws, materials, inverse_mass, geometry, &velocity, &spin, history, dt);
     PairForce {

@@ -255,6 +255,7 @@ pub(crate) fn now<'a>(model: &'a Model, state: &'a State, members: &'a [Members]
         blocks: Part { first: 0, list: &state.blocks },
         members: Part { first: 0, list: members },
         shapes: &model.shapes,
+        cores: &model.cores,
         planes: (&model.planes, &state.planes),
     }
 }

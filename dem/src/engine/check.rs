@@ -1,8 +1,9 @@
 //! Checks of a model's input: every refusal names what it found.
 
 use super::input::{ModelInput, TimeStep};
+use super::timestep;
 use crate::base::error::ModelError;
-use crate::bodies::table::{Bodies, Kind};
+use crate::bodies::table::{Bodies, Body, Kind};
 use crate::law::{self, Laws};
 use crate::shape::Shape;
 use crate::wall::check::in_range;
@@ -101,6 +102,9 @@ fn shapes(input: &ModelInput) -> Result<(), ModelError> {
             Shape::Box { half } if !half.iter().all(|&h| positive(h)) => {
                 format!("half sides are {half:?}; each must {POSITIVE}")
             }
+            Shape::Polyhedron(it) if !positive(it.radius) || !positive(it.volume) => {
+                "radius and volume of a dilated polyhedron must be positive".to_string()
+            }
             Shape::Clump(c) if c.spheres.is_empty() => "a clump without spheres".to_string(),
             Shape::Clump(c) if c.spheres.len() > 65_535 => {
                 format!("a clump of {} spheres; at most 65535", c.spheres.len())
@@ -137,8 +141,8 @@ fn bodies(input: &ModelInput) -> Result<(), ModelError> {
                 return Err(error(quantity, value, "be finite"));
             }
         }
-        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. }) {
-            return Err(ModelError::Absent { body: index, problem: "it is a box" });
+        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. } | Shape::Polyhedron(_)) {
+            return Err(ModelError::Absent { body: index, problem: "it is not made of spheres" });
         }
         if (b.orientation.norm() - 1.0).abs() > 1e-6 || b.orientation.norm().is_nan() {
             return Err(error("norm of the orientation", b.orientation.norm(), "be 1"));
@@ -264,14 +268,47 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
     Ok(())
 }
 
+/// Refuses what dilated polyhedra cannot be combined with.
+pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Result<(), ModelError> {
+    let is_one = |b: &Body| matches!(input.shapes[b.shape], Shape::Polyhedron(_));
+    let Some(first) = bodies.iter().find(is_one) else { return Ok(()) };
+    let error = |problem: String| Err(ModelError::Shape { shape: first.shape, problem });
+    for (what, there) in [
+        ("surfaces of triangles", !input.triangles.is_empty()),
+        ("walls other than planes", !input.walls.is_empty()),
+        ("an external surface", surfaces(input).next().is_some()),
+        ("bonds", !input.bonds.is_empty()),
+    ] {
+        if there {
+            return error(format!("a dilated polyhedron; {what} cannot be combined with it"));
+        }
+    }
+    let partners = timestep::partners(bodies, input);
+    for body in bodies.iter().filter(is_one) {
+        let grows = |b: &&usize| {
+            let at = |overlap| laws.stiffness(body.material, **b as u32, overlap, 1.0);
+            at(1.0) != at(2.0)
+        };
+        if let Some(b) = partners.iter().find(grows) {
+            return error(format!(
+                "a dilated polyhedron; the stiffness of its material {} with material {b} grows with the overlap, and only linear \
+                 springs can be spread along its edges",
+                body.material
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses what adhesion cannot be combined with.
 pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
     let Some(index) = input.contacts.iter().position(|c| c.adhesion.is_some_and(|w| w > 0.0)) else {
         return Ok(());
     };
     let error = |with| Err(ModelError::Adhesion { index, with });
-    if input.bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Box { .. })) {
-        return error("boxes");
+    if input.bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Box { .. } | Shape::Polyhedron(_)))
+    {
+        return error("boxes and polyhedra");
     }
     if !input.bonds.is_empty() {
         return error("bonds");

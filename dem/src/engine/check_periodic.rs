@@ -21,8 +21,14 @@ pub(crate) fn check(input: &ModelInput, bodies: &Bodies, skin: f64) -> Result<()
             return error(format!("{what} cannot be combined with them"));
         }
     }
-    if let Some(k) = input.bodies.iter().position(|b| matches!(input.shapes[b.shape], Shape::Box { .. })) {
-        return error(format!("body {k} is a box; only spheres and clumps can cross a border"));
+    if let Some(k) = input
+        .bodies
+        .iter()
+        .position(|b| matches!(input.shapes[b.shape], Shape::Box { .. } | Shape::Polyhedron(_)))
+    {
+        return error(format!(
+            "body {k} is a box or a polyhedron; only spheres and clumps can cross a border"
+        ));
     }
     let largest = bodies.iter().map(|b| b.radius).fold(0.0, f64::max);
     let least = 3.0 * (2.0 * largest + skin);

@@ -11,6 +11,7 @@ use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
 use crate::body_force::BodyForce;
 use crate::law::Laws;
 use crate::shape::Shape;
+use crate::shape::dilated::Core;
 use crate::shape::plane::Plane;
 use crate::spatial::periodic::Periodic;
 use crate::wall::{WallInput, set::Walls};
@@ -23,6 +24,8 @@ const BLOCK_SPHERES: usize = 1024;
 pub struct Model {
     pub(crate) bodies: Bodies,
     pub(crate) shapes: Vec<Shape>,
+    /// Faces, edges and corners of each shape.
+    pub(crate) cores: Vec<Core>,
     /// Planes with unit normals.
     pub(crate) planes: Vec<Plane>,
     pub(crate) walls: Walls,
@@ -85,6 +88,7 @@ impl Model {
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Solid).count();
         let skin = input.skin.unwrap_or(0.2 * mean);
         check::adhesion(&input)?;
+        check::polyhedra(&bodies, &input, &laws)?;
         super::check_periodic::check(&input, &bodies, skin)?;
         let periodic = Periodic::new(&input.periodic);
         let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
@@ -113,6 +117,7 @@ impl Model {
             body_materials,
             patch_materials,
             bodies,
+            cores: input.shapes.iter().map(Shape::core).collect(),
             shapes: input.shapes,
             planes,
             walls,
@@ -237,7 +242,7 @@ impl Model {
         match self.shape(body) {
             Shape::Sphere { .. } => 1,
             Shape::Clump(clump) => clump.spheres.len() as u32,
-            Shape::Box { .. } => 0,
+            Shape::Box { .. } | Shape::Polyhedron(_) => 0,
         }
     }
 

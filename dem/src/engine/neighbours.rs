@@ -85,6 +85,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         blocks: Part { first: 0, list: blocks },
         members: Part { first: 0, list: members },
         shapes: &model.shapes,
+        cores: &model.cores,
         planes: (&model.planes, planes),
     };
 

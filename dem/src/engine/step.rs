@@ -82,7 +82,8 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
         if !pairs.kinds.is_empty() {
             let planes = (&model.planes[..], motions);
-            kind::forces(&setting, &Now { blocks, members, shapes: &model.shapes, planes }, b, pairs, out);
+            let (shapes, cores) = (&model.shapes[..], &model.cores[..]);
+            kind::forces(&setting, &Now { blocks, members, shapes, cores, planes }, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
             images::images(periodic, setting.laws, blocks, members, b, pairs, out, dt);

@@ -37,10 +37,12 @@ use super::input::ModelInput;
 use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Body, Kind};
 use crate::bond;
+use crate::contact::kind::LENGTH;
 use crate::law::Laws;
 use crate::law::normal::Expected;
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
+use crate::shape::dilated::Dilated;
 use crate::shape::plane::Plane;
 use crate::wall::set::Walls;
 use std::collections::BTreeSet;
@@ -172,7 +174,15 @@ fn sides(shape: &Shape, scale: f64, smallest: f64, several: bool) -> f64 {
             // Boxes on two opposite sides touch in four points each.
             if several { grains.max(16.0) } else { grains }
         }
+        Shape::Polyhedron(it) => 2.0 * faces(it),
     }
+}
+
+/// Corners' worth of stiffness that act on a dilated polyhedron in one direction: as much as a face with the longest circumference has
+/// on a face of its like, its edges and those of the other one.
+fn faces(it: &Dilated) -> f64 {
+    let corners = it.core.faces.iter().map(|f| f.corners.len()).max().unwrap_or(0) as f64;
+    2.0 * (corners + it.core.circumference() / (LENGTH * it.radius))
 }
 
 /// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.
@@ -234,6 +244,13 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
             for k in 0..3 {
                 let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
                 // Contacts spread over a side have a third of the squared half length along it, all of it across.
+                reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
+            }
+        }
+        Shape::Polyhedron(it) => {
+            let half = it.half_extents();
+            for k in 0..3 {
+                let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
                 reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
             }
         }

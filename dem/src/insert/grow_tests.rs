@@ -29,7 +29,7 @@ fn bodies(
     let (unit, reach) = match shape {
         Shape::Sphere { radius } => (4.0 / 3.0 * PI * radius.powi(3), *radius),
         Shape::Clump(clump) => (clump.volume, clump.bounding_radius()),
-        Shape::Box { .. } => panic!("no boxes"),
+        Shape::Box { .. } | Shape::Polyhedron(_) => panic!("spheres only"),
     };
     let sizes = law.sample(count, 3);
     let solid: f64 = sizes.iter().map(|s| unit * s.powi(3)).sum();

@@ -84,6 +84,8 @@ impl Scene for Snapshot<'_> {
             orientation: block.rotation[k].orientation,
             shape: &self.model.shapes[body.shape],
             scale: body.scale,
+            core: &self.model.cores[body.shape],
+            radius: self.model.shapes[body.shape].rounding(body.scale),
         }
     }
 

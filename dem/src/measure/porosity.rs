@@ -8,9 +8,12 @@
 
 use super::{BoxRegion, sphere_box_volume};
 use crate::base::Vec3;
+use crate::bodies::table::Kind;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::shape::Shape;
+use crate::shape::dilated::Core;
+use crate::shape::dilated::press::{Part, Segment, Target};
 
 /// Columns along one side of a body that the border of a region cuts.
 pub const COLUMNS: usize = 40;
@@ -67,8 +70,8 @@ fn volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f
                 spans.push((c.z - rise2.sqrt(), c.z + rise2.sqrt()));
             }
         }
-        if let Shape::Box { .. } = model.shape(body) {
-            spans.extend(column_of_box(model, state, body, x, y));
+        if model.body(body).kind == Kind::Solid {
+            spans.extend(column_of_solid(model, state, body, x, y));
         }
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut reached = from.z;
@@ -96,9 +99,9 @@ pub fn porosity(model: &Model, state: &State, region: &BoxRegion) -> f64 {
 
 /// The box around a body.
 fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) -> (Vec3, Vec3) {
-    if let Shape::Box { .. } = model.shape(body) {
+    if model.body(body).kind == Kind::Solid {
         let turn = state.orientation(model, body).to_rotation_matrix();
-        let reach = turn.matrix().abs() * model.half(body);
+        let reach = turn.matrix().abs() * model.shape(body).bounding_half(model.scale(body));
         let x = state.position(body);
         return (x - reach, x + reach);
     }
@@ -108,11 +111,17 @@ fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) ->
         .fold(start, |(low, high), (c, r)| (low.inf(&c.add_scalar(-r)), high.sup(&c.add_scalar(*r))))
 }
 
-/// Where the vertical line through (x, y) passes through a box body.
-fn column_of_box(model: &Model, state: &State, body: usize, x: f64, y: f64) -> Option<(f64, f64)> {
-    let (turn, half, centre) = (state.orientation(model, body), model.half(body), state.position(body));
+/// Where the vertical line through (x, y) passes through a body that is not made of spheres.
+fn column_of_solid(model: &Model, state: &State, body: usize, x: f64, y: f64) -> Option<(f64, f64)> {
+    let (turn, centre) = (state.orientation(model, body), state.position(body));
     let origin = turn.inverse_transform_vector(&(Vec3::new(x, y, 0.0) - centre));
     let along = turn.inverse_transform_vector(&Vec3::z());
+    if let Shape::Polyhedron(it) = model.shape(body) {
+        let scale = model.scale(body);
+        let [low, high] = chord(&it.core, it.radius, &(origin / scale), &along)?;
+        return Some((low * scale, high * scale));
+    }
+    let half = model.half(body);
     let mut span = (f64::NEG_INFINITY, f64::INFINITY);
     for d in 0..3 {
         if along[d].abs() < 1e-14 {
@@ -125,4 +134,27 @@ fn column_of_box(model: &Model, state: &State, body: usize, x: f64, y: f64) -> O
         span = (span.0.max(a.min(b)), span.1.min(a.max(b)));
     }
     (span.0 < span.1).then_some(span)
+}
+
+/// Where a line with a unit direction, s along it from `origin`, passes through a dilated core.
+fn chord(core: &Core, radius: f64, origin: &Vec3, along: &Vec3) -> Option<[f64; 2]> {
+    let reach = origin.norm() + core.reach + radius;
+    // Through the core itself, and near it: together one stretch, for the body is convex.
+    let mut inner = [-reach, reach];
+    for face in &core.faces {
+        let (at, slope) = (face.normal.dot(origin) - face.offset, face.normal.dot(along));
+        if slope > 0.0 {
+            inner[1] = inner[1].min(-at / slope);
+        } else if slope < 0.0 {
+            inner[0] = inner[0].max(-at / slope);
+        } else if at > 0.0 {
+            inner[1] = f64::NEG_INFINITY;
+        }
+    }
+    let mut all = if inner[0] < inner[1] { inner } else { [f64::INFINITY, f64::NEG_INFINITY] };
+    let segment = Segment { from: origin - along * reach, direction: *along, length: 2.0 * reach };
+    Part::all(core).stretches(&segment, radius, |[low, high], _| {
+        all = [all[0].min(low - reach), all[1].max(high - reach)];
+    });
+    (all[0] < all[1]).then_some(all)
 }

@@ -19,6 +19,7 @@ pub fn size_of(shape: &Shape) -> Option<f64> {
     match shape {
         Shape::Sphere { radius } => Some(2.0 * radius),
         Shape::Clump(clump) => Some(clump.sieve_size()),
+        Shape::Polyhedron(it) => Some(it.sieve_size()),
         Shape::Box { .. } => None,
     }
 }

@@ -8,23 +8,24 @@ use serde::{Deserialize, Serialize};
 /// Feature of a contact point that is not in use.
 pub(crate) const NO_FEATURE: u32 = u32::MAX;
 
-/// Memory of one contact point: the features that touch there, and what the law keeps.
+/// Memory of one contact point: the features that touch there, what the law keeps, and the share of its force that acted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointMemory {
     pub feature: u32,
     pub history: History,
+    pub weight: f64,
 }
 
 impl PointMemory {
     /// No contact.
-    pub const NONE: PointMemory = PointMemory { feature: NO_FEATURE, history: History::NONE };
+    pub const NONE: PointMemory = PointMemory { feature: NO_FEATURE, history: History::NONE, weight: 0.0 };
 
     /// The same contact seen from the other partner: the halves of the feature change places.
     pub fn turned(&self) -> PointMemory {
         if self.feature == NO_FEATURE {
             return *self;
         }
-        PointMemory { feature: self.feature.rotate_left(16), history: self.history.turned() }
+        PointMemory { feature: self.feature.rotate_left(16), history: self.history.turned(), ..*self }
     }
 }
 
@@ -145,7 +146,7 @@ mod tests {
 
     fn point(feature: u32) -> PointMemory {
         let history = History { spring: Vec3::x() * f64::from(feature), rate: 0.5, ..History::NONE };
-        PointMemory { feature, history }
+        PointMemory { feature, history, weight: 0.5 }
     }
 
     #[test]

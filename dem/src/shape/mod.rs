@@ -3,12 +3,14 @@
 pub mod clump;
 pub mod cluster;
 pub mod cuboid;
+pub mod dilated;
 pub mod plane;
 pub mod polyhedron;
 pub mod triangle;
 
 use crate::base::Vec3;
 use clump::Clump;
+use dilated::{Core, Dilated};
 
 /// Shape of a body, in its own frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,19 +28,42 @@ pub enum Shape {
         /// Half of each side [m].
         half: [f64; 3],
     },
+    /// A dilated polyhedron. It touches spheres (of clumps too), planes, boxes and its like.
+    Polyhedron(Box<Dilated>),
 }
 
 impl Shape {
     /// Half sides of a box about the centre of mass, along the axes of the shape, that holds a shape which is not made of
     /// spheres [m].
     pub(crate) fn bounding_half(&self, scale: f64) -> Vec3 {
-        self.half_sides(scale)
+        match self {
+            Shape::Polyhedron(it) => it.half_extents() * scale,
+            _ => self.half_sides(scale),
+        }
     }
 
-    /// Number of corners of a shape with flat faces.
+    /// Radius that a shape with faces is rounded with [m]; zero for others.
+    pub(crate) fn rounding(&self, scale: f64) -> f64 {
+        if let Shape::Polyhedron(it) = self { it.radius * scale } else { 0.0 }
+    }
+
+    /// Faces, edges and corners; none of shapes without faces.
+    pub(crate) fn core(&self) -> Core {
+        match self {
+            Shape::Sphere { .. } | Shape::Clump(_) => Core::default(),
+            Shape::Polyhedron(it) => it.core.clone(),
+            Shape::Box { half } => {
+                let corners: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::from(*half), k)).collect();
+                // A box too flat for a core touches nothing that needs one.
+                Core::new(&corners).unwrap_or_default()
+            }
+        }
+    }
+
+    /// Number of corners of a shape with flat faces that touch planes by themselves.
     pub(crate) fn corners(&self) -> u32 {
         match self {
-            Shape::Sphere { .. } | Shape::Clump(_) => 0,
+            Shape::Sphere { .. } | Shape::Clump(_) | Shape::Polyhedron(_) => 0,
             Shape::Box { .. } => 8,
         }
     }

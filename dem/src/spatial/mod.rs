@@ -5,4 +5,5 @@ pub(crate) mod cells;
 pub mod detect;
 pub mod distance;
 pub(crate) mod periodic;
+pub(crate) mod separation;
 pub mod surface;

@@ -235,7 +235,7 @@ fn what_adhesion_does_not_go_with_is_refused() {
     input.shapes.push(Shape::Box { half: [R; 3] });
     input.bodies.push(BodyInput { shape: 1, ..BodyInput::default() });
     let error = trackbed_dem::Model::new(input.clone()).expect_err("a box");
-    assert_eq!(error, ModelError::Adhesion { index: 0, with: "boxes" });
+    assert_eq!(error, ModelError::Adhesion { index: 0, with: "boxes and polyhedra" });
     input.contacts[0].adhesion = Some(0.0);
     assert!(trackbed_dem::Model::new(input.clone()).is_ok());
     input.contacts[0].adhesion = Some(-1.0);

@@ -21,6 +21,7 @@ mod physics_flow;
 mod physics_packing;
 mod physics_settling;
 mod physics_spheres;
+mod polyhedra;
 mod refusals;
 mod rolling;
 mod round_walls;

@@ -1,7 +1,7 @@
 //! The file of a checkpoint.
 //!
 //! ```text
-//! trackbed checkpoint 7\n        the form of the file
+//! trackbed checkpoint 8\n        the form of the file
 //! { header }\n                   JSON: program, scene, stage, step, time
 //! body                           binary: every number with all its bits
 //! 8 bytes                        64-bit FNV-1a checksum of all before, low byte first
@@ -21,7 +21,7 @@ use std::io::{self, Write};
 /// First line of a checkpoint, with the number of its form.
 pub(super) const MAGIC: &str = "trackbed checkpoint ";
 /// The form that this program writes and reads.
-pub(super) const FORM: u32 = 7;
+pub(super) const FORM: u32 = 8;
 /// Bytes of the checksum at the end.
 pub(super) const CHECKSUM: usize = 8;
 /// Bytes that are gathered before they are summed and written.

@@ -130,6 +130,7 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<BodyInput>, Vec<Plane>) {
                 Shape::Sphere { radius } => *radius,
                 Shape::Clump(clump) => clump.bounding_radius(),
                 Shape::Box { half } => Vec3::from(*half).norm(),
+                Shape::Polyhedron(it) => it.bounding_radius(),
             }
     };
     let ends = |d: usize| {

@@ -147,7 +147,7 @@ fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: 
     let t = (v.dot(&(p + u * s - q))).clamp(-b[j], b[j]);
     let point = (p + u * s + q + v * t) * 0.5;
     let geometry = ContactGeometry { point, normal: *normal, overlap, radius: 0.0 };
-    found.push(Touch { feature: features, geometry, weight: 1.0, bound: 0.0 });
+    found.push(Touch { feature: features, geometry, weight: 1.0, bound: 0.0, couple: Vec3::zeros() });
 }
 
 /// A corner of a polygon in the plane of a face, its height over the face, and the edge that begins there.
@@ -201,7 +201,7 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
         // From the second box to the first.
         let normal = Vec3::ith(axis, -side);
         let geometry = ContactGeometry { point, normal, overlap: -corner.height, radius: 0.0 };
-        found.push(Touch { feature, geometry, weight, bound: 0.0 });
+        found.push(Touch { feature, geometry, weight, bound: 0.0, couple: Vec3::zeros() });
     }
 }
 
@@ -230,6 +230,7 @@ fn clip(polygon: &mut Vec<Corner>, d: usize, sign: f64, limit: f64, edge: u32) {
 mod tests {
     use super::*;
     use crate::shape::Shape;
+    use crate::shape::dilated::Core;
     use nalgebra::UnitQuaternion;
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
@@ -241,6 +242,7 @@ mod tests {
         let mut rng = Pcg64Mcg::new(11);
         let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
         let mut vector = |size: f64| Vec3::new(unit(), unit(), unit()) * size;
+        let none = Core::default();
         let shapes = [Shape::Box { half: [0.3, 0.5, 0.2] }, Shape::Box { half: [0.4, 0.1, 0.6] }];
         let (mut overlapping, mut several) = (0, 0);
         for _ in 0..2000 {
@@ -249,6 +251,8 @@ mod tests {
                 orientation: UnitQuaternion::from_scaled_axis(vector(6.0)),
                 shape: &shapes[k],
                 scale: 1.0 + k as f64,
+                core: &none,
+                radius: 0.0,
             });
             let (mut one, mut two) = (Touches::new(), Touches::new());
             BoxBox.touches(&a, &b, &mut one);
@@ -291,6 +295,7 @@ mod tests {
     /// Weights of a face add up to four whatever is cut off.
     #[test]
     fn weights_of_a_face_add_up() {
+        let none = Core::default();
         let shapes = [Shape::Box { half: [0.3, 0.5, 0.2] }, Shape::Box { half: [0.4, 0.3, 0.1] }];
         for (turn, aside, least) in [(0.0, 0.0, 4), (0.7, 0.0, 6), (0.0, 0.5, 4), (0.3, 0.45, 3)] {
             let placed = |k: usize, centre: Vec3, turn: f64| Placed {
@@ -298,6 +303,8 @@ mod tests {
                 orientation: UnitQuaternion::from_axis_angle(&Vec3::z_axis(), turn),
                 shape: &shapes[k],
                 scale: 1.0,
+                core: &none,
+                radius: 0.0,
             };
             let mut found = Touches::new();
             let above = Vec3::new(aside, 0.1 * aside, 0.2999);

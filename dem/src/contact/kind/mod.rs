@@ -8,12 +8,14 @@
 
 mod box_box;
 mod corner_plane;
+mod dilated;
 mod pair;
 mod pass;
 mod scene;
 mod side;
 mod sphere_box;
 
+pub(crate) use dilated::LENGTH;
 pub(crate) use pair::Visited;
 pub(crate) use pass::Kind;
 pub(crate) use scene::{Now, Placed, PlaneView, Scene, Search};
@@ -24,8 +26,14 @@ use crate::pairs::cross::{Cross, CrossForces};
 use pass::{Books, Of};
 
 /// All kinds. The order is that of their forces in sums, hence part of a scene's numbers.
-pub(crate) const KINDS: [&dyn Kind; 3] =
-    [&Of(sphere_box::SphereBox), &Of(corner_plane::CornerPlane), &Of(box_box::BoxBox)];
+pub(crate) const KINDS: [&dyn Kind; 6] = [
+    &Of(sphere_box::SphereBox),
+    &Of(corner_plane::CornerPlane),
+    &Of(box_box::BoxBox),
+    &Of(dilated::SphereDilated),
+    &Of(dilated::DilatedPlane),
+    &Of(dilated::DilatedDilated),
+];
 
 /// Forces of all pairs of kinds of block `b`; their slots follow those of the spheres.
 pub(crate) fn forces(

@@ -14,6 +14,10 @@ pub(crate) trait PairKind: Sync {
     /// Contact points that a pair can have.
     const POINTS: usize;
 
+    /// Whether the points of a pair share its mass by their weights: the pair then has the damping ratio of its law however many
+    /// there are.
+    const SHARED: bool = false;
+
     /// Whether the two may be nearer than `reach` [m]: exact, or rather too often than too seldom. False for shapes that
     /// the kind is not for.
     fn near(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
@@ -35,12 +39,14 @@ pub(crate) struct Touch {
     pub weight: f64,
     /// Overlap above which the contact has lost its meaning [m].
     pub bound: f64,
+    /// Torque about the point on the first partner per unit of normal force [m].
+    pub couple: Vec3,
 }
 
 impl Touch {
     /// The only point of a pair.
     pub fn only(geometry: ContactGeometry, bound: f64) -> Touch {
-        Touch { feature: 0, geometry, weight: 1.0, bound }
+        Touch { feature: 0, geometry, weight: 1.0, bound, couple: Vec3::zeros() }
     }
 }
 

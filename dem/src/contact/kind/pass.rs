@@ -8,6 +8,7 @@ use crate::base::failure::Failure;
 use crate::base::ledger::Impulse;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
+use crate::law::ContactGeometry;
 use crate::pairs::list::{NO_FEATURE, PairList, PairName, PointMemory};
 
 /// What the contacts of a block do besides the forces that go to slots.
@@ -144,15 +145,16 @@ impl<K: PairKind> Kind for Of<K> {
             let points = list.points_mut(k);
             for p in points.iter_mut().filter(|p| p.feature != NO_FEATURE) {
                 if !found.iter().any(|t| t.feature == p.feature) {
-                    *books.friction += single::end(setting.laws, materials, &mut p.history);
+                    *books.friction += p.weight * single::end(setting.laws, materials, &mut p.history);
                     *p = PointMemory::NONE;
                 }
             }
             let slot = &mut books.slots[3 * k..][..3];
             slot.fill(Record::default());
             let mut sums = [Vec3::zeros(); 3];
+            let share = self.share(&found);
             for touch in &found {
-                self.force(setting, now, (b, name), materials, touch, points, &mut sums, books);
+                self.force(setting, now, (b, name), materials, (touch, share), points, &mut sums, books);
             }
             if !found.is_empty() {
                 for (record, sum) in books.slots[3 * k..][..3].iter_mut().zip(&sums) {
@@ -169,6 +171,7 @@ impl<K: PairKind> Kind for Of<K> {
             let other = other as usize;
             self.touches(scene, b, name, &mut found);
             let Some(body) = K::First::body(scene, b, i) else { continue };
+            let share = self.share(&found);
             for touch in &found {
                 let point = &touch.geometry.point;
                 let (own, its) =
@@ -180,7 +183,7 @@ impl<K: PairKind> Kind for Of<K> {
                     geometry: touch.geometry,
                     weight: touch.weight,
                     velocity: own.at_point() - its.at_point(),
-                    inverse_mass: own.inverse_mass() + its.inverse_mass(),
+                    inverse_mass: (own.inverse_mass() + its.inverse_mass()) * share,
                     history: &memory.copied().unwrap_or(PointMemory::NONE).history,
                     spin: own.spin() - its.spin(),
                     materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],
@@ -228,14 +231,19 @@ impl<K: PairKind> Kind for Of<K> {
 }
 
 impl<K: PairKind> Of<K> {
-    /// Force of one contact point, added to the sums of its pair.
+    /// Contacts that carry the mass of a pair together.
+    fn share(&self, found: &Touches) -> f64 {
+        if K::SHARED { found.iter().map(|t| t.weight).sum() } else { 1.0 }
+    }
+
+    /// Force of one contact point, added to the sums of its pair; `share`: contacts that carry the mass of the pair together.
     fn force(
         &self,
         setting: &Setting<'_>,
         now: &Now<'_>,
         (b, [i, other, j]): (usize, PairName),
         materials: [u32; 2],
-        touch: &Touch,
+        (touch, share): (&Touch, f64),
         points: &mut [PointMemory],
         sums: &mut [Vec3; 3],
         books: &mut Books<'_>,
@@ -246,11 +254,14 @@ impl<K: PairKind> Of<K> {
         let (own, its) = (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &g.point));
         let memory = &mut points[at];
         memory.feature = touch.feature;
-        let f = single::between(setting.laws, materials, g, (&own, &its), &mut memory.history, setting.dt);
+        *books.friction += weigh(setting, materials, g, memory, weight);
+        let ends = (&own, &its);
+        let f = single::between(setting.laws, materials, g, ends, share, &mut memory.history, setting.dt);
         let force = f.force * weight;
         sums[0] += force;
-        sums[1] += f.torque_a * weight;
-        sums[2] += f.torque_b * weight;
+        let couple = touch.couple * force.dot(&g.normal);
+        sums[1] += f.torque_a * weight + couple;
+        sums[2] += f.torque_b * weight - couple;
         *books.dashpot += f.dashpot * weight;
         *books.friction += f.friction * weight;
         if !K::Second::BODY {
@@ -268,4 +279,28 @@ impl<K: PairKind> Of<K> {
             });
         }
     }
+}
+
+/// Gives a point another weight. What comes to it comes without tension and takes its share of that of the springs, so that their
+/// force stays; what goes takes its tension along. Returns the energy that is lost either way [J].
+fn weigh(
+    setting: &Setting<'_>,
+    [a, b]: [u32; 2],
+    g: &ContactGeometry,
+    memory: &mut PointMemory,
+    weight: f64,
+) -> f64 {
+    let before = std::mem::replace(&mut memory.weight, weight);
+    let history = &mut memory.history;
+    if weight == before || history.is_fresh() {
+        return 0.0;
+    }
+    let (_, stored) = setting.laws.stored(a, b, g.overlap, g.radius, history);
+    if weight < before {
+        return stored * (before - weight);
+    }
+    let share = before / weight;
+    history.spring *= share;
+    history.turn.iter_mut().for_each(|x| *x *= share);
+    stored * before * (1.0 - share)
 }

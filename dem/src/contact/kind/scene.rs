@@ -6,6 +6,7 @@ use crate::bodies::members::Members;
 use crate::bodies::part::Part;
 use crate::lanes::record::{Record, xyz};
 use crate::shape::Shape;
+use crate::shape::dilated::Core;
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::bvh::{Aabb, Bvh};
 use nalgebra::UnitQuaternion;
@@ -19,6 +20,10 @@ pub(crate) struct Placed<'a> {
     pub shape: &'a Shape,
     /// Factor on the lengths of the shape.
     pub scale: f64,
+    /// Its faces, edges and corners, unscaled.
+    pub core: &'a Core,
+    /// Radius that they are rounded with, scaled [m].
+    pub radius: f64,
 }
 
 impl Placed<'_> {
@@ -29,6 +34,18 @@ impl Placed<'_> {
             Shape::Box { .. } => Some(self.shape.half_sides(self.scale)),
             _ => None,
         }
+    }
+
+    /// Whether it is a dilated polyhedron.
+    #[inline(always)]
+    pub fn dilated(&self) -> bool {
+        self.radius > 0.0
+    }
+
+    /// Radius of a sphere about the centre that holds it [m].
+    #[inline(always)]
+    pub fn reach(&self) -> f64 {
+        self.core.reach * self.scale + self.radius
     }
 
     /// Bounds along the axes of the world [m].
@@ -74,6 +91,7 @@ pub(crate) struct Now<'a> {
     pub blocks: Part<'a, Block>,
     pub members: Part<'a, Members>,
     pub shapes: &'a [Shape],
+    pub cores: &'a [Core],
     pub planes: (&'a [Plane], &'a [PlaneMotion]),
 }
 
@@ -101,6 +119,8 @@ impl Scene for Now<'_> {
             orientation: block.rotation[k].orientation,
             shape: &self.shapes[shape as usize],
             scale,
+            core: &self.cores[shape as usize],
+            radius: self.shapes[shape as usize].rounding(scale),
         }
     }
 

@@ -86,5 +86,6 @@ pub(super) fn bounding_radius(shape: &Shape) -> f64 {
         Shape::Sphere { radius } => *radius,
         Shape::Clump(clump) => clump.bounding_radius(),
         Shape::Box { half } => half.iter().map(|h| h * h).sum::<f64>().sqrt(),
+        Shape::Polyhedron(it) => it.bounding_radius(),
     }
 }

@@ -124,5 +124,6 @@ fn shape_volume(shape: &Shape) -> f64 {
         Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
         Shape::Clump(clump) => clump.volume,
         Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
+        Shape::Polyhedron(it) => it.volume,
     }
 }

@@ -1,0 +1,198 @@
+//! A dilated polyhedron: a convex polyhedron, the core, rolled over by a sphere. Its faces lie one radius outside those of the
+//! core, its edges are parts of cylinders and its corners parts of spheres.
+
+mod hull;
+mod moments;
+pub(crate) mod press;
+
+use crate::base::Vec3;
+use nalgebra::{Matrix3, UnitQuaternion};
+
+/// Most corners of a core.
+pub const CORNERS: usize = 64;
+
+/// Why a dilated polyhedron cannot be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DilatedError {
+    /// A coordinate or the radius is not a finite number.
+    #[error("a coordinate or the radius is not a finite number")]
+    NotFinite,
+    /// Too few or too many corners.
+    #[error("{0} corners; expected 4 to {CORNERS}")]
+    Count(usize),
+    /// All corners lie in one plane, nearly.
+    #[error("the corners lie in one plane")]
+    Flat,
+    /// A corner is not one of the convex hull of all.
+    #[error(
+        "corner {0} is not a corner of the convex hull of all; the core must be convex, without points in faces or edges"
+    )]
+    NotConvex(usize),
+    /// The radius is zero or negative.
+    #[error("radius {0} m; it must be positive")]
+    Radius(f64),
+}
+
+/// A face of a core.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// Outward unit normal.
+    pub normal: Vec3,
+    /// Distance of its plane from the origin along the normal [m].
+    pub offset: f64,
+    /// Its corners, counter-clockwise from outside.
+    pub corners: Vec<u8>,
+    /// The same as a set, a bit each.
+    pub mask: u64,
+    /// Outward unit normals of its sides in its plane, and where the sides lie along them [m]; the k-th begins at the k-th corner.
+    pub sides: Vec<(Vec3, f64)>,
+}
+
+/// An edge of a core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// The corners that it joins.
+    pub ends: [u8; 2],
+    /// Unit vector from the first to the second.
+    pub direction: Vec3,
+    /// Where its ends lie along that [m].
+    pub levels: [f64; 2],
+    /// Length [m].
+    pub length: f64,
+    /// Its faces.
+    pub faces: [u8; 2],
+    /// Its side in each of these, bit for bit.
+    pub sides: [(Vec3, f64); 2],
+}
+
+/// A convex polyhedron as a contact needs it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Core {
+    /// Corners [m].
+    pub corners: Vec<Vec3>,
+    /// Faces.
+    pub faces: Vec<Face>,
+    /// Edges.
+    pub edges: Vec<Edge>,
+    /// Edges of each corner, and which of their ends it is.
+    pub spokes: Vec<Vec<(u8, u8)>>,
+    /// Radius of the smallest sphere about the origin that holds it [m].
+    pub reach: f64,
+}
+
+/// A dilated polyhedron in its own frame: origin in the centre of mass, axes along the principal axes of inertia.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dilated {
+    /// The core.
+    pub core: Core,
+    /// Radius of the sphere that is rolled over the core [m].
+    pub radius: f64,
+    /// Volume [m³].
+    pub volume: f64,
+    /// Surface [m²].
+    pub area: f64,
+    /// Principal moments of inertia per unit density [m⁵], rising.
+    pub inertia: [f64; 3],
+}
+
+/// Volume, surface, centre and inertia of a dilated polyhedron.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DilatedMoments {
+    /// Volume [m³].
+    pub volume: f64,
+    /// Surface [m²].
+    pub area: f64,
+    /// Centre of mass [m].
+    pub centre: Vec3,
+    /// Tensor of inertia about the centre per unit density [m⁵].
+    pub inertia: Matrix3<f64>,
+}
+
+impl Core {
+    /// The convex hull of its corners, all of which must be corners of it.
+    ///
+    /// # Errors
+    /// [`DilatedError`] for all but a convex body with volume.
+    pub fn new(corners: &[Vec3]) -> Result<Core, DilatedError> {
+        hull::core(corners)
+    }
+
+    /// The same, turned and moved: every point x is taken to `turn` (x − `from`).
+    pub fn moved(&self, turn: &UnitQuaternion<f64>, from: &Vec3) -> Core {
+        let face = |f: &Face| Face {
+            normal: turn * f.normal,
+            offset: f.offset - f.normal.dot(from),
+            sides: f.sides.iter().map(|(side, level)| (turn * side, level - side.dot(from))).collect(),
+            ..f.clone()
+        };
+        let corners = self.corners.iter().map(|x| turn * (x - from)).collect();
+        hull::joined(corners, self.faces.iter().map(face).collect())
+    }
+
+    /// The longest circumference of a face [m].
+    pub fn circumference(&self) -> f64 {
+        let around = |f: &Face| -> f64 {
+            let ends = f.corners.iter().zip(f.corners.iter().cycle().skip(1));
+            ends.map(|(a, b)| (self.corners[*a as usize] - self.corners[*b as usize]).norm()).sum()
+        };
+        self.faces.iter().map(around).fold(0.0, f64::max)
+    }
+}
+
+impl Dilated {
+    /// The dilated convex hull of `corners` [m], given in any frame; also returns where its frame lies in the given one: its
+    /// centre [m] and the rotation from its axes to the given ones.
+    ///
+    /// # Errors
+    /// [`DilatedError`] for all but a convex core with volume and a positive radius [m].
+    pub fn new(corners: &[Vec3], radius: f64) -> Result<(Dilated, Vec3, UnitQuaternion<f64>), DilatedError> {
+        if !radius.is_finite() {
+            return Err(DilatedError::NotFinite);
+        }
+        if radius <= 0.0 {
+            return Err(DilatedError::Radius(radius));
+        }
+        let core = Core::new(corners)?;
+        let m = moments::moments(&core, radius);
+        let (inertia, axes) = super::clump::principal(m.inertia);
+        let turn = UnitQuaternion::from_matrix(&axes);
+        let core = core.moved(&turn.inverse(), &m.centre);
+        Ok((Dilated { core, radius, volume: m.volume, area: m.area, inertia }, m.centre, turn))
+    }
+
+    /// Moments in the frame of the core as it is given.
+    pub fn moments_of(core: &Core, radius: f64) -> DilatedMoments {
+        moments::moments(core, radius)
+    }
+
+    /// Half sides of the box about the origin, along the axes, that holds the body [m].
+    pub fn half_extents(&self) -> Vec3 {
+        let most = self.core.corners.iter().fold(Vec3::zeros(), |most, c| most.sup(&c.abs()));
+        most.add_scalar(self.radius)
+    }
+
+    /// Extents of the body along its axes [m].
+    pub fn extents(&self) -> [f64; 3] {
+        std::array::from_fn(|d| {
+            let x = self.core.corners.iter().map(|c| c[d]);
+            let [low, high] = x.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+            high - low + 2.0 * self.radius
+        })
+    }
+
+    /// Size of the square sieve that the body just passes [m]: the middle one of its extents.
+    pub fn sieve_size(&self) -> f64 {
+        let mut extents = self.extents();
+        extents.sort_by(f64::total_cmp);
+        extents[1]
+    }
+
+    /// Radius of the smallest sphere about the centre that holds the body [m].
+    pub fn bounding_radius(&self) -> f64 {
+        self.core.reach + self.radius
+    }
+}
+
+#[cfg(test)]
+#[path = "dilated/dilated_tests.rs"]
+pub(crate) mod tests;

@@ -1,0 +1,72 @@
+use super::*;
+use crate::shape::cuboid;
+
+fn cube() -> Core {
+    Core::new(&(0..8).map(|k| cuboid::corner(&Vec3::repeat(0.5), k)).collect::<Vec<_>>()).unwrap()
+}
+
+/// Distances of points over a face, beyond an edge and a corner.
+#[test]
+fn distances_from_a_cube() {
+    let cube = cube();
+    let part = Part::all(&cube);
+    let (d, n) = part.distance(&Vec3::new(0.2, 0.1, 0.6), 1.0).unwrap();
+    assert!((d - 0.1).abs() < 1e-15 && n == Vec3::z());
+    let (d, n) = part.distance(&Vec3::new(0.8, 0.1, 0.9), 1.0).unwrap();
+    assert!((d - 0.5).abs() < 1e-15 && (n - Vec3::new(0.6, 0.0, 0.8)).norm() < 1e-15);
+    let (d, _) = part.distance(&Vec3::repeat(0.6), 1.0).unwrap();
+    assert!((d - 0.1 * 3.0_f64.sqrt()).abs() < 1e-15);
+    assert!(part.distance(&Vec3::new(0.2, 0.1, 0.6), 0.09).is_none());
+}
+
+/// An edge over a face, partly beyond it: the part above the face presses by its length, the rest as the distance of each point
+/// says, summed up by brute force.
+#[test]
+fn an_edge_presses_as_its_points_do() {
+    let cube = cube();
+    let part = Part::all(&cube);
+    let reach = 0.2;
+    let cases = [
+        (Vec3::new(-0.3, 0.1, 0.69), Vec3::new(0.3, 0.2, 0.66)),
+        (Vec3::new(-0.9, 0.1, 0.69), Vec3::new(0.8, -0.2, 0.66)),
+        (Vec3::new(-0.9, 0.1, 0.65), Vec3::new(0.2, 0.9, 0.68)),
+        (Vec3::new(0.62, 0.62, -0.7), Vec3::new(0.63, 0.62, 0.8)),
+        (Vec3::new(0.5, 0.0, 0.68), Vec3::new(0.5, 0.9, 0.67)),
+        (Vec3::new(1.5, -0.1, 0.64), Vec3::new(-0.4, -0.7, 0.67)),
+    ];
+    for (from, to) in cases {
+        let length = (to - from).norm();
+        let segment = Segment { from, direction: (to - from) / length, length };
+        let found = edge(&part, &segment, reach).unwrap();
+        let (mut force, mut torque, mut squares) = (Vec3::zeros(), Vec3::zeros(), 0.0);
+        let n = 200_000;
+        for k in 0..n {
+            let p = from + (to - from) * ((f64::from(k) + 0.5) / f64::from(n));
+            let Some((d, normal)) = part.distance(&p, reach) else { continue };
+            let overlap = (reach - d) * length / f64::from(n);
+            force += normal * overlap;
+            torque += p.cross(&(normal * overlap));
+            squares += overlap * (reach - d);
+        }
+        assert!((found.force - force).norm() < 3e-6 * force.norm(), "{from}: {} {force}", found.force);
+        let by_one = found.point.cross(&found.force) + found.couple * found.force.norm();
+        assert!((by_one - torque).norm() < 3e-6 * force.norm(), "{from}: {by_one} {torque}");
+        assert!((found.overlap * force.norm() - squares).abs() < 3e-6 * squares, "{from}");
+    }
+    let away = Segment { from: Vec3::new(2.0, 0.0, 0.0), direction: Vec3::y(), length: 1.0 };
+    assert!(edge(&part, &away, reach).is_none());
+}
+
+/// Over a plane the sums are those of a line.
+#[test]
+fn an_edge_over_a_plane() {
+    let ground = HalfSpace { point: Vec3::zeros(), normal: Vec3::z() };
+    let segment = Segment { from: Vec3::new(0.0, 0.0, 0.1), direction: Vec3::x(), length: 2.0 };
+    let found = edge(&ground, &segment, 0.3).unwrap();
+    assert!((found.force - Vec3::z() * 0.4).norm() < 1e-15 && (found.overlap - 0.2).abs() < 1e-15);
+    assert!((found.point - Vec3::new(1.0, 0.0, 0.1)).norm() < 1e-15);
+    let sloping = Segment { from: Vec3::zeros(), direction: Vec3::new(0.6, 0.0, 0.8), length: 2.0 };
+    let found = edge(&ground, &sloping, 0.4).unwrap();
+    // ∫₀^½ (0.4 − 0.8 s) ds
+    assert!((found.force.z - 0.1).abs() < 1e-15);
+}

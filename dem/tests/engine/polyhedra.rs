@@ -1,0 +1,353 @@
+//! Dilated polyhedra: at rest on planes, on each other and on boxes, sliding, tipping, bouncing, and collisions of all kinds.
+
+use crate::scene::{Random, Run, plane, stone, weightless};
+use nalgebra::UnitQuaternion;
+use trackbed_dem::measure;
+use trackbed_dem::shape::dilated::Dilated;
+use trackbed_dem::{BodyInput, Material, Model, ModelInput, Shape, TimeStep, Vec3};
+
+const G: f64 = 9.81;
+const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
+
+/// Stiffness of contacts between two of the same material [N/m].
+const K: f64 = 1e6;
+
+fn material() -> Material {
+    Material { stiffness: K, tangential_damping_ratio: 1.0, ..stone() }
+}
+
+fn elastic() -> Material {
+    Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
+}
+
+/// A block of the given half sides, rounding included [m], the longest first.
+fn block(half: [f64; 3], radius: f64) -> Shape {
+    let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
+    polyhedron(&(0..8).map(core).collect::<Vec<_>>(), radius)
+}
+
+fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
+    Shape::Polyhedron(Box::new(Dilated::new(corners, radius).expect("a convex body").0))
+}
+
+/// A stone with corners at random on an ellipsoid.
+fn stone_of(random: &mut Random, corners: usize, half: [f64; 3], radius: f64) -> Shape {
+    let mut corner = || random.vector().normalize().component_mul(&Vec3::from(half));
+    polyhedron(&(0..corners).map(|_| corner()).collect::<Vec<_>>(), radius)
+}
+
+fn scene(material: Material, shapes: Vec<Shape>) -> ModelInput {
+    ModelInput { shapes, time_step: TimeStep::Auto { fraction: 0.5 }, ..weightless(material) }
+}
+
+fn body(shape: usize, position: Vec3) -> BodyInput {
+    BodyInput { shape, position, ..BodyInput::default() }
+}
+
+fn until(run: &mut Run, time: f64) {
+    while run.state.time < time {
+        run.step();
+    }
+}
+
+fn total(run: &Run) -> f64 {
+    measure::energies(&run.model, &run.state).total()
+}
+
+/// A cube sinks into a plane by its weight over the springs of four corners and four edges, and nothing moves any more.
+#[test]
+fn a_cube_at_rest() {
+    let (half, radius) = (0.1, 0.01);
+    let mut input = scene(material(), vec![block([half; 3], radius)]);
+    input.gravity = DOWN;
+    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    input.bodies.push(body(0, Vec3::new(0.3, -0.2, half)));
+    let mut run = Run::new(input);
+    until(&mut run, 1.0);
+    let springs = 4.0 + 4.0 * (2.0 * (half - radius)) / (2.0 * radius);
+    let weight = run.model.mass(0) * G;
+    let sunk = half - run.state.position(0).z;
+    // The ends of the upright edges carry a little as well.
+    let share = sunk / (weight / (springs * K));
+    assert!((share - 1.0).abs() < 1e-3, "{share}");
+    assert!(run.state.velocity(0).norm() < 1e-9 && run.state.spin(0).norm() < 1e-9);
+    let carried: f64 = measure::contacts(&run.model, &run.state).iter().map(|c| c.force.z).sum();
+    assert!((carried / weight - 1.0).abs() < 1e-9, "{carried}");
+}
+
+/// Ten cubes, put on each other a little aside and turned, stand for ten seconds; what their fall leaves of swaying, which dashpots of stiff
+/// contacts hardly damp, dies away; the lowest joint carries all.
+#[test]
+fn ten_cubes_stand() {
+    let half = 0.05;
+    let mut input = scene(material(), vec![block([half; 3], 0.005)]);
+    input.gravity = DOWN;
+    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    let mut random = Random::new(3);
+    for k in 0..10 {
+        let aside = 0.01 * random.vector();
+        let turn = UnitQuaternion::from_axis_angle(&Vec3::z_axis(), 0.3 * aside.z / 0.01);
+        let position = Vec3::new(aside.x, aside.y, half + 2.0 * half * f64::from(k));
+        input.bodies.push(BodyInput { orientation: turn, ..body(0, position) });
+    }
+    let mut run = Run::new(input);
+    until(&mut run, 5.0);
+    let before: Vec<Vec3> = (0..10).map(|b| run.state.position(b)).collect();
+    let moving = measure::energies(&run.model, &run.state).kinetic();
+    until(&mut run, 10.0);
+    let drift = (0..10).map(|b| (run.state.position(b) - before[b]).norm()).fold(0.0, f64::max);
+    let still = measure::energies(&run.model, &run.state).kinetic();
+    println!("kinetic energy after 5 and 10 s: {moving:.1e} J, {still:.1e} J; drift between {drift:.1e} m");
+    assert!(moving < 1e-5 && still < 1e-5 && drift < 5e-5, "{still:e} {drift:e}");
+    let weight = 10.0 * run.model.mass(0) * G;
+    let contacts = measure::contacts(&run.model, &run.state);
+    let lowest: f64 = contacts.iter().filter(|c| c.point.z < 0.01).map(|c| c.force.z).sum();
+    assert!((lowest / weight - 1.0).abs() < 1e-4, "{lowest} of {weight}");
+}
+
+/// On an incline a block stays below the angle of friction and slides above with g (sin α − μ cos α); twice as high as the flat part of
+/// its base is wide it tips above 1/2.
+#[test]
+fn a_block_on_an_incline() {
+    let mu = 0.4;
+    for (slope, slides) in [(0.39, false), (0.41, true)] {
+        let (sine, cosine) = f64::atan(slope).sin_cos();
+        let mut input =
+            scene(Material { friction: mu, ..material() }, vec![block([0.06, 0.05, 0.02], 0.004)]);
+        input.gravity = Vec3::new(G * sine, 0.0, -G * cosine);
+        input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        input.bodies.push(body(0, Vec3::new(0.0, 0.0, 0.02)));
+        let mut run = Run::new(input);
+        until(&mut run, 0.5);
+        let (speed, from) = (run.state.velocity(0).x, run.state.time);
+        until(&mut run, 1.0);
+        let found = (run.state.velocity(0).x - speed) / (run.state.time - from);
+        let expected = if slides { G * (sine - mu * cosine) } else { 0.0 };
+        assert!((found - expected).abs() < 5e-3 * G * 0.01 + 1e-9, "{slope}: {found} for {expected}");
+        assert_eq!(run.state.velocity(0).x > 1e-3, slides);
+    }
+    let radius = 0.01;
+    // The face ends where its rounding begins: tan α = (w/2 − r)/(h/2).
+    let limit = (0.05 - radius) / 0.1;
+    for (slope, tips) in [(limit - 0.02, false), (limit + 0.02, true)] {
+        let (sine, cosine) = f64::atan(slope).sin_cos();
+        let sticky = Material { friction: 2.0, stiffness: 1e8, ..material() };
+        let mut input = scene(sticky, vec![block([0.1, 0.05, 0.05], radius)]);
+        input.gravity = Vec3::new(G * sine, 0.0, -G * cosine);
+        input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        let upright = UnitQuaternion::from_axis_angle(&Vec3::y_axis(), std::f64::consts::FRAC_PI_2);
+        input.bodies.push(BodyInput { orientation: upright, ..body(0, Vec3::new(0.0, 0.0, 0.1)) });
+        let mut run = Run::new(input);
+        until(&mut run, 0.6);
+        let turned = run.state.orientation(&run.model, 0).angle_to(&upright);
+        assert_eq!(turned > 0.05, tips, "slope {slope}: turned by {turned}");
+    }
+}
+
+/// A cube bounces elastically on a face, an edge, a corner and askew: its energy stays, and with e = 0.5 on a face it comes back with half of
+/// its speed.
+#[test]
+fn bounces_on_face_edge_and_corner() {
+    let half = 0.05;
+    let diagonal = UnitQuaternion::rotation_between(&Vec3::repeat(1.0), &Vec3::z()).expect("not opposite");
+    let turns = [
+        ("face", UnitQuaternion::identity()),
+        ("edge", UnitQuaternion::from_axis_angle(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4)),
+        ("corner", diagonal),
+        ("askew", UnitQuaternion::from_scaled_axis(Vec3::new(0.3, 0.2, 0.1))),
+    ];
+    for (restitution, wall) in [(1.0, false), (1.0, true), (0.5, false)] {
+        for (name, orientation) in turns {
+            let shapes = vec![block([half; 3], 0.01), block([0.2, 0.2, 0.05], 0.01)];
+            let mut input = scene(Material { restitution, ..elastic() }, shapes);
+            input.time_step = TimeStep::Auto { fraction: 0.1 };
+            if wall {
+                input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+            } else {
+                input.bodies.push(BodyInput { fixed: [true; 6], ..body(1, Vec3::z() * -0.05) });
+            }
+            let number = input.bodies.len();
+            let velocity = Vec3::new(0.0, 0.0, -0.5);
+            input.bodies.push(BodyInput { orientation, velocity, ..body(0, Vec3::z() * 0.1) });
+            let mut run = Run::new(input);
+            let before = total(&run);
+            until(&mut run, 0.3);
+            let (after, speed) = (total(&run), run.state.velocity(number).z);
+            println!("{name}, e = {restitution}: energy {:.2e}, speed {speed:.4}", after / before - 1.0);
+            if restitution == 1.0 {
+                assert!((after / before - 1.0).abs() < 1e-4, "{name}: {after} of {before}");
+            } else if name == "face" {
+                assert!((speed - 0.25).abs() < 0.01, "{speed}");
+            }
+            assert!(speed > 0.05 || name == "askew", "{name}: {speed}");
+        }
+    }
+}
+
+/// Two hundred collisions of random stones, blocks and boxes without friction or damping: momentum and angular momentum to rounding, energy
+/// to the step's error.
+#[test]
+fn collisions_keep_momentum_and_energy() {
+    let mut random = Random::new(5);
+    let (mut worst, mut sum, mut touched) = (0.0_f64, 0.0, 0);
+    for k in 0..200 {
+        let mut shapes = vec![
+            stone_of(&mut random, 8 + k % 17, [0.05, 0.04, 0.03], 0.004),
+            block([0.03, 0.04, 0.05], 0.006),
+        ];
+        if k % 4 == 0 {
+            shapes[1] = Shape::Box { half: [0.03, 0.04, 0.05] };
+        }
+        if k % 4 == 1 {
+            shapes[1] = Shape::Sphere { radius: 0.03 };
+        }
+        let mut input = scene(elastic(), shapes);
+        input.time_step = TimeStep::Auto { fraction: 0.1 };
+        for (shape, side) in [(0, -1.0), (1, 1.0)] {
+            let orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
+            let aside = random.vector() * 0.02;
+            let position = Vec3::new(0.08 * side, aside.y, aside.z);
+            let (spin, velocity) = (random.vector() * 5.0, Vec3::x() * (-0.5 * side));
+            input.bodies.push(BodyInput { orientation, spin, velocity, ..body(shape, position) });
+        }
+        let mut run = Run::new(input);
+        let before = total(&run);
+        let momentum = measure::momentum(&run.model, &run.state);
+        let mut contact = false;
+        while run.state.time < 0.2 {
+            run.step();
+            contact |= run.work.contact_force(&run.state, 0).norm() > 0.0;
+        }
+        let after = measure::momentum(&run.model, &run.state);
+        assert!((after.linear - momentum.linear).norm() < 1e-12 * run.model.mass(0));
+        assert!((after.angular - momentum.angular).norm() < 1e-12 * run.model.mass(0));
+        let change = total(&run) / before - 1.0;
+        touched += i32::from(contact);
+        worst = worst.max(change.abs());
+        sum += change;
+    }
+    let mean = sum / f64::from(touched);
+    println!("{touched} collisions: worst {worst:.1e}, mean {mean:.1e}");
+    assert!(touched > 150 && worst < 1e-3 && mean.abs() < 1e-4, "{touched} {worst:e} {mean:e}");
+}
+
+/// Collisions with friction, with dashpots, and with both: what is left and what was dissipated add up to what there was.
+#[test]
+fn collisions_keep_their_account() {
+    for (friction, restitution) in [(0.0, 0.5), (0.5, 1.0), (0.5, 0.5)] {
+        let mut random = Random::new(6);
+        let (mut worst, mut sum) = (0.0_f64, 0.0);
+        for k in 0..60 {
+            let mut shapes = vec![
+                stone_of(&mut random, 8 + k % 17, [0.05, 0.04, 0.03], 0.004),
+                block([0.05, 0.04, 0.03], 0.006),
+            ];
+            if k % 4 == 1 {
+                shapes[1] = Shape::Box { half: [0.05, 0.04, 0.03] };
+            }
+            let mut input = scene(Material { friction, restitution, ..material() }, shapes);
+            input.time_step = TimeStep::Auto { fraction: 0.1 };
+            for (shape, side) in [(0, -1.0), (1, 1.0)] {
+                let orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
+                let aside = random.vector() * 0.02;
+                let position = Vec3::new(0.06 * side, aside.y, aside.z);
+                let (spin, velocity) = (random.vector() * 5.0, Vec3::x() * (-0.5 * side));
+                input.bodies.push(BodyInput { orientation, spin, velocity, ..body(shape, position) });
+            }
+            let mut run = Run::new(input);
+            let before = total(&run);
+            until(&mut run, 0.1);
+            let ledger = &run.state.ledger;
+            let error = (total(&run) + ledger.dissipated() - before) / before;
+            worst = worst.max(error.abs());
+            sum += error;
+        }
+        println!("friction {friction}, e {restitution}: account off by {worst:.1e}, mean {:.1e}", sum / 60.0);
+        assert!(worst < 0.01, "{worst:e}");
+    }
+}
+
+/// Stones of many sizes, a sphere and a block dropped into a box of planes: the account of energy closes, and the bits are the same with one
+/// and with three threads.
+#[test]
+fn a_heap_of_stones() {
+    let mut random = Random::new(9);
+    let stone = |k: usize, random: &mut Random| stone_of(random, 10 + 4 * k, [0.05, 0.04, 0.03], 0.004);
+    let mut shapes: Vec<Shape> = (0..4).map(|k| stone(k, &mut random)).collect();
+    shapes.push(Shape::Sphere { radius: 0.03 });
+    shapes.push(Shape::Box { half: [0.06, 0.04, 0.02] });
+    let mut input = scene(Material { stiffness: 5e4, ..material() }, shapes);
+    input.gravity = DOWN;
+    for (n, x) in [(Vec3::x(), -0.1), (-Vec3::x(), 0.1), (Vec3::y(), -0.1), (-Vec3::y(), 0.1)] {
+        input.planes.push(plane(n.abs() * x, n));
+    }
+    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    for k in 0..18_usize {
+        // Four to a level; the sphere and the block last, the block with room between the planes.
+        let aside = if k == 17 { 0.03 } else { 0.045 };
+        let side = |bit: usize| if k >> bit & 1 == 0 { -aside } else { aside };
+        let position = Vec3::new(side(0), side(1), 0.06 + 0.1 * (k / 4 + k / 17) as f64);
+        let shape = if k >= 16 { k - 12 } else { k % 4 };
+        let orientation = UnitQuaternion::from_scaled_axis(random.vector() * if k == 17 { 0.1 } else { 3.0 });
+        let scale = if k < 16 { 0.7 + 0.3 * random.unit() } else { 1.0 };
+        input.bodies.push(BodyInput { orientation, scale, ..body(shape, position) });
+    }
+    let run_on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| {
+            let mut run = Run::new(input.clone());
+            let before = total(&run);
+            until(&mut run, 0.5);
+            let ledger = run.state.ledger;
+            let error = (total(&run) - ledger.work() + ledger.dissipated() - before) / ledger.dissipated();
+            let places: Vec<[u64; 3]> =
+                (0..18).map(|b| run.state.position(b).map(f64::to_bits).into()).collect();
+            (places, error, ledger.dissipated() / before)
+        })
+    };
+    let (places, error, lost) = run_on(1);
+    println!("account of energy off by {error:.1e} of what was dissipated, {lost:.2} of all");
+    assert!(error.abs() < 1e-3 && lost > 0.4, "{error:e} {lost}");
+    assert_eq!(places, run_on(3).0);
+}
+
+/// What cannot be combined is refused by name.
+#[test]
+fn refusals() {
+    let refused = |change: &dyn Fn(&mut ModelInput)| {
+        let mut input = scene(material(), vec![block([0.05; 3], 0.01)]);
+        input.bodies.push(body(0, Vec3::zeros()));
+        change(&mut input);
+        let words = Model::new(input).expect_err("a refusal").to_string();
+        words
+    };
+    let young = |i: &mut ModelInput| {
+        i.materials[0] = Material { young: Some(1e9), stiffness: f64::INFINITY, ..material() };
+    };
+    assert!(refused(&young).contains("grows with the overlap"));
+    let surface = |i: &mut ModelInput| i.surface_material = Some(0);
+    assert!(refused(&surface).contains("an external surface"));
+    let periodic = |i: &mut ModelInput| i.periodic[0] = Some([0.0, 3.0]);
+    assert!(refused(&periodic).contains("polyhedron"));
+    let absent = |i: &mut ModelInput| i.bodies[0].absent = true;
+    assert!(refused(&absent).contains("not made of spheres"));
+}
+
+/// Cores that meet stop the run with the pair and the overlap.
+#[test]
+fn cores_that_meet_are_named() {
+    let mut input = scene(elastic(), vec![block([0.05; 3], 0.001)]);
+    input.materials[0].stiffness = 1e3;
+    for side in [-1.0, 1.0] {
+        input
+            .bodies
+            .push(BodyInput { velocity: Vec3::x() * (-3.0 * side), ..body(0, Vec3::x() * (0.06 * side)) });
+    }
+    let mut run = Run::new(input);
+    let error = (0..100_000).find_map(|_| {
+        trackbed_dem::step(&run.model, &mut run.state, &mut run.work, &trackbed_dem::surface::NoSurface, &[])
+            .err()
+    });
+    let error = error.expect("the cores meet").to_string();
+    assert!(error.contains("overlap"), "{error}");
+}
