@@ -31,7 +31,7 @@ pub(crate) fn separation(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
             break;
         }
         simplex.push(w);
-        let Some(closest) = simplex.closest() else { return None };
+        let closest = simplex.closest()?;
         // Rounding: no nearer than before.
         if closest.norm_squared() >= v.norm_squared() {
             break;

@@ -318,8 +318,7 @@ fn refusals() {
         let mut input = scene(material(), vec![block([0.05; 3], 0.01)]);
         input.bodies.push(body(0, Vec3::zeros()));
         change(&mut input);
-        let words = Model::new(input).expect_err("a refusal").to_string();
-        words
+        Model::new(input).expect_err("a refusal").to_string()
     };
     let young = |i: &mut ModelInput| {
         i.materials[0] = Material { young: Some(1e9), stiffness: f64::INFINITY, ..material() };
