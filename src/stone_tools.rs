@@ -121,7 +121,7 @@ fn make_one(source: &Source, kind: Kind) -> Result<Made, StoneError> {
             let report = measure::clump(&body, &distance, &spheres, &clump);
             let s = 1.0 / clump.sieve_size();
             let spheres = clump.spheres.iter().map(|b| row(b, s)).collect();
-            Made { stone: Stone { name: name(), spheres, bonds: Vec::new(), density_factor: None }, report }
+            Made { stone: Stone { name: name(), spheres, ..Stone::default() }, report }
         }
         Kind::Bonded(options) => {
             let grown = grow::grow(&body, &distance, &options);
@@ -132,7 +132,13 @@ fn make_one(source: &Source, kind: Kind) -> Result<Made, StoneError> {
             let s = 1.0 / cluster.sieve_size();
             let spheres = cluster.spheres.iter().map(|b| row(b, s)).collect();
             Made {
-                stone: Stone { name: name(), spheres, bonds: cluster.bonds, density_factor: Some(factor) },
+                stone: Stone {
+                    name: name(),
+                    spheres,
+                    bonds: cluster.bonds,
+                    density_factor: Some(factor),
+                    ..Stone::default()
+                },
                 report,
             }
         }

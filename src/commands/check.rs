@@ -151,7 +151,10 @@ fn grain_lines(
 ) -> Result<(dem::Model, Vec<String>), Failure> {
     let Preview { alone, whole: model } = stages::preview(document, job, grains)?;
     let mut lines = vec![
-        format!("grains: {} bodies with {} spheres", alone.body_count(), alone.sphere_count()),
+        match alone.sphere_count() {
+            0 => format!("grains: {} bodies", alone.body_count()),
+            spheres => format!("grains: {} bodies with {spheres} spheres", alone.body_count()),
+        },
         match model.measured() {
             None => format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
             Some(share) => format!(

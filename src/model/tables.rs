@@ -10,6 +10,7 @@ use std::path::Path;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::shape::cluster::Cluster;
+use trackbed_dem::shape::dilated::Dilated;
 
 fn fault(
     file: &Path,
@@ -193,6 +194,18 @@ pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
     library
         .clumps()
         .map_err(|e| document.error("stones", e.to_string(), "connected spheres with positive radii"))
+}
+
+/// The stones of a library file as dilated polyhedra.
+///
+/// # Errors
+/// The file is missing or no library, or a stone is no dilated polyhedron.
+pub fn polyhedra(file: &Path) -> Result<Vec<Dilated>, SceneError> {
+    let document = Document::open(file)?;
+    let library: StoneLibrary = document.read()?;
+    library
+        .polyhedra()
+        .map_err(|e| document.error("stones", e.to_string(), "convex `corners` and a positive `radius`"))
 }
 
 /// The stones of a library file as bonded clusters.

@@ -73,6 +73,8 @@ pub enum GrainShape {
     Clump,
     /// Stones of bonded spheres from a stone library, which can break.
     Bonded,
+    /// Dilated polyhedra from a stone library.
+    Polyhedron,
 }
 
 /// A row set of a gradation table.

@@ -108,4 +108,6 @@ pub enum WallKind {
     Box = 2,
     /// A rail.
     Rail = 3,
+    /// A grain with faces.
+    Stone = 4,
 }

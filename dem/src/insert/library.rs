@@ -1,4 +1,4 @@
-//! Stone library: shapes at unit scale, as clumps of spheres or as bonded spheres.
+//! Stone library: shapes at unit scale, as clumps of spheres, as bonded spheres, or as dilated polyhedra.
 //!
 //! File form (TOML); lengths in metres at unit scale. A library whose stones all have sieve size 1 m is scaled by
 //! the sieve size wanted.
@@ -13,11 +13,16 @@
 //! ]
 //! ```
 //!
+//! A stone with `corners = [[x, y, z], …]` and `radius` is a dilated polyhedron: the convex hull of the corners, all of which must be
+//! corners of it, rolled over by a sphere of that radius.
+//!
 //! A stone with `bonds = [[0, 1], …]`, pairs of spheres counted from 0, can break; `density_factor` makes up for its
 //! pores.
 
+use crate::base::Vec3;
 use crate::shape::clump::{Clump, ShapeError};
 use crate::shape::cluster::{Cluster, ClusterError};
+use crate::shape::dilated::{Dilated, DilatedError};
 use serde::{Deserialize, Serialize};
 
 /// A library file as written.
@@ -33,13 +38,20 @@ pub struct StoneLibrary {
 }
 
 /// One stone of a library file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stone {
     /// Its name, for messages.
     pub name: String,
     /// x, y, z of the centre and radius of each sphere [m] in any frame.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spheres: Vec<[f64; 4]>,
+    /// x, y, z of each corner of a polyhedron [m] in any frame.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub corners: Vec<[f64; 3]>,
+    /// Radius that a polyhedron is dilated by [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
     /// Pairs of bonded spheres, counted from 0, of a stone that can break; none for a rigid clump.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bonds: Vec<[u32; 2]>,
@@ -79,6 +91,18 @@ pub enum LibraryError {
         /// What is wrong with it.
         source: ClusterError,
     },
+    /// A stone is not a dilated polyhedron.
+    #[error("stone {index} ('{name}') of library '{library}': {source}")]
+    Polyhedron {
+        /// Name of the library.
+        library: String,
+        /// Index of the stone, from 0.
+        index: usize,
+        /// Name of the stone.
+        name: String,
+        /// What is wrong with it.
+        source: DilatedError,
+    },
 }
 
 impl StoneLibrary {
@@ -113,6 +137,23 @@ impl StoneLibrary {
         })
     }
 
+    /// The stones as dilated polyhedra, each in its own frame, in the file's order and size.
+    ///
+    /// # Errors
+    /// [`LibraryError`] when there is no stone, or one whose corners and radius do not make a dilated polyhedron.
+    pub fn polyhedra(&self) -> Result<Vec<Dilated>, LibraryError> {
+        self.each(|index, stone| {
+            let corners: Vec<Vec3> = stone.corners.iter().map(|c| Vec3::from(*c)).collect();
+            let made = Dilated::new(&corners, stone.radius.unwrap_or(0.0));
+            made.map(|(stone, _, _)| stone).map_err(|source| LibraryError::Polyhedron {
+                library: self.name.clone(),
+                index,
+                name: stone.name.clone(),
+                source,
+            })
+        })
+    }
+
     fn each<T>(
         &self,
         build: impl Fn(usize, &Stone) -> Result<T, LibraryError>,
@@ -136,7 +177,7 @@ mod tests {
     use super::*;
 
     fn plain(name: &str, spheres: &[[f64; 4]]) -> Stone {
-        Stone { name: name.into(), spheres: spheres.to_vec(), bonds: Vec::new(), density_factor: None }
+        Stone { name: name.into(), spheres: spheres.to_vec(), ..Stone::default() }
     }
 
     fn library(stones: &[(&str, &[[f64; 4]])]) -> StoneLibrary {
@@ -191,6 +232,18 @@ mod tests {
         let cluster = &file.clusters().unwrap()[0];
         assert!((cluster.volume - 2.0 * std::f64::consts::PI / 3.0).abs() < 1e-12);
         assert_eq!(library(&[]).clusters(), Err(LibraryError::Empty("test".into())));
+    }
+
+    #[test]
+    fn a_polyhedron_needs_corners_and_a_radius() {
+        let mut file = library(&[("tetrahedron", &[])]);
+        assert!(file.polyhedra().unwrap_err().to_string().contains("0 m; it must be positive"));
+        file.stones[0].radius = Some(0.1);
+        assert!(file.polyhedra().unwrap_err().to_string().contains("0 corners"));
+        file.stones[0].corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let stone = &file.polyhedra().unwrap()[0];
+        assert!(stone.core.faces.len() == 4 && stone.volume > 1.0 / 6.0);
+        assert!(file.clumps().is_err());
     }
 
     #[test]

@@ -180,6 +180,44 @@ impl Dilated {
         })
     }
 
+    /// The surface with flat edges and corners in place of round ones, for pictures: points [m] and polygons, counter-clockwise from
+    /// outside. Every point lies on the surface of the body.
+    pub fn outline(&self) -> (Vec<Vec3>, Vec<Vec<u32>>) {
+        let core = &self.core;
+        let (mut points, mut polygons) = (Vec::new(), Vec::new());
+        // Each corner once for each of its faces.
+        let mut first = Vec::new();
+        for face in &core.faces {
+            first.push(points.len() as u32);
+            points.extend(face.corners.iter().map(|c| core.corners[*c as usize] + face.normal * self.radius));
+            polygons.push((first[first.len() - 1]..points.len() as u32).collect());
+        }
+        let at = |face: usize, corner: u8| {
+            let place = core.faces[face].corners.iter().position(|c| *c == corner);
+            first[face] + place.unwrap_or(0) as u32
+        };
+        for edge in &core.edges {
+            let ([f, g], [a, b]) = (edge.faces.map(usize::from), edge.ends);
+            polygons.push(vec![at(f, b), at(f, a), at(g, a), at(g, b)]);
+        }
+        for (corner, spokes) in core.spokes.iter().enumerate() {
+            // The faces around the corner in order: by angle about the mean of their normals.
+            let faces: Vec<usize> =
+                (0..core.faces.len()).filter(|f| core.faces[*f].corners.contains(&(corner as u8))).collect();
+            let axis = faces.iter().map(|f| core.faces[*f].normal).sum::<Vec3>().normalize();
+            let x = axis.cross(&core.edges[spokes[0].0 as usize].direction).normalize();
+            let y = axis.cross(&x);
+            let angle = |f: &usize| {
+                let n = core.faces[*f].normal;
+                libm::atan2(n.dot(&y), n.dot(&x))
+            };
+            let mut around = faces;
+            around.sort_by(|f, g| angle(f).total_cmp(&angle(g)));
+            polygons.push(around.iter().map(|f| at(*f, corner as u8)).collect());
+        }
+        (points, polygons)
+    }
+
     /// Size of the square sieve that the body just passes [m]: the middle one of its extents.
     pub fn sieve_size(&self) -> f64 {
         let mut extents = self.extents();

@@ -15,6 +15,7 @@ const GROUND: &str = "9aa7b3";
 const BOUNDARY: &str = "7d8fa3";
 const SLEEPER: &str = "8f959c";
 const RAIL: &str = "5b4a3f";
+const STONE: &str = "a89f91";
 /// Shares of light and shade of contours, which are found in the legend again.
 const CONTOUR: f32 = 0.38;
 /// Edges of triangulated walls with more triangles would hide them.
@@ -154,10 +155,12 @@ impl Parts<'_> {
         let has_solid = self.wanted.solid.is_some() && self.run.skin.is_some();
         let boundary = self.options.shows(Part::Boundary, !has_solid);
         let track = self.options.shows(Part::Track, true);
+        let stones = self.options.shows(Part::Grains, true);
         for (kinds, part, shown, colour, opacity) in [
             (&[WallKind::Plane, WallKind::Wall][..], Part::Boundary, boundary, BOUNDARY, 0.25),
             (&[WallKind::Box][..], Part::Track, track, SLEEPER, 1.0),
             (&[WallKind::Rail][..], Part::Track, track, RAIL, 1.0),
+            (&[WallKind::Stone][..], Part::Grains, stones, STONE, 1.0),
         ] {
             let of_kind = |t: &usize| kinds.iter().any(|k| is(walls.kind[*t], *k));
             let chosen: Vec<usize> = (0..walls.kind.len()).filter(of_kind).collect();

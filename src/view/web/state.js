@@ -22,7 +22,7 @@ export function initial() {
     reference: { since: '', frame: 0 },
     walls: {
       boundary: { show: false, colour: '#7d8fa3', opacity: 0.25 },
-      track: { show: true, colour: '#8f959c', opacity: 1 }, rail: '#5b4a3f',
+      track: { show: true, colour: '#8f959c', opacity: 1 }, rail: '#5b4a3f', stone: '#a89f91',
     },
     picked: null, pickedQuantity: '', legends: [], saved: null,
   };

@@ -4,7 +4,7 @@ import { rgb } from 'colours';
 import { lineMaterial, surfaceMaterial } from 'shaders';
 
 /** Kinds as the program numbers them: their names, what is drawn in which order. */
-export const KINDS = ['planes', 'walls', 'sleepers', 'rails'];
+export const KINDS = ['planes', 'walls', 'sleepers', 'rails', 'stones'];
 
 export class Walls {
   constructor() {
@@ -54,7 +54,7 @@ export class Walls {
       // Triangulated walls would be hidden by their own edges.
       part.edges.visible &&= !(p === 1 && part.count > 400);
       const u = part.mesh.material.uniforms;
-      u.tint.value.set(...rgb(p === 3 ? look.rail : own.colour));
+      u.tint.value.set(...rgb(p === 3 ? look.rail : p === 4 ? look.stone : own.colour));
       u.opacity.value = own.opacity;
       const glass = own.opacity < 1;
       if (part.mesh.material.transparent !== glass) {

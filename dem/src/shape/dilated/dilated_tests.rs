@@ -70,6 +70,31 @@ fn a_cube_has_six_faces() {
     assert!(core.spokes.iter().all(|s| s.len() == 3));
 }
 
+/// The outline of a body is closed, turns outwards, and holds a little less than the body.
+#[test]
+fn outlines_are_closed() {
+    let shapes = rows(include_str!("../../../tests/data/shapes/geometry_corners.csv"));
+    for name in ["cube", "tetrahedron", "icosahedron", "wedge"] {
+        let (body, _, _) = Dilated::new(&corners(&shapes, name), 0.1).unwrap();
+        let (points, polygons) = body.outline();
+        let mut sides = std::collections::BTreeMap::new();
+        let mut volume = 0.0;
+        for p in &polygons {
+            for k in 0..p.len() {
+                let (a, b) = (p[k], p[(k + 1) % p.len()]);
+                *sides.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
+            }
+            for k in 1..p.len() - 1 {
+                let [a, b, c] = [p[0], p[k], p[k + 1]].map(|n| points[n as usize]);
+                volume += a.dot(&b.cross(&c)) / 6.0;
+            }
+        }
+        assert!(sides.values().all(|n| *n == 0), "{name}: {sides:?}");
+        let share = volume / body.volume;
+        assert!((0.9..1.0).contains(&share), "{name}: {share}");
+    }
+}
+
 /// What is no convex body is refused by name.
 #[test]
 fn bodies_that_are_none() {

@@ -12,9 +12,13 @@ use trackbed_dem::{BodyInput, Vec3};
 
 /// Grains whose places are given.
 pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
-    if group.shape == GrainShape::Bonded {
-        let expected = "`fill`, which bonded stones need";
-        return Err(group.error("shape", "\"bonded\"", expected).into());
+    for (shape, found, expected) in [
+        (GrainShape::Bonded, "\"bonded\"", "`fill`, which bonded stones need"),
+        (GrainShape::Polyhedron, "\"polyhedron\"", "`fill` or `region`, which polyhedra need"),
+    ] {
+        if group.shape == shape {
+            return Err(group.error("shape", found, expected).into());
+        }
     }
     if group.shape == GrainShape::Clump {
         let Some(file) = &group.packing else {

@@ -66,8 +66,14 @@ fn add(
         group.lattice.is_some(),
         group.region.is_some(),
     ];
-    if group.inlet.is_some() && group.shape == GrainShape::Bonded {
-        return Err(group.error("shape", "\"bonded\"", "no inlet for bonded stones").into());
+    for (shape, found, expected) in [
+        (GrainShape::Bonded, "\"bonded\"", "no inlet for bonded stones"),
+        (GrainShape::Polyhedron, "\"polyhedron\"", "no inlet and no pouring for polyhedra"),
+    ] {
+        let waits = group.inlet.is_some() || (shape == GrainShape::Polyhedron && waits(group));
+        if waits && group.shape == shape {
+            return Err(group.error("shape", found, expected).into());
+        }
     }
     let waits = waits(group);
     if sources.iter().filter(|s| **s).count() != 1 && !waits {

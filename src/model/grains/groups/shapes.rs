@@ -56,6 +56,13 @@ pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec
             Ok(clumps.iter().map(|c| 1.0 / c.sieve_size()).collect())
         }
         (GrainShape::Clump, None) => Err(group.missing("library", "the stone library of the clumps")),
+        (GrainShape::Polyhedron, Some(file)) => {
+            let stones = tables::polyhedra(&group.locate(file))?;
+            let scales = stones.iter().map(|s| 1.0 / s.sieve_size()).collect();
+            part.shapes.extend(stones.into_iter().map(|s| Shape::Polyhedron(Box::new(s))));
+            Ok(scales)
+        }
+        (GrainShape::Polyhedron, None) => Err(group.missing("library", "the stone library of the polyhedra")),
         (GrainShape::Bonded, _) => bonded::stand_ins(group, part),
         (GrainShape::Sphere, Some(_)) => Err(group.error("library", "a file", "no such key for spheres")),
         (GrainShape::Sphere, None) => {
