@@ -152,7 +152,7 @@ fn chord(core: &Core, radius: f64, origin: &Vec3, along: &Vec3) -> Option<[f64; 
         }
     }
     let mut all = if inner[0] < inner[1] { inner } else { [f64::INFINITY, f64::NEG_INFINITY] };
-    let segment = Segment { from: origin - along * reach, direction: *along, length: 2.0 * reach };
+    let segment = Segment { from: origin - along * reach, direction: *along, range: [0.0, 2.0 * reach] };
     Part::all(core).stretches(&segment, radius, |[low, high], _| {
         all = [all[0].min(low - reach), all[1].max(high - reach)];
     });

@@ -275,7 +275,7 @@ fn a_flipped_digit_in_one_slot_leaves_the_other() {
     let slot = out.join("checkpoint/b.checkpoint");
     let mut bytes = fs::read(&slot).unwrap();
     let digit = b"trackbed checkpoint ".len();
-    bytes[digit] ^= 4;
+    bytes[digit] ^= 1;
     fs::write(&slot, bytes).unwrap();
     let outcome = trackbed(arguments(&scene, &out, &["--resume"])).good();
     let remark = "b.checkpoint is damaged: its checksum is not that of its content; the run goes on from";

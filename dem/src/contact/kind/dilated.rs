@@ -98,11 +98,12 @@ fn around(a: &Placed<'_>, b: &Placed<'_>, reach: f64) -> bool {
     (a.centre - b.centre).norm_squared() < most * most
 }
 
-/// What the corners and edges of a body do to a target: calls `put` with the feature, from 1 on, what it does, and its weight.
+/// What the corners and edges of a body do to a target: calls `put` with the feature, from 1 on, what it does, and its weight. Only what
+/// is below a level along a direction, corners of the set `near` among it, can be within reach.
 fn skeleton(
     core: &Core,
     at: &[Vec3],
-    near: u64,
+    (near, n, level): (u64, &Vec3, f64),
     target: &impl Target,
     reach: f64,
     mut put: impl FnMut(u32, &Pressed, f64),
@@ -115,8 +116,7 @@ fn skeleton(
     }
     for k in part.edges() {
         let [a, b] = core.edges[k].ends.map(|e| at[e as usize]);
-        let length = (b - a).norm();
-        let segment = Segment { from: a, direction: (b - a) / length, length };
+        let segment = Segment::new(a, b).below(n, level);
         if let Some(pressed) = press::edge(target, &segment, reach) {
             let weight = pressed.force.norm() / (pressed.overlap * LENGTH * reach);
             put((CORNERS + k) as u32 + 1, &pressed, weight);
@@ -194,13 +194,14 @@ impl PairKind for DilatedDilated {
         // A point of one body that is nearer to the other than `reach` is so along any direction.
         let [low, _] = Corners::range(corners.list(), &n);
         let [_, high] = Corners::range(others, &n);
-        let near_a = Corners::set(corners.list(), &n, |h| h < high + reach);
+        let level = high + reach;
+        let near_a = Corners::set(corners.list(), &n, |h| h < level);
         let near_b = Corners::set(others, &n, |h| h > low - reach);
         let radius = effective(a.radius, b.radius);
         skeleton(
             a.core,
             corners.list(),
-            near_a,
+            (near_a, &n, level),
             &Part::new(b.core, near_b),
             reach,
             |feature, pressed, weight| {
@@ -216,10 +217,13 @@ impl PairKind for DilatedDilated {
         );
         let corners = Corners::of(b.core, |x| to_a.point(x));
         let reach = sum / a.scale;
+        // The same direction, turned about, in the frame of the first.
+        let n = -(to_a.turn * n);
+        let level = Corners::range(&a.core.corners, &n)[1] + reach;
         skeleton(
             b.core,
             corners.list(),
-            near_b,
+            (near_b, &n, level),
             &Part::new(a.core, near_a),
             reach,
             |feature, pressed, weight| {
@@ -253,7 +257,7 @@ impl PairKind for DilatedPlane {
         let (reach, corners) = (body.radius / body.scale, &body.core.corners);
         let level = below.point.dot(&normal) + reach;
         let near = Corners::set(corners, &normal, |h| h < level);
-        skeleton(body.core, corners, near, &below, reach, |feature, pressed, weight| {
+        skeleton(body.core, corners, (near, &normal, level), &below, reach, |feature, pressed, weight| {
             found.push(touch(body, feature << 16, pressed, weight, [reach, reach, body.radius], 1.0));
         });
         found.truncate(POINTS);

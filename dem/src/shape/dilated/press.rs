@@ -27,12 +27,28 @@ pub(crate) trait Target {
     fn stretches(&self, segment: &Segment, reach: f64, f: impl FnMut([f64; 2], &Nearest));
 }
 
-/// A segment: points `from` + s `direction` with 0 ≤ s ≤ `length`.
+/// A segment: points `from` + s `direction` with s in `range`, outside of which nothing is near.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     pub from: Vec3,
     pub direction: Vec3,
-    pub length: f64,
+    pub range: [f64; 2],
+}
+
+impl Segment {
+    /// From one point to another.
+    pub fn new(from: Vec3, to: Vec3) -> Segment {
+        let length = (to - from).norm();
+        Segment { from, direction: (to - from) / length, range: [0.0, length] }
+    }
+
+    /// That part of it which is below a level along a direction.
+    pub fn below(mut self, n: &Vec3, level: f64) -> Segment {
+        let mut stretch = Stretch(self.range);
+        stretch.cut(n.dot(&self.from) - level, n.dot(&self.direction));
+        self.range = stretch.0;
+        self
+    }
 }
 
 /// What is nearest on a stretch.
@@ -125,7 +141,7 @@ impl Target for HalfSpace {
     fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
         let (at, slope) =
             ((segment.from - self.point).dot(&self.normal), segment.direction.dot(&self.normal));
-        let mut stretch = Stretch([0.0, segment.length]);
+        let mut stretch = Stretch(segment.range);
         stretch.cut(at - reach, slope);
         if stretch.some() {
             f(stretch.0, &Nearest::Plane { normal: self.normal, at, slope });
@@ -220,7 +236,10 @@ impl Target for Part<'_> {
     }
 
     fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
-        let whole = Stretch([0.0, segment.length]);
+        let whole = Stretch(segment.range);
+        if !whole.some() {
+            return;
+        }
         for face in self.faces.iter().map(|k| &self.core.faces[k]) {
             let (at, slope) =
                 (face.normal.dot(&segment.from) - face.offset, face.normal.dot(&segment.direction));
@@ -238,15 +257,18 @@ impl Target for Part<'_> {
             }
         }
         for edge in self.edges.iter().map(|k| &self.core.edges[k]) {
-            let way = segment.from - self.core.corners[edge.ends[0] as usize];
             let (t, along) = (edge.direction.dot(&segment.from), segment.direction.dot(&edge.direction));
             let mut stretch = whole;
             stretch.cut(edge.levels[0] - t, -along);
             stretch.cut(t - edge.levels[1], along);
             for (side, level) in &edge.sides {
+                if !stretch.some() {
+                    break;
+                }
                 stretch.cut_beyond(level - side.dot(&segment.from), -side.dot(&segment.direction));
             }
             if stretch.some() {
+                let way = segment.from - self.core.corners[edge.ends[0] as usize];
                 let t = way.dot(&edge.direction);
                 let (at, slope) = (way - edge.direction * t, segment.direction - edge.direction * along);
                 stretch.near(&at, &slope, reach);

@@ -36,7 +36,7 @@ fn an_edge_presses_as_its_points_do() {
     ];
     for (from, to) in cases {
         let length = (to - from).norm();
-        let segment = Segment { from, direction: (to - from) / length, length };
+        let segment = Segment::new(from, to);
         let found = edge(&part, &segment, reach).unwrap();
         let (mut force, mut torque, mut squares) = (Vec3::zeros(), Vec3::zeros(), 0.0);
         let n = 200_000;
@@ -53,7 +53,7 @@ fn an_edge_presses_as_its_points_do() {
         assert!((by_one - torque).norm() < 3e-6 * force.norm(), "{from}: {by_one} {torque}");
         assert!((found.overlap * force.norm() - squares).abs() < 3e-6 * squares, "{from}");
     }
-    let away = Segment { from: Vec3::new(2.0, 0.0, 0.0), direction: Vec3::y(), length: 1.0 };
+    let away = Segment::new(Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 1.0, 0.0));
     assert!(edge(&part, &away, reach).is_none());
 }
 
@@ -61,11 +61,11 @@ fn an_edge_presses_as_its_points_do() {
 #[test]
 fn an_edge_over_a_plane() {
     let ground = HalfSpace { point: Vec3::zeros(), normal: Vec3::z() };
-    let segment = Segment { from: Vec3::new(0.0, 0.0, 0.1), direction: Vec3::x(), length: 2.0 };
+    let segment = Segment::new(Vec3::new(0.0, 0.0, 0.1), Vec3::new(2.0, 0.0, 0.1));
     let found = edge(&ground, &segment, 0.3).unwrap();
     assert!((found.force - Vec3::z() * 0.4).norm() < 1e-15 && (found.overlap - 0.2).abs() < 1e-15);
     assert!((found.point - Vec3::new(1.0, 0.0, 0.1)).norm() < 1e-15);
-    let sloping = Segment { from: Vec3::zeros(), direction: Vec3::new(0.6, 0.0, 0.8), length: 2.0 };
+    let sloping = Segment::new(Vec3::zeros(), Vec3::new(1.2, 0.0, 1.6));
     let found = edge(&ground, &sloping, 0.4).unwrap();
     // ∫₀^½ (0.4 − 0.8 s) ds
     assert!((found.force.z - 0.1).abs() < 1e-15);
