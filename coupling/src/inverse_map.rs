@@ -95,4 +95,24 @@ mod tests {
             assert!((measured - mean).abs() <= 0.1, "a = {amplitude}: mean {measured}, reference {mean}");
         }
     }
+
+    /// The stop is in proportion to the element: natural coordinates of an element of any size are found to rounding, of a large
+    /// one, whose points are known to 1e-12 m only, as of a small one, where 1e-13 m is a part of it.
+    #[test]
+    fn elements_of_any_size_are_inverted_alike() {
+        let mut random = Random::new(7);
+        for size in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+            for _ in 0..100 {
+                let x = element::NATURAL.map(|p| p.map(|c| size * (c + 0.1 * random.symmetric())));
+                let xi = [random.symmetric(), random.symmetric(), random.symmetric()];
+                let n = element::shape_functions(xi);
+                let point = [0, 1, 2].map(|d| (0..20).map(|i| n[i] * x[i][d]).sum::<f64>());
+                let near = xi.map(|c| c + 3e-5);
+                let found = natural_point(ElementKind::Hex20, &x, point, near)
+                    .unwrap_or_else(|| panic!("no point in an element of {size} m"));
+                let error = (0..3).map(|d| (found.xi[d] - xi[d]).abs()).fold(0.0, f64::max);
+                assert!(error < 1e-12, "size {size}: {error:e}");
+            }
+        }
+    }
 }

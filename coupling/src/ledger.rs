@@ -221,4 +221,42 @@ mod tests {
         let balance = Balance { start, now, spent: Spent::default() };
         assert_eq!((balance.error(), balance.turnover(), balance.floor()), (1.0, 5.0, 3e-3));
     }
+
+    /// What one part gives to another is no work from outside, and every loss is counted once: each case closes to rounding, and
+    /// the losses by name are all of what is dissipated, breaks apart.
+    #[test]
+    fn every_way_of_energy_closes() {
+        let none = Spent::default;
+        let cases: [(&str, Spent, f64); 13] = [
+            ("pads on sleepers", Spent { applied_work: 1.0, pads_on_sleepers: 1.0, ..none() }, 0.0),
+            ("applied loads", Spent { applied_work: 1.0, ..none() }, 1.0),
+            ("walls", Spent { wall_work: 1.0, ..none() }, 1.0),
+            ("wheels", Spent { wheels: 1.0, ..none() }, 1.0),
+            ("loads on the solid", Spent { solid_load_work: 1.0, ..none() }, 1.0),
+            ("jumps", Spent { jumps: 1.0, ..none() }, 1.0),
+            ("dashpots", Spent { dashpot: 1.0, ..none() }, -1.0),
+            ("friction", Spent { friction: 1.0, ..none() }, -1.0),
+            ("Rayleigh damping", Spent { rayleigh: 1.0, ..none() }, -1.0),
+            ("absorbing boundaries", Spent { absorbed: 1.0, ..none() }, -1.0),
+            ("plastic flow", Spent { plastic: 1.0, ..none() }, -1.0),
+            ("pads", Spent { pads: 1.0, ..none() }, -1.0),
+            ("track beyond the model", Spent { track_beyond: 1.0, ..none() }, -1.0),
+        ];
+        for (name, spent, gain) in cases {
+            let start = Stored { solid_strain: 5.0, ..Stored::default() };
+            let now = Stored { solid_strain: 5.0 + gain, ..Stored::default() };
+            assert_eq!(Balance { start, now, spent }.error(), 0.0, "{name}");
+            let named: f64 = spent.losses().into_iter().map(|(_, loss)| loss).sum();
+            assert_eq!(named, spent.dissipated(), "{name}");
+        }
+    }
+
+    /// Dashpots at the surface that act on a velocity which the solid does not have may take less than nothing: what they lag
+    /// behind is no gain of theirs. What they take too much is theirs.
+    #[test]
+    fn the_lag_of_dashpots_is_no_gain_of_theirs() {
+        let dashpots =
+            |dashpot, dashpot_lag| Spent { dashpot, dashpot_lag, ..Spent::default() }.losses()[0].1;
+        assert_eq!((dashpots(-2.0, -3.0), dashpots(5.0, 3.0)), (1.0, 5.0));
+    }
 }

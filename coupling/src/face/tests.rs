@@ -169,3 +169,76 @@ fn borders_are_named_as_the_nodes_are() {
         (&element::quad8::NATURAL[..], &element::tri6::NATURAL[..])
     );
 }
+
+/// A saddle with its corners at heights h and −h, seen from a height Z above: the squared distance along the diagonal is
+/// 2 t² + (h t² − Z)², at a corner 2 + (h − Z)². Where Z is large the second derivatives are indefinite although both on their
+/// diagonal are above zero, and a Newton step leads uphill.
+#[test]
+fn the_far_side_of_a_saddle_is_found_at_its_corner() {
+    let (h, z) = (1.0, 3.0);
+    let mut x = [[0.0; 3]; 8];
+    for (x, [a, b]) in x.iter_mut().zip([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) {
+        *x = [a, b, h * a * b];
+    }
+    for start in [[0.3, 0.1], [0.1, 0.4], [-0.2, -0.3], [0.6, 0.05]] {
+        let found = closest_point(FaceShape::Quad4, &x, [0.0, 0.0, z], start);
+        let exact = (2.0 + (h - z) * (h - z)).sqrt();
+        let d = distance(found.point, [0.0, 0.0, z]);
+        assert!((d - exact).abs() < 1e-12, "from {start:?}: {:?} at {d}, expected {exact}", found.natural);
+    }
+}
+
+/// Each border by its name, from outside and from either side of a corner: a corner from each of the two sides that end there.
+#[test]
+fn corners_are_named_by_both_sides() {
+    for shape in SHAPES {
+        let corners = shape.corner_count();
+        let mut x = [[0.0; 3]; 8];
+        x.iter_mut().zip(landmarks(shape)).for_each(|(x, p)| *x = [p[0], p[1], 0.0]);
+        let centre = shape.natural_centre();
+        for k in 0..corners {
+            let out = |k: usize, by: f64| [0, 1].map(|d| centre[d] + by * (x[k % corners][d] - centre[d]));
+            let [a, b] = out(k, 1.5);
+            assert_eq!(closest_point(shape, &x, [a, b, 0.1], centre).location, Location::Corner(k as u8));
+            let (from, to) = (out(k, 1.2), out(k + 1, 1.2));
+            let [a, b] = [0, 1].map(|d| 0.5 * (from[d] + to[d]));
+            assert_eq!(closest_point(shape, &x, [a, b, 0.1], centre).location, Location::Side(k as u8));
+        }
+    }
+}
+
+/// A face that rises beyond all its nodes and the control points of its sides: with corners at 0, 1, 1, 1 and sides whose
+/// control points are all at 1, the field is 1 − (1 − u)(1 − v)(1 − u − v) over the unit square, 1 + 1/27 at u = v = 2/3. Only the
+/// middle control point, at 5/4, holds it. The other way up, too.
+#[test]
+fn bounds_hold_a_face_that_bulges_beyond_its_sides() {
+    for sign in [1.0, -1.0] {
+        let heights = [0.0, 1.0, 1.0, 1.0, 0.75, 1.0, 1.0, 0.75].map(|c| sign * c);
+        let mut x = [[0.0; 3]; 8];
+        for ((x, p), z) in x.iter_mut().zip(landmarks(FaceShape::Quad8)).zip(heights) {
+            *x = [p[0], p[1], z];
+        }
+        let top = interpolate(FaceShape::Quad8, &x, [1.0 / 3.0; 2])[2];
+        assert!((top - sign * (1.0 + 1.0 / 27.0)).abs() < 1e-14, "{top}");
+        let (low, high) = bounds(FaceShape::Quad8, &x);
+        assert!(low[2] <= top && top <= high[2], "{top} in {} to {}", low[2], high[2]);
+        // No wider than the hull of its control points.
+        assert!(low[2] >= -1.25 && high[2] <= 1.25 && low[0] == -1.0 && high[1] == 1.0);
+    }
+}
+
+/// Whatever the start, the search begins and ends on the face.
+#[test]
+fn points_outside_the_domain_are_brought_back() {
+    let mut random = Random::new(23);
+    for shape in SHAPES {
+        for _ in 0..200 {
+            let start = [3.0 * random.symmetric(), 3.0 * random.symmetric()];
+            let [a, b] = with_kind!(shape, K => <<K as FaceKind>::Domain as Domain>::clamp(start));
+            match shape.corner_count() {
+                4 => assert!(a.abs() <= 1.0 && b.abs() <= 1.0, "{start:?}: {a} {b}"),
+                _ => assert!(a >= 0.0 && b >= 0.0 && a + b <= 1.0 + 1e-15, "{start:?}: {a} {b}"),
+            }
+        }
+    }
+}

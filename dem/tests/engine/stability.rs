@@ -368,3 +368,105 @@ fn an_elastic_gas_does_not_heat() {
     println!("{} elastic spheres: {} steps, energy {change:+.2e}", model.body_count(), state.steps);
     assert!(change.abs() < 1e-3, "{change}");
 }
+
+/// Of one sphere on a plane all frequencies are known. With K = Kₜ and 1/I = 5/(2 m r²) in units of K/m: 1 across the plane;
+/// 1 + 5/2 along it, where the tangential spring turns the sphere as well; 5/2 where it can only turn; with a rolling spring
+/// of stiffness Kₜ r² the larger root of λ² − 6 λ + 5/2; a twisting spring, about the normal, adds 5/2 apart from these. The
+/// limit is 2/ω, less what the estimate adds to ω² to be on the safe side, a hundredth.
+#[test]
+fn one_sphere_on_a_plane_has_its_closed_form() {
+    let (free, held) = (false, true);
+    for (name, fixed, rolling, twisting, expected) in [
+        ("free", [free; 6], 0.0, 0.0, 3.5),
+        ("rolling resistance", [free; 6], 0.1, 0.0, 3.0 + 6.5_f64.sqrt()),
+        ("twisting resistance", [free; 6], 0.0, 0.1, 3.5),
+        ("held along the plane", [held, held, free, free, free, free], 0.0, 0.0, 2.5),
+        ("kept from turning", [free, free, free, held, held, held], 0.1, 0.1, 1.0),
+    ] {
+        let mut input = crate::scene::weightless(Material {
+            tangential_ratio: 1.0,
+            restitution: 1.0,
+            rolling_friction: rolling,
+            twisting_friction: twisting,
+            ..stone()
+        });
+        input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        let place = Vec3::z() * (0.01 - 1e-7);
+        input.bodies.push(BodyInput { fixed, ..crate::scene::sphere(place, Vec3::zeros()) });
+        let model = Model::new(input).expect("a good input");
+        let mut state = State::new(&model);
+        let mut work = Work::new(&model, &state);
+        trackbed_dem::find_contacts(&model, &mut state, &mut work, &NoSurface).expect("contacts");
+        let exact = 2.0 / (expected * stone().stiffness / model.mass(0)).sqrt();
+        let share = stability::limit(&model, &state) / exact;
+        println!("{name}: {share:.4} of the closed form");
+        assert!(share <= 1.0 && share > 0.99, "{name}: {share}");
+    }
+}
+
+/// Two planes close on a sphere after Hertz twice as fast from look to look, so that the overlap doubles and the limit falls by
+/// a sixth each time: while it changes by more than a tenth, the step is 0.7 of the usual share of it. When they stand it comes
+/// back to that share.
+#[test]
+fn a_changing_limit_is_used_with_care() {
+    let material =
+        Material { young: Some(2e7), stiffness: f64::INFINITY, friction: 0.0, restitution: 0.3, ..stone() };
+    let mut input = crate::scene::weightless(material);
+    let overlap = 1e-7;
+    input.planes.push(plane(Vec3::z() * overlap, Vec3::z()));
+    input.planes.push(plane(Vec3::z() * (0.02 - overlap), -Vec3::z()));
+    input.bodies.push(crate::scene::sphere(Vec3::z() * 0.01, Vec3::zeros()));
+    input.impact_speed = Some(1e-6);
+    let share = 0.8;
+    input.time_step = TimeStep::Measured { share, longest: f64::INFINITY, collisions: false };
+    let model = Model::new(input).expect("a good input");
+    let mut state = State::new(&model);
+    let mut work = Work::new(&model, &state);
+    let (mut before, mut changing, mut steady) = (f64::INFINITY, 0, 0);
+    let mut speed = 1e-7;
+    while steady < 6 {
+        trackbed_dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a good step");
+        if !stability::follow(&model, &mut state) {
+            continue;
+        }
+        let found = state.measured_limit().expect("two contacts");
+        let part = state.dt() / found;
+        if found < before / 1.1 {
+            changing += 1;
+            assert!(
+                part <= 0.7 * share * (1.0 + 1e-12),
+                "{part} of the limit, which has fallen to {found:e} s"
+            );
+        } else if found > before / 1.03 {
+            steady += 1;
+            assert!(part <= share * (1.0 + 1e-12));
+        }
+        before = found;
+        speed = if changing < 8 { 2.0 * speed } else { 0.0 };
+        state.set_plane_velocity(0, Vec3::z() * speed);
+        state.set_plane_velocity(1, -Vec3::z() * speed);
+    }
+    let part = state.dt() / before;
+    assert!(
+        changing == 8 && part > share / 1.1,
+        "{changing} looks at a falling limit, {part} of it in the end"
+    );
+}
+
+/// Windows are divided into steps no longer than the share of the limit, and into no more than that takes.
+#[test]
+fn a_window_has_as_few_steps_as_the_limit_allows() {
+    let mut input = crate::scene::weightless(Material { friction: 0.0, ..stone() });
+    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    input.bodies.push(crate::scene::sphere(Vec3::z() * (0.01 - 1e-7), Vec3::zeros()));
+    input.time_step = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: false };
+    let model = Model::new(input).expect("a good input");
+    let mut state = State::new(&model);
+    let allowed = state.dt();
+    for parts in [0.3, 1.0, 1.01, 1.99, 2.0, 7.5] {
+        let steps = stability::divide(&model, &mut state, parts * allowed, 1);
+        let length = parts * allowed / f64::from(steps);
+        assert_eq!(steps, f64::ceil(parts) as u32, "a window of {parts} steps");
+        assert!((state.dt() / length - 1.0).abs() < 1e-15 && length <= allowed * (1.0 + 1e-12));
+    }
+}
