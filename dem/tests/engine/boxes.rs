@@ -188,3 +188,20 @@ fn two_rigid_boxes_are_refused() {
     input.bodies.push(body(0, Vec3::x()));
     assert!(trackbed_dem::Model::new(input).unwrap_err().to_string().contains("body 1"));
 }
+
+/// A box turned by 45 degrees on another touches it in eight points of half a spring each. A slope of 1 in 20 stretches their
+/// tangential springs: these hold ½ F²/(4 Kₜ), weights counted (to 2 %: the points turn a little, and share F not quite alike).
+#[test]
+fn shared_springs_hold_their_share_of_energy() {
+    let mut input = boxes(material(), &[[0.1, 0.1, 0.05], [0.1, 0.1, 0.05]]);
+    input.gravity = Vec3::new(0.05 * G, 0.0, -G);
+    input.bodies.push(fixed(0, Vec3::zeros()));
+    let mass = 2600.0 * 8.0 * 0.1 * 0.1 * 0.05;
+    let orientation = UnitQuaternion::from_axis_angle(&Vec3::z_axis(), f64::to_radians(45.0));
+    input.bodies.push(BodyInput { orientation, ..body(1, Vec3::z() * (0.1 - mass * G / (4.0 * K))) });
+    let mut run = Run::new(input);
+    rest(&mut run, 0.6);
+    let held = measure::energies(&run.model, &run.state).elastic_tangential;
+    let exact = 0.5 * (0.05 * mass * G).powi(2) / (4.0 * 0.5 * K);
+    assert!((held / exact - 1.0).abs() < 0.02, "{held:e} against {exact:e}");
+}

@@ -470,3 +470,107 @@ fn a_window_has_as_few_steps_as_the_limit_allows() {
         assert!((state.dt() / length - 1.0).abs() < 1e-15 && length <= allowed * (1.0 + 1e-12));
     }
 }
+
+/// What is known before anything touches, of one sphere: six contacts on either side, each with the stiffer of K across it and
+/// Kₜ (1 + 5/2) along it, where the tangential spring pushes the sphere and turns it; with as much again of 5/2 where it
+/// resists rolling. ω² = 12 K/m · max(1, 7/2 α or 6 α).
+#[test]
+fn the_bound_of_a_sphere_has_its_closed_form() {
+    for (alpha, rolling, expected) in [(0.1, 0.0, 1.0), (0.5, 0.0, 1.75), (1.0, 0.0, 3.5), (0.5, 0.1, 3.0)] {
+        let mut input = crate::scene::weightless(Material {
+            tangential_ratio: alpha,
+            restitution: 1.0,
+            rolling_friction: rolling,
+            ..stone()
+        });
+        input.bodies.push(crate::scene::sphere(Vec3::zeros(), Vec3::zeros()));
+        let model = Model::new(input).expect("a good input");
+        let exact = 2.0 / (12.0 * expected * stone().stiffness / model.mass(0)).sqrt();
+        let share = model.dt_limit().dt / exact;
+        assert!((share - 1.0).abs() < 1e-12, "ratio {alpha}, rolling {rolling}: {share}");
+    }
+}
+
+/// A dumbbell of two spheres of radius r at ±a: a contact may lie r from its long axis and a + r from the others, so that the
+/// bound is ω² = 24 K (1/m + (a + r)²/I) where that is the larger.
+#[test]
+fn the_bound_of_a_dumbbell_has_its_closed_form() {
+    let (a, r) = (0.006, 0.008);
+    let mut input = crate::scene::weightless(Material { restitution: 1.0, ..stone() });
+    let dumbbell = Clump::from_spheres(&[([-a, 0.0, 0.0], r), ([a, 0.0, 0.0], r)]).expect("a clump");
+    input.shapes.push(Shape::Clump(dumbbell));
+    input.bodies.push(BodyInput { shape: 1, fixed: [false; 6], ..BodyInput::default() });
+    let model = Model::new(input).expect("a good input");
+    let inertia = model.inertia(0);
+    let (long, across) = (inertia.min(), inertia.max());
+    let turn = f64::max(r * r / long, (a + r) * (a + r) / across);
+    let exact = 2.0 / (24.0 * stone().stiffness * (1.0 / model.mass(0) + turn)).sqrt();
+    assert!((model.dt_limit().dt / exact - 1.0).abs() < 1e-9, "{} {exact}", model.dt_limit().dt);
+}
+
+/// Contacts and bonds hold a body together: their bounds of ω² add up.
+#[test]
+fn the_bounds_of_contacts_and_bonds_add_up() {
+    let mut input = crate::scene::weightless(Material { restitution: 1.0, ..stone() });
+    input.bodies.push(crate::scene::sphere(Vec3::zeros(), Vec3::zeros()));
+    input.bodies.push(crate::scene::sphere(Vec3::x() * 0.02, Vec3::zeros()));
+    let contacts = Model::new(input.clone()).expect("a good input").dt_limit().dt;
+    input.bond_kinds.push(Bond::Parallel(ParallelBond {
+        radius_factor: 0.8,
+        stiffness: ParallelStiffness::Modulus { young: 1e7, ratio: 2.5 },
+        tensile_strength: f64::INFINITY,
+        shear_strength: ShearStrength::Constant(f64::INFINITY),
+        moment_factor: 1.0,
+        criterion: Criterion::Stress,
+        damping: BondDamping::None,
+        contact: false,
+    }));
+    input.bonds = vec![bond::BondInput::new(0, 1, 0)];
+    let model = Model::new(input).expect("a good input");
+    let (found, bonds) = (model.dt_limit().dt, model.dt_limit().bonds);
+    let exact = 2.0 / (4.0 / (contacts * contacts) + bonds).sqrt();
+    assert!(bonds > 0.1 * 4.0 / (contacts * contacts), "both count");
+    assert!((found / exact - 1.0).abs() < 1e-12, "{found} against {exact}");
+}
+
+/// The time of a collision is that of both masses: 0.08 √(m*/K) where nothing is lost, m* = m₁ m₂/(m₁ + m₂) of a light and a
+/// heavy sphere on the stiffest contact of the scene.
+#[test]
+fn the_time_of_a_collision_is_that_of_both_masses() {
+    let light = Material { restitution: 1.0, ..stone() };
+    let heavy = Material { density: 100.0 * light.density, ..light };
+    let mut input = crate::scene::weightless(light);
+    input.materials.push(heavy);
+    input.shapes.push(Shape::Sphere { radius: 0.01 });
+    let stiffness = 10.0 * light.stiffness;
+    input.contacts.push(trackbed_dem::PairOverride {
+        a: 0,
+        b: 1,
+        stiffness: Some(stiffness),
+        ..Default::default()
+    });
+    input.bodies.push(crate::scene::sphere(Vec3::zeros(), Vec3::zeros()));
+    input.bodies.push(BodyInput { material: 1, ..crate::scene::sphere(Vec3::x(), Vec3::zeros()) });
+    let model = Model::new(input).expect("a good input");
+    let [a, b] = [model.mass(0), model.mass(1)];
+    let exact = 0.08 * (a * b / (a + b) / stiffness).sqrt();
+    assert!((model.longest(false) / exact - 1.0).abs() < 1e-12, "{} {exact}", model.longest(false));
+}
+
+/// Bodies that fall through the height of the scene meet at √(2 g H): the limit is that of this speed given.
+#[test]
+fn the_speed_of_a_fall_sets_the_limit_after_hertz() {
+    let material = Material { young: Some(2e7), poisson: 0.2, stiffness: f64::INFINITY, ..stone() };
+    let mut input = crate::scene::weightless(material);
+    input.gravity = Vec3::z() * -9.81;
+    input.bodies.push(crate::scene::sphere(Vec3::zeros(), Vec3::zeros()));
+    input.bodies.push(crate::scene::sphere(Vec3::z() * 0.48, Vec3::zeros()));
+    let limit = |impact_speed| {
+        let input = ModelInput { impact_speed, ..input.clone() };
+        Model::new(input).expect("a good input").dt_limit().dt
+    };
+    // From the top of the upper sphere to the foot of the lower one.
+    let height = 0.48 + 2.0 * 0.01;
+    let (found, exact) = (limit(None), limit(Some(f64::sqrt(2.0 * 9.81 * height))));
+    assert!((found / exact - 1.0).abs() < 1e-12, "{found} against {exact}");
+}
