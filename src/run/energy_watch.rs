@@ -87,4 +87,33 @@ mod tests {
         // At rest, rounding is no error.
         EnergyWatch::default().follow(&balance(1.0 + 1e-14, 0.0)).unwrap();
     }
+
+    /// A later row that closes does not make up for one that did not.
+    #[test]
+    fn the_worst_row_is_remembered() {
+        let mut watch = EnergyWatch::default();
+        watch.follow(&balance(0.2, 0.75)).unwrap();
+        watch.follow(&balance(0.2, 0.8)).unwrap();
+        assert!(watch.now() < 1e-15, "{watch:?}");
+        assert!((watch.worst() - 0.05 / 0.8).abs() < 1e-12, "{watch:?}");
+    }
+
+    /// A solid that gains energy in its time integration books it there, and the account closes all the same: 0.3 J gained of
+    /// 1 J held stop the run, as an error of that size does.
+    #[test]
+    fn a_gain_of_the_time_integration_stops_a_run() {
+        let closed = Balance { spent: Spent { numerical: -0.3, ..Spent::default() }, ..balance(1.3, 0.0) };
+        assert!(closed.error().abs() < 1e-15);
+        assert!(EnergyWatch::default().follow(&closed).is_err());
+        let lost = Balance { spent: Spent { numerical: 0.3, ..Spent::default() }, ..balance(0.7, 0.0) };
+        EnergyWatch::default().follow(&lost).unwrap();
+    }
+
+    /// The error of a first contact, large beside what has been turned over, is small beside what moves.
+    #[test]
+    fn the_first_steps_are_judged_by_what_moves() {
+        let mut watch = EnergyWatch::default();
+        watch.follow(&balance(1.001, 1e-6)).unwrap();
+        assert!(watch.now() > 0.9, "the judgement at the end has no such allowance: {watch:?}");
+    }
 }

@@ -242,3 +242,45 @@ fn points_outside_the_domain_are_brought_back() {
         }
     }
 }
+
+/// Flat triangles of any shape, slender and obtuse ones among them, against elementary geometry: the foot of the perpendicular
+/// where that lies within, else the closest of the three sides, each a segment.
+#[test]
+fn flat_triangles_agree_with_elementary_geometry() {
+    let mut random = Random::new(31);
+    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|d| a[d] - b[d]);
+    let (mut within, mut beyond) = (0, 0);
+    while within + beyond < 1000 {
+        let mut corner = |spread: f64| [0, 1, 2].map(|_| spread * random.symmetric());
+        let (c, p) = ([corner(1.0), corner(1.0), corner(1.0)], corner(2.0));
+        let normal = cross(minus(c[1], c[0]), minus(c[2], c[0]));
+        if dot(normal, normal) < 0.01 {
+            continue;
+        }
+        let sides = [(c[0], c[1]), (c[1], c[2]), (c[2], c[0])];
+        let left = |(a, b)| dot(cross(minus(b, a), minus(p, a)), normal) >= 0.0;
+        let exact = if sides.into_iter().all(left) {
+            within += 1;
+            dot(minus(p, c[0]), normal).abs() / dot(normal, normal).sqrt()
+        } else {
+            beyond += 1;
+            let along = |(a, b)| {
+                let (side, to) = (minus(b, a), minus(p, a));
+                let t = (dot(side, to) / dot(side, side)).clamp(0.0, 1.0);
+                distance(to, side.map(|s| t * s))
+            };
+            sides.into_iter().map(along).fold(f64::INFINITY, f64::min)
+        };
+        for shape in [FaceShape::Tri3, FaceShape::Tri6] {
+            let mut x = [[0.0; 3]; 8];
+            x[..3].copy_from_slice(&c);
+            for (k, (a, b)) in sides.into_iter().enumerate() {
+                x[3 + k] = [0, 1, 2].map(|d| 0.5 * (a[d] + b[d]));
+            }
+            let found = closest_point(shape, &x, p, shape.natural_centre());
+            let d = distance(found.point, p);
+            assert!((d - exact).abs() < 1e-12, "{shape:?} {c:?} from {p:?}: {d} against {exact}");
+        }
+    }
+    assert!(within > 20 && beyond > 500, "{within} {beyond}");
+}

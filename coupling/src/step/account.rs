@@ -84,3 +84,37 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
         ..Spent::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every work and loss of the grains' ledger goes into the account once, those of the surface apart.
+    #[test]
+    fn the_ledger_of_grains_goes_into_the_account_whole() {
+        let model = dem::Model::new(dem::ModelInput::default()).expect("no grains at all");
+        let mut grains = dem::State::new(&model);
+        let ledger = &mut grains.ledger;
+        let all = [
+            &mut ledger.work_applied,
+            &mut ledger.work_body_forces,
+            &mut ledger.work_walls,
+            &mut ledger.work_servo,
+            &mut ledger.work_surface,
+            &mut ledger.work_constraints,
+            &mut ledger.work_periodic,
+            &mut ledger.work_flow,
+            &mut ledger.dissipated_dashpot,
+            &mut ledger.dissipated_friction,
+            &mut ledger.dissipated_bonds,
+            &mut ledger.released_by_breaks,
+            &mut ledger.dissipated_local_damping,
+        ];
+        // Powers of two: sums are exact, and no two of them alike.
+        all.into_iter().zip(0..).for_each(|(part, k)| *part = f64::from(1 << k));
+        let spent = spent_by_grains(&grains);
+        assert_eq!(spent.work() + spent.surface_on_grains, grains.ledger.work());
+        assert_eq!(spent.dissipated(), grains.ledger.dissipated());
+        assert_eq!(spent.surface_on_grains, grains.ledger.work_surface);
+    }
+}

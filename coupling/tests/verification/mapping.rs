@@ -76,3 +76,60 @@ fn every_point_of_a_distorted_top_is_found_in_its_element() {
     assert_eq!(found, 10_000);
     assert!(worst < 1e-12 && apart < 1e-10);
 }
+
+/// A window in which every node moves at its own velocity from its own displacement: points are at X + u − u₀ + v τ, no point is
+/// faster than the bound, every point is among the candidates of its place at any time, and no face is said to be farther from a
+/// centre than it is.
+#[test]
+fn a_window_shows_the_surface_where_it_is() {
+    let (mesh, mut surface) = distorted_top();
+    let mut random = Scatter::new(29);
+    let n = 3 * mesh.node_count();
+    let mut field = |size: f64| -> Vec<f64> { (0..n).map(|_| size * random.symmetric()).collect() };
+    let (u, reference, v) = (field(0.01 * EDGE), field(0.01 * EDGE), field(EDGE));
+    let duration = 0.2;
+    surface.begin_window(&mesh, &u, &reference, &v, duration);
+    let mut random = Scatter::new(31);
+    let (mut fastest, mut patches) = (0.0_f64, Vec::new());
+    for k in 0..2000_u32 {
+        let patch = k % surface.faces().len() as u32;
+        let tau = duration * f64::from(k % 5) / 4.0;
+        surface.advance(tau);
+        let local = [0.99 * random.symmetric(), 0.99 * random.symmetric()];
+        let shape = surface.shape_functions(patch, local);
+        let face = surface.faces()[patch as usize];
+        let sum = |of: &dyn Fn(usize, usize) -> f64| {
+            [0, 1, 2]
+                .map(|d| face.nodes().iter().zip(shape).map(|(&i, s)| s * of(i as usize, d)).sum::<f64>())
+        };
+        let velocity = sum(&|i, d| v[3 * i + d]);
+        let place = sum(&|i, d| {
+            let dof = 3 * i + d;
+            mesh.coordinates[i][d] + u[dof] - reference[dof] + v[dof] * tau
+        });
+        let norm = |a: [f64; 3]| a.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let apart = |a: [f64; 3], b: [f64; 3]| norm([0, 1, 2].map(|d| a[d] - b[d]));
+        assert!(apart(surface.place(patch, local), place) < 1e-13);
+        fastest = fastest.max(norm(velocity));
+        patches.clear();
+        surface.candidates(place.map(|c| c - 1e-9), place.map(|c| c + 1e-9), &mut patches);
+        assert!(patches.contains(&patch), "point {k} at {tau} s");
+        let centre = place.map(|c| c + 0.3 * EDGE * random.symmetric());
+        let nearest = surface.closest_point(patch, centre, local).point;
+        assert!(surface.clearance(patch, centre) <= apart(nearest, centre) + 1e-12, "centre {k}");
+        assert!(norm(velocity) <= surface.max_speed());
+    }
+    // Mid-side nodes against corners: three times the speed of the nodes in the middle of a face.
+    let mut v = vec![0.0; n];
+    for face in surface.faces() {
+        face.nodes()
+            .iter()
+            .enumerate()
+            .for_each(|(k, &i)| v[3 * i as usize + 2] = if k < 4 { -1.0 } else { 1.0 });
+    }
+    let zero = vec![0.0; n];
+    surface.begin_window(&mesh, &zero, &zero, &v, duration);
+    let middle = surface.velocity(0, [0.0; 2])[2];
+    println!("random nodes: up to {fastest:.3} m/s; mid-sides against corners: {middle} m/s in the middle");
+    assert!((middle - 3.0).abs() < 1e-12 && surface.max_speed() >= middle - 1e-12);
+}

@@ -111,3 +111,28 @@ fn the_pressure_on_a_face_is_its_impulse_over_its_area() {
     let found = transfer.peak_face_pressure(&surface, 2e-3);
     assert!((found / (160.0 * 1e-3 / 2e-3 / 0.0625) - 1.0).abs() < 1e-12, "{found}");
 }
+
+/// What dashpots took beyond their law, in closed form: with the force D of a dashpot in each of four sub-steps of h, a surface
+/// said to move at v, after w in the window before, and found to have moved at s: 4 D h (v − s) + D h (v − w)/2, along each axis. The
+/// same in every window: each has a first sub-step of its own.
+#[test]
+fn the_lag_of_dashpots_has_its_closed_form_in_every_window() {
+    let solid = block_b(4, Held::Base, Rayleigh::default());
+    let surface = top(&solid);
+    let mut transfer = trackbed_coupling::transfer::Transfer::new(&surface);
+    let dashpot = [3.0, -2.0, -7.0];
+    let touch = SurfaceContact { dashpot, ..contact(&surface, [0.3, 0.4, 0.01], [3.0, -2.0, -50.0]) };
+    let (h, v, w, s) = (1e-3, [0.5, 0.1, 0.3], [0.2, -0.1, 0.7], [0.4, 0.3, -0.2]);
+    let exact = |strength: f64| -> f64 {
+        (0..3).map(|d| strength * dashpot[d] * h * (4.0 * (v[d] - s[d]) + 0.5 * (v[d] - w[d]))).sum()
+    };
+    for strength in [1.0, 2.0, -0.5] {
+        transfer.begin_window();
+        for _ in 0..4 {
+            let touch = SurfaceContact { dashpot: dashpot.map(|c| strength * c), ..touch };
+            transfer.add(&surface, &[touch], h, &mut Default::default());
+        }
+        let found = transfer.dashpot_lag(&surface, |i| v[i % 3], |i| w[i % 3], |i| s[i % 3]);
+        assert!((found / exact(strength) - 1.0).abs() < 1e-12, "{found} against {}", exact(strength));
+    }
+}

@@ -150,11 +150,49 @@ impl Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::summary::{CouplingRecord, MomentumRecord};
+    use trackbed_coupling::scheme::{Passes, Scheme};
+    use trackbed_coupling::stability::Stability;
+    use trackbed_coupling::transfer::TransferAudit;
 
     #[test]
     fn what_is_not_a_number_has_failed() {
         assert_eq!(Judged::new("x", f64::NAN, 1.0, Some(2.0)).outcome, Outcome::Failed);
         assert_eq!(Judged::new("x", 1.5, 1.0, Some(2.0)).outcome, Outcome::Warned);
         assert_eq!(Judged::new("x", 1.0, 1.0, Some(2.0)).outcome, Outcome::Passed);
+    }
+
+    /// Each figure is judged by itself: the one that is off is remarked by its name, and no other.
+    #[test]
+    fn each_account_judges_its_own_figure() {
+        let remarked = |summary: &Summary| -> Vec<String> {
+            let judged = Verdict::of(summary).judged.into_iter();
+            judged.filter(|j| j.outcome != Outcome::Passed).map(|j| j.what).collect()
+        };
+        let grains = |linear: f64, angular: f64| Summary {
+            momentum: Some(MomentumRecord { linear, angular }),
+            ..Summary::default()
+        };
+        assert!(remarked(&grains(0.0, 0.0)).is_empty());
+        assert_eq!(remarked(&grains(1e-3, 0.0)), ["momentum error over impulses"]);
+        assert_eq!(remarked(&grains(0.0, 1e-3)), ["angular momentum error over impulses"]);
+        let coupled = |force: f64, moment: f64, unconverged: u64| Summary {
+            coupling: Some(CouplingRecord {
+                transfer: TransferAudit { exchanges: 9, force, moment },
+                scheme: Scheme::default(),
+                substeps: 1,
+                stability: Stability::default(),
+                classes: Vec::new(),
+                passes: Passes { windows: 9, passes: 9, unconverged, solves: 0 },
+                interface_work_error: 0.0,
+                transfer_kind: String::new(),
+            }),
+            ..Summary::default()
+        };
+        let across = ["force and moment error across the interface"];
+        assert!(remarked(&coupled(0.0, 0.0, 0)).is_empty());
+        assert_eq!(remarked(&coupled(1e-6, 0.0, 0)), across);
+        assert_eq!(remarked(&coupled(0.0, 1e-6, 0)), across);
+        assert_eq!(remarked(&coupled(0.0, 0.0, 1)), ["windows without convergence"]);
     }
 }
