@@ -225,3 +225,74 @@ fn a_cube_on_a_plane() {
     assert_eq!(large, 3, "{edge:?}");
     assert!(touches(0.501, UnitQuaternion::identity()).is_empty());
 }
+
+/// Sweeps in 1,000 steps: an edge turns from crossed to parallel over another, a block tilts from its edge to its face, a face slides off an
+/// edge, a corner walks over a corner: half as long steps have half the largest step of the force, so that it jumps nowhere. Edges that come
+/// within a degree of parallel grow stiff steeply, as lines of contact do.
+#[test]
+fn forces_are_continuous() {
+    let half = Vec3::new(0.4, 0.3, 0.2);
+    let points: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&half, k)).collect();
+    let (block, _, turn) = Dilated::new(&points, 0.05).unwrap();
+    // Axes of the block as they were given.
+    let given = |q: UnitQuaternion<f64>| q * turn;
+    let shape = Shape::Polyhedron(Box::new(block));
+    let core = shape.core();
+    let about = |axis: Vec3, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
+    let eighth = std::f64::consts::FRAC_PI_4;
+    // On its edge along x.
+    let edge = about(Vec3::x(), eighth);
+    let tip = (0.3 + 0.2) * eighth.sin() + 0.05;
+    let on_corner = UnitQuaternion::rotation_between(&half, &Vec3::z()).unwrap();
+    let corner = half.norm() + 0.05;
+    type Pose = (Vec3, UnitQuaternion<f64>);
+    let sweeps: [(&str, &dyn Fn(f64) -> [Pose; 2]); 4] = [
+        ("crossed to parallel", &|x| {
+            let above = about(Vec3::z(), 2.0 * eighth * (1.0 - x)) * edge;
+            [(Vec3::z() * (2.0 * tip - 1e-3), above), (Vec3::zeros(), edge)]
+        }),
+        ("edge to face", &|x| {
+            // Its lowest corner stays 1 mm below the face.
+            let tilt = eighth * (1.0 - x);
+            let down = 0.3 * tilt.sin() + 0.2 * tilt.cos() + 0.05;
+            [
+                (Vec3::z() * (0.25 + down - 1e-3), about(Vec3::x(), tilt)),
+                (Vec3::zeros(), about(Vec3::x(), 0.0)),
+            ]
+        }),
+        ("face off an edge", &|x| {
+            let aside = Vec3::new(0.1, 0.9 * x, 0.5 - 1e-3);
+            [(aside, about(Vec3::z(), 0.0)), (Vec3::zeros(), about(Vec3::x(), 0.0))]
+        }),
+        ("corner over corner", &|x| {
+            let aside = Vec3::new(0.04 * (x - 0.5), 0.01, 2.0 * corner - 4e-3);
+            [(aside, on_corner), (Vec3::zeros(), on_corner)]
+        }),
+    ];
+    for (name, sweep) in sweeps {
+        let force = |x: f64| {
+            let [a, b] = sweep(x).map(|(at, q)| placed(&shape, &core, at, given(q), 1.0));
+            let mut found = Touches::new();
+            DilatedDilated.touches(&a, &b, &mut found);
+            wrench(&found, &b.centre)
+        };
+        let largest = |steps: i32| {
+            let mut sums = [[0.0_f64; 2]; 2];
+            let mut last = force(0.0);
+            for k in 1..=steps {
+                let next = force(f64::from(k) / f64::from(steps));
+                for m in 0..2 {
+                    sums[m][0] = sums[m][0].max(next[m].norm());
+                    sums[m][1] = sums[m][1].max((next[m] - last[m]).norm());
+                }
+                last = next;
+            }
+            sums.map(|[peak, jump]| jump / peak)
+        };
+        let [coarse, fine] = [largest(1000), largest(2000)];
+        println!("{name}: largest step of force, torque over the peak {coarse:?}, {fine:?}");
+        for m in 0..2 {
+            assert!(coarse[m] < 0.5 && fine[m] < 0.6 * coarse[m] + 1e-9, "{name}: {coarse:?} {fine:?}");
+        }
+    }
+}
