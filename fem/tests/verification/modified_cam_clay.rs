@@ -221,3 +221,57 @@ fn extreme_strains_return() {
         }
     }
 }
+
+/// Isotropic compression from the normal compression line: no shear, so that the equivalent plastic strain √(2/3 ε:ε) of the
+/// plastic volume strain εᵥ, a third of it along each axis, is √2/3 εᵥ; and εᵥ = (λ − κ)/v ln(p/p₀).
+#[test]
+fn equivalent_strain_of_isotropic_compression() {
+    let mut sample = Sample::new(1.0);
+    (0..20).for_each(|_| sample.step(1e-3, 1e-3));
+    let volume = (CLAY.lambda - CLAY.kappa) / V * (sample.p() / P0).ln();
+    let exact = 2.0_f64.sqrt() / 3.0 * volume;
+    assert!((sample.state.kappa / exact - 1.0).abs() < 1e-9, "{} against {exact}", sample.state.kappa);
+}
+
+/// An overconsolidation ratio is that of the yield surface through the initial stress, shear included: pc = R (p + q²/(M² p)).
+#[test]
+fn overconsolidation_counts_the_shear_of_the_initial_stress() {
+    let (p, q) = (100e3, 60e3);
+    // Triaxial compression along z.
+    let stress = [-(p - q / 3.0), -(p - q / 3.0), -(p + 2.0 * q / 3.0), 0.0, 0.0, 0.0];
+    for ratio in [1.0, 2.5] {
+        let mut pc = [0.0];
+        Sample::new(ratio).material.law.initial_values(&stress, &mut pc);
+        let exact = ratio * (p + q * q / (M * M * p));
+        assert!((pc[0] / exact - 1.0).abs() < 1e-12, "{} against {exact}", pc[0]);
+    }
+}
+
+/// A preconsolidation pressure below the minimum pressure is kept where nothing hardens it, and hardens by its own exponential.
+#[test]
+fn a_small_preconsolidation_pressure_is_not_lifted() {
+    let law = ModifiedCamClay { consolidation: Consolidation::Pressure(400.0), ..CLAY };
+    let material = Material::plastic(law.reference(1900.0), law);
+    let state = PointState { stress: [-399.0, -399.0, -399.0, 0.0, 0.0, 0.0], ..PointState::default() };
+    let mut pc = [0.0];
+    let old = Point { state: &state, values: &[400.0] };
+    let (part, slope) = (2e-4, (CLAY.lambda - CLAY.kappa) / V);
+    let r =
+        material.law.update(&material.elastic, old, &[-part, -part, -part, 0.0, 0.0, 0.0], false, &mut pc);
+    let r = r.unwrap().state;
+    let plastic = -(r.plastic_strain[0] + r.plastic_strain[1] + r.plastic_strain[2]);
+    assert!(plastic > 0.0 && pc[0] < law.minimum_pressure, "{plastic} {}", pc[0]);
+    assert!((pc[0] / (400.0 * (plastic / slope).exp()) - 1.0).abs() < 1e-9, "{}", pc[0]);
+}
+
+/// Reduced strength: the friction angle of triaxial compression, sin(phi) = 3 M/(6 + M), has its tangent divided by the factor, and
+/// a factor of 1 changes nothing.
+#[test]
+fn reduced_strength_divides_the_tangent_of_the_friction_angle() {
+    use trackbed_fem::ConstitutiveLaw;
+    let tangent = |m: f64| (3.0 * m / (6.0 + m)).asin().tan();
+    for factor in [1.0, 1.3, 2.0] {
+        let reduced = CLAY.reduced(factor).critical_ratio;
+        assert!((tangent(reduced) * factor / tangent(M) - 1.0).abs() < 1e-12, "{factor}: {reduced}");
+    }
+}
