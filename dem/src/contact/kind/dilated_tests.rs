@@ -226,6 +226,12 @@ fn a_cube_on_a_plane() {
     assert!(touches(0.501, UnitQuaternion::identity()).is_empty());
 }
 
+/// Where a body is, and how it is turned.
+type Pose = (Vec3, UnitQuaternion<f64>);
+
+/// Two bodies as a number goes from 0 to 1.
+type Sweep<'a> = &'a dyn Fn(f64) -> [Pose; 2];
+
 /// Sweeps in 1,000 steps: an edge turns from crossed to parallel over another, a block tilts from its edge to its face, a face slides off an
 /// edge, a corner walks over a corner: half as long steps have half the largest step of the force, so that it jumps nowhere. Edges that come
 /// within a degree of parallel grow stiff steeply, as lines of contact do.
@@ -245,8 +251,7 @@ fn forces_are_continuous() {
     let tip = (0.3 + 0.2) * eighth.sin() + 0.05;
     let on_corner = UnitQuaternion::rotation_between(&half, &Vec3::z()).unwrap();
     let corner = half.norm() + 0.05;
-    type Pose = (Vec3, UnitQuaternion<f64>);
-    let sweeps: [(&str, &dyn Fn(f64) -> [Pose; 2]); 4] = [
+    let sweeps: [(&str, Sweep<'_>); 4] = [
         ("crossed to parallel", &|x| {
             let above = about(Vec3::z(), 2.0 * eighth * (1.0 - x)) * edge;
             [(Vec3::z() * (2.0 * tip - 1e-3), above), (Vec3::zeros(), edge)]
