@@ -105,8 +105,13 @@ fn bodies_that_are_none() {
     let with = |p: Vec3| [&cube[..], &[p]].concat();
     assert_eq!(refused(&with(Vec3::new(0.1, 0.2, 0.0))), DilatedError::NotConvex(8));
     assert_eq!(refused(&with(Vec3::new(0.1, 0.2, 0.5))), DilatedError::NotConvex(8));
+    assert_eq!(refused(&with(Vec3::new(0.1, 0.5, 0.5))), DilatedError::NotConvex(8));
     assert_eq!(refused(&with(Vec3::new(0.5, f64::NAN, 0.0))), DilatedError::NotFinite);
-    assert!(matches!(refused(&[&cube[..], &cube[..1]].concat()), DilatedError::NotConvex(0 | 8)));
+    assert_eq!(refused(&[&cube[..], &cube[..1]].concat()), DilatedError::NotConvex(8));
+    // A corner that hardly bends the edge of a face is one of the other faces.
+    let mut bent = cube.clone();
+    bent.push(Vec3::new(0.0, 0.5 + 1e-7, 0.6));
+    assert_eq!(Core::new(&bent).map(|c| c.corners.len()), Ok(9));
     assert_eq!(Dilated::new(&cube, 0.0).unwrap_err(), DilatedError::Radius(0.0));
     assert_eq!(Dilated::new(&cube, f64::INFINITY).unwrap_err(), DilatedError::NotFinite);
 }

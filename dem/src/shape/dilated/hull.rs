@@ -20,6 +20,10 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     let points: Vec<Vec3> = corners.iter().map(|c| c - origin).collect();
     let size = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
     let slack = LEVEL * size;
+    let twin = |k: &usize| points[..*k].iter().any(|p| (p - points[*k]).norm() <= slack);
+    if let Some(k) = (1..points.len()).find(twin) {
+        return Err(DilatedError::NotConvex(k));
+    }
     let mut faces: Vec<Face> = Vec::new();
     for i in 0..points.len() {
         for j in i + 1..points.len() {
@@ -33,7 +37,8 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
             }
         }
     }
-    let seen = |k: usize| faces.iter().any(|f| f.corners.contains(&(k as u8)));
+    // A point on an edge belongs to two faces.
+    let seen = |k: usize| faces.iter().filter(|f| f.corners.contains(&(k as u8))).count() >= 3;
     if faces.len() < 4 {
         return Err(DilatedError::Flat);
     }
@@ -94,12 +99,12 @@ fn face(points: &[Vec3], [i, j, k]: [usize; 3], slack: f64) -> Option<Face> {
         .map(|&p| (libm::atan2((points[p] - middle).dot(&y), (points[p] - middle).dot(&x)), p))
         .collect();
     corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Points within the face or on its sides are no corners of it.
+    // Points within the face are no corners of it; those on its sides may be corners of others.
     let at = |k: usize| points[corners[k % corners.len()].1];
     let n = corners.len();
     let bends = |k: usize| {
         let (a, b, c) = (at(k + n - 1), at(k), at(k + 1));
-        (b - a).cross(&(c - b)).dot(&normal) > slack * (c - a).norm()
+        (b - a).cross(&(c - b)).dot(&normal) > -slack * (c - a).norm()
     };
     let corners: Vec<u8> = (0..n).filter(|&k| bends(k)).map(|k| corners[k].1 as u8).collect();
     // Newell's normal is that of all corners rather than of three.
