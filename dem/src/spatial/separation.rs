@@ -14,7 +14,7 @@ const SLACK: f64 = 1e-4;
 pub(crate) fn separation(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
     let lowest = |n: &Vec3| least(a, n) - most(b, n);
     let mut v = a[0] - b[0];
-    let mut simplex = Simplex::of(v);
+    let mut simplex = vec_of(v);
     let mut best: Option<(Vec3, f64)> = None;
     for _ in 0..ROUNDS {
         let length = v.norm();
@@ -64,11 +64,11 @@ struct Simplex {
     count: usize,
 }
 
-impl Simplex {
-    fn of(p: Vec3) -> Simplex {
-        Simplex { points: [p; 4], count: 1 }
-    }
+fn vec_of(p: Vec3) -> Simplex {
+    Simplex { points: [p; 4], count: 1 }
+}
 
+impl Simplex {
     fn points(&self) -> &[Vec3] {
         &self.points[..self.count]
     }
@@ -87,7 +87,7 @@ impl Simplex {
     fn closest(&mut self) -> Option<Vec3> {
         let p = self.points;
         let (point, keep) = match self.count {
-            1 => (p[0], Simplex::of(p[0])),
+            1 => (p[0], vec_of(p[0])),
             2 => segment(p[0], p[1]),
             3 => triangle([p[0], p[1], p[2]]),
             _ => tetrahedron(p)?,
@@ -102,12 +102,12 @@ fn segment(a: Vec3, b: Vec3) -> (Vec3, Simplex) {
     let t = -a.dot(&way);
     let whole = way.norm_squared();
     if t <= 0.0 || whole == 0.0 {
-        return (a, Simplex::of(a));
+        return (a, vec_of(a));
     }
     if t >= whole {
-        return (b, Simplex::of(b));
+        return (b, vec_of(b));
     }
-    let mut both = Simplex::of(a);
+    let mut both = vec_of(a);
     both.push(b);
     (a + way * (t / whole), both)
 }
@@ -118,7 +118,7 @@ fn triangle([a, b, c]: [Vec3; 3]) -> (Vec3, Simplex) {
     // Within: on the inner side of each side.
     let inside = |p: &Vec3, q: &Vec3| (q - p).cross(&normal).dot(p) >= 0.0;
     if square > 0.0 && inside(&a, &b) && inside(&b, &c) && inside(&c, &a) {
-        let mut all = Simplex::of(a);
+        let mut all = vec_of(a);
         all.push(b);
         all.push(c);
         return (normal * (a.dot(&normal) / square), all);
