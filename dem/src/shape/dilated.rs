@@ -23,6 +23,11 @@ pub enum DilatedError {
     /// All corners lie in one plane, nearly.
     #[error("the corners lie in one plane")]
     Flat,
+    /// Corners are so close to each other or to the planes of faces that these do not fit together.
+    #[error(
+        "corners lie too close to each other, or to the planes of faces, for faces that fit together; leave some out"
+    )]
+    Sliver,
     /// A corner is not one of the convex hull of all.
     #[error(
         "corner {0} is not a corner of the convex hull of all; the core must be convex, without points in faces or edges"

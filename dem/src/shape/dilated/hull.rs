@@ -52,7 +52,7 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     let core = joined(corners.to_vec(), faces);
     // Euler's formula: without it corners lie so close to an edge that faces do not fit together.
     if core.corners.len() + core.faces.len() != core.edges.len() + 2 {
-        return Err(DilatedError::Flat);
+        return Err(DilatedError::Sliver);
     }
     Ok(core)
 }
