@@ -98,7 +98,8 @@ impl Model {
         let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected);
-        let steps = Steps::new(&input.time_step, &limit, rigid, collision)?;
+        let longest = rigid.min(timestep::landing(&bodies, &input, &laws));
+        let steps = Steps::new(&input.time_step, &limit, longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let surface = check::surfaces(&input).map(|m| m as u32);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);

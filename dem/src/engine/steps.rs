@@ -12,7 +12,7 @@ pub(crate) struct Steps {
     pub first: f64,
     /// Share of what the contacts allow that steps take, where they follow them.
     pub share: Option<f64>,
-    /// Longest step that rigid bodies of walls and the input allow [s].
+    /// Longest step that rigid bodies of walls, polyhedra on their faces and the input allow [s].
     pub longest: f64,
     /// Longest step that collisions allow, while they are many and where most contacts last [s].
     pub collision: f64,
@@ -20,7 +20,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// `rigid`: limit of the rigid bodies of walls [s]; `collision`: see [`collision::longest`] [s].
+    /// `rigid`: limit of the rigid bodies of walls and of polyhedra on their faces [s]; `collision`: see [`collision::longest`] [s].
     ///
     /// # Errors
     /// A fixed step above the limit.

@@ -185,6 +185,28 @@ fn faces(it: &Dilated) -> f64 {
     2.0 * (corners + it.core.circumference() / (LENGTH * it.radius))
 }
 
+/// Longest step [s] with which dilated polyhedra may come to lie on a face: one that stands on a corner has a stiffness many times smaller
+/// until it does, and that may happen between two looks at what the contacts allow. Infinite where there are none.
+pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
+    let partners = partners(bodies, input);
+    let mut longest = f64::INFINITY;
+    for body in bodies.iter().filter(|b| b.fixed != 0b11_1111) {
+        let shape = &input.shapes[body.shape];
+        let Shape::Polyhedron(it) = shape else { continue };
+        for &partner in &partners {
+            let (a, b) = (body.material, partner as u32);
+            let stiffness = laws.stiffness(a, b, 0.0, body.radius) * laws.tangential_ratio(a, b).max(1.0);
+            let zeta = laws.damping_ratio(a, b);
+            // Half of what is stable: so close to the limit a collision of such a face would heat.
+            let bound = 0.5 * ((4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta);
+            if stiffness.is_finite() {
+                longest = longest.min(bound / (faces(it) * stiffness * compliance(&body, shape)).sqrt());
+            }
+        }
+    }
+    longest
+}
+
 /// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.
 pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
     let gravity = input.gravity.norm();

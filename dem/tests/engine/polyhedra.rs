@@ -2,9 +2,9 @@
 
 use crate::scene::{Random, Run, plane, stone, weightless};
 use nalgebra::UnitQuaternion;
-use trackbed_dem::measure;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Material, Model, ModelInput, Shape, TimeStep, Vec3};
+use trackbed_dem::{measure, stability};
 
 const G: f64 = 9.81;
 const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
@@ -324,12 +324,47 @@ fn refusals() {
         i.materials[0] = Material { young: Some(1e9), stiffness: f64::INFINITY, ..material() };
     };
     assert!(refused(&young).contains("grows with the overlap"));
+    let round = |i: &mut ModelInput| {
+        let corner = |k: u32| {
+            let (s, c) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+            Vec3::new(0.05 * c, 0.05 * s, if k < 8 { 0.0 } else { 0.03 })
+        };
+        i.shapes[0] = polyhedron(&(0..16).map(corner).collect::<Vec<_>>(), 0.005);
+    };
+    assert!(refused(&round).contains("a face of 8 corners; at most 6"));
     let surface = |i: &mut ModelInput| i.surface_material = Some(0);
     assert!(refused(&surface).contains("an external surface"));
     let periodic = |i: &mut ModelInput| i.periodic[0] = Some([0.0, 3.0]);
     assert!(refused(&periodic).contains("polyhedron"));
     let absent = |i: &mut ModelInput| i.bodies[0].absent = true;
     assert!(refused(&absent).contains("not made of spheres"));
+}
+
+/// With steps that follow the contacts: blocks that stand on an edge, so that the limit is that of few springs, tip over and hit the plane with a
+/// face between two looks; the account of energy closes. Without a limit for that they fly off at 16 m/s.
+#[test]
+fn blocks_that_fall_flat() {
+    let mut input = scene(Material { restitution: 0.9, ..material() }, vec![block([0.1, 0.05, 0.02], 0.003)]);
+    input.gravity = DOWN;
+    input.time_step = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: false };
+    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+    for k in 0..4 {
+        let tilt = 1.15 - 0.05 * f64::from(k);
+        let orientation = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), tilt);
+        let height = 0.047 * tilt.sin() + 0.017 * tilt.cos() + 0.003;
+        input.bodies.push(BodyInput { orientation, ..body(0, Vec3::new(0.5 * f64::from(k), 0.0, height)) });
+    }
+    let mut run = Run::new(input);
+    let before = total(&run);
+    while run.state.time < 0.6 {
+        stability::follow(&run.model, &mut run.state);
+        run.step();
+    }
+    let ledger = &run.state.ledger;
+    let error = (total(&run) + ledger.dissipated() - before) / before;
+    let flat = (0..4).filter(|b| run.state.position(*b).z < 0.021).count();
+    println!("{flat} blocks lie flat, account off by {error:.1e}");
+    assert!(flat >= 2 && error.abs() < 0.01, "{flat} {error:e}");
 }
 
 /// Cores that meet stop the run with the pair and the overlap.
