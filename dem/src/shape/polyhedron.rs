@@ -14,7 +14,7 @@ mod topology;
 
 use nalgebra::{Matrix3, Vector3};
 
-pub use hull::{HullError, convex_hull};
+pub use hull::{HullError, convex_hull, triangles as hull_triangles};
 pub use moments::BodyMoments;
 pub use surface::{Surface, SurfaceError};
 pub use topology::Topology;

@@ -1,8 +1,9 @@
-//! The convex hull of few points. Every plane through three of them with none beyond it holds a face; what lies in one plane to
-//! rounding is one face, so that no two faces of a core are level with each other.
+//! The convex hull of few points, as faces. Triangles of the hull that lie in one plane, to a millionth of the size, are one face,
+//! so that no two faces of a core are level with each other.
 
 use super::{CORNERS, Core, DilatedError, Edge, Face};
 use crate::base::Vec3;
+use crate::shape::polyhedron::hull_triangles;
 
 /// What counts as in a plane, over the size of the body.
 const LEVEL: f64 = 1e-6;
@@ -24,24 +25,15 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     if let Some(k) = (1..points.len()).find(twin) {
         return Err(DilatedError::NotConvex(k));
     }
-    let mut faces: Vec<Face> = Vec::new();
-    for i in 0..points.len() {
-        for j in i + 1..points.len() {
-            for k in j + 1..points.len() {
-                // A face that is known already.
-                let known = |f: &Face| [i, j, k].iter().all(|c| f.corners.contains(&(*c as u8)));
-                if faces.iter().any(known) {
-                    continue;
-                }
-                faces.extend(face(&points, [i, j, k], slack));
-            }
-        }
-    }
-    // A point on an edge belongs to two faces.
-    let seen = |k: usize| faces.iter().filter(|f| f.corners.contains(&(k as u8))).count() >= 3;
+    let triangles = hull_triangles(&points).map_err(|_| DilatedError::Flat)?;
+    let mut faces = (merged(&points, &triangles, slack).iter())
+        .map(|group| face(&points, group))
+        .collect::<Result<Vec<Face>, DilatedError>>()?;
     if faces.len() < 4 {
         return Err(DilatedError::Flat);
     }
+    // A point on an edge belongs to two faces, one within a face or the body to none.
+    let seen = |k: usize| faces.iter().filter(|f| f.corners.contains(&(k as u8))).count() >= 3;
     if let Some(k) = (0..points.len()).find(|&k| !seen(k)) {
         return Err(DilatedError::NotConvex(k));
     }
@@ -57,6 +49,45 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     Ok(core)
 }
 
+/// The triangles in groups: neighbours are in one where each lies in the other's plane, and one that is hardly more than its longest
+/// side is in that of its neighbour there.
+fn merged(points: &[Vec3], triangles: &[[u32; 3]], slack: f64) -> Vec<Vec<[u32; 3]>> {
+    let at = |corner: u32| points[corner as usize];
+    let mut group: Vec<usize> = (0..triangles.len()).collect();
+    for (t, &own) in triangles.iter().enumerate() {
+        let length = |k: usize| (at(own[(k + 1) % 3]) - at(own[k])).norm();
+        let longest = (1..3).fold(0, |most, k| if length(k) > length(most) { k } else { most });
+        for k in 0..3 {
+            let [a, b, c] = [0, 1, 2].map(|m| own[(k + m) % 3]);
+            let beyond = |other: &[u32; 3]| {
+                let m = (0..3).find(|&m| other[m] == b && other[(m + 1) % 3] == a)?;
+                Some(other[(m + 2) % 3])
+            };
+            let Some((u, d)) = triangles.iter().enumerate().find_map(|(u, other)| Some((u, beyond(other)?)))
+            else {
+                continue;
+            };
+            let along = (at(b) - at(a)).normalize();
+            let width = |corner: u32| {
+                let way = at(corner) - at(a);
+                way - along * along.dot(&way)
+            };
+            let [here, there] = [width(c), width(d)];
+            let thin = here.norm() <= slack && k == longest;
+            // How far the corner of either lies off the plane of the other.
+            let off = here.cross(&there).norm() / here.norm().min(there.norm()).max(f64::MIN_POSITIVE);
+            if thin || (off <= slack && here.dot(&there) < 0.0) {
+                let [one, all] = [group[t], group[u]];
+                group.iter_mut().filter(|g| **g == one).for_each(|g| *g = all);
+            }
+        }
+    }
+    let of = |g: usize| -> Vec<[u32; 3]> {
+        triangles.iter().zip(&group).filter(|(_, h)| **h == g).map(|(t, _)| *t).collect()
+    };
+    (0..triangles.len()).map(of).filter(|triangles| !triangles.is_empty()).collect()
+}
+
 /// A core of these corners and faces, with the edges that faces have in common.
 pub(super) fn joined(corners: Vec<Vec3>, faces: Vec<Face>) -> Core {
     let reach = corners.iter().map(|c| c.norm()).fold(0.0, f64::max);
@@ -69,44 +100,24 @@ pub(super) fn joined(corners: Vec<Vec3>, faces: Vec<Face>) -> Core {
     core
 }
 
-/// The face through three points, if no point is beyond its plane.
-fn face(points: &[Vec3], [i, j, k]: [usize; 3], slack: f64) -> Option<Face> {
-    let (u, v) = (points[j] - points[i], points[k] - points[i]);
-    let cross = u.cross(&v);
-    if cross.norm() <= 1e-9 * u.norm() * v.norm() {
-        return None;
+/// The face that some triangles make together.
+fn face(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Face, DilatedError> {
+    let sides = || triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+    let border: Vec<[u32; 2]> = sides().filter(|[a, b]| !sides().any(|side| side == [*b, *a])).collect();
+    let mut corners: Vec<u8> = Vec::new();
+    let mut at = border.first().ok_or(DilatedError::Sliver)?[0];
+    for _ in &border {
+        corners.push(at as u8);
+        let next: Vec<u32> = border.iter().filter(|side| side[0] == at).map(|side| side[1]).collect();
+        let [one] = next[..] else { return Err(DilatedError::Sliver) };
+        at = one;
     }
-    let mut normal = cross.normalize();
-    let heights = |normal: &Vec3| -> [f64; 2] {
-        let h = points.iter().map(|p| normal.dot(&(p - points[i])));
-        h.fold([0.0, 0.0], |[low, high], h| [low.min(h), high.max(h)])
-    };
-    let [low, high] = heights(&normal);
-    if high > slack {
-        if low < -slack {
-            return None;
-        }
-        normal = -normal;
-    } else if low >= -slack {
-        return None;
+    let mask: u64 = corners.iter().fold(0, |mask, c| mask | 1 << c);
+    // Its border is one loop that passes every corner once.
+    if at != u32::from(corners[0]) || mask.count_ones() as usize != corners.len() {
+        return Err(DilatedError::Sliver);
     }
-    let level: Vec<usize> =
-        (0..points.len()).filter(|&p| normal.dot(&(points[p] - points[i])).abs() <= slack).collect();
-    let middle = level.iter().map(|&p| points[p]).sum::<Vec3>() / level.len() as f64;
-    let x = (points[level[0]] - middle).normalize();
-    let y = normal.cross(&x);
-    let mut corners: Vec<(f64, usize)> = (level.iter())
-        .map(|&p| (libm::atan2((points[p] - middle).dot(&y), (points[p] - middle).dot(&x)), p))
-        .collect();
-    corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Points within the face are no corners of it; those on its sides may be corners of others.
-    let at = |k: usize| points[corners[k % corners.len()].1];
-    let n = corners.len();
-    let bends = |k: usize| {
-        let (a, b, c) = (at(k + n - 1), at(k), at(k + 1));
-        (b - a).cross(&(c - b)).dot(&normal) > -slack * (c - a).norm()
-    };
-    let corners: Vec<u8> = (0..n).filter(|&k| bends(k)).map(|k| corners[k].1 as u8).collect();
+    let middle = corners.iter().map(|&p| points[p as usize]).sum::<Vec3>() / corners.len() as f64;
     // Newell's normal is that of all corners rather than of three.
     let at = |k: usize| points[corners[k % corners.len()] as usize] - middle;
     let normal = (0..corners.len()).map(|k| at(k).cross(&at(k + 1))).sum::<Vec3>().normalize();
@@ -116,8 +127,7 @@ fn face(points: &[Vec3], [i, j, k]: [usize; 3], slack: f64) -> Option<Face> {
         (side, side.dot(&(at(k) + middle)))
     };
     let sides = (0..corners.len()).map(side).collect();
-    let mask = corners.iter().fold(0, |mask, c| mask | 1 << c);
-    (corners.len() >= 3).then_some(Face { normal, offset, corners, mask, sides })
+    Ok(Face { normal, offset, corners, mask, sides })
 }
 
 /// Finds the edges: each belongs to two faces.

@@ -30,11 +30,20 @@ pub enum HullError {
 /// # Errors
 /// [`HullError`] when the points span no volume or are not finite.
 pub fn convex_hull(points: &[[f64; 3]]) -> Result<Surface, HullError> {
-    if let Some(bad) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+    let x: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
+    let surface = Surface { vertices: points.to_vec(), triangles: triangles(&x)? };
+    Ok(surface.without_loose_vertices())
+}
+
+/// The triangles of the convex hull of points [m], wound outwards, on their numbers.
+///
+/// # Errors
+/// [`HullError`] when the points span no volume or are not finite.
+pub fn triangles(x: &[Vector3<f64>]) -> Result<Vec<[u32; 3]>, HullError> {
+    if let Some(bad) = x.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(HullError::NotFinite(bad));
     }
-    let x: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
-    let (first, size) = first_tetrahedron(&x).ok_or(HullError::Flat(points.len()))?;
+    let (first, size) = first_tetrahedron(x).ok_or(HullError::Flat(x.len()))?;
     let slack = FLAT * size;
     let mut faces: Vec<([u32; 3], Vector3<f64>)> = Vec::new();
     let face = |[a, b, c]: [u32; 3]| {
@@ -69,8 +78,7 @@ pub fn convex_hull(points: &[[f64; 3]]) -> Result<Surface, HullError> {
         faces.retain(|_| keep.next().unwrap_or(true));
         faces.extend(border.iter().map(|(from, to)| face([*from, *to, i])));
     }
-    let surface = Surface { vertices: points.to_vec(), triangles: faces.iter().map(|f| f.0).collect() };
-    Ok(surface.without_loose_vertices())
+    Ok(faces.iter().map(|f| f.0).collect())
 }
 
 /// Four points far apart, wound so that the first three face away from the fourth, and the extent of all.
