@@ -1,8 +1,10 @@
 //! See `targets::scene`.
 #![no_main]
 
+#[path = "../limits.rs"]
+mod limits;
 #[path = "../targets.rs"]
 #[allow(dead_code, reason = "each target calls one function")]
 mod targets;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| targets::scene(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| limits::within(targets::scene, data));

@@ -268,22 +268,11 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
     Ok(())
 }
 
-/// Most corners of a face of a dilated polyhedron: of larger faces that lie on each other a pair has no memory for all points.
-const FACE: usize = 6;
-
 /// Refuses what dilated polyhedra cannot be combined with.
 pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Result<(), ModelError> {
     let is_one = |b: &Body| matches!(input.shapes[b.shape], Shape::Polyhedron(_));
     let Some(first) = bodies.iter().find(is_one) else { return Ok(()) };
     let error = |problem: String| Err(ModelError::Shape { shape: first.shape, problem });
-    for (shape, it) in input.shapes.iter().enumerate() {
-        let Shape::Polyhedron(it) = it else { continue };
-        let most = it.core.faces.iter().map(|f| f.corners.len()).max().unwrap_or(0);
-        if most > FACE {
-            let problem = format!("a dilated polyhedron with a face of {most} corners; at most {FACE}");
-            return Err(ModelError::Shape { shape, problem });
-        }
-    }
     for (what, there) in [
         ("surfaces of triangles", !input.triangles.is_empty()),
         ("walls other than planes", !input.walls.is_empty()),

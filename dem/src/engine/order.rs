@@ -207,7 +207,7 @@ impl Old {
         for (b, cross) in self.cross.iter().enumerate() {
             for (k, (kind, list)) in KINDS.iter().zip(&cross.kinds).enumerate() {
                 kind.carry(&names, b, list, &mut |block, name, points| {
-                    state.cross[block].kinds[k].push(name, points.iter().copied());
+                    state.cross[block].kinds[k].push(name, points);
                 });
             }
         }

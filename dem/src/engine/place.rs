@@ -128,6 +128,6 @@ pub(crate) fn lists(model: &Model, block: &Block) -> (BlockLists, Cross) {
         ..BlockLists::default()
     };
     let rolls = model.laws.rolls_among(&own, &model.body_materials);
-    let kinds = KINDS.iter().filter(|_| model.solids).map(|kind| PairList::new(kind.points())).collect();
+    let kinds = KINDS.iter().filter(|_| model.solids).map(|_| PairList::default()).collect();
     (within, Cross::new(rolls, kinds))
 }

@@ -13,7 +13,8 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
-use crate::shape::dilated::press::{Part, Segment, Target};
+use crate::shape::dilated::part::{Bounds, Part, View};
+use crate::shape::dilated::press::{Segment, Target};
 
 /// Columns along one side of a body that the border of a region cuts.
 pub const COLUMNS: usize = 40;
@@ -152,8 +153,11 @@ fn chord(core: &Core, radius: f64, origin: &Vec3, along: &Vec3) -> Option<[f64; 
         }
     }
     let mut all = if inner[0] < inner[1] { inner } else { [f64::INFINITY, f64::NEG_INFINITY] };
-    let segment = Segment { from: origin - along * reach, direction: *along, range: [0.0, 2.0 * reach] };
-    Part::all(core).stretches(&segment, radius, |[low, high], _| {
+    let [from, to] = [-reach, reach].map(|s| origin + along * s);
+    let view = View::everywhere(*along, radius);
+    let around = Bounds::near([&from, &to], &view);
+    let segment = Segment { from, direction: *along, range: [0.0, 2.0 * reach], around };
+    Part::none(core, view).all().stretches(&segment, radius, |[low, high], _| {
         all = [all[0].min(low - reach), all[1].max(high - reach)];
     });
     (all[0] < all[1]).then_some(all)

@@ -5,9 +5,6 @@ use crate::base::held::held;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
-/// Feature of a contact point that is not in use.
-pub(crate) const NO_FEATURE: u32 = u32::MAX;
-
 /// Memory of one contact point: the features that touch there, what the law keeps, and the share of its force that acted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointMemory {
@@ -17,14 +14,11 @@ pub(crate) struct PointMemory {
 }
 
 impl PointMemory {
-    /// No contact.
-    pub const NONE: PointMemory = PointMemory { feature: NO_FEATURE, history: History::NONE, weight: 0.0 };
+    /// Of a contact that has just begun.
+    pub const FRESH: PointMemory = PointMemory { feature: 0, history: History::NONE, weight: 0.0 };
 
     /// The same contact seen from the other partner: the halves of the feature change places.
     pub fn turned(&self) -> PointMemory {
-        if self.feature == NO_FEATURE {
-            return *self;
-        }
         PointMemory { feature: self.feature.rotate_left(16), history: self.history.turned(), ..*self }
     }
 }
@@ -32,30 +26,44 @@ impl PointMemory {
 /// First partner in the block that holds the list, block of the second, second partner there.
 pub(crate) type PairName = [u32; 3];
 
+/// Something about a pair that saves work in the next step, and changes nothing of what is found: no checkpoint holds it.
+pub(crate) type Hint = Option<[f64; 4]>;
+
+/// Where the memory of a pair lies: its first point, how many there are, and for how many there is room.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    first: u32,
+    count: u32,
+    room: u32,
+}
+
+/// Rooms come in multiples of this many points.
+const ROOM: usize = 4;
+
 /// Pairs of one kind, in ascending order of their names but while they are sorted anew.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(try_from = "Flat", into = "Flat")]
 pub(crate) struct PairList {
-    /// Contact points that a pair can have.
-    points: usize,
     names: Vec<PairName>,
-    /// Points of each pair in turn.
+    spans: Vec<Span>,
+    hints: Vec<Hint>,
     memory: Vec<PointMemory>,
     /// No second partner lies in a later block than this.
     last_block: u32,
 }
 
-/// What a checkpoint holds.
+/// What a checkpoint holds: names, numbers of points, and the points of each pair in turn.
 #[derive(Serialize, Deserialize)]
 struct Flat {
-    points: usize,
     names: Vec<PairName>,
+    counts: Vec<u32>,
     memory: Vec<PointMemory>,
 }
 
 impl From<PairList> for Flat {
     fn from(list: PairList) -> Flat {
-        Flat { points: list.points, names: list.names, memory: list.memory }
+        let memory = (0..list.len()).flat_map(|k| list.points(k)).copied().collect();
+        Flat { counts: list.spans.iter().map(|s| s.count).collect(), memory, names: list.names }
     }
 }
 
@@ -63,20 +71,27 @@ impl TryFrom<Flat> for PairList {
     type Error = &'static str;
 
     fn try_from(flat: Flat) -> Result<PairList, &'static str> {
-        if flat.names.len().checked_mul(flat.points) != Some(flat.memory.len()) {
+        let whole = flat.counts.iter().try_fold(0_usize, |sum, n| sum.checked_add(*n as usize));
+        if flat.names.len() != flat.counts.len() || whole != Some(flat.memory.len()) {
             return Err("a list of pairs with names and memory of unlike length");
         }
-        let last_block = flat.names.iter().map(|n| n[1]).max().unwrap_or(0);
-        Ok(PairList { points: flat.points, names: flat.names, memory: flat.memory, last_block })
+        let (mut list, mut rest) = (PairList::default(), &flat.memory[..]);
+        for (name, count) in flat.names.iter().zip(&flat.counts) {
+            let (points, others) = rest.split_at(*count as usize);
+            list.push(*name, points);
+            rest = others;
+        }
+        Ok(list)
+    }
+}
+
+impl PartialEq for PairList {
+    fn eq(&self, other: &PairList) -> bool {
+        self.names == other.names && (0..self.len()).all(|k| self.points(k) == other.points(k))
     }
 }
 
 impl PairList {
-    /// No pairs; each can have so many contact points.
-    pub fn new(points: usize) -> PairList {
-        PairList { points, ..PairList::default() }
-    }
-
     pub fn len(&self) -> usize {
         self.names.len()
     }
@@ -90,36 +105,50 @@ impl PairList {
         self.names[k]
     }
 
-    /// Contact points of a pair.
+    /// Points in which a pair touched.
     pub fn points(&self, k: usize) -> &[PointMemory] {
-        &self.memory[k * self.points..][..self.points]
+        let span = self.spans[k];
+        &self.memory[span.first as usize..][..span.count as usize]
     }
 
-    /// Contact points of a pair, to be changed.
-    pub fn points_mut(&mut self, k: usize) -> &mut [PointMemory] {
-        &mut self.memory[k * self.points..][..self.points]
+    /// Gives a pair other points.
+    pub fn set(&mut self, k: usize, points: &[PointMemory]) {
+        let span = &mut self.spans[k];
+        if points.len() > span.room as usize {
+            // What it had stays unused until the list is made anew.
+            *span = room(&mut self.memory, points.len());
+        }
+        span.count = points.len() as u32;
+        self.memory[span.first as usize..][..points.len()].copy_from_slice(points);
+    }
+
+    /// What is known about a pair from the last step.
+    pub fn hint_mut(&mut self, k: usize) -> &mut Hint {
+        &mut self.hints[k]
     }
 
     /// Adds a pair with the memory of its points.
-    pub fn push(&mut self, name: PairName, points: impl IntoIterator<Item = PointMemory>) {
+    pub fn push(&mut self, name: PairName, points: &[PointMemory]) {
         self.names.push(name);
-        self.memory.extend(points);
+        self.spans.push(room(&mut self.memory, points.len()));
+        self.hints.push(None);
         self.last_block = self.last_block.max(name[1]);
-        debug_assert_eq!(self.memory.len(), self.names.len() * self.points);
+        self.set(self.len() - 1, points);
     }
 
     /// Replaces the pairs by those of ascending names, keeping the memory of those that were there.
     pub fn replace(&mut self, names: impl Iterator<Item = PairName>) {
-        let old = std::mem::replace(self, PairList::new(self.points));
+        let old = std::mem::take(self);
         let mut k = 0;
         for name in names {
             while k < old.len() && old.name(k) < name {
                 k += 1;
             }
             if k < old.len() && old.name(k) == name {
-                self.push(name, old.points(k).iter().copied());
+                self.push(name, old.points(k));
+                self.hints[self.names.len() - 1] = old.hints[k];
             } else {
-                self.push(name, std::iter::repeat_n(PointMemory::NONE, old.points));
+                self.push(name, &[]);
             }
         }
     }
@@ -128,15 +157,22 @@ impl PairList {
     pub fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&k| self.name(k));
-        let mut sorted = PairList::new(self.points);
-        order.iter().for_each(|&k| sorted.push(self.name(k), self.points(k).iter().copied()));
+        let mut sorted = PairList::default();
+        order.iter().for_each(|&k| sorted.push(self.name(k), self.points(k)));
         *self = sorted;
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        held(&self.names) + held(&self.memory)
+        held(&self.names) + held(&self.spans) + held(&self.hints) + held(&self.memory)
     }
+}
+
+/// Room for so many points behind all others.
+fn room(memory: &mut Vec<PointMemory>, count: usize) -> Span {
+    let (first, room) = (memory.len(), count.next_multiple_of(ROOM));
+    memory.resize(first + room, PointMemory::FRESH);
+    Span { first: first as u32, count: 0, room: room as u32 }
 }
 
 #[cfg(test)]
@@ -151,19 +187,41 @@ mod tests {
 
     #[test]
     fn pairs_that_stay_keep_their_points_and_go_through_a_checkpoint() {
-        let mut list = PairList::new(2);
+        let mut list = PairList::default();
         for k in [7, 3, 5] {
-            list.push([k, 4, 1], [point(k), PointMemory::NONE]);
+            list.push([k, 4, 1], &[point(k), point(k + 1)][..k as usize / 3]);
         }
         list.sort();
+        *list.hint_mut(2) = Some([1.0; 4]);
         list.replace([[3, 4, 1], [4, 9, 0], [7, 4, 1]].into_iter());
-        let kept: Vec<_> = (0..3).map(|k| list.points(k)[0]).collect();
-        assert_eq!(kept, [point(3), PointMemory::NONE, point(7)]);
+        let kept: Vec<_> = (0..3).map(|k| list.points(k).to_vec()).collect();
+        assert_eq!(kept, [vec![point(3)], vec![], vec![point(7), point(8)]]);
+        assert_eq!((*list.hint_mut(0), *list.hint_mut(2)), (None, Some([1.0; 4])));
         assert_eq!(list.last_block(), 9);
         let mut flat = Flat::from(list.clone());
         assert_eq!(PairList::try_from(Flat::from(list.clone())).unwrap(), list);
         flat.memory.pop();
         assert!(PairList::try_from(flat).is_err());
+        let mut flat = Flat::from(list);
+        flat.counts = vec![u32::MAX, 1, 3];
+        assert!(PairList::try_from(flat).is_err());
+    }
+
+    /// Points come and go, and more of them than there was room for.
+    #[test]
+    fn a_pair_has_room_for_any_number_of_points() {
+        let mut list = PairList::default();
+        list.push([0, 0, 1], &[]);
+        list.push([0, 0, 2], &[point(9)]);
+        for count in [1, 5, 3, 200, 0, 17] {
+            let points: Vec<_> = (0..count).map(point).collect();
+            list.set(0, &points);
+            assert_eq!(list.points(0), points);
+            assert_eq!(list.points(1), [point(9)]);
+        }
+        let held = list.bytes();
+        list.replace([[0, 0, 1], [0, 0, 2]].into_iter());
+        assert!(list.points(0).len() == 17 && list.bytes() < held);
     }
 
     #[test]
@@ -171,6 +229,5 @@ mod tests {
         let p = point(0x1234_5678);
         assert_eq!(p.turned().feature, 0x5678_1234);
         assert_eq!(p.turned().turned(), p);
-        assert_eq!(PointMemory::NONE.turned(), PointMemory::NONE);
     }
 }

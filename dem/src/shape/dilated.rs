@@ -3,6 +3,7 @@
 
 mod hull;
 mod moments;
+pub(crate) mod part;
 pub(crate) mod press;
 
 use crate::base::Vec3;
@@ -132,6 +133,22 @@ impl Core {
         };
         let corners = self.corners.iter().map(|x| turn * (x - from)).collect();
         hull::joined(corners, self.faces.iter().map(face).collect())
+    }
+
+    /// Corners of a set, a bit each.
+    pub fn corners_of(&self, set: u64) -> impl Iterator<Item = usize> {
+        (0..self.corners.len()).filter(move |k| set >> k & 1 == 1)
+    }
+
+    /// Edges with a corner of a set, a bit each.
+    pub fn edges_of(&self, set: u64) -> impl Iterator<Item = usize> {
+        let near = move |edge: &Edge| (set >> edge.ends[0] | set >> edge.ends[1]) & 1 == 1;
+        (0..self.edges.len()).filter(move |&k| near(&self.edges[k]))
+    }
+
+    /// Faces with a corner of a set, a bit each.
+    pub fn faces_of(&self, set: u64) -> impl Iterator<Item = usize> {
+        (0..self.faces.len()).filter(move |&k| self.faces[k].mask & set != 0)
     }
 
     /// The longest circumference of a face [m].

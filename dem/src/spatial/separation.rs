@@ -9,20 +9,20 @@ const ROUNDS: usize = 32;
 /// Distance that may be missing, over the distance.
 const SLACK: f64 = 1e-4;
 
-/// Unit vector from the hull of `b` to that of `a`, and a distance that the hulls are apart along it at least [m]; `None` where
-/// none was found: they overlap.
-pub(crate) fn separation(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
-    let lowest = |n: &Vec3| least(a, n) - most(b, n);
-    let mut v = a[0] - b[0];
-    let mut simplex = vec_of(v);
-    let mut best: Option<(Vec3, f64)> = None;
+/// A unit vector and a distance that two convex hulls are apart along it at least [m]; `None` where none was found: they overlap.
+/// `between` gives for a direction the way from the farthest point of one to that of the other which is farthest the other way.
+/// `guess` is a unit vector; what is found may be any direction as soon as the distance along it is `enough`.
+pub(crate) fn separation(between: impl Fn(&Vec3) -> Vec3, guess: Vec3, enough: f64) -> Option<(Vec3, f64)> {
+    let mut v = between(&guess);
+    let mut simplex = Simplex::of(v);
+    let mut best = Some((guess, v.dot(&guess))).filter(|(_, apart)| *apart > 0.0);
     for _ in 0..ROUNDS {
         let length = v.norm();
-        if length <= f64::MIN_POSITIVE {
+        if length <= f64::MIN_POSITIVE || best.is_some_and(|(_, apart)| apart >= enough) {
             break;
         }
         let n = v / length;
-        let w = lowest(&n);
+        let w = between(&n);
         let apart = w.dot(&n);
         if apart > best.map_or(0.0, |(_, best)| best) {
             best = Some((n, apart));
@@ -41,34 +41,17 @@ pub(crate) fn separation(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
     best
 }
 
-/// The point with the smallest and with the largest coordinate along a direction.
-fn least(points: &[Vec3], n: &Vec3) -> Vec3 {
-    let mut found = (points[0], points[0].dot(n));
-    for p in &points[1..] {
-        let h = p.dot(n);
-        if h < found.1 {
-            found = (*p, h);
-        }
-    }
-    found.0
-}
-
-/// See [`least`].
-fn most(points: &[Vec3], n: &Vec3) -> Vec3 {
-    least(points, &-n)
-}
-
 /// Up to four points.
 struct Simplex {
     points: [Vec3; 4],
     count: usize,
 }
 
-fn vec_of(p: Vec3) -> Simplex {
-    Simplex { points: [p; 4], count: 1 }
-}
-
 impl Simplex {
+    fn of(p: Vec3) -> Simplex {
+        Simplex { points: [p; 4], count: 1 }
+    }
+
     fn points(&self) -> &[Vec3] {
         &self.points[..self.count]
     }
@@ -87,7 +70,7 @@ impl Simplex {
     fn closest(&mut self) -> Option<Vec3> {
         let p = self.points;
         let (point, keep) = match self.count {
-            1 => (p[0], vec_of(p[0])),
+            1 => (p[0], Simplex::of(p[0])),
             2 => segment(p[0], p[1]),
             3 => triangle([p[0], p[1], p[2]]),
             _ => tetrahedron(p)?,
@@ -102,12 +85,12 @@ fn segment(a: Vec3, b: Vec3) -> (Vec3, Simplex) {
     let t = -a.dot(&way);
     let whole = way.norm_squared();
     if t <= 0.0 || whole == 0.0 {
-        return (a, vec_of(a));
+        return (a, Simplex::of(a));
     }
     if t >= whole {
-        return (b, vec_of(b));
+        return (b, Simplex::of(b));
     }
-    let mut both = vec_of(a);
+    let mut both = Simplex::of(a);
     both.push(b);
     (a + way * (t / whole), both)
 }
@@ -118,7 +101,7 @@ fn triangle([a, b, c]: [Vec3; 3]) -> (Vec3, Simplex) {
     // Within: on the inner side of each side.
     let inside = |p: &Vec3, q: &Vec3| (q - p).cross(&normal).dot(p) >= 0.0;
     if square > 0.0 && inside(&a, &b) && inside(&b, &c) && inside(&c, &a) {
-        let mut all = vec_of(a);
+        let mut all = Simplex::of(a);
         all.push(b);
         all.push(c);
         return (normal * (a.dot(&normal) / square), all);
@@ -151,6 +134,30 @@ mod tests {
     use super::*;
     use crate::base::random::Random;
 
+    /// The point with the smallest and with the largest coordinate along a direction.
+    fn least(points: &[Vec3], n: &Vec3) -> Vec3 {
+        let lower = |p: Vec3, q: &Vec3| if q.dot(n) < p.dot(n) { *q } else { p };
+        points[1..].iter().fold(points[0], lower)
+    }
+
+    /// See [`least`].
+    fn most(points: &[Vec3], n: &Vec3) -> Vec3 {
+        least(points, &-n)
+    }
+
+    /// The separation of two hulls, from a poor guess.
+    fn found_apart(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
+        let guess = Vec3::new(-0.6, 0.0, 0.8);
+        let found = separation(|n| least(a, n) - most(b, n), guess, f64::INFINITY);
+        // A distance that is enough is no more than there is.
+        if let Some((_, whole)) = found {
+            let (n, some) = separation(|n| least(a, n) - most(b, n), guess, 0.5 * whole).unwrap();
+            assert!(some >= 0.5 * whole && some <= whole * (1.0 + 2.0 * SLACK), "{some} {whole}");
+            assert_eq!((least(a, &n) - most(b, &n)).dot(&n), some);
+        }
+        found
+    }
+
     /// Cubes at a known distance: along an axis, from corner to corner, and turned by chance about the axis through their centres.
     #[test]
     fn cubes_at_known_distances() {
@@ -158,15 +165,15 @@ mod tests {
         let cube =
             |at: Vec3| -> Vec<Vec3> { (0..8).map(|k| at + Vec3::from_fn(|d, _| side(k, d))).collect() };
         let origin = cube(Vec3::zeros());
-        let (n, apart) = separation(&cube(Vec3::new(1.3, 0.2, -0.4)), &origin).unwrap();
+        let (n, apart) = found_apart(&cube(Vec3::new(1.3, 0.2, -0.4)), &origin).unwrap();
         assert!((apart - 0.3).abs() < 1e-4 * 0.3 && (n - Vec3::x()).norm() < 1e-2, "{apart} {n}");
-        let (n, apart) = separation(&cube(Vec3::repeat(1.1)), &origin).unwrap();
+        let (n, apart) = found_apart(&cube(Vec3::repeat(1.1)), &origin).unwrap();
         let exact = 0.1 * 3.0_f64.sqrt();
         assert!(
             (apart - exact).abs() < 1e-4 * exact && (n - Vec3::repeat(1.0).normalize()).norm() < 2e-2,
             "{apart}"
         );
-        assert!(separation(&cube(Vec3::new(0.9, 0.2, 0.1)), &origin).is_none());
+        assert!(found_apart(&cube(Vec3::new(0.9, 0.2, 0.1)), &origin).is_none());
     }
 
     /// For random tetrahedra the bound never exceeds the distance between any two points of them, and is close to the least.
@@ -179,7 +186,7 @@ mod tests {
             let way = vector() * 3.0;
             let a: Vec<Vec3> = (0..4).map(|_| vector() + way).collect();
             let b: Vec<Vec3> = (0..4).map(|_| vector()).collect();
-            let Some((n, bound)) = separation(&a, &b) else { continue };
+            let Some((n, bound)) = found_apart(&a, &b) else { continue };
             apart += 1;
             assert!((n.norm() - 1.0).abs() < 1e-12);
             let gap = a.iter().map(|p| p.dot(&n)).fold(f64::INFINITY, f64::min)

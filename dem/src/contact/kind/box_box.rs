@@ -90,7 +90,6 @@ impl Two {
 impl PairKind for BoxBox {
     type First = Solids;
     type Second = Solids;
-    const POINTS: usize = 8;
 
     fn near(&self, first: &Placed<'_>, second: &Placed<'_>, reach: f64) -> bool {
         Two::new(first, second).is_some_and(|two| two.separation().1 < reach)

@@ -11,7 +11,6 @@ pub(crate) struct CornerPlane;
 impl PairKind for CornerPlane {
     type First = Corners;
     type Second = Planes;
-    const POINTS: usize = 1;
 
     fn near(&self, corner: &Corner, plane: &PlaneView, reach: f64) -> bool {
         !plane.open && (corner.point - plane.origin).dot(&plane.normal) < reach

@@ -16,9 +16,12 @@ use super::side::{Planes, Solids, Spheres};
 use crate::base::Vec3;
 use crate::lanes::record::{Record, xyz};
 use crate::law::ContactGeometry;
-use crate::shape::dilated::press::{self, HalfSpace, Part, Pressed, Segment, Target};
+use crate::pairs::list::Hint;
+use crate::shape::dilated::part::{Bounds, Part, View};
+use crate::shape::dilated::press::{self, HalfSpace, Pressed, Segment, Target};
 use crate::shape::dilated::{CORNERS, Core};
 use crate::spatial::separation::separation;
+use arrayvec::ArrayVec;
 use nalgebra::{Rotation3, UnitQuaternion};
 
 /// Length of edge with the stiffness of a corner, over the sum of both radii.
@@ -27,8 +30,11 @@ pub(crate) const LENGTH: f64 = 2.0;
 /// Share of the sum of both radii above which an overlap has lost its meaning: the cores are about to meet.
 const DEEPEST: f64 = 0.9;
 
-/// Contact points of a pair: 10 corners and edges of either body at a face and those that end there.
-const POINTS: usize = 40;
+/// Loss of distance over the sum of both radii after which a direction is looked for anew.
+const STALE: f64 = 0.05;
+
+/// Share of the reach that is added to it where features are left out, so that rounding leaves out none that touches.
+const ROUNDING: f64 = 1e-6;
 
 /// Two dilated polyhedra, or one and a box.
 pub(crate) struct DilatedDilated;
@@ -38,36 +44,6 @@ pub(crate) struct DilatedPlane;
 
 /// A sphere and a dilated polyhedron.
 pub(crate) struct SphereDilated;
-
-/// Corners of a body in another frame.
-struct Corners {
-    list: [Vec3; CORNERS],
-    count: usize,
-}
-
-impl Corners {
-    fn of(core: &Core, point: impl Fn(&Vec3) -> Vec3) -> Corners {
-        let mut list = [Vec3::zeros(); CORNERS];
-        for (to, from) in list.iter_mut().zip(&core.corners) {
-            *to = point(from);
-        }
-        Corners { list, count: core.corners.len() }
-    }
-
-    fn list(&self) -> &[Vec3] {
-        &self.list[..self.count]
-    }
-
-    /// The set of those with f(height) true along `n`.
-    fn set(points: &[Vec3], n: &Vec3, near: impl Fn(f64) -> bool) -> u64 {
-        points.iter().enumerate().map(|(k, p)| u64::from(near(p.dot(n))) << k).sum()
-    }
-
-    fn range(points: &[Vec3], n: &Vec3) -> [f64; 2] {
-        let h = points.iter().map(|p| p.dot(n));
-        h.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)])
-    }
-}
 
 /// Takes points of one body's frame to another's: both frames have unscaled lengths.
 struct Frame {
@@ -87,9 +63,124 @@ impl Frame {
         }
     }
 
+    /// From a frame to itself.
+    fn same() -> Frame {
+        Frame { turn: Rotation3::identity(), way: Vec3::zeros(), scale: 1.0 }
+    }
+
     fn point(&self, x: &Vec3) -> Vec3 {
         self.turn * (x * self.scale) + self.way
     }
+}
+
+/// How far the corners of two cores lie along a direction, in the frame of the second.
+struct Heights {
+    n: Vec3,
+    first: ArrayVec<f64, CORNERS>,
+    second: ArrayVec<f64, CORNERS>,
+    /// The first's lowest and the second's highest.
+    low: f64,
+    high: f64,
+}
+
+impl Heights {
+    fn new() -> Heights {
+        let [first, second] = [ArrayVec::new(), ArrayVec::new()];
+        Heights { n: Vec3::zeros(), first, second, low: 0.0, high: 0.0 }
+    }
+
+    /// Takes them along another direction.
+    fn take(&mut self, two: &Two<'_>, n: Vec3) {
+        let own = two.frame.turn.inverse_transform_vector(&n) * two.frame.scale;
+        let aside = n.dot(&two.frame.way);
+        (self.n, self.low, self.high) = (n, f64::INFINITY, f64::NEG_INFINITY);
+        self.first.clear();
+        for x in &two.first.corners {
+            let h = own.dot(x) + aside;
+            self.low = if h < self.low { h } else { self.low };
+            self.first.push(h);
+        }
+        self.second.clear();
+        for x in &two.second.corners {
+            let h = n.dot(x);
+            self.high = if h > self.high { h } else { self.high };
+            self.second.push(h);
+        }
+    }
+}
+
+/// Two cores in the frame of the second.
+struct Two<'a> {
+    frame: Frame,
+    first: &'a Core,
+    second: &'a Core,
+}
+
+impl<'a> Two<'a> {
+    fn new(a: &Placed<'a>, b: &Placed<'a>) -> Two<'a> {
+        Two { frame: Frame::new(a, b), first: a.core, second: b.core }
+    }
+
+    /// From the farthest point of the second to the first's that is farthest the other way, along a direction.
+    fn between(&self, n: &Vec3) -> Vec3 {
+        let first = farthest(&self.first.corners, &-self.frame.turn.inverse_transform_vector(n));
+        self.frame.point(first) - farthest(&self.second.corners, n)
+    }
+
+    /// A unit vector along which the first lies beyond the second, and how far at least, from a guess; any, as soon as that is
+    /// `enough`. `None` where they overlap.
+    fn separation(&self, guess: Vec3, enough: f64) -> Option<(Vec3, f64)> {
+        separation(|n| self.between(n), guess, enough)
+    }
+
+    /// The line of centres, as a first guess.
+    fn line(&self) -> Vec3 {
+        self.frame.way.try_normalize(0.0).unwrap_or(Vec3::z())
+    }
+
+    /// Takes `heights` along a direction in which the cores are apart, but less than `reach`. The error says whether they are farther
+    /// apart, or else overlap.
+    fn heights(&self, hint: &mut Hint, reach: f64, heights: &mut Heights) -> Result<(), bool> {
+        let mut guess = self.line();
+        if let Some([x, y, z, before]) = *hint {
+            guess = Vec3::new(x, y, z);
+            heights.take(self, guess);
+            let apart = heights.low - heights.high;
+            if apart >= reach {
+                return Err(true);
+            }
+            if apart > 0.0 && before < reach && (apart - before).abs() < STALE * reach {
+                return Ok(());
+            }
+        }
+        let found = self.separation(guess, reach);
+        *hint = found.map(|(n, apart)| [n.x, n.y, n.z, apart]);
+        match found {
+            Some((_, apart)) if apart >= reach => Err(true),
+            Some((n, _)) => {
+                heights.take(self, n);
+                Ok(())
+            }
+            None => Err(false),
+        }
+    }
+}
+
+/// The point farthest along a direction.
+fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
+    let mut best = (0, f64::NEG_INFINITY);
+    for (k, p) in points.iter().enumerate() {
+        let h = p.dot(n);
+        if h > best.1 {
+            best = (k, h);
+        }
+    }
+    &points[best.0]
+}
+
+/// The set of those heights for which `near` holds.
+fn set(heights: impl IntoIterator<Item = f64>, near: impl Fn(f64) -> bool) -> u64 {
+    heights.into_iter().enumerate().map(|(k, h)| u64::from(near(h)) << k).sum()
 }
 
 /// Whether the spheres around two bodies are within `reach` of each other.
@@ -98,26 +189,30 @@ fn around(a: &Placed<'_>, b: &Placed<'_>, reach: f64) -> bool {
     (a.centre - b.centre).norm_squared() < most * most
 }
 
-/// What the corners and edges of a body do to a target: calls `put` with the feature, from 1 on, what it does, and its weight. Only what
-/// is below a level along a direction, corners of the set `near` among it, can be within reach.
+/// What the corners and edges of a body do to a target, in the target's frame: calls `put` with the feature, from 1 on, what it does, and its
+/// weight. Only features with a corner of the set `near` can be within reach, and what of them is in the view.
 fn skeleton(
     core: &Core,
-    at: &[Vec3],
-    (near, n, level): (u64, &Vec3, f64),
+    frame: &Frame,
+    (near, view): (u64, &View),
     target: &impl Target,
     reach: f64,
     mut put: impl FnMut(u32, &Pressed, f64),
 ) {
-    let part = Part::new(core, near);
-    for k in part.corners() {
-        if let Some(pressed) = press::corner(target, &at[k], reach) {
+    for k in core.corners_of(near) {
+        if let Some(pressed) = press::corner(target, &frame.point(&core.corners[k]), reach) {
             put(k as u32 + 1, &pressed, 1.0);
         }
     }
-    for k in part.edges() {
-        let [a, b] = core.edges[k].ends.map(|e| at[e as usize]);
-        let segment = Segment::new(a, b).below(n, level);
-        if let Some(pressed) = press::edge(target, &segment, reach) {
+    for k in core.edges_of(near) {
+        let edge = &core.edges[k];
+        let [from, to] = edge.ends.map(|e| frame.point(&core.corners[e as usize]));
+        let around = Bounds::near([&from, &to], view);
+        if !target.meets(&around) {
+            continue;
+        }
+        let (direction, range) = (frame.turn * edge.direction, [0.0, edge.length * frame.scale]);
+        if let Some(pressed) = press::edge(target, &Segment { from, direction, range, around }, reach) {
             let weight = pressed.force.norm() / (pressed.overlap * LENGTH * reach);
             put((CORNERS + k) as u32 + 1, &pressed, weight);
         }
@@ -161,83 +256,66 @@ fn lost(point: Vec3, normal: Vec3, reach: f64) -> Touch {
 impl PairKind for DilatedDilated {
     type First = Solids;
     type Second = Solids;
-    const POINTS: usize = POINTS;
     const SHARED: bool = true;
 
     fn near(&self, first: &Placed<'_>, second: &Placed<'_>, reach: f64) -> bool {
         if !(first.dilated() || second.dilated()) || !around(first, second, reach) {
             return false;
         }
-        let frame = Frame::new(first, second);
-        let corners = Corners::of(first.core, |x| frame.point(x));
-        let found = separation(corners.list(), &second.core.corners);
-        found.is_none_or(|(_, apart)| apart * second.scale < first.radius + second.radius + reach)
+        let two = Two::new(first, second);
+        let most = (first.radius + second.radius + reach) / second.scale;
+        two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
     }
 
     fn touches(&self, a: &Placed<'_>, b: &Placed<'_>, found: &mut Touches) {
+        self.touches_again(a, b, &mut None, found);
+    }
+
+    fn touches_again(&self, a: &Placed<'_>, b: &Placed<'_>, hint: &mut Hint, found: &mut Touches) {
         if !around(a, b, 0.0) {
             return;
         }
-        let (to_b, to_a) = (Frame::new(a, b), Frame::new(b, a));
-        let corners = Corners::of(a.core, |x| to_b.point(x));
-        let others = &b.core.corners;
-        let sum = a.radius + b.radius;
+        let (two, sum) = (Two::new(a, b), a.radius + b.radius);
         let reach = sum / b.scale;
-        let Some((n, apart)) = separation(corners.list(), others) else {
-            let way = a.centre - b.centre;
-            found.push(lost((a.centre + b.centre) * 0.5, way.try_normalize(0.0).unwrap_or(Vec3::z()), sum));
-            return;
-        };
-        if apart >= reach {
-            return;
+        let mut heights = Heights::new();
+        match two.heights(hint, reach, &mut heights) {
+            Ok(()) => {}
+            Err(true) => return,
+            Err(false) => {
+                let way = (a.centre - b.centre).try_normalize(0.0).unwrap_or(Vec3::z());
+                return found.push(lost((a.centre + b.centre) * 0.5, way, sum));
+            }
         }
-        // A point of one body that is nearer to the other than `reach` is so along any direction.
-        let [low, _] = Corners::range(corners.list(), &n);
-        let [_, high] = Corners::range(others, &n);
-        let level = high + reach;
-        let near_a = Corners::set(corners.list(), &n, |h| h < level);
-        let near_b = Corners::set(others, &n, |h| h > low - reach);
+        // A point of one body that is nearer to the other than `reach` is so along any direction: the first's lie below a level, the
+        // second's above one.
+        let most = reach * (1.0 + ROUNDING);
+        let (n, level, floor) = (heights.n, heights.high + most, heights.low - most);
+        let near_a = set(heights.first.iter().copied(), |h| h < level);
+        let near_b = set(heights.second.iter().copied(), |h| h > floor);
         let radius = effective(a.radius, b.radius);
-        skeleton(
-            a.core,
-            corners.list(),
-            (near_a, &n, level),
-            &Part::new(b.core, near_b),
-            reach,
-            |feature, pressed, weight| {
-                found.push(touch(
-                    b,
-                    feature << 16,
-                    pressed,
-                    weight,
-                    [a.radius / b.scale, reach, radius],
-                    1.0,
-                ));
-            },
-        );
-        let corners = Corners::of(b.core, |x| to_a.point(x));
-        let reach = sum / a.scale;
-        // The same direction, turned about, in the frame of the first.
-        let n = -(to_a.turn * n);
-        let level = Corners::range(&a.core.corners, &n)[1] + reach;
-        skeleton(
-            b.core,
-            corners.list(),
-            (near_b, &n, level),
-            &Part::new(a.core, near_a),
-            reach,
-            |feature, pressed, weight| {
-                found.push(touch(a, feature, pressed, weight, [b.radius / a.scale, reach, radius], -1.0));
-            },
-        );
-        found.truncate(POINTS);
+        let view = View::new(n, floor, reach, heights.low - heights.high);
+        let mut target = Part::none(b.core, view);
+        let (target, of_a) = (target.take(near_b), (near_a, &view.turned(-level)));
+        skeleton(a.core, &two.frame, of_a, target, reach, |feature, pressed, weight| {
+            let lengths = [a.radius / b.scale, reach, radius];
+            found.push(touch(b, feature << 16, pressed, weight, lengths, 1.0));
+        });
+        // The same in the frame of the first.
+        let up = two.frame.turn.inverse_transform_vector(&n);
+        let [level, floor] = [level, floor].map(|h| (h - n.dot(&two.frame.way)) / two.frame.scale);
+        let (back, reach) = (Frame::new(b, a), sum / a.scale);
+        let view = View::new(up, floor, reach, (heights.low - heights.high) / two.frame.scale);
+        let mut target = Part::none(a.core, view.turned(-level));
+        let (target, of_b) = (target.take(near_a), (near_b, &view));
+        skeleton(b.core, &back, of_b, target, reach, |feature, pressed, weight| {
+            found.push(touch(a, feature, pressed, weight, [b.radius / a.scale, reach, radius], -1.0));
+        });
     }
 }
 
 impl PairKind for DilatedPlane {
     type First = Solids;
     type Second = Planes;
-    const POINTS: usize = POINTS;
     const SHARED: bool = true;
 
     fn near(&self, body: &Placed<'_>, plane: &PlaneView, reach: f64) -> bool {
@@ -255,19 +333,18 @@ impl PairKind for DilatedPlane {
         let normal = back * plane.normal;
         let below = HalfSpace { point: normal * (-height / body.scale), normal };
         let (reach, corners) = (body.radius / body.scale, &body.core.corners);
-        let level = below.point.dot(&normal) + reach;
-        let near = Corners::set(corners, &normal, |h| h < level);
-        skeleton(body.core, corners, (near, &normal, level), &below, reach, |feature, pressed, weight| {
+        let level = below.point.dot(&normal) + reach * (1.0 + ROUNDING);
+        let near = set(corners.iter().map(|x| x.dot(&normal)), |h| h < level);
+        let (of, frame) = ((near, &View::new(-normal, -level, reach, 0.0)), Frame::same());
+        skeleton(body.core, &frame, of, &below, reach, |feature, pressed, weight| {
             found.push(touch(body, feature << 16, pressed, weight, [reach, reach, body.radius], 1.0));
         });
-        found.truncate(POINTS);
     }
 }
 
 impl PairKind for SphereDilated {
     type First = Spheres;
     type Second = Solids;
-    const POINTS: usize = 1;
 
     fn near(&self, sphere: &&Record, body: &Placed<'_>, reach: f64) -> bool {
         if !body.dilated() {
@@ -291,7 +368,8 @@ impl PairKind for SphereDilated {
         if highest >= reach {
             return;
         }
-        let Some(pressed) = press::corner(&Part::all(body.core), &local, reach) else {
+        let view = View::everywhere(Vec3::z(), reach);
+        let Some(pressed) = press::corner(Part::none(body.core, view).all(), &local, reach) else {
             if highest <= 0.0 {
                 let way = (p - body.centre).try_normalize(0.0).unwrap_or(Vec3::z());
                 found.push(lost(p, way, sum));

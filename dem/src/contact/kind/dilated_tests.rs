@@ -301,3 +301,44 @@ fn forces_are_continuous() {
         }
     }
 }
+
+/// With the hint of the step before, stones that pass each other touch as without one, to the last bit: also where the hint is of
+/// long ago, or of other stones.
+#[test]
+fn hints_change_nothing() {
+    let mut random = Random::new(11, 1);
+    let shapes: Vec<Shape> = (0..4).map(|k| stones(&mut random, 8 + 6 * k, 0.05)).collect();
+    let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
+    let (mut hint, mut points, mut none) = (None, 0, 0);
+    for pair in 0..60 {
+        let [i, j] = [pair % 4, pair / 4 % 4];
+        let spin = random.orientation() * Vec3::x();
+        let [from, way] = [0, 1].map(|_| random.orientation() * Vec3::x());
+        for step in 0..200 {
+            let t = 0.01 * f64::from(step) - 1.0;
+            let centre = from * 0.75 + way * (0.5 * t);
+            let turn = UnitQuaternion::new(spin * t);
+            let a = placed(&shapes[i], &cores[i], centre, turn, 1.0);
+            let b = placed(&shapes[j], &cores[j], Vec3::zeros(), UnitQuaternion::identity(), 1.1);
+            let (mut cold, mut warm) = (Touches::new(), Touches::new());
+            DilatedDilated.touches(&a, &b, &mut cold);
+            DilatedDilated.touches_again(&a, &b, &mut hint, &mut warm);
+            // Cores that overlap end a run.
+            if cold.first().is_some_and(|t| t.geometry.overlap > t.bound) {
+                hint = None;
+                continue;
+            }
+            let bits = |found: &Touches| -> Vec<(u32, [u64; 5])> {
+                let of = |t: &Touch| {
+                    let [x, y, z] = t.geometry.normal.into();
+                    [t.geometry.overlap, t.weight, x, y, z].map(f64::to_bits)
+                };
+                found.iter().map(|t| (t.feature, of(t))).collect()
+            };
+            assert_eq!(bits(&cold), bits(&warm), "pair {pair}, step {step}");
+            points += cold.len();
+            none += usize::from(cold.is_empty());
+        }
+    }
+    assert!(points > 3000 && none > 3000, "{points} {none}");
+}

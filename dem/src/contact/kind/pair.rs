@@ -3,6 +3,7 @@
 use super::side::{First, Second, Side};
 use crate::base::Vec3;
 use crate::law::ContactGeometry;
+use crate::pairs::list::Hint;
 
 /// Which two shapes touch, and where.
 pub(crate) trait PairKind: Sync {
@@ -10,9 +11,6 @@ pub(crate) trait PairKind: Sync {
     type First: First;
     /// What the second partner is.
     type Second: Second;
-
-    /// Contact points that a pair can have.
-    const POINTS: usize;
 
     /// Whether the points of a pair share its mass by their weights: the pair then has the damping ratio of its law however many
     /// there are.
@@ -22,8 +20,19 @@ pub(crate) trait PairKind: Sync {
     /// the kind is not for.
     fn near(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
 
-    /// Finds where they touch, at most in [`PairKind::POINTS`] points.
+    /// Finds where they touch.
     fn touches(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, found: &mut Touches);
+
+    /// As [`PairKind::touches`], to the last bit, step after step: with a hint that it leaves for the next.
+    fn touches_again(
+        &self,
+        first: &View<'_, Self::First>,
+        second: &View<'_, Self::Second>,
+        _hint: &mut Hint,
+        found: &mut Touches,
+    ) {
+        self.touches(first, second, found);
+    }
 }
 
 /// A partner where it is, as its side shows it.

@@ -9,7 +9,7 @@ use crate::base::ledger::Impulse;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
 use crate::law::ContactGeometry;
-use crate::pairs::list::{NO_FEATURE, PairList, PairName, PointMemory};
+use crate::pairs::list::{PairList, PairName, PointMemory};
 
 /// What the contacts of a block do besides the forces that go to slots.
 pub(crate) struct Books<'a> {
@@ -26,9 +26,6 @@ pub(crate) struct Books<'a> {
 
 /// A kind of pair, as search and step see it.
 pub(crate) trait Kind: Sync {
-    /// Contact points that a pair can have.
-    fn points(&self) -> usize;
-
     /// Pairs with first partners in a block that may come within `reach` [m] of each other; ascending.
     fn candidates(
         &self,
@@ -83,15 +80,10 @@ impl<K: PairKind> Of<K> {
         found.clear();
         let first = K::First::view(scene, b, i);
         self.0.touches(&first, &K::Second::view(scene, other as usize, j), found);
-        debug_assert!(found.len() <= K::POINTS);
     }
 }
 
 impl<K: PairKind> Kind for Of<K> {
-    fn points(&self) -> usize {
-        K::POINTS
-    }
-
     fn candidates(
         &self,
         search: &Search<'_>,
@@ -136,26 +128,35 @@ impl<K: PairKind> Kind for Of<K> {
         if list.len() == 0 {
             return;
         }
-        let mut found = Touches::with_capacity(K::POINTS);
+        let (mut found, mut memory) = (Touches::new(), Vec::new());
         for k in 0..list.len() {
-            let name = list.name(k);
-            self.touches(now, b, name, &mut found);
-            let materials =
-                [K::First::material(now, b, name[0]), K::Second::material(now, name[1] as usize, name[2])];
-            let points = list.points_mut(k);
-            for p in points.iter_mut().filter(|p| p.feature != NO_FEATURE) {
+            let name @ [i, other, j] = list.name(k);
+            found.clear();
+            let (first, second) = (K::First::view(now, b, i), K::Second::view(now, other as usize, j));
+            self.0.touches_again(&first, &second, list.hint_mut(k), &mut found);
+            let slots = &mut books.slots[3 * k..][..3];
+            slots.fill(Record::default());
+            let points = list.points(k);
+            if found.is_empty() && points.is_empty() {
+                continue;
+            }
+            let materials = [K::First::material(now, b, i), K::Second::material(now, other as usize, j)];
+            for p in points {
                 if !found.iter().any(|t| t.feature == p.feature) {
-                    *books.friction += p.weight * single::end(setting.laws, materials, &mut p.history);
-                    *p = PointMemory::NONE;
+                    *books.friction += p.weight * single::end(setting.laws, materials, &mut { p.history });
                 }
             }
-            let slot = &mut books.slots[3 * k..][..3];
-            slot.fill(Record::default());
             let mut sums = [Vec3::zeros(); 3];
             let share = self.share(&found);
+            memory.clear();
             for touch in &found {
-                self.force(setting, now, (b, name), materials, (touch, share), points, &mut sums, books);
+                let known = points.iter().find(|p| p.feature == touch.feature);
+                let mut point =
+                    PointMemory { feature: touch.feature, ..*known.unwrap_or(&PointMemory::FRESH) };
+                self.force(setting, now, (b, name), materials, (touch, share), &mut point, &mut sums, books);
+                memory.push(point);
             }
+            list.set(k, &memory);
             if !found.is_empty() {
                 for (record, sum) in books.slots[3 * k..][..3].iter_mut().zip(&sums) {
                     *record = Record::of(sum, 0.0);
@@ -184,7 +185,7 @@ impl<K: PairKind> Kind for Of<K> {
                     weight: touch.weight,
                     velocity: own.at_point() - its.at_point(),
                     inverse_mass: (own.inverse_mass() + its.inverse_mass()) * share,
-                    history: &memory.copied().unwrap_or(PointMemory::NONE).history,
+                    history: &memory.unwrap_or(&PointMemory::FRESH).history,
                     spin: own.spin() - its.spin(),
                     materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],
                     shift: Vec3::zeros(),
@@ -244,16 +245,12 @@ impl<K: PairKind> Of<K> {
         (b, [i, other, j]): (usize, PairName),
         materials: [u32; 2],
         (touch, share): (&Touch, f64),
-        points: &mut [PointMemory],
+        memory: &mut PointMemory,
         sums: &mut [Vec3; 3],
         books: &mut Books<'_>,
     ) {
         let (g, other, weight) = (&touch.geometry, other as usize, touch.weight);
-        let known = points.iter().position(|p| p.feature == touch.feature);
-        let Some(at) = known.or_else(|| points.iter().position(|p| p.feature == NO_FEATURE)) else { return };
         let (own, its) = (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &g.point));
-        let memory = &mut points[at];
-        memory.feature = touch.feature;
         *books.friction += weigh(setting, materials, g, memory, weight);
         let ends = (&own, &its);
         let f = single::between(setting.laws, materials, g, ends, share, &mut memory.history, setting.dt);

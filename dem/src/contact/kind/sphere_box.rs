@@ -12,7 +12,6 @@ pub(crate) struct SphereBox;
 impl PairKind for SphereBox {
     type First = Spheres;
     type Second = Solids;
-    const POINTS: usize = 1;
 
     fn near(&self, sphere: &&Record, solid: &Placed<'_>, reach: f64) -> bool {
         solid.half().is_some_and(|half| {

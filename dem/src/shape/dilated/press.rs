@@ -7,7 +7,7 @@
 //! them have a potential.
 
 use crate::base::Vec3;
-use crate::shape::dilated::Core;
+use crate::shape::dilated::part::Bounds;
 
 /// Points and weights of Gauss's rule on [−1, 1]: for the flat pieces, where two are exact, and for others.
 const FLAT: [[f64; 2]; 2] = [[-0.577_350_269_189_625_8, 1.0], [0.577_350_269_189_625_8, 1.0]];
@@ -20,6 +20,9 @@ const ROUND: [[f64; 2]; 4] = [
 
 /// What is pressed into.
 pub(crate) trait Target {
+    /// Whether it may be met within some bounds.
+    fn meets(&self, around: &Bounds) -> bool;
+
     /// Distance of a point from it, and the unit vector from it to the point; `None` for points within or out of reach.
     fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)>;
 
@@ -27,28 +30,14 @@ pub(crate) trait Target {
     fn stretches(&self, segment: &Segment, reach: f64, f: impl FnMut([f64; 2], &Nearest));
 }
 
-/// A segment: points `from` + s `direction` with s in `range`, outside of which nothing is near.
+/// A segment: points `from` + s `direction` with s in `range`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     pub from: Vec3,
     pub direction: Vec3,
     pub range: [f64; 2],
-}
-
-impl Segment {
-    /// From one point to another.
-    pub fn new(from: Vec3, to: Vec3) -> Segment {
-        let length = (to - from).norm();
-        Segment { from, direction: (to - from) / length, range: [0.0, length] }
-    }
-
-    /// That part of it which is below a level along a direction.
-    pub fn below(mut self, n: &Vec3, level: f64) -> Segment {
-        let mut stretch = Stretch(self.range);
-        stretch.cut(n.dot(&self.from) - level, n.dot(&self.direction));
-        self.range = stretch.0;
-        self
-    }
+    /// What is farther from it than the reach lies beyond these.
+    pub around: Bounds,
 }
 
 /// What is nearest on a stretch.
@@ -133,6 +122,10 @@ pub(crate) struct HalfSpace {
 }
 
 impl Target for HalfSpace {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
     fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
         let d = (p - self.point).dot(&self.normal);
         (d < reach).then_some((d, self.normal))
@@ -149,169 +142,17 @@ impl Target for HalfSpace {
     }
 }
 
-/// Those features of a core that may be near.
-pub(crate) struct Part<'a> {
-    core: &'a Core,
-    corners: u64,
-    faces: Few<128>,
-    edges: Few<192>,
-}
-
-/// Numbers of a few things.
-struct Few<const N: usize> {
-    list: [u8; N],
-    count: usize,
-}
-
-impl<const N: usize> Few<N> {
-    fn of(numbers: impl Iterator<Item = usize>) -> Few<N> {
-        let mut few = Few { list: [0; N], count: 0 };
-        for k in numbers {
-            few.list[few.count] = k as u8;
-            few.count += 1;
-        }
-        few
-    }
-
-    fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        self.list[..self.count].iter().map(|k| *k as usize)
-    }
-}
-
-impl<'a> Part<'a> {
-    /// Features with a corner of the set `corners`, a bit each.
-    pub fn new(core: &'a Core, corners: u64) -> Part<'a> {
-        let near = |mask: u64| mask & corners != 0;
-        Part {
-            core,
-            corners,
-            faces: Few::of((0..core.faces.len()).filter(|&k| near(core.faces[k].mask))),
-            edges: Few::of((0..core.edges.len()).filter(|&k| near(mask(core.edges[k].ends)))),
-        }
-    }
-
-    /// All features.
-    pub fn all(core: &'a Core) -> Part<'a> {
-        Part::new(core, u64::MAX)
-    }
-
-    /// Corners of the set.
-    pub fn corners(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.core.corners.len()).filter(|k| self.corners >> k & 1 == 1)
-    }
-
-    /// Edges with a corner of the set.
-    pub fn edges(&self) -> impl Iterator<Item = usize> + '_ {
-        self.edges.iter()
-    }
-}
-
-/// The set of some corners.
-fn mask(corners: [u8; 2]) -> u64 {
-    1 << corners[0] | 1 << corners[1]
-}
-
-impl Target for Part<'_> {
-    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
-        let mut best = (reach, Vec3::zeros());
-        for face in self.faces.iter().map(|k| &self.core.faces[k]) {
-            let height = face.normal.dot(p) - face.offset;
-            let within = |(side, level): &(Vec3, f64)| side.dot(p) <= *level;
-            if height > 0.0 && height < best.0 && face.sides.iter().all(within) {
-                best = (height, face.normal);
-            }
-        }
-        for edge in self.edges.iter().map(|k| &self.core.edges[k]) {
-            let way = p - self.core.corners[edge.ends[0] as usize];
-            let t = way.dot(&edge.direction).clamp(0.0, edge.length);
-            let way = way - edge.direction * t;
-            let square = way.norm_squared();
-            // A point over a face is no nearer to its edges, but by rounding.
-            if square < best.0 * best.0 {
-                let d = square.sqrt();
-                best = (d, way / d);
-            }
-        }
-        (best.0 < reach).then_some(best)
-    }
-
-    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
-        let whole = Stretch(segment.range);
-        if !whole.some() {
-            return;
-        }
-        for face in self.faces.iter().map(|k| &self.core.faces[k]) {
-            let (at, slope) =
-                (face.normal.dot(&segment.from) - face.offset, face.normal.dot(&segment.direction));
-            let mut stretch = whole;
-            stretch.cut(at - reach, slope);
-            stretch.cut(-at, -slope);
-            for (side, level) in &face.sides {
-                if !stretch.some() {
-                    break;
-                }
-                stretch.cut(side.dot(&segment.from) - level, side.dot(&segment.direction));
-            }
-            if stretch.some() {
-                f(stretch.0, &Nearest::Plane { normal: face.normal, at, slope });
-            }
-        }
-        for edge in self.edges.iter().map(|k| &self.core.edges[k]) {
-            let (t, along) = (edge.direction.dot(&segment.from), segment.direction.dot(&edge.direction));
-            let mut stretch = whole;
-            stretch.cut(edge.levels[0] - t, -along);
-            stretch.cut(t - edge.levels[1], along);
-            for (side, level) in &edge.sides {
-                if !stretch.some() {
-                    break;
-                }
-                stretch.cut_beyond(level - side.dot(&segment.from), -side.dot(&segment.direction));
-            }
-            if stretch.some() {
-                let way = segment.from - self.core.corners[edge.ends[0] as usize];
-                let t = way.dot(&edge.direction);
-                let (at, slope) = (way - edge.direction * t, segment.direction - edge.direction * along);
-                stretch.near(&at, &slope, reach);
-                if stretch.some() {
-                    f(stretch.0, &Nearest::Line { at, slope });
-                }
-            }
-        }
-        for corner in self.corners() {
-            let (at, slope) = (segment.from - self.core.corners[corner], segment.direction);
-            let mut stretch = whole;
-            stretch.near(&at, &slope, reach);
-            for &(edge, end) in &self.core.spokes[corner] {
-                if !stretch.some() {
-                    break;
-                }
-                let edge = &self.core.edges[edge as usize];
-                let (t, along) = (edge.direction.dot(&segment.from), segment.direction.dot(&edge.direction));
-                let beyond = t - edge.levels[end as usize];
-                if end == 0 {
-                    stretch.cut_beyond(beyond, along);
-                } else {
-                    stretch.cut_beyond(-beyond, -along);
-                }
-            }
-            if stretch.some() {
-                f(stretch.0, &Nearest::Line { at, slope });
-            }
-        }
-    }
-}
-
 /// A stretch of a segment, from and to.
 #[derive(Clone, Copy)]
-struct Stretch([f64; 2]);
+pub(super) struct Stretch(pub [f64; 2]);
 
 impl Stretch {
-    fn some(&self) -> bool {
+    pub fn some(&self) -> bool {
         self.0[0] < self.0[1]
     }
 
     /// Leaves what has `at` + s `slope` ≤ 0.
-    fn cut(&mut self, at: f64, slope: f64) {
+    pub fn cut(&mut self, at: f64, slope: f64) {
         if slope > 0.0 {
             self.0[1] = self.0[1].min(-at / slope);
         } else if slope < 0.0 {
@@ -323,7 +164,7 @@ impl Stretch {
 
     /// The same beyond a border that another feature's region shares, from the same numbers: what lies in the border all along is the
     /// other's, so that edges over edges count once.
-    fn cut_beyond(&mut self, at: f64, slope: f64) {
+    pub fn cut_beyond(&mut self, at: f64, slope: f64) {
         if slope == 0.0 && at >= 0.0 {
             self.0[1] = self.0[0];
         }
@@ -331,7 +172,7 @@ impl Stretch {
     }
 
     /// Leaves what has |`at` + s `slope`| ≤ `reach`.
-    fn near(&mut self, at: &Vec3, slope: &Vec3, reach: f64) {
+    pub fn near(&mut self, at: &Vec3, slope: &Vec3, reach: f64) {
         let (a, b, c) = (slope.norm_squared(), at.dot(slope), at.norm_squared() - reach * reach);
         let root = b * b - a * c;
         if a < 1e-30 {

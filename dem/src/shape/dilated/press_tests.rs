@@ -1,5 +1,17 @@
 use super::*;
 use crate::shape::cuboid;
+use crate::shape::dilated::Core;
+use crate::shape::dilated::part::{Bounds, Part, View};
+
+/// Seen from above, however high.
+fn view() -> View {
+    View::everywhere(Vec3::z(), 1.0)
+}
+
+fn segment([from, to]: [Vec3; 2]) -> Segment {
+    let (way, around) = (to - from, Bounds::near([&from, &to], &view()));
+    Segment { from, direction: way.normalize(), range: [0.0, way.norm()], around }
+}
 
 fn cube() -> Core {
     Core::new(&(0..8).map(|k| cuboid::corner(&Vec3::repeat(0.5), k)).collect::<Vec<_>>()).unwrap()
@@ -9,7 +21,8 @@ fn cube() -> Core {
 #[test]
 fn distances_from_a_cube() {
     let cube = cube();
-    let part = Part::all(&cube);
+    let mut part = Part::none(&cube, view());
+    let part = part.all();
     let (d, n) = part.distance(&Vec3::new(0.2, 0.1, 0.6), 1.0).unwrap();
     assert!((d - 0.1).abs() < 1e-15 && n == Vec3::z());
     let (d, n) = part.distance(&Vec3::new(0.8, 0.1, 0.9), 1.0).unwrap();
@@ -24,7 +37,8 @@ fn distances_from_a_cube() {
 #[test]
 fn an_edge_presses_as_its_points_do() {
     let cube = cube();
-    let part = Part::all(&cube);
+    let mut part = Part::none(&cube, view());
+    let part = part.all();
     let reach = 0.2;
     let cases = [
         (Vec3::new(-0.3, 0.1, 0.69), Vec3::new(0.3, 0.2, 0.66)),
@@ -36,8 +50,7 @@ fn an_edge_presses_as_its_points_do() {
     ];
     for (from, to) in cases {
         let length = (to - from).norm();
-        let segment = Segment::new(from, to);
-        let found = edge(&part, &segment, reach).unwrap();
+        let found = edge(part, &segment([from, to]), reach).unwrap();
         let (mut force, mut torque, mut squares) = (Vec3::zeros(), Vec3::zeros(), 0.0);
         let n = 200_000;
         for k in 0..n {
@@ -53,20 +66,20 @@ fn an_edge_presses_as_its_points_do() {
         assert!((by_one - torque).norm() < 3e-6 * force.norm(), "{from}: {by_one} {torque}");
         assert!((found.overlap * force.norm() - squares).abs() < 3e-6 * squares, "{from}");
     }
-    let away = Segment::new(Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 1.0, 0.0));
-    assert!(edge(&part, &away, reach).is_none());
+    let away = [Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 1.0, 0.0)];
+    assert!(edge(part, &segment(away), reach).is_none());
 }
 
 /// Over a plane the sums are those of a line.
 #[test]
 fn an_edge_over_a_plane() {
     let ground = HalfSpace { point: Vec3::zeros(), normal: Vec3::z() };
-    let segment = Segment::new(Vec3::new(0.0, 0.0, 0.1), Vec3::new(2.0, 0.0, 0.1));
-    let found = edge(&ground, &segment, 0.3).unwrap();
+    let ends = [Vec3::new(0.0, 0.0, 0.1), Vec3::new(2.0, 0.0, 0.1)];
+    let found = edge(&ground, &segment(ends), 0.3).unwrap();
     assert!((found.force - Vec3::z() * 0.4).norm() < 1e-15 && (found.overlap - 0.2).abs() < 1e-15);
     assert!((found.point - Vec3::new(1.0, 0.0, 0.1)).norm() < 1e-15);
-    let sloping = Segment::new(Vec3::zeros(), Vec3::new(1.2, 0.0, 1.6));
-    let found = edge(&ground, &sloping, 0.4).unwrap();
+    let sloping = [Vec3::zeros(), Vec3::new(1.2, 0.0, 1.6)];
+    let found = edge(&ground, &segment(sloping), 0.4).unwrap();
     // ∫₀^½ (0.4 − 0.8 s) ds
     assert!((found.force.z - 0.1).abs() < 1e-15);
 }

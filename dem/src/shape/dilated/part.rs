@@ -1,0 +1,256 @@
+//! Those features of a core that may be near something: each with a box around what of it can be.
+
+use super::press::{Nearest, Segment, Stretch, Target};
+use super::{CORNERS, Core, Edge, Face};
+use crate::base::Vec3;
+use arrayvec::ArrayVec;
+
+/// Most edges and faces of a core, by Euler's theorem.
+const EDGES: usize = 3 * CORNERS - 6;
+const FACES: usize = 2 * CORNERS - 4;
+
+/// Share of a reach by which boxes are too large, so that rounding leaves out nothing that is near.
+const ROUNDING: f64 = 1e-6;
+
+/// Where features may be near each other: above `floor` along `up`, and, as seen along that, no farther aside than `aside`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    up: Vec3,
+    floor: f64,
+    axes: [Vec3; 2],
+    aside: f64,
+}
+
+impl View {
+    /// Along a unit vector, for things within `reach` of each other; of these one lies at least `apart` above the other.
+    pub fn new(up: Vec3, floor: f64, reach: f64, apart: f64) -> View {
+        let mut axis = Vec3::zeros();
+        axis[up.iamin()] = 1.0;
+        let first = axis.cross(&up).normalize();
+        let reach = reach * (1.0 + ROUNDING);
+        let aside = (reach * reach - apart * apart).max(0.0).sqrt();
+        View { up, floor, axes: [first, up.cross(&first)], aside }
+    }
+
+    /// Along a unit vector, however high.
+    pub fn everywhere(up: Vec3, reach: f64) -> View {
+        View::new(up, f64::NEG_INFINITY, reach, 0.0)
+    }
+
+    /// From the other side.
+    pub fn turned(&self, floor: f64) -> View {
+        View { up: -self.up, floor, ..*self }
+    }
+
+    fn at(&self, p: &Vec3) -> [f64; 2] {
+        [self.axes[0].dot(p), self.axes[1].dot(p)]
+    }
+}
+
+/// A rectangle across a view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Bounds {
+    /// Around nothing.
+    const NONE: Bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+
+    /// Around what of a segment is in the view.
+    fn of([a, b]: [&Vec3; 2], view: &View) -> Bounds {
+        let (over, under) = (view.up.dot(a) - view.floor, view.up.dot(b) - view.floor);
+        if over < 0.0 && under < 0.0 {
+            return Bounds::NONE;
+        }
+        let cut = || a + (b - a) * (over / (over - under));
+        let ends = [if over < 0.0 { cut() } else { *a }, if under < 0.0 { cut() } else { *b }];
+        let [[ax, ay], [bx, by]] = ends.map(|p| view.at(&p));
+        Bounds { low: [least(ax, bx), least(ay, by)], high: [most(ax, bx), most(ay, by)] }
+    }
+
+    /// Around what may be near something of a segment that is in the view.
+    pub fn near(ends: [&Vec3; 2], view: &View) -> Bounds {
+        let Bounds { low, high } = Bounds::of(ends, view);
+        Bounds { low: low.map(|x| x - view.aside), high: high.map(|x| x + view.aside) }
+    }
+
+    fn join(&mut self, other: &Bounds) {
+        for d in 0..2 {
+            self.low[d] = least(self.low[d], other.low[d]);
+            self.high[d] = most(self.high[d], other.high[d]);
+        }
+    }
+
+    fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        (self.low[0] <= x) & (x <= self.high[0]) & (self.low[1] <= y) & (y <= self.high[1])
+    }
+
+    fn meets(&self, other: &Bounds) -> bool {
+        let meets = |d: usize| (self.low[d] <= other.high[d]) & (other.low[d] <= self.high[d]);
+        meets(0) & meets(1)
+    }
+}
+
+/// The lesser and the greater of two numbers: one instruction each, unlike those that look for what is not a number.
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// See [`least`].
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Features of a core that may be near.
+pub(crate) struct Part<'a> {
+    core: &'a Core,
+    view: View,
+    /// The set of the corners, a bit each.
+    corners: u64,
+    edges: ArrayVec<(u8, Bounds), EDGES>,
+    faces: ArrayVec<(u8, Bounds), FACES>,
+    /// Around all.
+    bounds: Bounds,
+}
+
+impl<'a> Part<'a> {
+    /// Nothing of a core yet.
+    #[inline]
+    pub fn none(core: &'a Core, view: View) -> Part<'a> {
+        let (edges, faces) = (ArrayVec::new(), ArrayVec::new());
+        Part { core, view, corners: 0, edges, faces, bounds: Bounds::NONE }
+    }
+
+    /// What of it is in the view: features with a corner of the set `corners`, a bit each. It is filled where it is kept: to hand
+    /// it over would cost as much.
+    pub fn take(&mut self, corners: u64) -> &Part<'a> {
+        let (core, part) = (self.core, &mut *self);
+        part.corners = corners;
+        let mut places = [0; FACES];
+        for k in core.faces_of(corners) {
+            places[k] = part.faces.len() as u8;
+            part.faces.push((k as u8, Bounds::NONE));
+        }
+        for k in core.edges_of(corners) {
+            let edge = &core.edges[k];
+            let bounds = Bounds::of(edge.ends.map(|e| &core.corners[e as usize]), &part.view);
+            part.edges.push((k as u8, bounds));
+            part.bounds.join(&bounds);
+            // Where a plane cuts a face it cuts its edges.
+            edge.faces.iter().for_each(|f| part.faces[places[*f as usize] as usize].1.join(&bounds));
+        }
+        part
+    }
+
+    /// All features.
+    pub fn all(&mut self) -> &Part<'a> {
+        self.take(u64::MAX)
+    }
+
+    fn corners_at(&self, around: &Bounds) -> impl Iterator<Item = usize> {
+        self.core.corners_of(self.corners).filter(|k| around.holds(self.view.at(&self.core.corners[*k])))
+    }
+
+    fn edges_at(&self, around: &Bounds) -> impl Iterator<Item = &Edge> {
+        self.edges.iter().filter(|(_, b)| b.meets(around)).map(|(k, _)| &self.core.edges[*k as usize])
+    }
+
+    fn faces_at(&self, around: &Bounds) -> impl Iterator<Item = &Face> {
+        self.faces.iter().filter(|(_, b)| b.meets(around)).map(|(k, _)| &self.core.faces[*k as usize])
+    }
+}
+
+impl Target for Part<'_> {
+    fn meets(&self, around: &Bounds) -> bool {
+        self.bounds.meets(around)
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        let around = &Bounds::near([p, p], &self.view);
+        let mut best = (reach, Vec3::zeros());
+        for face in self.faces_at(around) {
+            let height = face.normal.dot(p) - face.offset;
+            let within = |(side, level): &(Vec3, f64)| side.dot(p) <= *level;
+            if height > 0.0 && height < best.0 && face.sides.iter().all(within) {
+                best = (height, face.normal);
+            }
+        }
+        for edge in self.edges_at(around) {
+            let way = p - self.core.corners[edge.ends[0] as usize];
+            let t = way.dot(&edge.direction).clamp(0.0, edge.length);
+            let way = way - edge.direction * t;
+            let square = way.norm_squared();
+            // A point over a face is no nearer to its edges, but by rounding.
+            if square < best.0 * best.0 {
+                let d = square.sqrt();
+                best = (d, way / d);
+            }
+        }
+        (best.0 < reach).then_some(best)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let whole = Stretch(segment.range);
+        let around = &segment.around;
+        for face in self.faces_at(around) {
+            let (at, slope) =
+                (face.normal.dot(&segment.from) - face.offset, face.normal.dot(&segment.direction));
+            let mut stretch = whole;
+            stretch.cut(at - reach, slope);
+            stretch.cut(-at, -slope);
+            for (side, level) in &face.sides {
+                if !stretch.some() {
+                    break;
+                }
+                stretch.cut(side.dot(&segment.from) - level, side.dot(&segment.direction));
+            }
+            if stretch.some() {
+                f(stretch.0, &Nearest::Plane { normal: face.normal, at, slope });
+            }
+        }
+        for edge in self.edges_at(around) {
+            let (t, along) = (edge.direction.dot(&segment.from), segment.direction.dot(&edge.direction));
+            let mut stretch = whole;
+            stretch.cut(edge.levels[0] - t, -along);
+            stretch.cut(t - edge.levels[1], along);
+            for (side, level) in &edge.sides {
+                if !stretch.some() {
+                    break;
+                }
+                stretch.cut_beyond(level - side.dot(&segment.from), -side.dot(&segment.direction));
+            }
+            if stretch.some() {
+                let way = segment.from - self.core.corners[edge.ends[0] as usize];
+                let t = way.dot(&edge.direction);
+                let (at, slope) = (way - edge.direction * t, segment.direction - edge.direction * along);
+                stretch.near(&at, &slope, reach);
+                if stretch.some() {
+                    f(stretch.0, &Nearest::Line { at, slope });
+                }
+            }
+        }
+        for corner in self.corners_at(around) {
+            let (at, slope) = (segment.from - self.core.corners[corner], segment.direction);
+            let mut stretch = whole;
+            stretch.near(&at, &slope, reach);
+            for &(edge, end) in &self.core.spokes[corner] {
+                if !stretch.some() {
+                    break;
+                }
+                let edge = &self.core.edges[edge as usize];
+                let (t, along) = (edge.direction.dot(&segment.from), segment.direction.dot(&edge.direction));
+                let beyond = t - edge.levels[end as usize];
+                if end == 0 {
+                    stretch.cut_beyond(beyond, along);
+                } else {
+                    stretch.cut_beyond(-beyond, -along);
+                }
+            }
+            if stretch.some() {
+                f(stretch.0, &Nearest::Line { at, slope });
+            }
+        }
+    }
+}
