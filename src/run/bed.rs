@@ -49,7 +49,7 @@ impl<'a> Bed<'a> {
         .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
         // A bed is looked at after every step.
         self.work.download(&self.model, &mut self.state);
-        self.checkpoints.check(self.doing)
+        self.checkpoints.check(self.doing, self.state.time)
     }
 
     /// Length of the next step [s].

@@ -195,23 +195,25 @@ impl CheckpointStore {
         }
         let due = self.due();
         // A run that is traced is thrown away: it needs no checkpoint but the one at its end.
-        if let Some(trace) = &self.interrupt.trace {
-            let mut trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
-            if trace.last().is_none_or(|(then, _)| self.looked.get() - *then > TRACE) {
-                trace.push((self.looked.get(), moment()));
-            }
+        if self.interrupt.trace.is_some() {
+            self.follow(moment);
             return Ok(());
         }
         if due { self.save(moment(), fill) } else { Ok(()) }
     }
 
-    /// After a step of a stage that only starts again from its beginning, where a checkpoint was written.
+    /// After a step of a stage that only starts again from its beginning, where a checkpoint was written; `time`: simulated time of
+    /// the bed that takes it [s].
     ///
     /// # Errors
     /// [`Failure::Interrupted`] when an interrupt requests it.
     #[inline]
-    pub fn check(&self, stage: &str) -> Result<(), Failure> {
+    pub fn check(&self, stage: &str, time: f64) -> Result<(), Failure> {
         if !self.stopped() {
+            if self.interrupt.trace.is_some() {
+                self.due();
+                self.follow(|| Moment { stage: stage.into(), step: 0, time });
+            }
             return Ok(());
         }
         self.interrupt.acknowledged.store(true, Ordering::Relaxed);
@@ -220,6 +222,15 @@ impl CheckpointStore {
             "interrupted: stage \"{stage}\"; {again}; go on with: {}",
             self.command
         )))
+    }
+
+    /// Adds where the run is to its trace, if that is due.
+    fn follow(&self, moment: impl FnOnce() -> Moment) {
+        let Some(trace) = &self.interrupt.trace else { return };
+        let mut trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
+        if trace.last().is_none_or(|(then, _)| self.looked.get() - *then > TRACE) {
+            trace.push((self.looked.get(), moment()));
+        }
     }
 
     /// Counts a step; whether the run is to stop after it.

@@ -9,8 +9,10 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput, Material, ModelInput, Plane, Shape, Vec3};
 
-/// Spheres that a column has, if the scene has as many.
+/// Spheres that a column has, if the scene has many more.
 const SPHERES: usize = 2000;
+/// Spheres up to which it is all of the bed: beds of few grains are of large and small ones.
+const WHOLE: usize = 6000;
 /// Time between two looks at the speed [s].
 const LOOK: f64 = 1e-3;
 /// Simulated time before slowness counts as rest [s].
@@ -31,6 +33,8 @@ pub struct Column {
     pub rested: bool,
     /// Seconds by the clock that it took, on one thread.
     pub seconds: f64,
+    /// Seconds by the clock of a simulated second at the end of its settling, on one thread.
+    pub late: f64,
     /// Seconds by the clock of a simulated second of the settled bed with the contacts of the run proper, on one thread.
     pub pace: f64,
     /// The same from its beginning on, where steps are short.
@@ -93,12 +97,14 @@ impl Column {
         smooth(&mut input, planes.len());
         // A bed that was cut out, or has not settled in time, may not be where the walls of the run proper leave room: it costs what it did
         // before.
-        let so_far = seconds / rest.max(f64::MIN_POSITIVE);
-        let (pace, first) = match paces(input, surface, budget) {
-            Err(_) if plan.is_some() => (so_far, so_far),
+        let late = late(&course).unwrap_or(seconds / rest.max(f64::MIN_POSITIVE));
+        let paces =
+            if rested || plan.is_none() { paces(input, surface, budget / 3) } else { Ok((late, late)) };
+        let (pace, first) = match paces {
+            Err(_) if plan.is_some() => (late, late),
             paces => paces?,
         };
-        Ok(Column { share, rest, rested, seconds, pace, first, course })
+        Ok(Column { share, rest, rested, seconds, late, pace, first, course })
     }
 
     /// Seconds by the clock that it took from one simulated time to another [s], on one thread; none where it did not come so far.
@@ -112,6 +118,12 @@ impl Column {
     }
 }
 
+/// Seconds by the clock of a simulated second in the last quarter of a course.
+fn late(course: &[[f64; 2]]) -> Option<f64> {
+    let ([t0, s0], [t1, s1]) = (course[3 * course.len() / 4], *course.last()?);
+    (t1 > t0).then(|| (s1 - s0) / (t1 - t0))
+}
+
 /// Spheres of a shape.
 fn members(shape: &Shape) -> usize {
     if let Shape::Clump(clump) = shape { clump.spheres.len() } else { 1 }
@@ -121,7 +133,7 @@ fn members(shape: &Shape) -> usize {
 /// few.
 fn cut(input: &ModelInput, all: usize) -> (Vec<BodyInput>, Vec<Plane>) {
     let there: Vec<&BodyInput> = input.bodies.iter().filter(|b| !b.absent).collect();
-    if all <= SPHERES {
+    if all <= WHOLE {
         return (there.into_iter().cloned().collect(), Vec::new());
     }
     let reach = |b: &BodyInput| {

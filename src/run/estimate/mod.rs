@@ -21,6 +21,8 @@ use trackbed_dem as dem;
 
 /// Rehearsals of scenes with growth over others.
 const GROWTH: u32 = 4;
+/// Settling of a column over rehearsals.
+const SETTLE: u32 = 3;
 /// Share of the steps that the cores besides the first take over.
 const SPEED_UP: f64 = 0.8;
 
@@ -60,7 +62,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Rehearses a run of the scene, which `job` is made of, for `budget` by the clock, and estimates the time of all of it; that
-    /// takes up to four times as long.
+    /// takes up to six times as long.
     ///
     /// # Errors
     /// What the run itself ends with in its first seconds; contacts for which no step can be made.
@@ -147,7 +149,7 @@ fn left(
     };
     let deposition = grains.packing.deposition.as_ref().filter(|_| !is_done(SETTLING));
     // On one thread: a column is too small to be shared among as many as the bed.
-    let settle = || Column::settle(grains, deposition, ground.as_ref(), 2 * budget).ok();
+    let settle = || Column::settle(grains, deposition, ground.as_ref(), SETTLE * budget).ok();
     let Some(column) = run::thread_pool(Some(1))?.install(settle) else {
         // Some of the grains do not do what all of them do.
         return Ok(vec![unknown(RUN.into(), rehearsed.seconds)]);
@@ -161,12 +163,16 @@ fn left(
             stages.push(expected("layers", 0.5 * (layers - 1.0) * whole * column.seconds));
         }
         // Where the clock ran out before the column lay at rest.
-        let (known, longer) = match column.rested {
-            true => (Known::Expected, 1.0),
-            false => (Known::AtMost, plan.max_time / column.rest.max(plan.max_time * 1e-3)),
+        let (known, left) = match column.rested {
+            true => (Known::Expected, 0.0),
+            false => (Known::AtMost, plan.max_time - column.rest),
         };
-        stages.push(StageTime { name: SETTLING.into(), seconds: longer * whole * column.seconds, known });
+        let seconds = whole * (column.seconds + left * column.late);
+        stages.push(StageTime { name: SETTLING.into(), seconds, known });
     }
+    // What a compaction that was seen cost over what the column makes expect.
+    let seen = rehearsed.compacting.map(|pace| (pace / (whole * column.first)).clamp(0.3, 5.0));
+    let whole = whole * seen.unwrap_or(1.0);
     for (k, plan) in grains.packing.compaction.iter().enumerate() {
         let name = format!("compaction {}: {}", k + 1, plan.press.name());
         if !is_done(&name) {

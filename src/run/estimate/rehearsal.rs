@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::run::checkpoint::Moment;
-use crate::run::stages::{self, RUN, SETTLING};
+use crate::run::checkpoint_store::Trace;
+use crate::run::stages::{self, COMPACTED, RUN, SETTLING};
 use crate::run::{self, Interrupt, Options, Outcome, Verbosity};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -24,11 +25,13 @@ pub struct Rehearsal {
     /// Simulated time that the main loop had reached [s], and seconds by the clock of a simulated second from halfway there on;
     /// none where it had not begun.
     pub reached: Option<(f64, f64)>,
+    /// Seconds by the clock of a simulated second of the compaction that it was stopped in; none where that was not so.
+    pub compacting: Option<f64>,
     /// A stretch of the settling: from and to [s], and the seconds by the clock that it took; none where there was none.
     pub settling: Option<([f64; 2], f64)>,
 }
 
-/// Runs a scene for at most about `budget` by the clock.
+/// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun.
 ///
 /// # Errors
 /// What the run itself would end with; a folder for temporary files that cannot be written.
@@ -42,9 +45,11 @@ pub fn rehearse(
     let folder = Folder::new().map_err(|e| Failure::Other(format!("folder for temporary files: {e}")))?;
     let (interrupt, trace) = Interrupt::traced();
     let (ended, over) = mpsc::channel::<()>();
-    let watched = interrupt.clone();
+    let (watched, followed) = (interrupt.clone(), trace.clone());
     let timer = thread::spawn(move || {
-        if over.recv_timeout(budget) == Err(mpsc::RecvTimeoutError::Timeout) {
+        let passes = |time| over.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
+        // What a stage does first says little of the rest of it.
+        if passes(budget) && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget))) {
             watched.request();
         }
     });
@@ -74,7 +79,9 @@ pub fn rehearse(
             let done: Vec<_> = stages.into_iter().map(|s| (s.name, s.seconds)).collect();
             let before: f64 = done.iter().map(|(_, seconds)| seconds).sum();
             let seconds = (elapsed - before).max(0.0);
-            Ok(Rehearsal { done, whole: false, seconds, reached, settling: settling(&trace) })
+            let compacting = trace.last().is_some_and(|(_, moment)| moment.stage == COMPACTED);
+            let compacting = if compacting { compacting_pace(&trace) } else { None };
+            Ok(Rehearsal { done, whole: false, seconds, reached, compacting, settling: settling(&trace) })
         }
         Err(failure) => Err(failure),
     }
@@ -89,6 +96,24 @@ fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
         time => (middle, time),
     };
     (time > 0.0).then(|| (end.0 - middle.0).as_secs_f64() / time)
+}
+
+/// How long ago by the clock the stage began that a run is in.
+fn stage_age(trace: &Trace) -> Option<Duration> {
+    let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
+    let now = &trace.last()?.1.stage;
+    let first = trace.iter().rev().take_while(|(_, moment)| moment.stage == *now).last()?;
+    Some(first.0.elapsed())
+}
+
+/// Seconds by the clock of a simulated second of compaction, in the second half of its trace. Where another bed takes over, its time begins anew.
+fn compacting_pace(trace: &[(Instant, Moment)]) -> Option<f64> {
+    let begun = trace.iter().position(|(_, moment)| moment.stage == COMPACTED)?;
+    let steps = trace[(begun + trace.len()) / 2..].windows(2);
+    let passed = steps.map(|w| ((w[1].0 - w[0].0).as_secs_f64(), w[1].1.time - w[0].1.time));
+    let sum = |[s, t]: [f64; 2], (clock, time): (f64, f64)| [s + clock, t + time];
+    let [clock, time] = passed.filter(|(_, time)| *time > 0.0).fold([0.0, 0.0], sum);
+    (time > 0.0).then(|| clock / time)
 }
 
 /// The stretch of the settling that a trace has.

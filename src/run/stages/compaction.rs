@@ -29,6 +29,9 @@ struct Pressed<'a> {
     wall_force: Option<f64>,
 }
 
+/// What a bed is doing in the stages of compaction.
+pub const COMPACTED: &str = "being compacted";
+
 /// Longest simulated time of one press with the rests that follow it [s].
 pub fn longest(plan: &CompactionPlan) -> f64 {
     let rest = plan.rest.max_time;
@@ -160,7 +163,7 @@ fn new_bed<'b>(
 ) -> Result<Bed<'b>, Failure> {
     let input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
     let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
-    Ok(Bed::new(model, surface, &run.checkpoints, "being compacted"))
+    Ok(Bed::new(model, surface, &run.checkpoints, COMPACTED))
 }
 
 /// Share of a region that the first `grains` bodies leave: a plate is no grain.

@@ -18,7 +18,7 @@ mod statics;
 mod strength_reduction;
 mod time_loop;
 
-pub use compaction::longest;
+pub use compaction::{COMPACTED, longest};
 pub use stage::{GrainTime, RUN, RunState, SETTLING, Stage, reached};
 
 use crate::model::Job;
