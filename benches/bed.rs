@@ -13,6 +13,7 @@
 //! | `s1sleeper` | as `s1`, with a sleeper that hangs above the bed and touches nothing |
 //! | `s2` | clumps of `benches/data/s2_clump.csv`, same parameters |
 //! | `s3` | a block of 6,331 spheres with 19,480 bonds, pressed at 0.1 m/s between grips, step 2e-6 s |
+//! | `s4` | 125 convex blocks of 26 corners in the mean that lie in a box, dilated by 6 % of their radius: K = 1e6 N/m, step 1.5e-6 s |
 //! | `s5` | as `s1`, on a floor of 2 × 71 × 71 triangles in place of the plane |
 //!
 //! FILE has columns x, y, z, r (`s2`: x, y, z and a quaternion) and the width of the box as `W 0.42` in its comments.
@@ -26,14 +27,22 @@ mod grains;
 #[path = "common/watch.rs"]
 mod watch;
 
+use nalgebra::{Quaternion, UnitQuaternion};
 use std::path::{Path, PathBuf};
 use trackbed_dem::bond::{Bond, BondDamping, BondInput, Criterion, DirectBond};
+use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
     BodyInput, Material, Model, ModelInput, Partner, Plane, Shape, State, TimeStep, TriangleSurface, Vec3,
     Work, measure,
 };
 use watch::Watch;
+
+/// Width of the box of the blocks [m].
+const WIDTH: f64 = 0.222;
+
+/// Share of a block that its rounding takes.
+const ROUNDING: f64 = 0.06;
 
 struct Arguments {
     scene: String,
@@ -99,10 +108,42 @@ fn block() -> ModelInput {
     input
 }
 
+/// Convex blocks of 5 cm that have settled: cores of 0.94 of their size, rounded by the rest.
+fn blocks() -> ModelInput {
+    let mut input = ModelInput {
+        materials: vec![Material { stiffness: 1e6, ..grains::stone() }],
+        time_step: TimeStep::Fixed(1.5e-6),
+        planes: boxes::walls(WIDTH),
+        ..ModelInput::default()
+    };
+    input.planes.push(Plane {
+        point: Vec3::zeros(),
+        normal: Vec3::z(),
+        material: 0,
+        velocity: Vec3::zeros(),
+    });
+    for rows in grains::table("s4_blocks.csv.gz").chunk_by(|a, b| a[0] == b[0]) {
+        let corners: Vec<Vec3> = rows.iter().map(|r| Vec3::new(r[8], r[9], r[10])).collect();
+        let radius = corners.iter().map(|c| c.norm()).sum::<f64>() / corners.len() as f64;
+        let inner: Vec<Vec3> = corners.iter().map(|c| c * (1.0 - ROUNDING)).collect();
+        let (block, centre, turn) = Dilated::new(&inner, ROUNDING * radius).expect("a convex block");
+        let r = &rows[0];
+        let own = UnitQuaternion::from_quaternion(Quaternion::new(r[4], r[5], r[6], r[7]));
+        let shape = input.shapes.len();
+        input.shapes.push(Shape::Polyhedron(Box::new(block)));
+        let position = Vec3::new(r[1], r[2], r[3]) + own * centre;
+        input.bodies.push(BodyInput { shape, position, orientation: own * turn, ..BodyInput::default() });
+    }
+    input
+}
+
 /// The model of a scene with its packing.
 fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
     if scene == "s3" {
         return block();
+    }
+    if scene == "s4" {
+        return blocks();
     }
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data");
     let standard = if scene == "s2" { "s2_1k.csv" } else { "s1_10k.csv" };
@@ -207,6 +248,6 @@ fn main() {
         energies.kinetic_rotation,
         after.0 - before_run.0,
         after.1 - before_run.1,
-        used / model.sphere_count() as f64,
+        used / model.sphere_count().max(1) as f64,
     );
 }

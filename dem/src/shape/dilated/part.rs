@@ -4,6 +4,7 @@ use super::press::{Nearest, Segment, Stretch, Target};
 use super::{CORNERS, Core, Edge, Face};
 use crate::base::Vec3;
 use arrayvec::ArrayVec;
+use nalgebra::Rotation3;
 
 /// Most edges and faces of a core, by Euler's theorem.
 const EDGES: usize = 3 * CORNERS - 6;
@@ -42,6 +43,12 @@ impl View {
         View { up: -self.up, floor, ..*self }
     }
 
+    /// The same in another frame, turned and with other lengths.
+    pub fn moved(&self, turn: &Rotation3<f64>, scale: f64, floor: f64) -> View {
+        let [up, first, second] = [self.up, self.axes[0], self.axes[1]].map(|x| turn * x);
+        View { up, floor, axes: [first, second], aside: self.aside * scale }
+    }
+
     fn at(&self, p: &Vec3) -> [f64; 2] {
         [self.axes[0].dot(p), self.axes[1].dot(p)]
     }
@@ -73,7 +80,8 @@ impl Bounds {
     /// Around what may be near something of a segment that is in the view.
     pub fn near(ends: [&Vec3; 2], view: &View) -> Bounds {
         let Bounds { low, high } = Bounds::of(ends, view);
-        Bounds { low: low.map(|x| x - view.aside), high: high.map(|x| x + view.aside) }
+        let by = view.aside;
+        Bounds { low: [low[0] - by, low[1] - by], high: [high[0] + by, high[1] + by] }
     }
 
     fn join(&mut self, other: &Bounds) {

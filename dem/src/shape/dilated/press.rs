@@ -84,7 +84,7 @@ pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Optio
                 Nearest::Line { at, slope } => {
                     let way = at + slope * s;
                     let d = way.norm();
-                    (d, way / d)
+                    (d, way * (1.0 / d))
                 }
             };
             let overlap = reach - d;
