@@ -89,6 +89,7 @@ def scenes(page):
         "contact_point": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 1)),
         "direct": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 2)),
         "periodic": grains(spheres + e("`[periodic]`") + floor + e("`[wind]`")),
+        "water": grains(spheres + floor + e("`[water]`")),
         "lattice": grains(group + e("`[[grains]]`", 1)),
         "region": grains(group + count + 'size = ["9 mm", "11 mm"]\n' + e("`[[grains]]`", 2)),
         "growth": grains(group + size + box + e("`[[grains]]`", 3)),

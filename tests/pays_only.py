@@ -28,6 +28,7 @@ FEATURES = [
     ("dashpots of sliding", GRAINS, "material.0.tangential_damping_ratio", "0.5"),
     ("Walton and Braun's law", GRAINS, "contact.0.normal", '"walton_braun"'),
     ("wind", GRAINS, "wind", "{ drag = 0.9 }"),
+    ("water", GRAINS, "water", "{ drag = 0.6 }"),
     ("settling", GRAINS, "deposition", '{ max_time = "10 ms", settled_speed = 0.01 }'),
     ("compaction", GRAINS, "compaction",
      '[{ kind = "vibration", region = [[0.03, 0.03, 0.0], [0.17, 0.17, 0.1]], amplitude = "0.1 mm", frequency = 200, cycles = 2, rest = "5 ms" }]'),

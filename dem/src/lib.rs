@@ -37,7 +37,7 @@ pub use law::material;
 pub use shape::plane::{Plane, PlaneMotion};
 pub use spatial::{bvh, detect, distance, surface};
 
-pub use body_force::{BodyForce, Wind};
+pub use body_force::{BodyForce, DragArea, Measured, Orbit, Water, Wave, WaveError, Wind};
 pub use error::{ModelError, Partner, StepError};
 pub use input::{AppliedForce, LocalDamping, ModelInput, TimeStep};
 pub use law::material::{Material, PairOverride};

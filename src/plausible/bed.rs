@@ -92,6 +92,7 @@ fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
         || !free
         || job.grains.is_none()
         || scene.wind.is_some()
+        || scene.water.is_some()
         || scene.solid.is_some()
         || !scene.outlet.is_empty()
     {

@@ -1,4 +1,4 @@
-//! Sizes, counts and motions of grains, walls and the wind.
+//! Sizes, counts and motions of grains, walls, wind and water.
 
 use super::findings::{Findings, Usual};
 use crate::scene::Scene;
@@ -11,7 +11,7 @@ const SIZE: Usual = Usual::new(1e-5, 2.0, "m");
 const SPEED: Usual = Usual::or_zero(1e-9, 100.0, "m/s");
 const SPIN: Usual = Usual::or_zero(1e-9, 1000.0, "rad/s");
 
-/// Weighs the groups, walls and the wind.
+/// Weighs the groups, walls, wind and water.
 pub fn weigh(findings: &mut Findings, scene: &Scene) {
     scene.grains.iter().enumerate().for_each(|(k, g)| group(findings, k, g));
     scene.walls.iter().enumerate().for_each(|(k, w)| wall(findings, k, w));
@@ -19,6 +19,13 @@ pub fn weigh(findings: &mut Findings, scene: &Scene) {
         findings.weigh("wind.velocity", length(&wind.velocity), SPEED);
         findings.weigh("wind.density", wind.density.si, Usual::new(0.01, 3000.0, "kg/m3"));
         findings.weigh("wind.drag", wind.drag, Usual::or_zero(0.05, 5.0, ""));
+    }
+    if let Some(water) = &scene.water {
+        let speed = water.current[0].si.hypot(water.current[1].si);
+        findings.weigh("water.current", speed, Usual::or_zero(1e-9, 5.0, "m/s"));
+        findings.weigh("water.density", water.density.si, Usual::new(900.0, 1300.0, "kg/m3"));
+        findings.weigh("water.drag", water.drag, Usual::or_zero(0.05, 5.0, ""));
+        findings.weigh("water.added_mass", water.added_mass, Usual::or_zero(0.05, 5.0, ""));
     }
 }
 

@@ -19,7 +19,7 @@ pub const FILE: &str = "end.state";
 pub const END: &str = "end";
 
 /// Keys that may differ from those of the run before, be new, or be missing.
-const FREE: [&str; 16] = [
+const FREE: [&str; 17] = [
     "title",
     "gravity",
     "include",
@@ -28,6 +28,7 @@ const FREE: [&str; 16] = [
     "measure",
     "probe",
     "wind",
+    "water",
     "track.load",
     "track.push",
     "solid.load",

@@ -278,7 +278,7 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
     }
     if let Some(part) = &run.job.grains {
         summary.sources.extend(part.materials.sources());
-        summary.sources.extend(part.body_forces.iter().map(|f| f.source()));
+        summary.sources.extend(part.body_forces().map(|f| f.source()));
     }
     Ok(())
 }

@@ -24,6 +24,7 @@ pub mod track;
 pub mod units;
 mod value;
 pub mod walls;
+pub mod water;
 mod wind;
 mod wording;
 
@@ -67,6 +68,8 @@ pub struct Scene {
     pub bond: Vec<bonds::BondTable>,
     /// Air or another fluid that streams past grains.
     pub wind: Option<Wind>,
+    /// Water that grains float or sink in.
+    pub water: Option<water::Water>,
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,

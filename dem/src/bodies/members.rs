@@ -126,6 +126,11 @@ impl Members {
         if self.rigid { &self.spheres } else { &block.centre }
     }
 
+    /// Centre and radius of each sphere of a clump.
+    pub fn spheres_of(&self, k: usize) -> &[Record] {
+        &self.spheres[self.first[k] as usize..self.first[k + 1] as usize]
+    }
+
     /// Where the spheres of clumps are kept.
     #[inline(always)]
     pub fn local_and_world(&mut self) -> (&[Record], &mut [Record]) {

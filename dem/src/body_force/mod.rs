@@ -1,36 +1,56 @@
 //! Body forces: what acts on bodies without a partner. A stage of the step between contacts and motion, which works on four
-//! bodies at a time and leaves their motion as it is; a model without body forces has no such stage. (Gravity and local
-//! damping belong to the motion itself: one is the same acceleration for all, the other needs the sum of all forces.)
+//! bodies at a time where it can, and leaves their motion as it is; a model without body forces has no such stage. (Gravity and
+//! local damping belong to the motion itself: one is the same acceleration for all, the other needs the sum of all forces.)
 //!
 //! A body force is one file with an `Act` and one line in `body_forces!`.
 //!
-//! Velocities are those of half a step ago, so a force that depends on them is right to first order in the share of the
+//! A fluid that a body has to push aside adds to the body's inertia. Its reaction −mₐ a depends on the acceleration that it
+//! takes part in, and is worked out from all other forces F: −mₐ F/(m + mₐ), stable whatever mₐ is.
+//!
+//! Velocities are those of half a step ago, so a force that takes them as they are is right to first order in the share of the
 //! velocity that it takes in a step. Its work is booked exactly for translation, and with the spins before and after the step
 //! for rotation.
 
+mod four;
+mod water;
 mod wind;
 
+pub use water::{DragArea, Measured, Orbit, Water, Wave, WaveError};
 pub use wind::Wind;
 
 use crate::base::Vec3;
 use crate::base::held::held;
 use crate::base::ledger::Ledger;
 use crate::bodies::block::Block;
+use crate::bodies::members::Members;
 use crate::bodies::sums::Sums;
+use crate::bodies::table::Bodies;
+use crate::lanes::Simd;
 use crate::lanes::record::xyz;
-use crate::lanes::{self, Four, Kernel, Pack, Real, Simd, V3};
+use crate::shape::Shape;
+pub(crate) use water::Skin;
 
-/// Four bodies as a body force sees them; one that depends on more adds it here.
-pub(crate) struct Seen<R> {
-    /// Velocity of the centre half a step ago [m/s].
-    pub velocity: V3<R>,
-    /// Radius of the sphere of the body's volume [m].
-    pub radius: R,
+/// What a body force sees of the bodies of a block.
+pub(crate) struct Seen<'a> {
+    pub simd: Simd,
+    pub block: &'a Block,
+    pub members: &'a Members,
+    pub bodies: &'a Bodies,
+    /// Surfaces of the shapes, where a body force asks for them.
+    pub skins: &'a [Skin],
+    /// Acceleration of gravity [m/s²].
+    pub gravity: Vec3,
+    /// Sums of the forces of contacts and bonds.
+    pub sums: &'a [Sums],
+    /// Time of the places [s].
+    pub time: f64,
+    /// Length of the kick [s].
+    pub kick: f64,
 }
 
-/// A body force: the force [N] on four bodies at their centres, and the torque about them [N m].
+/// A body force: adds its forces [N] on the bodies of a block, at their centres, and the torques about them [N m].
 pub(crate) trait Act {
-    fn act<R: Real>(&self, on: &Seen<R>) -> (V3<R>, V3<R>);
+    fn act(&self, seen: &Seen<'_>, work: &mut ForceWork);
 }
 
 /// Writes the list of all body forces.
@@ -46,8 +66,8 @@ macro_rules! body_forces {
         }
 
         impl BodyForce {
-            fn on_block(&self, simd: Simd, block: &Block, work: &mut ForceWork) {
-                match self { $(BodyForce::$name(force) => lanes::run(simd, Acting { force, block, work })),+ }
+            fn act(&self, seen: &Seen<'_>, work: &mut ForceWork) {
+                match self { $(BodyForce::$name(force) => force.act(seen, work)),+ }
             }
 
             /// Where it is published.
@@ -64,7 +84,27 @@ macro_rules! body_forces {
 }
 
 body_forces! {
+    Water = water::SOURCE,
     Wind = wind::SOURCE,
+}
+
+impl BodyForce {
+    /// Longest step that resolves what it does to a body [s].
+    pub(crate) fn longest(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
+        match self {
+            BodyForce::Water(water) => water.longest(bodies, gravity),
+            BodyForce::Wind(_) => f64::INFINITY,
+        }
+    }
+}
+
+/// Surfaces of all shapes, where one of the forces asks for them.
+pub(crate) fn skins(forces: &[BodyForce], shapes: &[Shape]) -> Vec<Skin> {
+    if forces.iter().any(|f| matches!(f, BodyForce::Water(_))) {
+        shapes.iter().map(Skin::of).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 /// Scratch of a block: empty in models without body forces.
@@ -74,6 +114,10 @@ pub(crate) struct ForceWork {
     radius: Vec<f64>,
     /// Force and torque on each body in the step at hand.
     acting: Vec<Sums>,
+    /// Mass of fluid that each body takes along [kg]; empty where none does.
+    added: Vec<f64>,
+    /// Heights of the points of one body.
+    heights: Vec<f64>,
     /// Their power before the kick [W].
     power: f64,
 }
@@ -86,28 +130,41 @@ impl ForceWork {
         self.radius.extend(block.bodies.iter().map(|&b| radius(volume(b as usize))));
     }
 
-    /// Adds the forces on the bodies of a block to `sums`, and books their impulse over `kick` [s].
-    pub fn act(
-        &mut self,
-        simd: Simd,
-        forces: &[BodyForce],
-        block: &Block,
-        sums: &mut [Sums],
-        ledger: &mut Ledger,
-        kick: f64,
-    ) {
+    /// Works out the forces on the bodies of a block and books their impulse; [`ForceWork::add_to`] adds them to the others.
+    pub fn act(&mut self, forces: &[BodyForce], seen: Seen<'_>, ledger: &mut Ledger) {
+        let (block, sums, kick) = (seen.block, seen.sums, seen.kick);
         self.acting.clear();
         self.acting.resize(block.bodies.len(), Sums::default());
+        self.added.clear();
         for force in forces {
-            force.on_block(simd, block, self);
+            force.act(&seen, self);
         }
-        for ((sum, own), centre) in sums.iter_mut().zip(&self.acting).zip(&block.centre) {
+        for (k, added) in self.added.iter().enumerate().filter(|(_, added)| **added > 0.0) {
+            let mass = seen.bodies.get(block.bodies[k] as usize).mass;
+            let all = xyz(sums[k].force()) + xyz(self.acting[k].force()) + seen.gravity * mass;
+            self.acting[k].push(&(all * (-added / (mass + added))), &Vec3::zeros());
+        }
+        for (own, centre) in self.acting.iter().zip(&block.centre) {
             let (force, torque) = (xyz(own.force()), xyz(own.torque()));
-            sum.push(&force, &torque);
             ledger.body_forces.add(&xyz(centre), &(force * kick));
             ledger.body_forces.angular += torque * kick;
         }
         self.power = self.power_on(block);
+    }
+
+    /// Adds the forces to all others.
+    pub fn add_to(&self, sums: &mut [Sums]) {
+        for (sum, own) in sums.iter_mut().zip(&self.acting) {
+            sum.push(&xyz(own.force()), &xyz(own.torque()));
+        }
+    }
+
+    /// Lets a body take a mass of fluid along [kg].
+    fn add_mass(&mut self, k: usize, mass: f64) {
+        if self.added.is_empty() {
+            self.added.resize(self.acting.len(), 0.0);
+        }
+        self.added[k] += mass;
     }
 
     /// Books the work of the forces of this step, after the bodies have moved.
@@ -126,53 +183,6 @@ impl ForceWork {
 
     /// Bytes held between steps.
     pub fn bytes(&self) -> usize {
-        held(&self.radius) + held(&self.acting)
-    }
-}
-
-/// Adds one force on the bodies of a block to what acts on them.
-struct Acting<'a, F> {
-    force: &'a F,
-    block: &'a Block,
-    work: &'a mut ForceWork,
-}
-
-impl<F: Act> Kernel for Acting<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<P: Pack>(self) {
-        self.by_four::<P::Quad>();
-    }
-}
-
-impl<F: Act> Acting<'_, F> {
-    #[inline(always)]
-    fn by_four<R: Four>(self) {
-        let Acting { force, block, work: ForceWork { radius, acting, .. } } = self;
-        let n = block.bodies.len();
-        for k in (0..n).step_by(4) {
-            // The last four may be fewer: the lanes beyond see the last body again, and nobody reads them.
-            let at = [k, (k + 1).min(n - 1), (k + 2).min(n - 1), (k + 3).min(n - 1)];
-            let v = &block.velocity;
-            let [vx, vy, vz, _] = R::transpose([
-                R::load(&v[at[0]]),
-                R::load(&v[at[1]]),
-                R::load(&v[at[2]]),
-                R::load(&v[at[3]]),
-            ]);
-            let seen = Seen {
-                velocity: V3::new(vx, vy, vz),
-                radius: R::load(&[radius[at[0]], radius[at[1]], radius[at[2]], radius[at[3]]]),
-            };
-            let (f, t) = force.act(&seen);
-            let forces = R::transpose([f.x, f.y, f.z, R::zero()]);
-            let torques = R::transpose([t.x, t.y, t.z, R::zero()]);
-            for l in 0..4.min(n - k) {
-                let (sum, turn) = acting[k + l].both();
-                (R::load(sum) + forces[l]).store(sum);
-                (R::load(turn) + torques[l]).store(turn);
-            }
-        }
+        held(&self.radius) + held(&self.acting) + held(&self.added)
     }
 }

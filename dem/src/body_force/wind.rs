@@ -5,7 +5,8 @@
 //! 0.9, and a smooth sphere 0.45, at Reynolds numbers of 10⁴ to 10⁵ (Haider & Levenspiel, Powder Technology 58, 1989,
 //! eq. 11). No lift, no shelter behind other bodies, no torque.
 
-use super::{Act, Seen};
+use super::four::{self, ActOnFour, Bodies4};
+use super::{Act, ForceWork, Seen};
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};
 
@@ -37,8 +38,14 @@ impl Wind {
 }
 
 impl Act for Wind {
+    fn act(&self, seen: &Seen<'_>, work: &mut ForceWork) {
+        four::act(self, seen, work);
+    }
+}
+
+impl ActOnFour for Wind {
     #[inline(always)]
-    fn act<R: Real>(&self, on: &Seen<R>) -> (V3<R>, V3<R>) {
+    fn act_on_four<R: Real>(&self, on: &Bodies4<R>) -> (V3<R>, V3<R>) {
         let v = &self.velocity;
         let past = V3::new(R::splat(v.x), R::splat(v.y), R::splat(v.z)) - on.velocity;
         let share = R::splat(0.5 * std::f64::consts::PI * self.density * self.drag);

@@ -8,7 +8,7 @@ use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
-use crate::body_force::BodyForce;
+use crate::body_force::{self, BodyForce, Skin};
 use crate::law::Laws;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
@@ -37,6 +37,8 @@ pub struct Model {
     pub(crate) gravity: Vec3,
     pub(crate) damping: f64,
     pub(crate) body_forces: Vec<BodyForce>,
+    /// Surfaces of the shapes, where body forces ask for them.
+    pub(crate) skins: Vec<Skin>,
     pub(crate) skin: f64,
     /// Smallest and largest sphere radius [m].
     pub(crate) radii: (f64, f64),
@@ -98,7 +100,8 @@ impl Model {
         let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected);
-        let longest = rigid.min(timestep::landing(&bodies, &input, &laws));
+        let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));
+        let longest = of_fluids.fold(rigid.min(timestep::landing(&bodies, &input, &laws)), f64::min);
         let steps = Steps::new(&input.time_step, &limit, longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let surface = check::surfaces(&input).map(|m| m as u32);
@@ -119,7 +122,6 @@ impl Model {
             patch_materials,
             bodies,
             cores: input.shapes.iter().map(Shape::core).collect(),
-            shapes: input.shapes,
             planes,
             walls,
             surface_material: input.surface_material.map(|m| m as u32),
@@ -128,7 +130,9 @@ impl Model {
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
+            skins: body_force::skins(&input.body_forces, &input.shapes),
             body_forces: input.body_forces,
+            shapes: input.shapes,
             skin,
             periodic,
             bonds,

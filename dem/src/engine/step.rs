@@ -11,7 +11,10 @@ use super::{applied, neighbours, order, walls};
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
 use crate::bodies::sums::{Sums, Tally};
+use crate::body_force::Seen;
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
 use crate::contact::kind::{self, Now};
@@ -74,7 +77,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let dt = pace.kick();
     let setting = Setting { laws: &model.laws, simd: work.simd, dt };
     let material = work.material;
-    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, .. } = state;
+    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, .. } = state;
     let motions = &planes[..];
     // Contacts between blocks: they read their own block and later ones, and write slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
@@ -104,6 +107,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
             bodies: &model.bodies,
             pace,
         },
+        time: *time,
         gone: *drift + *wall_drift,
     };
     let (applied, keep) = (&**applied, work.keep_forces);
@@ -113,8 +117,9 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         let One { block, members, work, .. } = one;
         let BlockWork { tally, body_forces, .. } = work;
         if !model.body_forces.is_empty() {
-            let (forces, Tally { sums, ledger, .. }) = (&model.body_forces, &mut *tally);
-            body_forces.act(setting.simd, forces, block, sums, ledger, dt);
+            let Tally { sums, ledger, .. } = &mut *tally;
+            body_forces.act(&model.body_forces, shared.seen(block, members, sums), ledger);
+            body_forces.add_to(sums);
         }
         let applied = applied::of_block(applied, b);
         leapfrog::advance(setting.simd, &shared.drive, block, members, tally, applied);
@@ -140,11 +145,20 @@ struct Shared<'a, S> {
     walls: PlacedWalls<'a>,
     bonds: (&'a BondWork, Parts<'a>),
     drive: Drive<'a>,
+    /// Time of the places [s].
+    time: f64,
     /// Bound on the way that anything has come towards anything since the near list was made [m].
     gone: f64,
 }
 
 impl<S: Surface> Shared<'_, S> {
+    /// What body forces see of a block.
+    fn seen<'b>(&'b self, block: &'b Block, members: &'b Members, sums: &'b [Sums]) -> Seen<'b> {
+        let Model { bodies, skins, gravity, .. } = self.model;
+        let Setting { simd, dt: kick, .. } = self.setting;
+        Seen { simd, block, members, bodies, skins, gravity: *gravity, sums, time: self.time, kick }
+    }
+
     /// All forces on the bodies of a block; what other blocks left for it is in `slots`.
     fn forces(&self, b: usize, one: &mut One<'_>, slots: Slots<'_>, next: Prefetch<'_>) {
         let (model, setting) = (self.model, self.setting);

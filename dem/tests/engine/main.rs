@@ -32,3 +32,4 @@ mod tables;
 mod triangle_bodies;
 mod wall_motion;
 mod walls;
+mod water;

@@ -17,6 +17,7 @@ mod sources;
 mod steps;
 mod track;
 mod walls;
+mod water;
 mod wind;
 
 use crate::failure::Failure;
@@ -55,7 +56,8 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
     let deposition = deposition.map(|d| deposition::build(&d)).transpose()?;
     let settling = deposition.as_ref();
     let compaction = compaction::build(scene, settling, &walls, &mut groups)?;
-    let body_forces = wind::build(scene)?;
+    let wind = wind::build(scene)?;
+    let water = water::build(scene, &gravity)?;
     let measures = measure::build(scene)?;
     bonds::rules(scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
     let fixed = match (bonds.is_empty(), periodic.iter().any(Option::is_some)) {
@@ -71,7 +73,8 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
         walls,
         surface: SurfaceMaterials { ground, sleepers: None },
         gravity,
-        body_forces,
+        wind,
+        water,
         steps,
         periodic,
         packing: PackingPlan { deposition, compaction },

@@ -28,8 +28,10 @@ pub struct GrainsPart {
     pub surface: SurfaceMaterials,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
-    /// Body forces of the run proper.
-    pub body_forces: Vec<BodyForce>,
+    /// Wind of the run proper.
+    pub wind: Option<BodyForce>,
+    /// Water, which is there from the start.
+    pub water: Option<BodyForce>,
     /// Steps in time.
     pub steps: StepPlan,
     /// Periodic borders.
@@ -74,6 +76,11 @@ fn soften(input: &mut ModelInput, factor: f64) {
 }
 
 impl GrainsPart {
+    /// Body forces of the run proper.
+    pub fn body_forces(&self) -> impl Iterator<Item = BodyForce> {
+        self.wind.into_iter().chain(self.water)
+    }
+
     /// The model in which filled grains settle: no sleeper, friction and damping of the deposition.
     pub fn deposition_input(&self, plan: &DepositionPlan) -> ModelInput {
         let contacts = self.materials.pairs_with(plan.friction);
@@ -81,7 +88,7 @@ impl GrainsPart {
         // Sleepers are not there yet.
         let alone = ModelInput {
             other_surface: None,
-            body_forces: Vec::new(),
+            body_forces: self.water.into_iter().collect(),
             ..self.input(self.groups.bodies.clone())
         };
         let mut input = ModelInput { contacts, damping, ..alone };
@@ -137,7 +144,7 @@ impl GrainsPart {
             surface_material: self.surface.ground,
             other_surface: self.surface.sleepers,
             gravity: self.gravity,
-            body_forces: self.body_forces.clone(),
+            body_forces: self.body_forces().collect(),
             time_step: self.time_step(),
             impact_speed: self.steps.impact_speed,
             skin: None,

@@ -1,0 +1,250 @@
+//! The surface of a shape as triangles, and what of it is below a plane.
+//!
+//! Faces of a dilated polyhedron are as they are; an edge is divided into strips of at most 30°, whose corners are moved out so
+//! that the volume of the edge is right, and each corner into a fan whose middle is moved out until its volume is right. What is
+//! under water of it is cut exactly.
+
+use crate::base::Vec3;
+use crate::shape::Shape;
+use crate::shape::dilated::Core;
+use std::collections::HashMap;
+
+/// Largest angle of a strip of an edge [rad].
+const STRIP: f64 = 0.525;
+
+/// A triangle, and what the tetrahedron between it and the origin holds.
+#[derive(Clone, Copy, Debug)]
+struct Facet {
+    corners: [u16; 3],
+    /// Outward normal, as long as the area [m²].
+    area: Vec3,
+    /// Volume [m³].
+    volume: f64,
+}
+
+/// The surface of a shape, in its own frame; empty of shapes made of spheres.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Skin {
+    points: Vec<Vec3>,
+    facets: Vec<Facet>,
+    /// First moment of the whole, which a finer surface would not have [m⁴], and its volume [m³].
+    whole: (f64, Vec3),
+    /// Mean distance of the corners from the centre [m].
+    pub reach: f64,
+}
+
+/// What of a body is under water.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wet {
+    /// Volume [m³].
+    pub volume: f64,
+    /// From the body's centre to that of the volume, world axes [m].
+    pub arm: Vec3,
+    /// Area of its surface, the plane of the water excepted [m²].
+    pub area: f64,
+    /// Half of the sum of the areas of its surface, the plane of the water included, each as seen along a direction [m²].
+    pub seen: f64,
+}
+
+impl Skin {
+    /// The surface of a shape.
+    pub fn of(shape: &Shape) -> Skin {
+        match shape {
+            Shape::Sphere { .. } | Shape::Clump(_) => Skin::default(),
+            Shape::Box { .. } => Skin::new(&shape.core(), 0.0),
+            Shape::Polyhedron(it) => Skin::new(&it.core, it.radius),
+        }
+    }
+
+    /// The surface of a core dilated by a radius [m].
+    pub fn new(core: &Core, radius: f64) -> Skin {
+        let mut skin = Skin::default();
+        // Corners of the faces, moved out.
+        let mut places = HashMap::new();
+        for (f, face) in core.faces.iter().enumerate() {
+            for &c in &face.corners {
+                let place = skin.point(core.corners[c as usize] + face.normal * radius);
+                places.insert((f as u8, c), place);
+            }
+            let ring: Vec<u16> = face.corners.iter().map(|c| places[&(f as u8, *c)]).collect();
+            for k in 1..ring.len() - 1 {
+                skin.facet([ring[0], ring[k], ring[k + 1]]);
+            }
+        }
+        if radius > 0.0 {
+            skin.rounded(core, radius, &places);
+        }
+        let (mut volume, mut moment) = (0.0, Vec3::zeros());
+        for f in &skin.facets {
+            let [a, b, c] = f.corners.map(|k| skin.points[k as usize]);
+            volume += f.volume;
+            moment += (a + b + c) * (0.25 * f.volume);
+        }
+        skin.whole = (volume, moment);
+        let far: f64 = core.corners.iter().map(|c| c.norm()).sum();
+        skin.reach = far / core.corners.len().max(1) as f64 + radius;
+        skin
+    }
+
+    /// Strips of the edges and fans of the corners.
+    fn rounded(&mut self, core: &Core, radius: f64, places: &HashMap<(u8, u8), u16>) {
+        // Arcs around each corner: directions and points along them.
+        let mut arcs: Vec<Vec<(Vec3, u16)>> = vec![Vec::new(); core.corners.len()];
+        for edge in &core.edges {
+            let [n, m] = edge.faces.map(|f| core.faces[f as usize].normal);
+            let directions = strip(&n, &m);
+            let last = directions.len() - 1;
+            let ends = edge.ends.map(|c| -> Vec<u16> {
+                let middle = |d: &Vec3| core.corners[c as usize] + d * radius;
+                let mut ring = vec![places[&(edge.faces[0], c)]];
+                ring.extend(directions[1..last].iter().map(|d| self.point(middle(d))));
+                ring.push(places[&(edge.faces[1], c)]);
+                ring
+            });
+            for k in 0..last {
+                let [a, b] = [&ends[0], &ends[1]].map(|ring| (ring[k], ring[k + 1]));
+                self.facet([a.0, b.0, b.1]);
+                self.facet([a.0, b.1, a.1]);
+            }
+            for (end, &c) in ends.iter().zip(&edge.ends) {
+                // Pairs of neighbours: a fan needs no order of the arcs around it.
+                for k in 0..last {
+                    arcs[c as usize].push((directions[k], end[k]));
+                    arcs[c as usize].push((directions[k + 1], end[k + 1]));
+                }
+            }
+        }
+        for (corner, arcs) in core.corners.iter().zip(&arcs) {
+            let sum: Vec3 = arcs.iter().map(|(d, _)| d).sum();
+            let middle = sum.normalize();
+            let (mut solid, mut flat) = (0.0, 0.0);
+            for pair in arcs.chunks_exact(2) {
+                let [a, b] = [pair[0].0, pair[1].0];
+                let spread = middle.dot(&a.cross(&b)).abs();
+                let [u, v] = [a.normalize(), b.normalize()];
+                let above = 1.0 + middle.dot(&u) + u.dot(&v) + v.dot(&middle);
+                // Solid angle of the three directions (Van Oosterom & Strackee 1983).
+                solid += 2.0 * libm::atan2(middle.dot(&u.cross(&v)).abs(), above);
+                flat += spread;
+            }
+            let apex = self.point(corner + middle * (radius * 2.0 * solid / flat));
+            for pair in arcs.chunks_exact(2) {
+                self.facet([apex, pair[0].1, pair[1].1]);
+            }
+        }
+    }
+
+    fn point(&mut self, at: Vec3) -> u16 {
+        self.points.push(at);
+        self.points.len() as u16 - 1
+    }
+
+    /// Adds a triangle, so that the origin, which lies within, is behind it.
+    fn facet(&mut self, corners: [u16; 3]) {
+        let [a, b, c] = corners.map(|k| self.points[k as usize]);
+        let area = (b - a).cross(&(c - a)) * 0.5;
+        let volume = a.dot(&area) / 3.0;
+        let (corners, area) =
+            if volume < 0.0 { ([corners[0], corners[2], corners[1]], -area) } else { (corners, area) };
+        self.facets.push(Facet { corners, area, volume: volume.abs() });
+    }
+
+    /// What lies below the plane that is normal to the unit vector `up` at `level` [m] along it, all in the frame of the shape; its
+    /// areas as seen along the unit vector `along`. `heights` is scratch.
+    pub fn below(&self, up: &Vec3, level: f64, along: &Vec3, heights: &mut Vec<f64>) -> Wet {
+        heights.clear();
+        heights.extend(self.points.iter().map(|p| up.dot(p) - level));
+        let mut sum = Part::default();
+        for f in &self.facets {
+            let h = f.corners.map(|k| heights[k as usize]);
+            let corners = || f.corners.map(|k| self.points[k as usize]);
+            match h.iter().filter(|h| **h <= 0.0).count() {
+                0 => {}
+                3 => sum.add(&corners(), f.volume, &f.area, along),
+                _ => sum.cut(corners(), h, &(up * level), along),
+            }
+        }
+        let (volume, moment) = self.whole;
+        if sum.volume <= 0.0 {
+            return Wet::default();
+        }
+        let arm = (sum.moment - moment * (sum.volume / volume)) / sum.volume;
+        let seen = 0.5 * (sum.seen + sum.lid.dot(along).abs());
+        Wet { volume: sum.volume, arm, area: sum.area, seen }
+    }
+}
+
+/// Sums over tetrahedra between the origin and triangles.
+#[derive(Default)]
+struct Part {
+    volume: f64,
+    moment: Vec3,
+    area: f64,
+    seen: f64,
+    /// The plane of the water, as its normal times its area.
+    lid: Vec3,
+}
+
+impl Part {
+    fn add(&mut self, corners: &[Vec3; 3], volume: f64, area: &Vec3, along: &Vec3) {
+        let [a, b, c] = corners;
+        self.volume += volume;
+        self.moment += (a + b + c) * (0.25 * volume);
+        self.area += area.norm();
+        self.seen += area.dot(along).abs();
+    }
+
+    /// Adds what of a triangle, whose corners have heights `h` above a plane, is below it, and its share of the lid: a fan about
+    /// `foot`, a point of the plane.
+    fn cut(&mut self, mut p: [Vec3; 3], mut h: [f64; 3], foot: &Vec3, along: &Vec3) {
+        // The corner that is alone on its side first.
+        let alone = h.iter().filter(|h| **h <= 0.0).count() == 1;
+        while (h[0] <= 0.0) != alone {
+            p.rotate_left(1);
+            h.rotate_left(1);
+        }
+        // With one corner below, `while` stops at it; with one above, at that.
+        let at = |k: usize| p[0] + (p[k] - p[0]) * (h[0] / (h[0] - h[k]));
+        let (first, last) = (at(1), at(2));
+        let mut triangle = |corners: [Vec3; 3]| {
+            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])) * 0.5;
+            self.add(&corners, corners[0].dot(&area) / 3.0, &area, along);
+        };
+        // The lid is run through against the sense of the triangle.
+        let lid = if alone {
+            triangle([p[0], first, last]);
+            [*foot, last, first]
+        } else {
+            triangle([first, p[1], p[2]]);
+            triangle([first, p[2], last]);
+            [*foot, first, last]
+        };
+        let area = (lid[1] - lid[0]).cross(&(lid[2] - lid[0])) * 0.5;
+        let volume = foot.dot(&area) / 3.0;
+        self.volume += volume;
+        self.moment += (lid[0] + lid[1] + lid[2]) * (0.25 * volume);
+        self.lid += area;
+    }
+}
+
+/// Directions from one unit normal to another in equal angles of at most [`STRIP`]; those in between are longer than 1, so that the
+/// triangles between neighbours have together the area of the sector.
+fn strip(n: &Vec3, m: &Vec3) -> Vec<Vec3> {
+    let angle = libm::atan2(n.cross(m).norm(), n.dot(m));
+    let count = ((angle / STRIP).ceil() as usize).max(if angle > 0.035 { 2 } else { 1 });
+    let step = angle / count as f64;
+    let (sin, inner) = (libm::sin(step), (count - 2.min(count)) as f64);
+    // longer sin + inner/2 longer² sin = angle/2: two triangles have one such side, the others two.
+    let longer =
+        if inner == 0.0 { 0.5 * angle / sin } else { (-1.0 + (1.0 + inner * angle / sin).sqrt()) / inner };
+    let side = (m - n * n.dot(m)).normalize();
+    let at = |k: usize| {
+        let way = n * libm::cos(step * k as f64) + side * libm::sin(step * k as f64);
+        if k == 0 || k == count { way } else { way * longer }
+    };
+    (0..=count).map(at).collect()
+}
+
+#[cfg(test)]
+#[path = "skin_tests.rs"]
+mod tests;

@@ -1,0 +1,183 @@
+//! Linear (Airy) waves on water of finite depth, with a current (Dean & Dalrymple 1991, ch. 3).
+//!
+//! η = H/2 cos θ, θ = k (x·d) − ω t + φ; (ω − k U)² = g k tanh(k h), U the current along the wave. Velocities and accelerations of
+//! the water are those of the linear field, which goes on above still water up to the crests: a small floe then drifts along as fast
+//! as the water does at the surface (Stokes).
+
+use crate::base::Vec3;
+use std::f64::consts::TAU;
+
+/// Steepest waves over tanh(k h) (Miche 1944) [-].
+const STEEPEST: f64 = 0.142;
+
+/// Why there is no such wave.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum WaveError {
+    /// A quantity is out of range.
+    #[error("{0} out of range")]
+    Range(&'static str),
+    /// The current carries the wave away.
+    #[error("no wave of this period can stand against the current")]
+    Blocked,
+    /// It would break.
+    #[error("a wave of {length} m breaks at a height of {limit} m (Miche 1944)")]
+    Breaks {
+        /// Its length [m].
+        length: f64,
+        /// Largest height [m].
+        limit: f64,
+    },
+}
+
+/// What is known of a wave beside its height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measured {
+    /// Its period, as seen from a fixed place [s].
+    Period(f64),
+    /// Its length [m].
+    Length(f64),
+}
+
+/// A regular wave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// Half of the height [m].
+    pub amplitude: f64,
+    /// Wave number 2π/L [1/m].
+    pub number: f64,
+    /// Angular frequency as seen from a fixed place [rad/s].
+    pub frequency: f64,
+    /// Angular frequency as seen from the moving water [rad/s].
+    pub intrinsic: f64,
+    /// Unit vector along which it runs.
+    pub direction: [f64; 2],
+    /// Phase φ [rad].
+    pub phase: f64,
+    /// Depth of the still water [m]; may be infinite.
+    pub depth: f64,
+}
+
+/// The surface and the water of a wave at a place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Orbit {
+    /// Height of the surface above still water [m].
+    pub elevation: f64,
+    /// Velocity of the water, without the current [m/s].
+    pub velocity: Vec3,
+    /// Acceleration that a particle of the water has [m/s²].
+    pub acceleration: Vec3,
+}
+
+impl Wave {
+    /// A wave of a height [m] that runs along `direction` [rad, from x to y] on water of a `depth` [m] with a `current` [m/s],
+    /// under `gravity` [m/s²].
+    ///
+    /// # Errors
+    /// [`WaveError`] for a wave that would break, and for one that cannot be.
+    pub fn new(
+        height: f64,
+        measured: Measured,
+        direction: f64,
+        phase: f64,
+        depth: f64,
+        current: [f64; 2],
+        gravity: f64,
+    ) -> Result<Wave, WaveError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let along = [direction.cos(), direction.sin()];
+        let with = current[0] * along[0] + current[1] * along[1];
+        for (name, good) in [
+            ("height", height >= 0.0 && height.is_finite()),
+            ("depth", depth > 0.0),
+            ("direction or phase", direction.is_finite() && phase.is_finite()),
+            ("current", with.is_finite()),
+            ("gravity", positive(gravity)),
+        ] {
+            if !good {
+                return Err(WaveError::Range(name));
+            }
+        }
+        let intrinsic = |k: f64| (gravity * k * (k * depth).tanh()).sqrt();
+        let (number, frequency) = match measured {
+            Measured::Length(length) if positive(length) => {
+                let k = TAU / length;
+                (k, intrinsic(k) + k * with)
+            }
+            Measured::Period(period) if positive(period) => {
+                let frequency = TAU / period;
+                (number(frequency, with, depth, gravity).ok_or(WaveError::Blocked)?, frequency)
+            }
+            Measured::Length(_) => return Err(WaveError::Range("length")),
+            Measured::Period(_) => return Err(WaveError::Range("period")),
+        };
+        let limit = STEEPEST * TAU / number * (number * depth).tanh();
+        if height > limit {
+            return Err(WaveError::Breaks { length: TAU / number, limit });
+        }
+        let intrinsic = intrinsic(number);
+        Ok(Wave { amplitude: 0.5 * height, number, frequency, intrinsic, direction: along, phase, depth })
+    }
+
+    /// Length [m].
+    pub fn length(&self) -> f64 {
+        TAU / self.number
+    }
+
+    /// At a place `x`, `y`, at a height `z` above still water [m], at a time [s].
+    pub fn at(&self, x: f64, y: f64, z: f64, time: f64) -> Orbit {
+        let Wave { amplitude, number: k, frequency, intrinsic, direction: [dx, dy], phase, depth } = *self;
+        let (sin, cos) = libm::sincos(k * (x * dx + y * dy) - frequency * time + phase);
+        let z = z.clamp(-depth, amplitude);
+        // cosh k(z + h)/sinh kh and sinh k(z + h)/sinh kh, without numbers beyond all bounds.
+        let (up, down) = (libm::exp(k * z), libm::exp(-k * (z + 2.0 * depth)));
+        let whole = 1.0 - libm::exp(-2.0 * k * depth);
+        let (level, upright) = ((up + down) / whole, (up - down) / whole);
+        let speed = amplitude * intrinsic;
+        let (u, w) = (speed * level * cos, speed * upright * sin);
+        let (ux, uz) = (-k * speed * level * sin, k * speed * upright * cos);
+        // What a particle that drifts with the current sees, and what it sees on its orbit.
+        let along = speed * intrinsic * level * sin + u * ux + w * uz;
+        let rising = -speed * intrinsic * upright * cos + u * uz - w * ux;
+        Orbit {
+            elevation: amplitude * cos,
+            velocity: Vec3::new(u * dx, u * dy, w),
+            acceleration: Vec3::new(along * dx, along * dy, rising),
+        }
+    }
+}
+
+/// The smallest wave number of a frequency, of waves that run along the wave's direction; none where the current carries them away.
+fn number(frequency: f64, with: f64, depth: f64, gravity: f64) -> Option<f64> {
+    // frequency − k U − √(g k tanh k h) falls convexly from its value at k = 0: Newton's steps from the left stay left of its zero.
+    let left = |k: f64| {
+        let t = (k * depth).tanh();
+        let root = (gravity * k * t).sqrt();
+        let inner = if depth.is_finite() { k * depth * (1.0 - t * t) } else { 0.0 };
+        (frequency - k * with - root, -with - 0.5 * gravity * (t + inner) / root)
+    };
+    let shallow = frequency / (gravity * depth.min(1e12)).sqrt().max(1e-300);
+    let deep = frequency * frequency / gravity;
+    let mut k = 1e-3 * shallow.min(deep);
+    while left(k).0 < 0.0 {
+        k *= 1e-3;
+    }
+    for _ in 0..200 {
+        let (value, slope) = left(k);
+        if slope >= 0.0 {
+            return None;
+        }
+        let next = k - value / slope;
+        if !next.is_finite() {
+            return None;
+        }
+        if (next - k).abs() <= 1e-15 * next {
+            return Some(next);
+        }
+        k = next;
+    }
+    Some(k)
+}
+
+#[cfg(test)]
+#[path = "wave_tests.rs"]
+mod tests;
