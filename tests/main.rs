@@ -16,6 +16,7 @@ mod suite {
     mod extremes;
     mod faces;
     mod fem_cases;
+    mod floes;
     mod flow;
     mod go_on;
     mod grain_limits;

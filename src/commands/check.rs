@@ -174,6 +174,7 @@ fn grain_lines(
     };
     let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
     lines.extend(stages.map(|line| format!("  {line}")));
+    lines.extend(grains.groups.remarks.iter().map(|remark| format!("  note: {remark}")));
     Ok((model, lines))
 }
 

@@ -107,7 +107,7 @@ pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
     numbers(file, ["x", "y", "z", "r"])?.into_iter().map(row).collect()
 }
 
-/// A clump of a packing.
+/// A stone of a packing, a clump or a polyhedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedStone {
     /// Centre of mass [m].
@@ -120,12 +120,12 @@ pub struct PlacedStone {
     pub stone: usize,
 }
 
-/// Clumps `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a packing made of `stones` stones; a first row that is not
+/// Stones `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a packing made of `stones` stones; a first row that is not
 /// numbers is a heading.
 ///
 /// # Errors
 /// The file is missing, a row has too few columns, a value is no finite number, or out of range.
-pub fn clump_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, ReadError> {
+pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, ReadError> {
     let columns = ["x", "y", "z", "qw", "qx", "qy", "qz", "scale", "stone"];
     let row = |(line, v): (usize, [f64; 9])| {
         let orientation = [v[3], v[4], v[5], v[6]];

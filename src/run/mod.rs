@@ -277,6 +277,7 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.sources.extend(sources::solid(solid, run.job.grains.is_some()));
     }
     if let Some(part) = &run.job.grains {
+        summary.warnings.extend(part.groups.remarks.iter().cloned());
         summary.sources.extend(part.materials.sources());
         summary.sources.extend(part.body_forces().map(|f| f.source()));
     }

@@ -15,14 +15,18 @@ pub struct Grains {
     pub shape: GrainShape,
     /// Name of their material.
     pub material: String,
-    /// Stone library of `clump` grains.
+    /// Stone library of `clump`, `bonded` and `polyhedron` grains.
     pub library: Option<PathBuf>,
     /// Spheres by hand: `[[x, y, z, r], …]` [m].
     pub spheres: Option<Vec<[Quantity<Length>; 4]>>,
-    /// Grains of an earlier run from a CSV file: spheres as x, y, z, r; clumps as x, y, z, qw, qx, qy, qz, scale, stone.
+    /// Grains of an earlier run from a CSV file: spheres as x, y, z, r; clumps and polyhedra as x, y, z, qw, qx, qy, qz, scale, stone.
     pub packing: Option<PathBuf>,
     /// Equal spheres on a lattice.
     pub lattice: Option<LatticeFill>,
+    /// A field of ice floes.
+    pub floes: Option<Floes>,
+    /// One body: a pile or a cone with flat sides.
+    pub frustum: Option<Frustum>,
     /// Container that grains are scattered in, or grown in.
     pub region: Option<Region>,
     /// Share of the container's volume that scattered grains fill, in place of `count`.
@@ -73,7 +77,7 @@ pub enum GrainShape {
     Clump,
     /// Stones of bonded spheres from a stone library, which can break.
     Bonded,
-    /// Dilated polyhedra from a stone library.
+    /// Dilated polyhedra: of a stone library, ice floes, or a frustum.
     Polyhedron,
 }
 
@@ -120,6 +124,45 @@ pub struct LatticeFill {
     pub high: Option<[Quantity<Length>; 3]>,
     /// In place of `high`: number of columns, rows and layers.
     pub counts: Option<[usize; 3]>,
+}
+
+/// A field of ice floes: prisms from the Voronoi cells of random sites in a box, each made smaller about its centroid.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Floes {
+    /// Lower corner of the box in x and y [m].
+    pub low: [Quantity<Length>; 2],
+    /// Upper corner [m].
+    pub high: [Quantity<Length>; 2],
+    /// Number of cells, 1 to 100000.
+    pub count: usize,
+    /// Area of the floes, before their corners are rounded, over that of the box; above 0 and below 1.
+    pub concentration: f64,
+    /// Thickness [m], above twice the radius.
+    pub thickness: Quantity<Length>,
+    /// Radius that edges and corners are rounded with [m].
+    pub radius: Quantity<Length>,
+    /// Height of the mid-plane [m]; default 0.
+    pub elevation: Option<Quantity<Length>>,
+    /// Circles that floes must not reach: `[[x, y, r], …]` [m].
+    #[serde(default)]
+    pub clear: Vec<[Quantity<Length>; 3]>,
+}
+
+/// A frustum with regular ends.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Frustum {
+    /// Middle of one end [m].
+    pub from: [Quantity<Length>; 3],
+    /// Middle of the other end [m].
+    pub to: [Quantity<Length>; 3],
+    /// Radius at `from` and at `to` [m], the mean of those of the inscribed and the circumscribed circle.
+    pub radii: [Quantity<Length>; 2],
+    /// Number of sides, 6 to 32; default 24.
+    pub sides: Option<usize>,
+    /// Radius that edges and corners are rounded with [m]; default a tenth of the smaller of `radii`.
+    pub radius: Option<Quantity<Length>>,
 }
 
 /// Kind of a lattice.

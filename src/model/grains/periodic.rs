@@ -26,8 +26,10 @@ pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Borders
         let slack = 1e-9 * (high - low);
         for body in groups.bodies.iter().filter(|b| !b.absent) {
             let group = &scene.grains[body.part as usize];
-            let by_hand = group.spheres.is_some() || group.packing.is_some();
-            let reach = if by_hand { 0.0 } else { groups.reach(body) };
+            // Floes lie in their box, far within the spheres about them.
+            let placed = [group.spheres.is_some(), group.packing.is_some(), group.floes.is_some()];
+            let reach =
+                if placed.contains(&true) || group.frustum.is_some() { 0.0 } else { groups.reach(body) };
             let x = body.position[d];
             if x - reach < low - slack || x + reach > high + slack {
                 let found = format!("a grain from {} = {} to {}", AXES[d], x - reach, x + reach);

@@ -44,7 +44,7 @@ pub(super) fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPa
     Ok(())
 }
 
-/// Rows of one group: `x,y,z,r` of spheres; of clumps place, quaternion, scale and number of the stone. Numbers are
+/// Rows of one group: `x,y,z,r` of spheres; of clumps and polyhedra place, quaternion, scale and number of the stone. Numbers are
 /// written in the shortest form that reads back to the same bits.
 fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
     let GrainsView { model, state } = view;

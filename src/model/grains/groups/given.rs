@@ -7,46 +7,58 @@ use crate::model::tables;
 use crate::scene::Table;
 use crate::scene::grains::{GrainShape, Grains};
 use nalgebra::UnitQuaternion;
+use std::path::Path;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// Grains whose places are given.
 pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
-    for (shape, found, expected) in [
-        (GrainShape::Bonded, "\"bonded\"", "`fill`, which bonded stones need"),
-        (GrainShape::Polyhedron, "\"polyhedron\"", "`fill` or `region`, which polyhedra need"),
-    ] {
-        if group.shape == shape {
-            return Err(group.error("shape", found, expected).into());
+    let (found, expected) = match group.shape {
+        GrainShape::Bonded => ("\"bonded\"", "`fill`, which bonded stones need"),
+        GrainShape::Clump => ("\"clump\"", "`fill`, `region` or `packing`, which clumps need"),
+        GrainShape::Polyhedron => {
+            ("\"polyhedron\"", "`fill`, `region`, `packing`, `floes` or `frustum`, which polyhedra need")
         }
+        GrainShape::Sphere => return spheres(group, model, part),
+    };
+    match &group.packing {
+        Some(file) if group.shape != GrainShape::Bonded => stones(group, file, model, part),
+        _ => Err(group.error("shape", found, expected).into()),
     }
-    if group.shape == GrainShape::Clump {
-        let Some(file) = &group.packing else {
-            let expected = "`fill`, `region` or `packing`, which clumps need";
-            return Err(group.error("shape", "\"clump\"", expected).into());
-        };
-        let first = part.shapes.len();
-        let stones = shapes(group, part)?.len();
-        let placed = tables::clump_packing(&group.locate(file), stones)?;
-        part.bodies.extend(placed.iter().map(|p| {
-            let [w, x, y, z] = p.orientation;
-            let q = nalgebra::Quaternion::new(w, x, y, z);
-            // A packing that a run has written comes back bit for bit; one by hand may be rounded.
-            let exact = (q.norm_squared() - 1.0).abs() < 1e-14;
-            BodyInput {
-                shape: first + p.stone,
-                scale: p.scale,
-                position: Vec3::from(p.position),
-                orientation: if exact {
-                    UnitQuaternion::new_unchecked(q)
-                } else {
-                    UnitQuaternion::new_normalize(q)
-                },
-                ..model.clone()
-            }
-        }));
-        return Ok(());
-    }
+}
+
+/// Stones of a library where a packing has them.
+fn stones(
+    group: &Table<Grains>,
+    file: &Path,
+    model: &BodyInput,
+    part: &mut GroupsPart,
+) -> Result<(), Failure> {
+    let first = part.shapes.len();
+    let stones = shapes(group, part)?.len();
+    let placed = tables::stone_packing(&group.locate(file), stones)?;
+    part.bodies.extend(placed.iter().map(|p| {
+        let [w, x, y, z] = p.orientation;
+        let q = nalgebra::Quaternion::new(w, x, y, z);
+        // A packing that a run has written comes back bit for bit; one by hand may be rounded.
+        let exact = (q.norm_squared() - 1.0).abs() < 1e-14;
+        BodyInput {
+            shape: first + p.stone,
+            scale: p.scale,
+            position: Vec3::from(p.position),
+            orientation: if exact {
+                UnitQuaternion::new_unchecked(q)
+            } else {
+                UnitQuaternion::new_normalize(q)
+            },
+            ..model.clone()
+        }
+    }));
+    Ok(())
+}
+
+/// Spheres by hand or from a packing.
+fn spheres(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
     let spheres = match (&group.spheres, &group.packing) {
         (Some(list), _) => {
             for s in list {

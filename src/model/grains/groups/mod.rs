@@ -1,18 +1,24 @@
-//! `[[grains]]` resolved: grains by hand or from a packing, stacked in a box, on a lattice, or in a container.
+//! `[[grains]]` resolved: grains by hand or from a packing, stacked in a box, on a lattice, or in a container;
+//! fields of floes, and frusta.
 
 mod bonded;
 mod container;
 mod filled;
+mod floes;
+mod frustum;
 mod given;
 mod lattice;
 mod part;
+mod polygon;
 mod scattered;
 mod shapes;
 mod sizes;
+mod sources;
+mod voronoi;
 mod waiting;
 
 pub use part::{GradedGroup, GroupsPart};
-pub use waiting::waits;
+pub use sources::waits;
 
 use super::bonds::BondPart;
 use super::check::find;
@@ -22,6 +28,7 @@ use crate::scene::grains::{GrainShape, Grains};
 use crate::scene::units::vector;
 use crate::scene::{Scene, SceneError, Table};
 use part::Moving;
+use sources::sources;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// `[[grains]]` resolved; notes the materials that grains consist of, and the bonds within stones.
@@ -59,13 +66,6 @@ fn add(
     part: &mut GroupsPart,
     bonds: &mut BondPart,
 ) -> Result<(), Failure> {
-    let sources = [
-        group.spheres.is_some(),
-        group.packing.is_some(),
-        group.fill.is_some(),
-        group.lattice.is_some(),
-        group.region.is_some(),
-    ];
     for (shape, found, expected) in [
         (GrainShape::Bonded, "\"bonded\"", "no inlet for bonded stones"),
         (GrainShape::Polyhedron, "\"polyhedron\"", "no inlet and no pouring for polyhedra"),
@@ -76,8 +76,9 @@ fn add(
         }
     }
     let waits = waits(group);
-    if sources.iter().filter(|s| **s).count() != 1 && !waits {
-        let expected = "exactly one of `spheres`, `packing`, `fill`, `lattice` and `region`";
+    if sources(group).into_iter().filter(|s| *s).count() != 1 && !waits {
+        let expected =
+            "exactly one of `spheres`, `packing`, `fill`, `lattice`, `region`, `floes` and `frustum`";
         return Err(group.here("another number of sources", expected).into());
     }
     let model = BodyInput {
@@ -111,7 +112,23 @@ fn add(
         }
         return scattered::scattered(group, &region, &model, part);
     }
+    if let Some(field) = group.optional("floes", &group.floes) {
+        polyhedra_only(group)?;
+        return Ok(floes::floes(group, &field, &model, part)?);
+    }
+    if let Some(frustum) = group.optional("frustum", &group.frustum) {
+        polyhedra_only(group)?;
+        return Ok(frustum::frustum(&frustum, &model, part)?);
+    }
     given::given(group, &model, part)
+}
+
+/// Whether a group is of the one shape that floes and frusta have.
+fn polyhedra_only(group: &Table<Grains>) -> Result<(), SceneError> {
+    if group.shape == GrainShape::Polyhedron {
+        return Ok(());
+    }
+    Err(group.error("shape", "another shape", "\"polyhedron\", which floes and frusta are"))
 }
 
 /// Grips and groups that are recorded.
@@ -131,13 +148,13 @@ fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneE
 /// Refuses keys that the source of the grains has no use for.
 fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
     let random = group.fill.is_some() || group.region.is_some() || waits(group);
-    let shapes = random || (group.packing.is_some() && group.shape == GrainShape::Clump);
+    let shapes = random || (group.packing.is_some() && group.shape != GrainShape::Sphere);
     for (k, present, used, needs) in [
         ("count", group.count.is_some(), random, "`fill` or `region`"),
         ("gradation", group.gradation.is_some(), random, "`fill` or `region`"),
         ("size", group.size.is_some(), random, "`fill` or `region`"),
         ("sizes", group.sizes.is_some(), random, "`fill` or `region`"),
-        ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of clumps"),
+        ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of stones"),
         ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
         ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),
         ("bond", group.bond.is_some(), group.shape == GrainShape::Bonded, "`shape = \"bonded\"`"),

@@ -27,6 +27,8 @@ pub struct GroupsPart {
     pub fouling: Vec<u32>,
     /// Groups whose mean place and force are recorded.
     pub recorded: Vec<u32>,
+    /// What the summary should say about them.
+    pub remarks: Vec<String>,
 }
 
 impl GroupsPart {

@@ -28,9 +28,3 @@ pub(super) fn waiting(
     }));
     Ok(())
 }
-
-/// Whether all grains of a group wait for their inlet.
-pub fn waits(group: &Grains) -> bool {
-    let sources = [group.spheres.is_some(), group.packing.is_some(), group.fill.is_some()];
-    group.inlet.is_some() && !sources.contains(&true) && group.lattice.is_none() && group.region.is_none()
-}

@@ -1,0 +1,176 @@
+//! Fields of ice floes: prisms from the Voronoi cells of random sites (Liu, Long, Ji, Chin. J. Theor. Appl. Mech. 47(6),
+//! 2015, 1046–1057).
+
+use super::part::GroupsPart;
+use super::polygon::{Point, area, distance_from, inset, scaled, simplified};
+use super::voronoi::cells;
+use crate::scene::grains::{Floes, Grains};
+use crate::scene::{SceneError, Table};
+use trackbed_dem::random::Random;
+use trackbed_dem::shape::Shape;
+use trackbed_dem::shape::dilated::Dilated;
+use trackbed_dem::{BodyInput, Vec3};
+
+/// Purpose of the stream that sites are drawn from.
+const SITES: u64 = 9;
+/// Most floes of a field.
+const MOST: f64 = 1e5;
+/// Share of the radius that a circle in the core of a floe must have at least.
+const LEAST: f64 = 0.2;
+
+/// Adds the floes of a field.
+pub(super) fn floes(
+    group: &Table<Grains>,
+    field: &Table<Floes>,
+    model: &BodyInput,
+    part: &mut GroupsPart,
+) -> Result<(), SceneError> {
+    check(field)?;
+    let ends = [&field.low, &field.high].map(|corner| corner.map(|x| x.si));
+    let (radius, half) = (field.radius.si, 0.5 * field.thickness.si);
+    let cells = cells(&sites(ends, field.count, group.seed), ends);
+    let outlines: Vec<_> = cells.iter().map(|cell| outline(cell, field.concentration)).collect();
+    let cores: Vec<_> = outlines.iter().filter_map(|outline| core(outline, radius)).collect();
+    let lost = outlines.len() - cores.len();
+    if cores.is_empty() {
+        let expected = "a radius that leaves something of the floes when their sides are moved in by it";
+        return Err(field.error("radius", radius.to_string(), expected));
+    }
+    let clear = |core: &&Vec<Point>| {
+        let away = |&[x, y, r]: &[f64; 3]| distance_from([x, y], core) > r + radius;
+        field.clear.iter().map(|c| c.map(|q| q.si)).all(|c| away(&c))
+    };
+    let kept: Vec<_> = cores.iter().filter(clear).collect();
+    if kept.is_empty() {
+        return Err(field.error("clear", "circles that meet all floes", "room for a floe at least"));
+    }
+    let z = field.elevation.map_or(0.0, |z| z.si);
+    for core in kept {
+        let level = |z: f64| core.iter().map(move |[x, y]| Vec3::new(*x, *y, z));
+        let corners: Vec<Vec3> = level(z - half + radius).chain(level(z + half - radius)).collect();
+        let (shape, position, orientation) = Dilated::new(&corners, radius)
+            .map_err(|e| field.here(e.to_string(), "floes that are dilated polyhedra"))?;
+        let shape = part.add_shape(Shape::Polyhedron(Box::new(shape)));
+        part.bodies.push(BodyInput { shape, scale: 1.0, position, orientation, ..model.clone() });
+    }
+    if lost > 0 {
+        part.remarks.push(format!(
+            "grains \"{}\": {lost} of {} floes are left out, for they are too small to be rounded with {radius} m",
+            group.name, field.count
+        ));
+    }
+    Ok(())
+}
+
+fn check(field: &Table<Floes>) -> Result<(), SceneError> {
+    for d in 0..2 {
+        let low = field.check("low", field.low[d], |_| true, "a length")?.si;
+        field.check("high", field.high[d], |x| x > low, "above `low`")?;
+    }
+    field.check("count", field.count, |n| (1.0..=MOST).contains(&n), "1 to 100000")?;
+    field.check("concentration", field.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
+    let radius = field.check("radius", field.radius, |r| r > 0.0, "above 0")?.si;
+    field.check("thickness", field.thickness, |t| t > 2.0 * radius, "above twice the radius")?;
+    field.check("elevation", field.elevation, |_| true, "a length")?;
+    for [x, y, r] in &field.clear {
+        field.check("clear", *x, |_| true, "a place")?;
+        field.check("clear", *y, |_| true, "a place")?;
+        field.check("clear", *r, |r| r >= 0.0, "a radius of 0 or more")?;
+    }
+    Ok(())
+}
+
+/// Uniformly random places in the box.
+fn sites([low, high]: [Point; 2], count: usize, seed: u64) -> Vec<Point> {
+    let mut random = Random::new(seed, SITES);
+    let mut at = |d: usize| low[d] + random.uniform() * (high[d] - low[d]);
+    (0..count).map(|_| [at(0), at(1)]).collect()
+}
+
+/// The straight sides of a floe, without the rounding of its corners: its cell, made smaller about its centroid.
+fn outline(cell: &[Point], concentration: f64) -> Vec<Point> {
+    scaled(cell, concentration.sqrt(), area(cell).1)
+}
+
+/// The core of a floe; none of one that is too small for the radius.
+fn core(outline: &[Point], radius: f64) -> Option<Vec<Point>> {
+    let none_left = inset(outline, (1.0 + LEAST) * radius).is_empty();
+    let core = simplified(&inset(outline, radius));
+    (!none_left && core.len() >= 3).then_some(core)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOX: [Point; 2] = [[0.0, 0.0], [50.0, 50.0]];
+
+    fn outlines(count: usize, seed: u64) -> Vec<Vec<Point>> {
+        cells(&sites(BOX, count, seed), BOX).iter().map(|c| outline(c, 0.64)).collect()
+    }
+
+    /// Mean floe, size and concentration of the fields of Liu, Long, Ji (2015): 8.0 and 3.2 m², 2.83 and 1.79 m.
+    #[test]
+    fn fields_have_their_mean_floe() {
+        for (count, mean, size) in [(200, 8.0, 2.828_427_1), (500, 3.2, 1.788_854_4)] {
+            for seed in 1..=3 {
+                let all: f64 = outlines(count, seed).iter().map(|o| area(o).0).sum();
+                assert!((all / 2500.0 - 0.64).abs() < 1e-12, "{all}");
+                let found = all / count as f64;
+                assert!(
+                    (found / mean - 1.0).abs() < 1e-9 && (found.sqrt() / size - 1.0).abs() < 1e-6,
+                    "{found}"
+                );
+            }
+        }
+    }
+
+    /// The spread of the areas over their mean is that of Poisson–Voronoi cells, 0.5294 (Gilbert 1962), within three
+    /// standard errors of one field of 200 (0.038); cells that the box has cut spread a little more (0.54).
+    #[test]
+    fn areas_vary_like_poisson_voronoi_cells() {
+        for seed in 1..=8 {
+            let areas: Vec<f64> = outlines(200, seed).iter().map(|o| area(o).0).collect();
+            let mean = areas.iter().sum::<f64>() / 200.0;
+            let variance = areas.iter().map(|a| (a - mean).powi(2)).sum::<f64>() / 199.0;
+            let spread = variance.sqrt() / mean;
+            assert!((spread - 0.5294).abs() < 3.0 * 0.038, "seed {seed}: {spread}");
+        }
+    }
+
+    /// Every core is a body; rolled over by a disk it lies within its outline and fills nearly all of it.
+    #[test]
+    fn rounded_floes_fill_their_outlines() {
+        let radius = 0.04;
+        let (mut outer, mut rounded, mut lost) = (0.0, 0.0, 0);
+        for outline in outlines(500, 4) {
+            let Some(core) = core(&outline, radius) else {
+                lost += 1;
+                continue;
+            };
+            let level = |z: f64| core.iter().map(move |[x, y]| Vec3::new(*x, *y, z));
+            let corners: Vec<Vec3> = level(-0.21).chain(level(0.21)).collect();
+            let shape = Dilated::new(&corners, radius).unwrap().0;
+            assert_eq!(shape.core.faces.len(), core.len() + 2);
+            // Steiner's formula in the plane.
+            let around: f64 =
+                super::super::polygon::sides(&core).map(|[p, q]| libm::hypot(q[0] - p[0], q[1] - p[1])).sum();
+            let own = area(&core).0 + radius * around + std::f64::consts::PI * radius * radius;
+            let full = area(&outline).0;
+            assert!(own < full && own > full - 0.05 * full.max(0.1), "{own} {full}");
+            outer += full;
+            rounded += own;
+        }
+        assert_eq!(lost, 0);
+        assert!(rounded / outer > 0.998, "{}", rounded / outer);
+        println!("rounded over straight: {}", rounded / outer);
+    }
+
+    #[test]
+    fn floes_too_small_for_the_radius_go() {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        // Half of its width is left of 0.5 / 1.2 at least.
+        assert!(core(&square, 0.41).is_some());
+        assert!(core(&square, 0.42).is_none());
+    }
+}

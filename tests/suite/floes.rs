@@ -1,0 +1,179 @@
+//! Ice floes, frusta that are held, and packings of polyhedra, through the program.
+
+use super::support::{Folder, Outcome, Table, json, run, trackbed};
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+const ICE: &str = r#"gravity = [0, 0, 0]
+
+[[material]]
+name = "ice"
+density = 915
+stiffness = "2 MN/m"
+friction = 0.1
+restitution = 0.3
+
+[[grains]]
+name = "ice"
+shape = "polyhedron"
+material = "ice"
+seed = 3
+velocity = [0.5, 0, 0]
+floes = { low = [-5, -5], high = [5, 5], count = 20, concentration = 0.64, thickness = 0.5, radius = 0.04, elevation = 1, clear = [[0, 0, 0.8]] }
+
+[[grains]]
+name = "pile"
+shape = "polyhedron"
+material = "ice"
+frustum = { from = [0, 0, 0], to = [0, 0, 2], radii = [0.8, 0.8] }
+motion = [0, 0, 0]
+
+[time]
+end = "1.5 s"
+
+[output]
+frames = 1
+packing = true
+"#;
+
+/// Rows of numbers of a CSV file below its heading.
+fn rows(file: &Path) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(file).unwrap();
+    text.lines().skip(1).map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect()
+}
+
+/// Floes drift against a pile that is held: they push it along their way, and it stays where it is. The frames show them.
+#[test]
+fn floes_drift_against_a_pile() {
+    let folder = Folder::new("floes");
+    let scene = folder.write("scene.toml", ICE);
+    let out = folder.join("out");
+    run(&scene, &out, &[]).good();
+    let bodies = json(&out.join("summary.json"))["model"]["bodies"].as_u64().unwrap();
+    assert!((12..=20).contains(&bodies), "{bodies}");
+    let history = Table::read(&out.join("history.csv"));
+    for name in ["pile_x", "pile_y"] {
+        assert!(history.column(name).iter().all(|x| x.abs() < 1e-12), "{name}");
+    }
+    assert!(history.column("pile_z").iter().all(|z| (z - 1.0).abs() < 1e-9));
+    let force = history.column("pile_force_x");
+    assert!(force[0] == 0.0 && force.iter().all(|f| *f >= -1.0), "{force:?}");
+    assert!(force.iter().any(|f| *f > 100.0), "{force:?}");
+    // Floes stay in their plane.
+    let floes = rows(&out.join("packing_0.csv"));
+    assert_eq!(floes.len() as u64, bodies - 1);
+    assert!(floes.iter().all(|f| (f[2] - 1.0).abs() < 1e-3), "{floes:?}");
+    let picture = folder.join("ice.png").display().to_string();
+    trackbed(["render", &out.display().to_string(), "--out", &picture, "--size", "400x300"]).good();
+    assert!(fs::metadata(&picture).unwrap().len() > 5000);
+}
+
+/// Without `clear` floes lie where the pile is, and with circles over all of it none is left.
+#[test]
+fn circles_are_kept_clear() {
+    let folder = Folder::new("clear");
+    let clear = ", clear = [[0, 0, 0.8]]";
+    let bodies = |with: &str| -> u64 {
+        let text = ICE.replace(clear, with).replace("1.5 s", "1 ms");
+        let text = text.split_once("[[grains]]\nname = \"pile\"").map(|(ice, _)| ice.to_string()).unwrap()
+            + "[time]\nend = \"1 ms\"\n";
+        run(&folder.write("scene.toml", &text), &folder.join("out"), &[]).good();
+        json(&folder.join("out/summary.json"))["model"]["bodies"].as_u64().unwrap()
+    };
+    assert_eq!(bodies(""), 20);
+    assert!(bodies(clear) < 20);
+    refused(
+        &ICE.replace(clear, ", clear = [[0, 0, 9]]"),
+        "grains.0.floes.clear: found circles that meet all floes, expected room for a floe at least",
+    );
+}
+
+fn refused(text: &str, expected: &str) {
+    let folder = Folder::new("refused");
+    let scene = folder.write("scene.toml", text).display().to_string();
+    let Outcome { code, stderr, .. } = trackbed(["check", &scene]);
+    assert!(code == 2 && stderr.contains(expected), "{code}: {stderr}\nexpected: {expected}");
+}
+
+#[test]
+fn bad_floes_and_frusta_are_refused() {
+    for (old, new, expected) in [
+        ("high = [5, 5]", "high = [5, -5]", "floes.high: found -5, expected above `low`"),
+        ("count = 20", "count = 0", "floes.count: found 0, expected 1 to 100000"),
+        ("0.64", "1", "floes.concentration: found 1, expected above 0, below 1"),
+        ("thickness = 0.5", "thickness = 0.08", "floes.thickness: found 0.08, expected above twice the radius"),
+        ("radius = 0.04", "radius = 0", "floes.radius: found 0, expected above 0"),
+        ("0, 0, 0.8]]", "0, 0, -1]]", "floes.clear: found -1, expected a radius of 0 or more"),
+        ("thickness = 0.5, radius = 0.04", "thickness = 50, radius = 9", "floes.radius: found 9, expected a radius that"),
+        ("to = [0, 0, 2]", "to = [0, 0, 0]", "frustum.to: found 0, expected another point than `from`"),
+        ("radii = [0.8, 0.8]", "radii = [0.8, 0]", "frustum.radii: found 0, expected above 0"),
+        ("radii = [0.8, 0.8]", "radii = [0.8, 0.8], sides = 5", "frustum.sides: found 5, expected 6 to 32"),
+        ("radii = [0.8, 0.8]", "radii = [0.8, 0.8], radius = 1", "frustum.radius: found 1, expected a radius that"),
+        ("seed = 3", "seed = 3\ncount = 4", "grains.0.count: found a value, expected no such key without"),
+        ("material = \"ice\"\nseed", "material = \"ice\"\nlattice = { kind = \"loose\", size = 1, low = [0, 0, 0], counts = [1, 1, 1] }\nseed", "found another number of sources"),
+        ("shape = \"polyhedron\"\nmaterial = \"ice\"\nseed", "shape = \"sphere\"\nmaterial = \"ice\"\nseed", "grains.0.shape: found another shape"),
+    ] {
+        assert_eq!(ICE.matches(old).count(), 1, "{old}");
+        refused(&ICE.replace(old, new), expected);
+    }
+}
+
+/// Floes that are too small for their rounding are left out, and the summary says how many.
+#[test]
+fn small_floes_are_remarked() {
+    let folder = Folder::new("small_floes");
+    let text = ICE.replace("radius = 0.04", "radius = 0.24").replace("count = 20", "count = 100").replace("1.5 s", "1 ms");
+    run(&folder.write("scene.toml", &text), &folder.join("out"), &[]).good();
+    let summary = json(&folder.join("out/summary.json"));
+    let warnings = summary["warnings"].to_string();
+    assert!(warnings.contains("of 100 floes are left out"), "{warnings}");
+}
+
+/// Blocks that a packing of a library places on a cone that is held: the force on it is their weight, and the packing
+/// that the run leaves is read back.
+#[test]
+fn a_held_frustum_carries_a_heap() {
+    let folder = Folder::new("heap");
+    // 0.14 x 0.12 x 0.10 m with edges rounded by 10 mm; the longest side lies along x of its frame.
+    let (half, r) = ([0.06, 0.05, 0.04], 0.01);
+    let sign = |k: usize, d: usize| if k >> d & 1 == 1 { 1.0 } else { -1.0 };
+    let corners: Vec<[f64; 3]> = (0..8).map(|k| [0, 1, 2].map(|d| sign(k, d) * half[d])).collect();
+    let library = format!("name = \"block\"\nsource = \"test\"\n[[stones]]\nname = \"block\"\nradius = {r}\ncorners = {corners:?}\n");
+    folder.write("library.toml", &library);
+    folder.write("heap.csv", "-0.075,0,0.05,1,0,0,0,1,0\n0.075,0,0.05,1,0,0,0,1,0\n0,0,0.15,1,0,0,0,1,0\n");
+    let text = "[[material]]\nname = \"stone\"\ndensity = 2650\nstiffness = \"1 MN/m\"\nfriction = 0.5\nrestitution = 0.2\n\n\
+         [[grains]]\nname = \"heap\"\nshape = \"polyhedron\"\nmaterial = \"stone\"\nlibrary = \"library.toml\"\npacking = \"heap.csv\"\n\n\
+         [[grains]]\nname = \"cone\"\nshape = \"polyhedron\"\nmaterial = \"stone\"\nmotion = [0, 0, 0]\n\
+         frustum = { from = [0, 0, -0.3], to = [0, 0, 0], radii = [0.5, 0.3], sides = 16, radius = \"10 mm\" }\n\n\
+         [deposition]\nmax_time = \"2 s\"\nsettled_speed = \"0.1 mm/s\"\nlocal_damping = 0.3\n\n\
+         [time]\nend = \"20 ms\"\n\n[output]\nframes = 1\npacking = true\n";
+    let scene = folder.write("scene.toml", text);
+    run(&scene, &folder.join("out"), &[]).good();
+    let [a, b, c] = half.map(|h| 2.0 * h);
+    let volume = a * b * c
+        + 2.0 * r * (a * b + b * c + c * a)
+        + PI * r * r * (a + b + c)
+        + 4.0 / 3.0 * PI * r.powi(3);
+    let weight = 3.0 * 2650.0 * volume * 9.81;
+    let force = Table::read(&folder.join("out/history.csv")).column("cone_force_z");
+    let mean = force.iter().sum::<f64>() / force.len() as f64;
+    assert!((-mean / weight - 1.0).abs() < 0.01, "{mean} {weight}");
+    let heap = rows(&folder.join("out/packing_0.csv"));
+    assert!(heap.len() == 3 && heap.iter().all(|s| s[7] == 1.0 && s[8] == 0.0), "{heap:?}");
+    assert!((heap[2][2] - 0.15).abs() < 1e-3 && heap[2][0].abs() < 1e-3, "{heap:?}");
+
+    fs::copy(folder.join("out/packing_0.csv"), folder.join("heap.csv")).unwrap();
+    run(&scene, &folder.join("again"), &["deposition.max_time=1e-5", "time.end=1e-5"]).good();
+    let again = rows(&folder.join("again/packing_0.csv"));
+    for (a, b) in heap.iter().flatten().zip(again.iter().flatten()) {
+        assert!((a - b).abs() < 1e-7, "{a} {b}");
+    }
+    refused_packing(&folder, "0,0,0,1,0,0,0,1,1\n", "expected the number of a stone of the library, 0 to 0");
+}
+
+fn refused_packing(folder: &Folder, row: &str, expected: &str) {
+    folder.write("heap.csv", row);
+    let Outcome { code, stderr, .. } = trackbed(["check", &folder.join("scene.toml").display().to_string()]);
+    assert!(code == 2 && stderr.contains(expected), "{code}: {stderr}");
+}
