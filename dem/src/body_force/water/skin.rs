@@ -2,31 +2,52 @@
 //!
 //! Faces of a dilated polyhedron are as they are; an edge is divided into strips of at most 30°, whose corners are moved out so
 //! that the volume of the edge is right, and each corner into a fan whose middle is moved out until its volume is right. What is
-//! under water of it is cut exactly.
+//! under water of it is cut exactly; faces, edges and corners that are wholly above or below are not looked into.
 
 use crate::base::Vec3;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Largest angle of a strip of an edge [rad].
 const STRIP: f64 = 0.525;
 
-/// A triangle, and what the tetrahedron between it and the origin holds.
+/// A triangle.
 #[derive(Clone, Copy, Debug)]
 struct Facet {
     corners: [u16; 3],
     /// Outward normal, as long as the area [m²].
     area: Vec3,
-    /// Volume [m³].
+    /// Volume of the tetrahedron between it and the origin [m³].
     volume: f64,
+}
+
+/// The triangles of a face, an edge or a corner.
+#[derive(Clone, Debug)]
+struct Group {
+    /// Corners of the core that it belongs to: a range of `owners`.
+    owners: Range<u32>,
+    facets: Range<u32>,
+    /// What its triangles add up to: tetrahedra and areas.
+    volume: f64,
+    moment: Vec3,
+    area: f64,
+    /// The sum of the normals where all lie in one plane.
+    flat: Option<Vec3>,
 }
 
 /// The surface of a shape, in its own frame; empty of shapes made of spheres.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Skin {
+    /// Corners of the core, and of triangles.
+    core: Vec<Vec3>,
     points: Vec<Vec3>,
     facets: Vec<Facet>,
+    groups: Vec<Group>,
+    owners: Vec<u8>,
+    /// Largest distance of a point from its corner of the core [m].
+    margin: f64,
     /// First moment of the whole, which a finer surface would not have [m⁴], and its volume [m³].
     whole: (f64, Vec3),
     /// Mean distance of the corners from the centre [m].
@@ -58,7 +79,7 @@ impl Skin {
 
     /// The surface of a core dilated by a radius [m].
     pub fn new(core: &Core, radius: f64) -> Skin {
-        let mut skin = Skin::default();
+        let mut skin = Skin { core: core.corners.clone(), margin: radius, ..Skin::default() };
         // Corners of the faces, moved out.
         let mut places = HashMap::new();
         for (f, face) in core.faces.iter().enumerate() {
@@ -70,17 +91,13 @@ impl Skin {
             for k in 1..ring.len() - 1 {
                 skin.facet([ring[0], ring[k], ring[k + 1]]);
             }
+            skin.group(&face.corners, true);
         }
         if radius > 0.0 {
             skin.rounded(core, radius, &places);
         }
-        let (mut volume, mut moment) = (0.0, Vec3::zeros());
-        for f in &skin.facets {
-            let [a, b, c] = f.corners.map(|k| skin.points[k as usize]);
-            volume += f.volume;
-            moment += (a + b + c) * (0.25 * f.volume);
-        }
-        skin.whole = (volume, moment);
+        let volume = skin.groups.iter().map(|g| g.volume).sum();
+        skin.whole = (volume, skin.groups.iter().map(|g| g.moment).sum());
         let far: f64 = core.corners.iter().map(|c| c.norm()).sum();
         skin.reach = far / core.corners.len().max(1) as f64 + radius;
         skin
@@ -106,6 +123,7 @@ impl Skin {
                 self.facet([a.0, b.0, b.1]);
                 self.facet([a.0, b.1, a.1]);
             }
+            self.group(&edge.ends, false);
             for (end, &c) in ends.iter().zip(&edge.ends) {
                 // Pairs of neighbours: a fan needs no order of the arcs around it.
                 for k in 0..last {
@@ -114,7 +132,7 @@ impl Skin {
                 }
             }
         }
-        for (corner, arcs) in core.corners.iter().zip(&arcs) {
+        for (c, (corner, arcs)) in core.corners.iter().zip(&arcs).enumerate() {
             let sum: Vec3 = arcs.iter().map(|(d, _)| d).sum();
             let middle = sum.normalize();
             let (mut solid, mut flat) = (0.0, 0.0);
@@ -127,10 +145,14 @@ impl Skin {
                 solid += 2.0 * libm::atan2(middle.dot(&u.cross(&v)).abs(), above);
                 flat += spread;
             }
-            let apex = self.point(corner + middle * (radius * 2.0 * solid / flat));
+            let far = radius * 2.0 * solid / flat;
+            let longest = arcs.iter().map(|(d, _)| d.norm()).fold(0.0, f64::max);
+            self.margin = self.margin.max(far).max(radius * longest);
+            let apex = self.point(corner + middle * far);
             for pair in arcs.chunks_exact(2) {
                 self.facet([apex, pair[0].1, pair[1].1]);
             }
+            self.group(&[c as u8], false);
         }
     }
 
@@ -149,19 +171,58 @@ impl Skin {
         self.facets.push(Facet { corners, area, volume: volume.abs() });
     }
 
+    /// Makes the triangles that are in no group yet one, of a face, an edge or a corner with these corners of the core.
+    fn group(&mut self, corners: &[u8], flat: bool) {
+        let from = self.groups.last().map_or(0, |g| g.facets.end);
+        let first = self.owners.len() as u32;
+        self.owners.extend(corners);
+        let own = &self.facets[from as usize..];
+        let moment =
+            |f: &Facet| f.corners.iter().map(|&k| self.points[k as usize]).sum::<Vec3>() * (0.25 * f.volume);
+        let group = Group {
+            owners: first..self.owners.len() as u32,
+            facets: from..self.facets.len() as u32,
+            volume: own.iter().map(|f| f.volume).sum(),
+            moment: own.iter().map(moment).sum(),
+            area: own.iter().map(|f| f.area.norm()).sum(),
+            flat: flat.then(|| own.iter().map(|f| f.area).sum()),
+        };
+        self.groups.push(group);
+    }
+
     /// What lies below the plane that is normal to the unit vector `up` at `level` [m] along it, all in the frame of the shape; its
     /// areas as seen along the unit vector `along`. `heights` is scratch.
     pub fn below(&self, up: &Vec3, level: f64, along: &Vec3, heights: &mut Vec<f64>) -> Wet {
         heights.clear();
-        heights.extend(self.points.iter().map(|p| up.dot(p) - level));
-        let mut sum = Part::default();
-        for f in &self.facets {
-            let h = f.corners.map(|k| heights[k as usize]);
-            let corners = || f.corners.map(|k| self.points[k as usize]);
-            match h.iter().filter(|h| **h <= 0.0).count() {
-                0 => {}
-                3 => sum.add(&corners(), f.volume, &f.area, along),
-                _ => sum.cut(corners(), h, &(up * level), along),
+        heights.extend(self.core.iter().map(|p| up.dot(p) - level));
+        let (mut sum, foot) = (Part::default(), up * level);
+        for g in &self.groups {
+            let owners = &self.owners[g.owners.start as usize..g.owners.end as usize];
+            let ends = |[low, high]: [f64; 2], h: f64| [low.min(h), high.max(h)];
+            let all = owners.iter().map(|&c| heights[c as usize]);
+            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+            if low > self.margin {
+                continue;
+            }
+            let facets = &self.facets[g.facets.start as usize..g.facets.end as usize];
+            if high <= -self.margin {
+                sum.volume += g.volume;
+                sum.moment += g.moment;
+                sum.area += g.area;
+                sum.seen += match &g.flat {
+                    Some(area) => area.dot(along).abs(),
+                    None => facets.iter().map(|f| f.area.dot(along).abs()).sum(),
+                };
+                continue;
+            }
+            for f in facets {
+                let corners = f.corners.map(|k| self.points[k as usize]);
+                let h = corners.map(|p| up.dot(&p) - level);
+                match h.iter().filter(|h| **h <= 0.0).count() {
+                    0 => {}
+                    3 => sum.add(&corners, f.volume, &f.area, along),
+                    _ => sum.cut(&corners, &h, &foot, along),
+                }
             }
         }
         let (volume, moment) = self.whole;
@@ -196,14 +257,13 @@ impl Part {
 
     /// Adds what of a triangle, whose corners have heights `h` above a plane, is below it, and its share of the lid: a fan about
     /// `foot`, a point of the plane.
-    fn cut(&mut self, mut p: [Vec3; 3], mut h: [f64; 3], foot: &Vec3, along: &Vec3) {
-        // The corner that is alone on its side first.
-        let alone = h.iter().filter(|h| **h <= 0.0).count() == 1;
-        while (h[0] <= 0.0) != alone {
-            p.rotate_left(1);
-            h.rotate_left(1);
-        }
-        // With one corner below, `while` stops at it; with one above, at that.
+    fn cut(&mut self, p: &[Vec3; 3], h: &[f64; 3], foot: &Vec3, along: &Vec3) {
+        // The corner that is alone on its side comes first.
+        let wet = h.map(|h| h <= 0.0);
+        let first = (0..3).find(|&k| wet[k] != wet[(k + 1) % 3] && wet[k] != wet[(k + 2) % 3]).unwrap_or(0);
+        let alone = wet[first];
+        let turned = [first, (first + 1) % 3, (first + 2) % 3];
+        let (p, h) = (turned.map(|k| p[k]), turned.map(|k| h[k]));
         let at = |k: usize| p[0] + (p[k] - p[0]) * (h[0] / (h[0] - h[k]));
         let (first, last) = (at(1), at(2));
         let mut triangle = |corners: [Vec3; 3]| {
