@@ -102,17 +102,37 @@ fn bad_floes_and_frusta_are_refused() {
         ("high = [5, 5]", "high = [5, -5]", "floes.high: found -5, expected above `low`"),
         ("count = 20", "count = 0", "floes.count: found 0, expected 1 to 100000"),
         ("0.64", "1", "floes.concentration: found 1, expected above 0, below 1"),
-        ("thickness = 0.5", "thickness = 0.08", "floes.thickness: found 0.08, expected above twice the radius"),
+        (
+            "thickness = 0.5",
+            "thickness = 0.08",
+            "floes.thickness: found 0.08, expected above twice the radius",
+        ),
         ("radius = 0.04", "radius = 0", "floes.radius: found 0, expected above 0"),
         ("0, 0, 0.8]]", "0, 0, -1]]", "floes.clear: found -1, expected a radius of 0 or more"),
-        ("thickness = 0.5, radius = 0.04", "thickness = 50, radius = 9", "floes.radius: found 9, expected a radius that"),
+        (
+            "thickness = 0.5, radius = 0.04",
+            "thickness = 50, radius = 9",
+            "floes.radius: found 9, expected a radius that",
+        ),
         ("to = [0, 0, 2]", "to = [0, 0, 0]", "frustum.to: found 0, expected another point than `from`"),
         ("radii = [0.8, 0.8]", "radii = [0.8, 0]", "frustum.radii: found 0, expected above 0"),
         ("radii = [0.8, 0.8]", "radii = [0.8, 0.8], sides = 5", "frustum.sides: found 5, expected 6 to 32"),
-        ("radii = [0.8, 0.8]", "radii = [0.8, 0.8], radius = 1", "frustum.radius: found 1, expected a radius that"),
+        (
+            "radii = [0.8, 0.8]",
+            "radii = [0.8, 0.8], radius = 1",
+            "frustum.radius: found 1, expected a radius that",
+        ),
         ("seed = 3", "seed = 3\ncount = 4", "grains.0.count: found a value, expected no such key without"),
-        ("material = \"ice\"\nseed", "material = \"ice\"\nlattice = { kind = \"loose\", size = 1, low = [0, 0, 0], counts = [1, 1, 1] }\nseed", "found another number of sources"),
-        ("shape = \"polyhedron\"\nmaterial = \"ice\"\nseed", "shape = \"sphere\"\nmaterial = \"ice\"\nseed", "grains.0.shape: found another shape"),
+        (
+            "material = \"ice\"\nseed",
+            "material = \"ice\"\nlattice = { kind = \"loose\", size = 1, low = [0, 0, 0], counts = [1, 1, 1] }\nseed",
+            "found another number of sources",
+        ),
+        (
+            "shape = \"polyhedron\"\nmaterial = \"ice\"\nseed",
+            "shape = \"sphere\"\nmaterial = \"ice\"\nseed",
+            "grains.0.shape: found another shape",
+        ),
     ] {
         assert_eq!(ICE.matches(old).count(), 1, "{old}");
         refused(&ICE.replace(old, new), expected);
@@ -123,7 +143,10 @@ fn bad_floes_and_frusta_are_refused() {
 #[test]
 fn small_floes_are_remarked() {
     let folder = Folder::new("small_floes");
-    let text = ICE.replace("radius = 0.04", "radius = 0.24").replace("count = 20", "count = 100").replace("1.5 s", "1 ms");
+    let text = ICE
+        .replace("radius = 0.04", "radius = 0.24")
+        .replace("count = 20", "count = 100")
+        .replace("1.5 s", "1 ms");
     run(&folder.write("scene.toml", &text), &folder.join("out"), &[]).good();
     let summary = json(&folder.join("out/summary.json"));
     let warnings = summary["warnings"].to_string();
@@ -139,7 +162,9 @@ fn a_held_frustum_carries_a_heap() {
     let (half, r) = ([0.06, 0.05, 0.04], 0.01);
     let sign = |k: usize, d: usize| if k >> d & 1 == 1 { 1.0 } else { -1.0 };
     let corners: Vec<[f64; 3]> = (0..8).map(|k| [0, 1, 2].map(|d| sign(k, d) * half[d])).collect();
-    let library = format!("name = \"block\"\nsource = \"test\"\n[[stones]]\nname = \"block\"\nradius = {r}\ncorners = {corners:?}\n");
+    let library = format!(
+        "name = \"block\"\nsource = \"test\"\n[[stones]]\nname = \"block\"\nradius = {r}\ncorners = {corners:?}\n"
+    );
     folder.write("library.toml", &library);
     folder.write("heap.csv", "-0.075,0,0.05,1,0,0,0,1,0\n0.075,0,0.05,1,0,0,0,1,0\n0,0,0.15,1,0,0,0,1,0\n");
     let text = "[[material]]\nname = \"stone\"\ndensity = 2650\nstiffness = \"1 MN/m\"\nfriction = 0.5\nrestitution = 0.2\n\n\
@@ -151,10 +176,8 @@ fn a_held_frustum_carries_a_heap() {
     let scene = folder.write("scene.toml", text);
     run(&scene, &folder.join("out"), &[]).good();
     let [a, b, c] = half.map(|h| 2.0 * h);
-    let volume = a * b * c
-        + 2.0 * r * (a * b + b * c + c * a)
-        + PI * r * r * (a + b + c)
-        + 4.0 / 3.0 * PI * r.powi(3);
+    let volume =
+        a * b * c + 2.0 * r * (a * b + b * c + c * a) + PI * r * r * (a + b + c) + 4.0 / 3.0 * PI * r.powi(3);
     let weight = 3.0 * 2650.0 * volume * 9.81;
     let force = Table::read(&folder.join("out/history.csv")).column("cone_force_z");
     let mean = force.iter().sum::<f64>() / force.len() as f64;
