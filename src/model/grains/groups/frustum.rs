@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_radius_must_leave_a_core() {
         assert!(ends(1.0, [1.0, 1.0], 0.5, 24).is_none());
-        assert!(ends(3.0, [1.0, 0.1], 0.11, 24).is_none());
+        assert!(ends(3.0, [1.0, 0.1], 0.15, 24).is_none());
         assert!(ends(3.0, [1.0, 0.1], 0.05, 24).is_some());
     }
 }
