@@ -26,8 +26,9 @@ struct Facet {
 /// The triangles of a face, an edge or a corner.
 #[derive(Clone, Debug)]
 struct Group {
-    /// Corners of the core that it belongs to: a range of `owners`.
+    /// Corners of the core that it belongs to, and how far its points are from them: ranges of `owners` and `offsets`.
     owners: Range<u32>,
+    offsets: Range<u32>,
     facets: Range<u32>,
     /// What its triangles add up to: tetrahedra and areas.
     volume: f64,
@@ -46,6 +47,7 @@ pub(crate) struct Skin {
     facets: Vec<Facet>,
     groups: Vec<Group>,
     owners: Vec<u8>,
+    offsets: Vec<Vec3>,
     /// Largest distance of a point from its corner of the core [m].
     margin: f64,
     /// First moment of the whole, which a finer surface would not have [m⁴], and its volume [m³].
@@ -91,7 +93,7 @@ impl Skin {
             for k in 1..ring.len() - 1 {
                 skin.facet([ring[0], ring[k], ring[k + 1]]);
             }
-            skin.group(&face.corners, true);
+            skin.group(&face.corners, [face.normal * radius], true);
         }
         if radius > 0.0 {
             skin.rounded(core, radius, &places);
@@ -123,7 +125,7 @@ impl Skin {
                 self.facet([a.0, b.0, b.1]);
                 self.facet([a.0, b.1, a.1]);
             }
-            self.group(&edge.ends, false);
+            self.group(&edge.ends, directions.iter().map(|d| d * radius), false);
             for (end, &c) in ends.iter().zip(&edge.ends) {
                 // Pairs of neighbours: a fan needs no order of the arcs around it.
                 for k in 0..last {
@@ -152,7 +154,8 @@ impl Skin {
             for pair in arcs.chunks_exact(2) {
                 self.facet([apex, pair[0].1, pair[1].1]);
             }
-            self.group(&[c as u8], false);
+            let around = arcs.iter().map(|(d, _)| d * radius);
+            self.group(&[c as u8], around.chain([middle * far]), false);
         }
     }
 
@@ -171,16 +174,23 @@ impl Skin {
         self.facets.push(Facet { corners, area, volume: volume.abs() });
     }
 
-    /// Makes the triangles that are in no group yet one, of a face, an edge or a corner with these corners of the core.
-    fn group(&mut self, corners: &[u8], flat: bool) {
+    /// Makes the triangles that are in no group yet one, of a face, an edge or a corner with these corners of the core
+    /// and points at `offsets` from them.
+    fn group(&mut self, corners: &[u8], offsets: impl IntoIterator<Item = Vec3>, flat: bool) {
         let from = self.groups.last().map_or(0, |g| g.facets.end);
-        let first = self.owners.len() as u32;
+        let (first, second) = (self.owners.len() as u32, self.offsets.len());
         self.owners.extend(corners);
+        for offset in offsets {
+            if !self.offsets[second..].contains(&offset) {
+                self.offsets.push(offset);
+            }
+        }
         let own = &self.facets[from as usize..];
         let moment =
             |f: &Facet| f.corners.iter().map(|&k| self.points[k as usize]).sum::<Vec3>() * (0.25 * f.volume);
         let group = Group {
             owners: first..self.owners.len() as u32,
+            offsets: second as u32..self.offsets.len() as u32,
             facets: from..self.facets.len() as u32,
             volume: own.iter().map(|f| f.volume).sum(),
             moment: own.iter().map(moment).sum(),
@@ -198,14 +208,20 @@ impl Skin {
         let (mut sum, foot) = (Part::default(), up * level);
         for g in &self.groups {
             let owners = &self.owners[g.owners.start as usize..g.owners.end as usize];
-            let ends = |[low, high]: [f64; 2], h: f64| [low.min(h), high.max(h)];
-            let all = owners.iter().map(|&c| heights[c as usize]);
-            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+            let [mut low, mut high] = ends(owners.iter().map(|&c| heights[c as usize]));
             if low > self.margin {
                 continue;
             }
+            if high > -self.margin {
+                let offsets = &self.offsets[g.offsets.start as usize..g.offsets.end as usize];
+                let [down, over] = ends(offsets.iter().map(|d| up.dot(d)));
+                (low, high) = (low + down, high + over);
+            }
+            if low > 0.0 {
+                continue;
+            }
             let facets = &self.facets[g.facets.start as usize..g.facets.end as usize];
-            if high <= -self.margin {
+            if high <= 0.0 {
                 sum.volume += g.volume;
                 sum.moment += g.moment;
                 sum.area += g.area;
@@ -233,6 +249,11 @@ impl Skin {
         let seen = 0.5 * (sum.seen + sum.lid.dot(along).abs());
         Wet { volume: sum.volume, arm, area: sum.area, seen }
     }
+}
+
+/// The smallest and the largest of some numbers.
+fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)])
 }
 
 /// Sums over tetrahedra between the origin and triangles.
