@@ -106,7 +106,7 @@ def triaxial(folder):
 
 
 def oedometer(folder):
-    """Constrained moduli between pressures on the way up, down and up again. Height 0.29 m less what the plate has come."""
+    """Constrained moduli between pressures on the way up and up again. Height 0.29 m less what the plate has come."""
     h = table(folder, "history.csv")
     t, p = h["time"], [v / 0.09 / 1e3 for v in smooth(h["time"], h["plate_force_z"], 0.003)]
     z = smooth(t, h["plate_displacement_z"], 0.003)
@@ -118,13 +118,12 @@ def oedometer(folder):
         j = min(span, key=lambda k: abs(p[k] - second))
         return (p[j] - p[i]) / ((z[i] - z[j]) / (0.29 + z[i])) / 1e3
 
-    up, down, again = range(top + 1), range(top, low + 1), range(low, len(t))
+    up, again = range(top + 1), range(low, len(t))
     up = range(max(i for i in up if p[i] < 25), top + 1)
     return {
         "modulus 50 to 100 kPa [MPa]": modulus(up, 50, 100),
         "100 to 200": modulus(up, 100, 200),
         "200 to 400": modulus(up, 200, 390),
-        "down, 390 to 100": modulus(down, 390, 100),
         "up again, 100 to 390": modulus(again, 100, 390),
         "side over plate at the top": abs(smooth(t, h["side_force_x"], 0.003)[top]) / 0.09 / 1e3 / p[top],
     }
