@@ -87,7 +87,7 @@ pub const TEMPLATES: &[Template] = &[
         "direct shear test of ballast",
         "ballast",
         "direct-shear.toml",
-        ["../data/clumps.toml", "../data/gradations.csv"]
+        ["granite.toml", "../data/clumps_six.toml", "../data/gradations.csv"]
     ),
     template!(
         "packing",

@@ -1,0 +1,156 @@
+"""Figures of the ballast tests from their folders of results, one line each, and the mean and spread of the main ones.
+
+    python3 docs/studies/ballast_tests.py box|shear|triaxial|oedometer|push FOLDER...
+
+FOLDER holds what `trackbed run` left: cycles.csv, history.csv, push.csv, summary.json. Needs Python 3 and nothing else.
+"""
+
+import csv
+import json
+import math
+import os
+import sys
+
+
+def table(folder, name):
+    """Columns of a table by their names without units; folders that have none are skipped by the caller."""
+    with open(os.path.join(folder, name)) as file:
+        rows = list(csv.DictReader(file))
+    return {key.split(" [")[0]: [float(row[key]) for row in rows] for key in rows[0]}
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def smooth(times, values, half):
+    """Mean over the rows within `half` seconds."""
+    n = max(1, round(half / (times[1] - times[0])))
+    return [mean(values[max(0, i - n) : i + n + 1]) for i in range(len(values))]
+
+
+def slope(x, y):
+    mx, my = mean(x), mean(y)
+    return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+
+
+def degrees(value):
+    return math.degrees(math.atan(value))
+
+
+def box(folder):
+    """Settlement, its exponent from N = 10 to 100, and means over the second half of the cycles. Bed 0.24 m, plate 0.78 m x 0.29 m, 5 Hz."""
+    c = table(folder, "cycles.csv")
+    with open(os.path.join(folder, "summary.json")) as file:
+        summary = json.load(file)
+    s, n = [1e3 * v for v in c["settlement"]], len(c["settlement"])
+    last = range(n // 2, n)
+    d = mean([1e3 * c["resilient_deflection"][i] for i in last])
+    cycles = range(10, min(n, 100) + 1)
+    return {
+        "settlement 1, 10, 100 [mm]": [s[i - 1] for i in (1, 10, 100) if i <= n],
+        "exponent": slope([math.log(i) for i in cycles], [math.log(s[i - 1]) for i in cycles]),
+        "resilient deflection [mm]": d,
+        "secant modulus [MPa]": mean([c["resilient_modulus"][i] / 1e6 for i in last]),
+        "modulus of the loading branch [MPa]": mean([c["bed_stiffness"][i] for i in last]) * 0.24 / (0.78 * 0.29) / 1e6,
+        "acceleration [g]": (2 * math.pi * 5) ** 2 * d / 2e3 / 9.81,
+        "porosity, settled and bedded": [summary["compaction"][0]["porosity_before"], summary["compaction"][0]["porosity_after"]],
+    }
+
+
+def shear(folder):
+    """Peak of shear over normal stress, means over 40 ms, once the plate presses with four fifths of its mean."""
+    h, area = table(folder, "history.csv"), 0.64 * 0.22
+    t = h["time"]
+    force = [(lo + fl - up - pl) / 2 for lo, fl, up, pl in
+             zip(h["lower_force_x"], h["floor_force_x"], h["upper_force_x"], h["plate_force_x"])]
+    tau, sigma = smooth(t, [v / area / 1e3 for v in force], 0.02), smooth(t, [v / area / 1e3 for v in h["plate_force_z"]], 0.02)
+    way, rise = [-1e3 * v for v in h["lower_displacement_x"]], [1e3 * v for v in h["plate_displacement_z"]]
+    late = [i for i in range(len(t)) if way[i] > 20]
+    normal = mean([sigma[i] for i in late])
+    firm = [i for i in range(len(t)) if sigma[i] > 0.8 * normal]
+    peak = max(firm, key=lambda i: tau[i] / sigma[i])
+    end = [i for i in range(len(t)) if way[i] > 30]
+    return {
+        "peak angle [deg]": degrees(tau[peak] / sigma[peak]),
+        "at [mm]": way[peak] - way[firm[0]],
+        "shear, normal stress [kPa]": [tau[peak], sigma[peak]],
+        "angle of the last 10 mm [deg]": degrees(mean([tau[i] for i in end]) / mean([sigma[i] for i in end])),
+        "rise [mm]": rise[-1] - min(rise),
+    }
+
+
+def triaxial(folder):
+    """Peak angle against the cell pressure at it, means over 20 ms; volume strain, dilation negative. Cube of 0.3 m, shear from 0.15 s on."""
+    h = table(folder, "history.csv")
+    t = h["time"]
+    top, x, y = (smooth(t, h[k], 0.01) for k in ("top_force_z", "side_x_force_x", "side_y_force_y"))
+    a, b, c = ([0.3 + v for v in h[k]] for k in ("side_x_displacement_x", "side_y_displacement_y", "top_displacement_z"))
+    start = next(i for i in range(len(t)) if t[i] >= 0.15)
+    axial = [abs(top[i]) / (a[i] * b[i]) / 1e3 for i in range(len(t))]
+    cell = [(abs(x[i]) / (b[i] * c[i]) + abs(y[i]) / (a[i] * c[i])) / 2e3 for i in range(len(t))]
+    angle = [math.degrees(math.asin((p - q) / (p + q))) if p + q > 0 else 0.0 for p, q in zip(axial, cell)]
+    strain = [100 * (c[start] - v) / c[start] for v in c]
+    volume = [100 * (1 - a[i] * b[i] * c[i] / (a[start] * b[start] * c[start])) for i in range(len(t))]
+    peak = max((i for i in range(start, len(t)) if strain[i] > 0.2), key=lambda i: angle[i])
+    late = [i for i in range(len(t)) if strain[i] > 0.8 * strain[-1]]
+    slip = (volume[late[-1]] - volume[late[0]]) / (strain[late[-1]] - strain[late[0]])
+    return {
+        "peak angle [deg]": angle[peak],
+        "at strain [%]": strain[peak],
+        "cell, axial stress [kPa]": [cell[peak], axial[peak]],
+        "cell pressure of all the shear [kPa]": mean(cell[start:]),
+        "volume strain at the end [%]": volume[-1],
+        "rate of dilation at the end": -slip,
+    }
+
+
+def oedometer(folder):
+    """Constrained moduli between pressures on the way up and up again. Height 0.29 m less what the plate has come."""
+    h = table(folder, "history.csv")
+    t, p = h["time"], [v / 0.09 / 1e3 for v in smooth(h["time"], h["plate_force_z"], 0.003)]
+    z = smooth(t, h["plate_displacement_z"], 0.003)
+    top = max((i for i in range(len(t)) if t[i] < 0.8), key=lambda i: p[i])
+    low = min((i for i in range(top, len(t)) if t[i] < 0.95), key=lambda i: p[i])
+
+    def modulus(span, first, second):
+        i = min(span, key=lambda k: abs(p[k] - first))
+        j = min(span, key=lambda k: abs(p[k] - second))
+        return (p[j] - p[i]) / ((z[i] - z[j]) / (0.29 + z[i])) / 1e3
+
+    up, again = range(top + 1), range(low, len(t))
+    up = range(max(i for i in up if p[i] < 25), top + 1)
+    return {
+        "modulus 50 to 100 kPa [MPa]": modulus(up, 50, 100),
+        "100 to 200": modulus(up, 100, 200),
+        "200 to 400": modulus(up, 200, 390),
+        "up again, 100 to 390": modulus(again, 100, 390),
+        "side over plate at the top": abs(smooth(t, h["side_force_x"], 0.003)[top]) / 0.09 / 1e3 / p[top],
+    }
+
+
+def push(folder):
+    """Force on the half sleeper at some ways, means over 0.3 mm."""
+    c = table(folder, "push.csv")
+    way, force = [1e3 * v for v in c["displacement"]], [v / 1e3 for v in c["force"]]
+    return {
+        f"{mm} mm [kN]": mean([f for w, f in zip(way, force) if abs(w - mm) < 0.15]) for mm in (0.5, 1, 2, 3, 4, 4.8)
+    }
+
+
+def written(value):
+    return ", ".join(f"{v:.3g}" for v in value) if isinstance(value, list) else f"{value:.3g}"
+
+
+def main():
+    test, folders = globals()[sys.argv[1]], [f for f in sys.argv[2:] if os.path.isdir(f)]
+    found = []
+    for folder in folders:
+        found.append(test(folder))
+        print(os.path.basename(os.path.normpath(folder)) + ": " + "; ".join(f"{k} {written(v)}" for k, v in found[-1].items()))
+    for key in found[0] if len(found) > 1 else []:
+        columns = zip(*(f[key] if isinstance(f[key], list) else [f[key]] for f in found))
+        print(f"  {key}: " + "; ".join(f"mean {mean(v):.3g}, {min(v):.3g} to {max(v):.3g}" for v in columns))
+
+
+main()
