@@ -204,7 +204,7 @@ fn size_without_a_fill() {
 fn two_sources_of_grains() {
     grains_scene().scene(SPHERES, &format!("{SPHERES}\n{LATTICE}")).refused(
         "scene.toml:10: grains.0: found another number of sources, expected exactly one of `spheres`, `packing`, `fill`, \
-         `lattice` and `region`",
+         `lattice`, `region`, `floes` and `frustum`",
     );
 }
 
