@@ -21,7 +21,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene) {
         findings.weigh("wind.drag", wind.drag, Usual::or_zero(0.05, 5.0, ""));
     }
     if let Some(water) = &scene.water {
-        let speed = water.current[0].si.hypot(water.current[1].si);
+        let speed = libm::hypot(water.current[0].si, water.current[1].si);
         findings.weigh("water.current", speed, Usual::or_zero(1e-9, 5.0, "m/s"));
         findings.weigh("water.density", water.density.si, Usual::new(900.0, 1300.0, "kg/m3"));
         findings.weigh("water.drag", water.drag, Usual::or_zero(0.05, 5.0, ""));

@@ -1,6 +1,6 @@
 //! Body forces that see four bodies at a time.
 
-use super::{ForceWork, Seen};
+use super::work::{ForceWork, Seen};
 use crate::bodies::block::Block;
 use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
 

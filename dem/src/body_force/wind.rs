@@ -6,7 +6,7 @@
 //! eq. 11). No lift, no shelter behind other bodies, no torque.
 
 use super::four::{self, ActOnFour, Bodies4};
-use super::{Act, ForceWork, Seen};
+use super::work::{Act, ForceWork, Seen};
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};
 

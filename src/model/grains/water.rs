@@ -12,7 +12,7 @@ pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyF
         return Err(scene.error("gravity", found, "gravity along -z beside `[water]`"));
     }
     let current = water.current.map(|v| v.si);
-    let speed = current[0].hypot(current[1]);
+    let speed = libm::hypot(current[0], current[1]);
     water.check("current", speed, |v| v <= 20.0, "at most 20 m/s")?;
     let density =
         water.check("density", water.density, |d| d > 0.0 && d <= 2e4, "above 0, at most 20000")?.si;

@@ -9,17 +9,15 @@
 //! Areas of drag: `Projected` is what the wet part shows to the flow; `Wetted` all of its surface, as in the source, which
 //! overstates the drag of a flat floe tenfold.
 
-mod skin;
 mod wave;
 
-pub(crate) use skin::Skin;
 pub use wave::{Measured, Orbit, Wave, WaveError};
 
-use super::{Act, ForceWork, Seen};
+use super::skin::Wet;
+use super::work::{Act, ForceWork, Seen};
 use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Kind};
 use crate::lanes::record::xyz;
-use skin::Wet;
 use std::f64::consts::PI;
 
 /// Where it is published.
@@ -180,8 +178,13 @@ fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     let s = (h - r) / r;
     let side = r * r * (0.5 * PI + libm::asin(s) + s * (1.0 - s * s).max(0.0).sqrt());
     let below = PI * if h < r { h * low } else { r * r };
-    let flat = along.x.hypot(along.y);
-    Wet { volume, arm: Vec3::z() * arm, area: 2.0 * PI * r * h, seen: (side * flat).hypot(below * along.z) }
+    let flat = libm::hypot(along.x, along.y);
+    Wet {
+        volume,
+        arm: Vec3::z() * arm,
+        area: 2.0 * PI * r * h,
+        seen: libm::hypot(side * flat, below * along.z),
+    }
 }
 
 /// What of a clump is below a level above its centre: that of its spheres, by the share of its volume in theirs; areas are those of

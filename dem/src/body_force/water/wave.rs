@@ -84,7 +84,7 @@ impl Wave {
         gravity: f64,
     ) -> Result<Wave, WaveError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
-        let along = [direction.cos(), direction.sin()];
+        let along = [libm::cos(direction), libm::sin(direction)];
         let with = current[0] * along[0] + current[1] * along[1];
         for (name, good) in [
             ("height", height >= 0.0 && height.is_finite()),
@@ -97,7 +97,7 @@ impl Wave {
                 return Err(WaveError::Range(name));
             }
         }
-        let intrinsic = |k: f64| (gravity * k * (k * depth).tanh()).sqrt();
+        let intrinsic = |k: f64| (gravity * k * libm::tanh(k * depth)).sqrt();
         let (number, frequency) = match measured {
             Measured::Length(length) if positive(length) => {
                 let k = TAU / length;
@@ -110,7 +110,7 @@ impl Wave {
             Measured::Length(_) => return Err(WaveError::Range("length")),
             Measured::Period(_) => return Err(WaveError::Range("period")),
         };
-        let limit = STEEPEST * TAU / number * (number * depth).tanh();
+        let limit = STEEPEST * TAU / number * libm::tanh(number * depth);
         if height > limit {
             return Err(WaveError::Breaks { length: TAU / number, limit });
         }
@@ -150,7 +150,7 @@ impl Wave {
 fn number(frequency: f64, with: f64, depth: f64, gravity: f64) -> Option<f64> {
     // frequency − k U − √(g k tanh k h) falls convexly from its value at k = 0: Newton's steps from the left stay left of its zero.
     let left = |k: f64| {
-        let t = (k * depth).tanh();
+        let t = libm::tanh(k * depth);
         let root = (gravity * k * t).sqrt();
         let inner = if depth.is_finite() { k * depth * (1.0 - t * t) } else { 0.0 };
         (frequency - k * with - root, -with - 0.5 * gravity * (t + inner) / root)

@@ -16,8 +16,8 @@ fn wet(skin: &Skin, row: &[f64]) -> (f64, Vec3) {
 /// Sharp bodies at any tilt: volume and centre below the water against a table by clipping, checked by hulls of half-spaces.
 #[test]
 fn sharp_bodies_are_cut_exactly() {
-    let shapes = rows(include_str!("../../../tests/data/water/corners.csv"));
-    let table = rows(include_str!("../../../tests/data/water/cores.csv"));
+    let shapes = rows(include_str!("../../tests/data/water/corners.csv"));
+    let table = rows(include_str!("../../tests/data/water/cores.csv"));
     assert_eq!(table.len(), 100);
     for (body, row) in &table {
         let skin = Skin::new(&Core::new(&corners(&shapes, body)).unwrap(), 0.0);
@@ -38,8 +38,8 @@ fn sharp_bodies_are_cut_exactly() {
 /// an edge that lies in the water's plane is below it. Against exact volumes; mean and worst are far below those of moved-out faces (0.0023, 0.023).
 #[test]
 fn dilated_bodies_are_cut_to_a_thousandth() {
-    let shapes = rows(include_str!("../../../tests/data/water/corners.csv"));
-    let table = rows(include_str!("../../../tests/data/water/dilated.csv"));
+    let shapes = rows(include_str!("../../tests/data/water/corners.csv"));
+    let table = rows(include_str!("../../tests/data/water/dilated.csv"));
     assert_eq!(table.len(), 100);
     let (mut worst, mut sum, mut off) = (0.0_f64, 0.0, 0.0_f64);
     for (body, row) in &table {
