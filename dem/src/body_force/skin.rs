@@ -17,8 +17,9 @@ const STRIP: f64 = 0.525;
 #[derive(Clone, Copy, Debug)]
 struct Facet {
     corners: [u16; 3],
-    /// Outward normal, as long as the area [m²].
+    /// Outward normal, as long as the area [m²], and that area.
     area: Vec3,
+    size: f64,
     /// Volume of the tetrahedron between it and the origin [m³].
     volume: f64,
 }
@@ -171,7 +172,7 @@ impl Skin {
         let volume = a.dot(&area) / 3.0;
         let (corners, area) =
             if volume < 0.0 { ([corners[0], corners[2], corners[1]], -area) } else { (corners, area) };
-        self.facets.push(Facet { corners, area, volume: volume.abs() });
+        self.facets.push(Facet { corners, area, size: area.norm(), volume: volume.abs() });
     }
 
     /// Makes the triangles that are in no group yet one, of a face, an edge or a corner with these corners of the core
@@ -194,7 +195,7 @@ impl Skin {
             facets: from..self.facets.len() as u32,
             volume: own.iter().map(|f| f.volume).sum(),
             moment: own.iter().map(moment).sum(),
-            area: own.iter().map(|f| f.area.norm()).sum(),
+            area: own.iter().map(|f| f.size).sum(),
             flat: flat.then(|| own.iter().map(|f| f.area).sum()),
         };
         self.groups.push(group);
@@ -231,14 +232,23 @@ impl Skin {
                 };
                 continue;
             }
+            let at = |k: u16| self.points[k as usize];
             for f in facets {
-                let corners = f.corners.map(|k| self.points[k as usize]);
-                let h = corners.map(|p| up.dot(&p) - level);
-                match h.iter().filter(|h| **h <= 0.0).count() {
-                    0 => {}
-                    3 => sum.add(&corners, f.volume, &f.area, along),
-                    _ => sum.cut(&corners, &h, &foot, along),
-                }
+                let [a, b, c] = f.corners;
+                let h = [a, b, c].map(|k| up.dot(&at(k)) - level);
+                let wet = h.map(|h| h <= 0.0);
+                // The corner that is alone on its side comes first.
+                let (p, h) = match wet {
+                    [false, false, false] => continue,
+                    [true, true, true] => {
+                        sum.add(&[at(a), at(b), at(c)], f, along, 1.0);
+                        continue;
+                    }
+                    [x, y, z] if x != y && x != z => ([at(a), at(b), at(c)], h),
+                    [x, y, _] if x != y => ([at(b), at(c), at(a)], [h[1], h[2], h[0]]),
+                    _ => ([at(c), at(a), at(b)], [h[2], h[0], h[1]]),
+                };
+                sum.cut(f, &p, &h, &foot, along);
             }
         }
         let (volume, moment) = self.whole;
@@ -268,42 +278,38 @@ struct Part {
 }
 
 impl Part {
-    fn add(&mut self, corners: &[Vec3; 3], volume: f64, area: &Vec3, along: &Vec3) {
+    /// Adds a triangle in the plane of a facet that has a `share` of its area.
+    #[inline(always)]
+    fn add(&mut self, corners: &[Vec3; 3], facet: &Facet, along: &Vec3, share: f64) {
         let [a, b, c] = corners;
+        let volume = facet.volume * share;
         self.volume += volume;
         self.moment += (a + b + c) * (0.25 * volume);
-        self.area += area.norm();
-        self.seen += area.dot(along).abs();
+        self.area += facet.size * share;
+        self.seen += facet.area.dot(along).abs() * share;
     }
 
     /// Adds what of a triangle, whose corners have heights `h` above a plane, is below it, and its share of the lid: a fan about
-    /// `foot`, a point of the plane.
-    fn cut(&mut self, p: &[Vec3; 3], h: &[f64; 3], foot: &Vec3, along: &Vec3) {
-        // The corner that is alone on its side comes first.
-        let wet = h.map(|h| h <= 0.0);
-        let first = (0..3).find(|&k| wet[k] != wet[(k + 1) % 3] && wet[k] != wet[(k + 2) % 3]).unwrap_or(0);
-        let alone = wet[first];
-        let turned = [first, (first + 1) % 3, (first + 2) % 3];
-        let (p, h) = (turned.map(|k| p[k]), turned.map(|k| h[k]));
-        let at = |k: usize| p[0] + (p[k] - p[0]) * (h[0] / (h[0] - h[k]));
-        let (first, last) = (at(1), at(2));
-        let mut triangle = |corners: [Vec3; 3]| {
-            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])) * 0.5;
-            self.add(&corners, corners[0].dot(&area) / 3.0, &area, along);
-        };
+    /// `foot`, a point of the plane. Its first corner is alone on its side.
+    #[inline(always)]
+    fn cut(&mut self, facet: &Facet, p: &[Vec3; 3], h: &[f64; 3], foot: &Vec3, along: &Vec3) {
+        let alone = h[0] <= 0.0;
+        let [s, t] = [h[0] / (h[0] - h[1]), h[0] / (h[0] - h[2])];
+        let (first, last) = (p[0] + (p[1] - p[0]) * s, p[0] + (p[2] - p[0]) * t);
+        let tip = [p[0], first, last];
         // The lid is run through against the sense of the triangle.
-        let lid = if alone {
-            triangle([p[0], first, last]);
-            [*foot, last, first]
+        let (before, after) = if alone {
+            self.add(&tip, facet, along, s * t);
+            (last, first)
         } else {
-            triangle([first, p[1], p[2]]);
-            triangle([first, p[2], last]);
-            [*foot, first, last]
+            self.add(p, facet, along, 1.0);
+            self.add(&tip, facet, along, -s * t);
+            (first, last)
         };
-        let area = (lid[1] - lid[0]).cross(&(lid[2] - lid[0])) * 0.5;
+        let area = (before - foot).cross(&(after - foot)) * 0.5;
         let volume = foot.dot(&area) / 3.0;
         self.volume += volume;
-        self.moment += (lid[0] + lid[1] + lid[2]) * (0.25 * volume);
+        self.moment += (foot + before + after) * (0.25 * volume);
         self.lid += area;
     }
 }
