@@ -5,11 +5,21 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::lanes::Simd;
+use crate::shape::Shape;
 
 /// The loops that the contacts of a model run through, in words.
 pub fn kernels(model: &Model) -> String {
     let law = model.laws.title();
-    let shapes = if model.clumps { "spheres of rigid bodies" } else { "single spheres" };
+    let has = |what: fn(&Shape) -> bool| (0..model.body_count()).any(|b| what(model.shape(b)));
+    let round = has(|s| matches!(s, Shape::Sphere { .. } | Shape::Clump(_)));
+    let names = [
+        (has(|s| matches!(s, Shape::Polyhedron(_))), "polyhedra"),
+        (has(|s| matches!(s, Shape::Box { .. })), "boxes"),
+        (round && model.clumps, "spheres of rigid bodies"),
+        (round && !model.clumps, "single spheres"),
+    ];
+    let names: Vec<&str> = names.into_iter().filter(|(there, _)| *there).map(|(_, name)| name).collect();
+    let shapes = names.join(", ");
     let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
     let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };
     let drag = if model.body_forces.is_empty() { "" } else { ", body forces" };

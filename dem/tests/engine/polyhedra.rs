@@ -54,6 +54,20 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
+/// What a model of polyhedra and spheres says of its loops.
+#[test]
+fn loops_name_the_shapes() {
+    let shapes = vec![Shape::Sphere { radius: 0.1 }, block([0.1; 3], 0.01)];
+    let loops = |bodies: Vec<BodyInput>| {
+        let input = ModelInput { bodies, ..scene(material(), shapes.clone()) };
+        measure::kernels(&Model::new(input).expect("a good input"))
+    };
+    let far = |k| body(k, Vec3::x() * k as f64);
+    assert!(loops(vec![far(0), far(1)]).contains(", polyhedra, single spheres,"));
+    assert!(loops(vec![far(1)]).contains(", polyhedra,") && !loops(vec![far(1)]).contains("spheres"));
+    assert!(loops(vec![far(0)]).contains(", single spheres,") && !loops(vec![far(0)]).contains("poly"));
+}
+
 /// A cube sinks into a plane by its weight over the springs of four corners and four edges, and nothing moves any more.
 #[test]
 fn a_cube_at_rest() {
