@@ -309,11 +309,45 @@ pub enum StoneCommand {
         #[command(flatten)]
         stones: StoneArgs,
     },
+    /// Make rough stones at random: few spheres that hardly overlap, with hollows in which neighbours interlock.
+    Rough(RoughArgs),
     /// Numbers of the stones of a library (.toml) or of a surface.
     Info {
         /// Library or surface.
         input: PathBuf,
     },
+}
+
+/// What rough stones are like, and where they go.
+#[derive(Debug, Args)]
+pub struct RoughArgs {
+    /// Number of stones.
+    #[arg(long)]
+    pub count: usize,
+    /// Spheres of each stone, 2 to 12.
+    #[arg(long, default_value_t = 4)]
+    pub spheres: usize,
+    /// Largest overlap of two spheres as a share of the sum of their radii, 0 to 0.5.
+    #[arg(long, default_value_t = 0.1)]
+    pub overlap: f64,
+    /// Radii differ by this share up and down, 0 to 0.5.
+    #[arg(long, default_value_t = 0.2)]
+    pub spread: f64,
+    /// Intermediate over longest extent (b/a), a number or a range low:high.
+    #[arg(long, default_value = "0.6:0.95")]
+    pub elongation: String,
+    /// Shortest over intermediate extent (c/b), a number or a range low:high.
+    #[arg(long, default_value = "0.6:0.95")]
+    pub flatness: String,
+    /// Starts everything random.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Library to write (.toml); without it only the measures are printed.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Replace files that exist.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// What stones are made of.

@@ -9,6 +9,7 @@ pub mod grow;
 pub mod library_file;
 pub mod measure;
 pub mod random;
+pub mod rough;
 
 use rayon::prelude::*;
 use trackbed_dem::distance::SurfaceDistance;

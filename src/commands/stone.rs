@@ -4,12 +4,13 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use super::output::print;
-use crate::cli::{StoneArgs, StoneCommand, StoneKind};
+use crate::cli::{RoughArgs, StoneArgs, StoneCommand, StoneKind};
 use crate::failure::Failure;
 use crate::read::read_surface;
 use crate::scene::Document;
-use crate::stone_tools::{Kind, Made, Source, fill, grow, library_file, make, random};
+use crate::stone_tools::{Kind, Source, fill, grow, library_file, make, measure, random, rough};
 use crate::write::{atomic, stl::stl_bytes};
+use trackbed_dem::insert::library::Stone;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::shape::polyhedron::Polyhedron;
@@ -19,6 +20,8 @@ const MOST_CLUMP: usize = 200;
 /// Most spheres of a bonded stone.
 const MOST_BONDED: usize = 2000;
 const MOST_STONES: usize = 10_000;
+/// Most spheres of a rough stone: more would leave some inside.
+const MOST_ROUGH: usize = 12;
 
 /// Carries out a `stone` command.
 pub(super) fn stone(command: &StoneCommand) -> Result<(), Failure> {
@@ -55,6 +58,7 @@ pub(super) fn stone(command: &StoneCommand) -> Result<(), Failure> {
             );
             finish(&sources, kind, stones, &command)
         }
+        StoneCommand::Rough(args) => rough_stones(args),
         StoneCommand::Info { input } => info(input),
     }
 }
@@ -64,15 +68,51 @@ fn finish(sources: &[Source], kind: Kind, args: &StoneArgs, command: &str) -> Re
     let made = make(sources, kind).map_err(|e| Failure::Input(e.to_string()))?;
     let mut text: String = made.iter().map(|m| format!("{}: {}\n", m.stone.name, m.report)).collect();
     if let Some(out) = &args.out {
-        let name = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        write_library(out, &name, command, &made)?;
+        let rows: Vec<(&Stone, String)> = made.iter().map(|m| (&m.stone, m.report.to_string())).collect();
+        write_library(out, command, library_file::OF_SURFACES, &rows)?;
         let _ = writeln!(text, "{} written", out.display());
     }
     print(&text)
 }
 
-fn write_library(out: &Path, name: &str, source: &str, made: &[Made]) -> Result<(), Failure> {
-    let text = library_file::text(name, source, made);
+/// Makes rough stones, prints their measures, writes the library.
+fn rough_stones(args: &RoughArgs) -> Result<(), Failure> {
+    within("--count", args.count, MOST_STONES)?;
+    if !(2..=MOST_ROUGH).contains(&args.spheres) {
+        return Err(bad("--spheres", &args.spheres.to_string(), &format!("2 to {MOST_ROUGH}")));
+    }
+    let half = |option: &str, value: f64| match value {
+        v if (0.0..=0.5).contains(&v) => Ok(v),
+        v => Err(bad(option, &v.to_string(), "0 to 0.5")),
+    };
+    let form = rough::Form {
+        spheres: args.spheres,
+        overlap: half("--overlap", args.overlap)?,
+        spread: half("--spread", args.spread)?,
+        elongation: range("--elongation", &args.elongation, 0.05)?,
+        flatness: range("--flatness", &args.flatness, 0.05)?,
+    };
+    free(args.out.as_deref(), args.force)?;
+    let made = rough::stones(args.seed, args.count, &form).map_err(|draws| {
+        let found = format!("no stone of these ratios in {draws} draws");
+        bad("--elongation, --flatness", &found, "wider ranges, another number of spheres or another overlap")
+    })?;
+    let mut text: String = made.iter().map(|m| format!("{}: {m}\n", m.stone.name)).collect();
+    if let Some(out) = &args.out {
+        let command = format!(
+            "trackbed stone rough --count {} --spheres {} --overlap {} --spread {} --elongation {} --flatness {} --seed {}",
+            args.count, args.spheres, args.overlap, args.spread, args.elongation, args.flatness, args.seed
+        );
+        let rows: Vec<(&Stone, String)> = made.iter().map(|m| (&m.stone, m.to_string())).collect();
+        write_library(out, &command, rough::MEASURES, &rows)?;
+        let _ = writeln!(text, "{} written", out.display());
+    }
+    print(&text)
+}
+
+fn write_library(out: &Path, source: &str, note: &str, rows: &[(&Stone, String)]) -> Result<(), Failure> {
+    let name = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let text = library_file::text(&name, source, note, rows);
     atomic::write(out, |w| w.write_all(text.as_bytes()).map_err(crate::write::WriteError::io(out)))?;
     Ok(())
 }
@@ -244,7 +284,7 @@ fn library_info(input: &Path) -> Result<(), Failure> {
         let least = stone.spheres.iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
         let (kind, volume, inertia, mut extents, sieve) = if stone.bonds.is_empty() {
             let c: Clump = alone.clumps().map_err(|e| fault(&e))?.swap_remove(0);
-            ("clump".to_string(), c.volume, c.inertia, c.extents(), c.sieve_size())
+            (format!("clump, {}", measure::union_shape(&c)), c.volume, c.inertia, c.extents(), c.sieve_size())
         } else {
             let c = alone.clusters().map_err(|e| fault(&e))?.swap_remove(0);
             let kind = format!("bonded, {} bonds, density factor {:.4}", c.bonds.len(), c.density_factor);

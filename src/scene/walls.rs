@@ -105,10 +105,26 @@ pub struct Servo {
     pub area: Option<f64>,
     /// Factor on the force against time: [[time, factor], …], straight in between; default 1 at all times.
     pub history: Option<Vec<(Quantity<Time>, f64)>>,
+    /// Pulses on top of the force, in place of `history`.
+    pub pulses: Option<Pulses>,
     /// Greatest speed [m/s].
     pub max_speed: Quantity<Velocity>,
     /// Gain, above 0 and at most 1; default 0.5.
     pub gain: Option<f64>,
+}
+
+/// Haversines on top of the force of a servo: force · (1 + (peak − 1) (1 − cos 2πf(t − start))/2).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pulses {
+    /// Largest factor on the force, 0 or more.
+    pub peak: f64,
+    /// Pulses in a second [Hz].
+    pub frequency: Quantity<Frequency>,
+    /// Number of pulses.
+    pub count: u32,
+    /// When the first begins [s]; default 0.
+    pub start: Option<Quantity<Time>>,
 }
 
 /// Rigid body of triangles.

@@ -57,7 +57,7 @@ pub const TEMPLATES: &[Template] = &[
             "NODECOORD.DAT",
             "ELEMENTNUM.DAT",
             "DOF.DAT",
-            "stones.toml",
+            "../../data/ballast_stones.toml",
             "gradation.csv"
         ]
     ),
@@ -66,7 +66,7 @@ pub const TEMPLATES: &[Template] = &[
         "ballast stones in a box, a plate loaded in cycles",
         "ballast",
         "box.toml",
-        ["granite.toml", "../data/clumps_six.toml", "../data/gradations.csv"]
+        ["granite.toml", "../data/ballast_stones.toml", "../data/gradations.csv"]
     ),
     template!(
         "bay",
@@ -75,7 +75,7 @@ pub const TEMPLATES: &[Template] = &[
         "scene.toml",
         [
             "../../ballast/granite.toml",
-            "../../data/clumps_six.toml",
+            "../../data/ballast_stones.toml",
             "../../data/gradations.csv",
             "NODECOORD.DAT",
             "ELEMENTNUM.DAT",
@@ -87,7 +87,7 @@ pub const TEMPLATES: &[Template] = &[
         "direct shear test of ballast",
         "ballast",
         "direct-shear.toml",
-        ["granite.toml", "../data/clumps_six.toml", "../data/gradations.csv"]
+        ["granite.toml", "../data/ballast_stones.toml", "../data/gradations.csv"]
     ),
     template!(
         "packing",

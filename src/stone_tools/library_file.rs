@@ -2,25 +2,29 @@
 
 use std::fmt::Write;
 
-use super::Made;
+use trackbed_dem::insert::library::Stone;
 
 /// Spheres with 9 decimals: at sieve size 1 m that is far below any contact's overlap.
 const DECIMALS: usize = 9;
 
-/// A library as TOML; `source` says where the shapes come from.
-pub fn text(name: &str, source: &str, stones: &[Made]) -> String {
+/// What the measures of stones made of surfaces are relative to, for [`text`].
+pub const OF_SURFACES: &str =
+    "Ratios are to the surface that each stone stands for, lengths to its sieve size.";
+
+/// A library as TOML; `source` says where the shapes come from, `note` what the measures beside the stones are.
+pub fn text(name: &str, source: &str, note: &str, stones: &[(&Stone, String)]) -> String {
     let mut out = String::new();
     let mut line = |t: &str| writeln!(out, "{t}").expect("writing to a string does not fail");
     line(
         "# Stones as spheres; sieve size 1 m, so scale = sieve size in metres. Frame: centre of mass, principal axes.",
     );
-    line("# Ratios are to the surface that each stone stands for, lengths to its sieve size.");
+    line(&format!("# {note}"));
     line(&format!("name = {}", quoted(name)));
     line(&format!("source = {}", quoted(source)));
-    for Made { stone, report } in stones {
+    for (stone, measures) in stones {
         line("\n[[stones]]");
         line(&format!("name = {}", quoted(&stone.name)));
-        line(&format!("# {report}"));
+        line(&format!("# {measures}"));
         if let Some(factor) = stone.density_factor {
             line(&format!("density_factor = {factor:.9}"));
         }

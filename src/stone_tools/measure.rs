@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use trackbed_dem::distance::SurfaceDistance;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::shape::cluster::Cluster;
-use trackbed_dem::shape::polyhedron::{BodyMoments, Polyhedron, sphericity};
+use trackbed_dem::shape::polyhedron::{BodyMoments, Polyhedron, convex_hull, sphericity};
 
 use super::fill::Ball;
 
@@ -73,6 +73,33 @@ pub fn cluster(
     fill_moments(&mut report, body, volume, cluster.inertia, centre);
     report.bonds = cluster.bonds.len();
     report
+}
+
+/// How far a clump is from a sphere and from its convex hull.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnionShape {
+    /// Wadell's sphericity of the union of the spheres.
+    pub sphericity: f64,
+    /// Volume of the union over that of its convex hull.
+    pub convexity: f64,
+}
+
+impl fmt::Display for UnionShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "sphericity {:.3}, convexity {:.3}", self.sphericity, self.convexity)
+    }
+}
+
+/// Sphericity and convexity of a clump, from 500 points on each sphere.
+pub fn union_shape(clump: &Clump) -> UnionShape {
+    let exposed = exposed(&clump.spheres);
+    let points: Vec<[f64; 3]> = exposed.iter().map(|e| e.0).collect();
+    let hull = convex_hull(&points).ok().and_then(|s| Polyhedron::new(&s).ok());
+    UnionShape {
+        sphericity: sphericity(clump.volume, exposed.iter().map(|e| e.1).sum()),
+        // The hull of the points lies inside that of the spheres by up to 1 %.
+        convexity: hull.map_or(1.0, |h| (clump.volume / h.moments().volume).min(1.0)),
+    }
 }
 
 fn fill_moments(

@@ -44,6 +44,11 @@ fn stones() -> Vec<Source> {
     (0..2).map(make).collect()
 }
 
+fn library_text(name: &str, source: &str, made: &[Made]) -> String {
+    let rows: Vec<(&Stone, String)> = made.iter().map(|m| (&m.stone, m.report.to_string())).collect();
+    library_file::text(name, source, library_file::OF_SURFACES, &rows)
+}
+
 #[test]
 fn one_sphere_in_a_cube_measures_as_in_the_closed_form() {
     let body = Polyhedron::new(&brick([0.5; 3])).unwrap();
@@ -172,7 +177,7 @@ fn the_same_bits_for_any_number_of_threads_and_other_stones_for_another_seed() {
         pool.install(|| make(&sources, kind).unwrap())
     };
     for kind in [clump_kind(5, 0.1), bonded_kind(20, 1)] {
-        let text = |made: &[Made]| library_file::text("a", "b", made);
+        let text = |made: &[Made]| library_text("a", "b", made);
         let (one, two) = (with(1, kind), with(2, kind));
         assert_eq!(one, two);
         assert_eq!(text(&one), text(&two));
@@ -211,7 +216,7 @@ fn random_stones_have_the_form_requested() {
 fn the_text_of_a_library_comes_back_as_it_was() {
     for kind in [clump_kind(5, 0.1), bonded_kind(20, 1)] {
         let made = make(&stones(), kind).unwrap();
-        let text = library_file::text("a \"name\"", "here\\there", &made);
+        let text = library_text("a \"name\"", "here\\there", &made);
         let back: StoneLibrary = toml::from_str(&text).unwrap();
         assert_eq!((back.name.as_str(), back.source.as_str()), ("a \"name\"", "here\\there"));
         for (stone, made) in back.stones.iter().zip(&made) {
@@ -250,4 +255,46 @@ fn several_bodies_and_thin_ones_are_no_stone() {
     let made = make(&source(plate.mapped(&nalgebra::Matrix3::identity(), &Vector3::x())), clump_kind(6, 0.1))
         .unwrap();
     assert_eq!(made[0].stone.spheres.len(), 6);
+}
+
+/// Two equal spheres at a distance d of their centres: V = 2 (4/3)πr³ − π(4r + d)(2r − d)²/12, S = 2·2πr(r + d/2); the
+/// hull is a cylinder of length d with two half spheres.
+#[test]
+fn sphericity_and_convexity_of_two_spheres_are_those_of_the_closed_form() {
+    let (r, d) = (1.0, 1.5);
+    let clump = Clump::from_spheres(&[([0.0; 3], r), ([d, 0.0, 0.0], r)]).unwrap();
+    let shape = measure::union_shape(&clump);
+    let volume = 8.0 / 3.0 * PI * r * r * r - PI * (4.0 * r + d) * (2.0 * r - d).powi(2) / 12.0;
+    let sphericity = PI.cbrt() * (6.0 * volume).powf(2.0 / 3.0) / (4.0 * PI * r * (r + d / 2.0));
+    assert!((shape.sphericity / sphericity - 1.0).abs() < 5e-3, "{shape} {sphericity}");
+    let convexity = volume / (4.0 / 3.0 * PI + PI * d);
+    assert!((shape.convexity / convexity - 1.0).abs() < 0.02, "{shape} {convexity}");
+}
+
+#[test]
+fn rough_stones_keep_to_their_ratios_overlap_and_seed() {
+    let form =
+        rough::Form { spheres: 5, overlap: 0.2, spread: 0.2, elongation: [0.7, 0.8], flatness: [0.6, 0.8] };
+    let made = rough::stones(3, 6, &form).unwrap();
+    for m in &made {
+        assert!((0.7..=0.8).contains(&m.ratios[0]) && (0.6..=0.8).contains(&m.ratios[1]), "{m}");
+        let s = &m.stone.spheres;
+        let mut touching = 0;
+        for (i, a) in s.iter().enumerate() {
+            for b in &s[..i] {
+                let distance = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+                let overlap = 1.0 - distance / (a[3] + b[3]);
+                assert!(overlap < 0.2 + 0.06, "{overlap}");
+                touching += usize::from(overlap > 0.0);
+            }
+        }
+        assert!(touching >= 4, "hangs together: {touching}");
+        assert!(m.shape.convexity < 0.93 && m.shape.sphericity < 0.85, "{m}");
+    }
+    // A stone does not depend on how many are made.
+    assert_eq!(rough::stones(3, 2, &form).unwrap(), made[..2]);
+    assert_ne!(rough::stones(4, 1, &form).unwrap()[0], made[0]);
+    // Four equal spheres cannot be a needle.
+    let needle = rough::Form { elongation: [0.05, 0.06], flatness: [0.9, 1.0], ..form };
+    assert!(rough::stones(1, 1, &needle).is_err());
 }

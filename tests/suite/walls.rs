@@ -92,6 +92,32 @@ fn oedometer_follows_its_programme() {
     assert!(history.column("plate_displacement_z")[last] < -1e-4);
 }
 
+/// A plate on a bed follows pulses of its force: at rest, half-way up and at the peak within 3 %.
+#[test]
+fn a_servo_follows_pulses() {
+    let out = Folder::new("servo_pulses");
+    let set = [
+        "grains.0.count=400",
+        "walls.2.point=[0.0,0.0,0.05]",
+        "walls.2.servo.history=",
+        "walls.2.servo.pulses={ peak = 3.0, frequency = 5.0, count = 2, start = 0.25 }",
+        "deposition.max_time=0.2",
+        "deposition.level=0.044",
+        "time.end=0.75",
+        "output.frames=1",
+    ];
+    run(&scene("servo"), out.path(), &set).good();
+    let history = Table::read(&out.join("history.csv"));
+    let (time, force) = (history.column("time"), history.column("plate_force_z"));
+    let base = 2e4 * 0.00785398;
+    for (at, factor) in [(0.24, 1.0), (0.30, 2.0), (0.35, 3.0), (0.45, 1.0), (0.55, 3.0), (0.74, 1.0)] {
+        let near: Vec<f64> =
+            time.iter().zip(&force).filter(|(t, _)| (**t - at).abs() < 3e-3).map(|(_, f)| *f).collect();
+        let mean = near.iter().sum::<f64>() / near.len() as f64;
+        assert!((mean / (factor * base) - 1.0).abs() < 0.03, "{at}: {mean} against {}", factor * base);
+    }
+}
+
 /// The block comes down on the bed, which carries its weight in the end.
 #[test]
 fn block_comes_to_rest() {

@@ -136,8 +136,7 @@ impl Dynamics {
         }
         ensure_points(model, state);
         while state.time < to {
-            let dt = self.length.next(state.time, to);
-            let time = if dt >= to - state.time { to } else { state.time + dt };
+            let (dt, time) = self.length.next(state.time, to);
             match self.step(model, state, time, dt, loading) {
                 Ok(audit) => {
                     self.length.accept(dt, self.newton.report.iterations);

@@ -83,9 +83,7 @@ impl QuasiStatic {
         }
         ensure_points(model, state);
         while state.time < to {
-            let dt = self.length.next(state.time, to);
-            // The sum of the steps must end at `to` exactly.
-            let time = if dt >= to - state.time { to } else { state.time + dt };
+            let (dt, time) = self.length.next(state.time, to);
             self.conditions(model, state, time, loading)?;
             let stop = || loading.stopped();
             let problem = Problem {

@@ -47,6 +47,9 @@ impl StepControl {
     }
 }
 
+/// Lengths that differ by this share are the same.
+const ROUNDING: f64 = 1e-9;
+
 /// The length of the next step, from the course of those before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepLength {
@@ -61,11 +64,20 @@ impl StepLength {
         StepLength { control, length: control.initial, wait: 0 }
     }
 
-    /// Length of the step from `time` that must not pass `end`. The last two steps share what is left.
-    pub fn next(&self, time: f64, end: f64) -> f64 {
+    /// Length of the step from `time`, and the time that it ends at, not beyond `end`. The last two steps share what is left.
+    ///
+    /// A rest that differs from the length by rounding alone gives a step of the length itself: factors belong to one length.
+    pub fn next(&self, time: f64, end: f64) -> (f64, f64) {
         let left = end - time;
-        if left <= self.length * (1.0 + 1e-9) {
+        let dt = self.unrounded(left);
+        (dt, if dt >= left * (1.0 - ROUNDING) { end } else { time + dt })
+    }
+
+    fn unrounded(&self, left: f64) -> f64 {
+        if left <= self.length * (1.0 - ROUNDING) {
             left
+        } else if left <= self.length * (1.0 + ROUNDING) {
+            self.length
         } else if left < 2.0 * self.length {
             0.5 * left
         } else {
@@ -105,20 +117,33 @@ mod tests {
     fn steps_end_exactly_and_halve_down_to_the_smallest() {
         let control = StepControl { initial: 0.4, min: 0.1, max: 0.8, target_iterations: 4 };
         let mut length = StepLength::new(control);
-        assert_eq!((length.next(0.0, 1.0), length.next(0.0, 0.4), length.next(0.0, 0.5)), (0.4, 0.4, 0.25));
-        assert!(length.halve(0.4) && length.next(0.0, 1.0) == 0.2);
-        assert!(length.halve(0.2) && length.next(0.0, 1.0) == 0.1 && !length.halve(0.1));
+        assert_eq!(length.next(0.0, 1.0), (0.4, 0.4));
+        assert_eq!((length.next(0.0, 0.4), length.next(0.0, 0.5).0), ((0.4, 0.4), 0.25));
+        assert!(length.halve(0.4) && length.next(0.0, 1.0).0 == 0.2);
+        assert!(length.halve(0.2) && length.next(0.0, 1.0).0 == 0.1 && !length.halve(0.1));
         length.accept(0.1, 1);
-        assert_eq!(length.next(0.0, 1.0), 0.1);
+        assert_eq!(length.next(0.0, 1.0).0, 0.1);
         length.accept(0.1, 1);
-        assert_eq!(length.next(0.0, 1.0), 0.2);
+        assert_eq!(length.next(0.0, 1.0).0, 0.2);
         length.accept(0.2, 16);
-        assert_eq!(length.next(0.0, 1.0), 0.1);
+        assert_eq!(length.next(0.0, 1.0).0, 0.1);
         for _ in 0..9 {
             length.accept(0.1, 1);
         }
-        assert_eq!(length.next(0.0, 10.0), 0.8);
+        assert_eq!(length.next(0.0, 10.0).0, 0.8);
         assert!(control.check().is_ok() && StepControl { min: 0.5, ..control }.check().is_err());
         assert!(StepControl { target_iterations: 0, ..control }.check().is_err());
+    }
+
+    /// Steps of 0.1 to 0.1, 0.2, …: what is left differs from the length by rounding, the step does not, and the time is that asked for.
+    #[test]
+    fn rounding_makes_no_other_length() {
+        let length = StepLength::new(StepControl::fixed(0.1));
+        let mut time = 0.0;
+        for k in 1..100 {
+            let to = f64::from(k) * 0.1;
+            assert_eq!(length.next(time, to), (0.1, to));
+            time = to;
+        }
     }
 }

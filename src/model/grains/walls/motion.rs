@@ -3,7 +3,7 @@
 use super::shape::direction;
 use crate::scene::track::HeldMotion;
 use crate::scene::units::vector;
-use crate::scene::walls::{Wall, WallKind};
+use crate::scene::walls::{Pulses, Wall, WallKind};
 use crate::scene::{SceneError, Table};
 use trackbed_dem::{Motion, Oscillation, RigidBody, Servo, Vec3};
 
@@ -81,9 +81,11 @@ pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
     s.check("max_speed", s.max_speed, |v| v > 0.0, "a speed above 0")?;
     let gain = s.gain.unwrap_or(0.5);
     s.check("gain", gain, |g| g > 0.0 && g <= 1.0, "above 0, at most 1")?;
-    let points = match &s.history {
-        None => vec![[0.0, force]],
-        Some(points) => points.iter().map(|(t, f)| [t.si, f * force]).collect(),
+    let points = match (&s.history, s.optional("pulses", &s.pulses)) {
+        (Some(_), Some(_)) => return Err(s.error("pulses", "a value", "no such key beside `history`")),
+        (None, None) => vec![[0.0, force]],
+        (Some(points), None) => points.iter().map(|(t, f)| [t.si, f * force]).collect(),
+        (None, Some(pulses)) => haversines(&pulses, force)?,
     };
     if points.is_empty()
         || !points.is_sorted_by(|a, b| a[0] < b[0])
@@ -92,6 +94,32 @@ pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
         return Err(s.error("history", "times that do not rise", "points with rising times"));
     }
     Ok(Some(Servo { direction: along, force: points, max_speed: s.max_speed.si, gain }))
+}
+
+/// Most pulses: each takes [`POINTS`] points of a table.
+const MOST_PULSES: u32 = 1_000_000;
+/// Points of a pulse; straight lines between them stray from the haversine by 0.5 % of its height at most.
+const POINTS: u32 = 32;
+
+/// Points (time, force) of pulses.
+fn haversines(pulses: &Table<Pulses>, force: f64) -> Result<Vec<[f64; 2]>, SceneError> {
+    pulses.check("peak", pulses.peak, |v| v >= 0.0 && v.is_finite(), "0 or more")?;
+    pulses.check("frequency", pulses.frequency, |f| f > 0.0, "above 0")?;
+    let expected = format!("1 to {MOST_PULSES}");
+    pulses.check(
+        "count",
+        f64::from(pulses.count),
+        |n| (1.0..=f64::from(MOST_PULSES)).contains(&n),
+        &expected,
+    )?;
+    let start = pulses.start.map_or(0.0, |t| t.si);
+    pulses.check("start", start, |t| t >= 0.0, "0 or more")?;
+    let point = |k: u32| {
+        let phase = f64::from(k) / f64::from(POINTS);
+        let height = 0.5 * (1.0 - libm::cos(std::f64::consts::TAU * phase));
+        [start + phase / pulses.frequency.si, force * (1.0 + (pulses.peak - 1.0) * height)]
+    };
+    Ok((0..=pulses.count * POINTS).map(point).collect())
 }
 
 /// The body that a wall is, where it is one.
