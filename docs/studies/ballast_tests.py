@@ -1,6 +1,6 @@
 """Figures of the ballast tests from their folders of results, one line each, and the mean and spread of the main ones.
 
-    python3 docs/studies/ballast_tests.py box|shear|triaxial|oedometer|push FOLDER...
+    python3 docs/studies/ballast_tests.py box|shear|triaxial|cyclic|oedometer|push FOLDER...
 
 FOLDER holds what `trackbed run` left: cycles.csv, history.csv, push.csv, summary.json. Needs Python 3 and nothing else.
 """
@@ -9,6 +9,7 @@ import csv
 import json
 import math
 import os
+import re
 import sys
 
 
@@ -39,17 +40,17 @@ def degrees(value):
 
 
 def box(folder):
-    """Settlement, its exponent from N = 10 to 100, and means over the second half of the cycles. Bed 0.24 m, plate 0.78 m x 0.29 m, 5 Hz."""
+    """Settlement, its exponent in each decade of cycles, and means over the second half of the cycles. Bed 0.24 m, plate 0.78 m x 0.29 m, 5 Hz."""
     c = table(folder, "cycles.csv")
     with open(os.path.join(folder, "summary.json")) as file:
         summary = json.load(file)
     s, n = [1e3 * v for v in c["settlement"]], len(c["settlement"])
     last = range(n // 2, n)
     d = mean([1e3 * c["resilient_deflection"][i] for i in last])
-    cycles = range(10, min(n, 100) + 1)
+    decades = [range(a, min(n, 10 * a) + 1) for a in (10, 100) if n > a]
     return {
-        "settlement 1, 10, 100 [mm]": [s[i - 1] for i in (1, 10, 100) if i <= n],
-        "exponent": slope([math.log(i) for i in cycles], [math.log(s[i - 1]) for i in cycles]),
+        "settlement 1, 10, 100, 1000 [mm]": [s[i - 1] for i in (1, 10, 100, 1000) if i <= n],
+        "exponent from 10, 100 on": [slope([math.log(i) for i in d], [math.log(s[i - 1]) for i in d]) for d in decades],
         "resilient deflection [mm]": d,
         "secant modulus [MPa]": mean([c["resilient_modulus"][i] / 1e6 for i in last]),
         "modulus of the loading branch [MPa]": mean([c["bed_stiffness"][i] for i in last]) * 0.24 / (0.78 * 0.29) / 1e6,
@@ -103,6 +104,35 @@ def triaxial(folder):
         "volume strain at the end [%]": volume[-1],
         "rate of dilation at the end": -slip,
     }
+
+
+def cyclic(folder):
+    """Permanent axial strain, unloading strain, resilient modulus and volume strain (dilation negative) against the number of pulses.
+
+    Cube of 0.48 m; pulses at 5 Hz from 0.2 s on, or at the frequency that an override names.
+    """
+    with open(os.path.join(folder, "summary.json")) as file:
+        text = " ".join(json.load(file)["overrides"])
+    changed = re.search(r'frequency *= *"?([0-9.]+)', text)
+    frequency, start = float(changed[1]) if changed else 5.0, 0.2
+    h, side = table(folder, "history.csv"), 0.48
+    t, z = h["time"], h["top_displacement_z"]
+    x, y, force = h["side_x_displacement_x"], h["side_y_displacement_y"], h["top_force_z"]
+    at = lambda time: min(range(len(t)), key=lambda i: abs(t[i] - time))
+    first, rows = at(start - 0.005), {}
+    height = side + z[first]
+    volume = lambda i: (side + x[i]) * (side + y[i]) * (side + z[i])
+    for n in range(1, round((t[-1] - start) * frequency + 1e-6) + 1):
+        low, peak = at(start + n / frequency), at(start + (n - 0.5) / frequency)
+        strain = 100 * (z[low] - z[peak]) / height
+        stress = (abs(force[peak]) - abs(force[low])) / side**2 / 1e3
+        rows[n] = [100 * (z[first] - z[low]) / height, strain, stress / strain / 10, 100 * (1 - volume(low) / volume(first))]
+    shown = [n for n in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if n in rows]
+    result = {f"N = {n}: strain, unloading strain [%], modulus [MPa], volume [%]": rows[n] for n in shown}
+    if 100 in rows:
+        d = range(10, 101)
+        result["exponent from 10 to 100"] = slope([math.log(i) for i in d], [math.log(max(rows[i][0], 1e-9)) for i in d])
+    return result
 
 
 def oedometer(folder):

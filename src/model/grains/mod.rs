@@ -33,7 +33,7 @@ pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
 pub use groups::{GradedGroup, GroupsPart};
 pub use measure::{MeasurePlan, RadialPlan};
 pub use part::{GrainsPart, PackingPlan, SurfaceMaterials};
-pub use preview::{Preview, check_steps, preview};
+pub use preview::{Preview, check_steps, preview, with_sleepers};
 pub use refused::refused;
 
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.

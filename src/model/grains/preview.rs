@@ -5,7 +5,7 @@ use super::bonds::{check_joinable, check_joined};
 use super::part::GrainsPart;
 use super::refused::refused;
 use crate::scene::{Document, SceneError};
-use trackbed_dem::Model;
+use trackbed_dem::{Model, ModelInput};
 
 /// Most steps of the grains in a stage: at ten million steps a second, more than any run takes, it lasts a day.
 const MOST_STEPS: f64 = 1e12;
@@ -23,11 +23,6 @@ pub struct Preview {
 /// # Errors
 /// Bad input.
 pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, SceneError> {
-    let sleepers = grains
-        .track
-        .rigid_sleeper()
-        .into_iter()
-        .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
     // First without the sleeper, as a run does to find its place.
     let input = grains.input(grains.groups.bodies.clone());
     if grains.is_packed() {
@@ -36,12 +31,20 @@ pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, Scen
         check_joined(document, &grains.bonds, &input.bonds)?;
     }
     let alone = Model::new(input).map_err(|e| refused(document, &e))?;
-    let bodies = grains.groups.bodies.iter().cloned().chain(sleepers).collect();
-    let whole = Model::new(grains.input(bodies)).map_err(|e| refused(document, &e))?;
+    let whole = Model::new(with_sleepers(grains)).map_err(|e| refused(document, &e))?;
     let dt = whole.dt();
     grains.track.check_pads(document, dt)?;
     grains.track.check_ram(document, dt)?;
     Ok(Preview { alone, whole })
+}
+
+/// The grains at the start with rigid sleepers at the height 0.
+pub fn with_sleepers(grains: &GrainsPart) -> ModelInput {
+    let plan = grains.track.rigid_sleeper();
+    let sleepers = plan
+        .into_iter()
+        .flat_map(|plan| plan.row.centres.iter().map(|&centre| grains.sleeper_body(plan, centre, 0.0)));
+    grains.input(grains.groups.bodies.iter().cloned().chain(sleepers).collect())
 }
 
 /// Refuses a time that takes more steps of `dt` [s] than anyone can wait for.

@@ -7,6 +7,7 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
+use trackbed_dem::bond::BondInput;
 use trackbed_dem::{BackEnd, BodyInput, Material, ModelInput, Plane, Shape, Vec3};
 
 /// Spheres that a column has, if the scene has many more.
@@ -60,14 +61,15 @@ impl Column {
             bodies.iter().filter(|b| !b.absent).map(|b| members(&grains.groups.shapes[b.shape])).sum()
         };
         let all = spheres(&input.bodies);
-        // Bonds name bodies of the whole bed.
-        let whole = !grains.bonds.is_empty();
-        let (bodies, planes) = if whole { (bodies(), Vec::new()) } else { cut(&input, all) };
+        let (numbers, planes) = cut(&input, all);
+        let numbers = unbroken(numbers, &input.bonds, input.bodies.len());
+        let bodies: Vec<BodyInput> = numbers.iter().map(|&b| input.bodies[b].clone()).collect();
         let share = all as f64 / spheres(&bodies).max(1) as f64;
+        input.bonds = among(&numbers, &input.bonds, input.bodies.len());
         input.bodies.clone_from(&bodies);
         input.planes.extend(planes.iter().copied());
         smooth(&mut input, planes.len());
-        let model = dem::Model::new(input)?;
+        let model = dem::Model::new(input.clone())?;
         let (mut state, begun) = (dem::State::new(&model), Instant::now());
         let mut work = dem::Work::new(&model, &state);
         let (mut rested, mut course) = (false, vec![[0.0, 0.0]]);
@@ -90,9 +92,18 @@ impl Column {
             ..input
         };
         let level = plan.and_then(|plan| plan.level).unwrap_or(f64::INFINITY);
-        let below = |b: &BodyInput| whole || b.position.z <= level;
-        let bodies = bodies.into_iter().enumerate().map(place).filter(below).collect();
-        let mut input = ModelInput { body_forces: Vec::new(), other_surface: None, ..grains.input(bodies) };
+        let bodies: Vec<BodyInput> = bodies.into_iter().enumerate().map(place).collect();
+        let below = (0..bodies.len()).filter(|&b| bodies[b].position.z <= level).collect();
+        let below = unbroken(below, &input.bonds, bodies.len());
+        let bonds = std::mem::take(&mut input.bonds);
+        let left = below.iter().map(|&b| bodies[b].clone()).collect();
+        // Bonds name bodies of the whole bed.
+        let proper = match bonds.is_empty() {
+            true => grains.input(left),
+            false => ModelInput { bodies: left, ..grains.input(grains.groups.bodies.clone()) },
+        };
+        let mut input = ModelInput { body_forces: Vec::new(), other_surface: None, ..proper };
+        input.bonds = among(&below, &bonds, bodies.len());
         input.planes.extend(planes.iter().copied());
         smooth(&mut input, planes.len());
         // A bed that was cut out, or has not settled in time, may not be where the walls of the run proper leave room: it costs what it did
@@ -129,13 +140,39 @@ fn members(shape: &Shape) -> usize {
     if let Shape::Clump(clump) = shape { clump.spheres.len() } else { 1 }
 }
 
-/// The grains that lie within a square about the middle of all in plan, and the planes around it; all, and none, where there are
-/// few.
-fn cut(input: &ModelInput, all: usize) -> (Vec<BodyInput>, Vec<Plane>) {
-    let there: Vec<&BodyInput> = input.bodies.iter().filter(|b| !b.absent).collect();
-    if all <= WHOLE {
-        return (there.into_iter().cloned().collect(), Vec::new());
+/// Those of some bodies, by their numbers among `count`, that no bond ties to one that is not among them.
+fn unbroken(mut numbers: Vec<usize>, bonds: &[BondInput], count: usize) -> Vec<usize> {
+    let mut kept = vec![false; count];
+    numbers.iter().for_each(|&b| kept[b] = true);
+    let mut changed = !bonds.is_empty();
+    while changed {
+        changed = false;
+        for bond in bonds {
+            if kept[bond.a] != kept[bond.b] {
+                (kept[bond.a], kept[bond.b], changed) = (false, false, true);
+            }
+        }
     }
+    numbers.retain(|&b| kept[b]);
+    numbers
+}
+
+/// The bonds among some bodies, by the places of these in the list of their numbers among `count`.
+fn among(numbers: &[usize], bonds: &[BondInput], count: usize) -> Vec<BondInput> {
+    let mut place = vec![None; count];
+    numbers.iter().enumerate().for_each(|(at, &b)| place[b] = Some(at));
+    let renamed = |bond: &BondInput| Some(BondInput { a: place[bond.a]?, b: place[bond.b]?, ..*bond });
+    bonds.iter().filter_map(renamed).collect()
+}
+
+/// Numbers of the grains that lie within a square about the middle of all in plan, and the planes around it; all, and none, where
+/// there are few.
+fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>) {
+    let numbers: Vec<usize> = (0..input.bodies.len()).filter(|&b| !input.bodies[b].absent).collect();
+    if all <= WHOLE {
+        return (numbers, Vec::new());
+    }
+    let there: Vec<&BodyInput> = numbers.iter().map(|&b| &input.bodies[b]).collect();
     let reach = |b: &BodyInput| {
         b.scale
             * match &input.shapes[b.shape] {
@@ -157,15 +194,15 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<BodyInput>, Vec<Plane>) {
     let narrow = sides[0].min(sides[1]);
     let largest = there.iter().map(|b| reach(b)).fold(0.0, f64::max);
     let side = if narrow * narrow < area { area / narrow } else { area.sqrt() } + 2.0 * largest;
-    let within = |b: &&BodyInput| (0..2).all(|d| (b.position[d] - middle[d]).abs() + reach(b) <= 0.5 * side);
-    let bodies = there.iter().copied().filter(within).cloned().collect();
+    let within = |b: &BodyInput| (0..2).all(|d| (b.position[d] - middle[d]).abs() + reach(b) <= 0.5 * side);
+    let inside = numbers.iter().copied().filter(|&b| within(&input.bodies[b])).collect();
     let plane = |d: usize, sign: f64| {
         let (mut point, mut normal) = (Vec3::new(middle[0], middle[1], 0.0), Vec3::zeros());
         point[d] += sign * 0.5 * side;
         normal[d] = -sign;
         Plane { point, normal, material: 0, velocity: Vec3::zeros() }
     };
-    (bodies, [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(d, sign)| plane(d, sign)).to_vec())
+    (inside, [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(d, sign)| plane(d, sign)).to_vec())
 }
 
 /// Gives the last planes, those around the column, a material of their own without friction.

@@ -7,7 +7,7 @@ mod solid;
 
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::GrainsPart;
+use crate::model::grains::{GrainsPart, with_sleepers};
 use crate::model::solid::Analysis;
 use crate::run;
 use crate::run::stages::{RUN, SETTLING, longest};
@@ -180,8 +180,10 @@ fn left(
         }
     }
     let mut seconds = whole * column.pace * job.end;
-    if let (Some(window), Some(solid)) = (window(job, grains, ground.as_ref()), &job.solid) {
-        seconds += job.end / window * solid::step(solid, window)?;
+    if let (Some(plan), Some(solid)) = (&job.coupling, &job.solid)
+        && let Some(window) = window(job, grains, ground.as_ref())
+    {
+        seconds += job.end / window * solid::step(solid, plan, window)?;
     }
     stages.push(expected(RUN, seconds));
     Ok(stages)
@@ -202,7 +204,7 @@ fn cores(threads: usize) -> f64 {
 /// Length of a window of grains and solid [s]; none where one of them is alone.
 fn window(job: &Job, grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<f64> {
     let (plan, solid) = (job.coupling.as_ref()?, job.solid.as_ref()?);
-    let model = dem::Model::new(grains.input(grains.groups.bodies.clone())).ok()?;
+    let model = dem::Model::new(with_sleepers(grains)).ok()?;
     let (_, substeps) = plan.classes(grains, &model, solid, ground?);
     Some(model.dt() * f64::from(substeps))
 }

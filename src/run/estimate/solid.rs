@@ -3,32 +3,45 @@
 use super::{Known, StageTime};
 use crate::failure::Failure;
 use crate::model::Job;
+use crate::model::exchange::CouplingPart;
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
-use crate::run::Prediction;
-use crate::run::plastic::PlasticDynamics;
 use crate::run::system::{SolidSystem, System};
+use crate::run::{Prediction, initial};
 use nalgebra::DMatrix;
 use std::time::{Duration, Instant};
+use trackbed_fem::SolveError;
 use trackbed_fem::newmark::Newmark;
+use trackbed_fem::nonlinear::PlasticWindowSolver;
 
 /// Time by the clock for steps.
 const ENOUGH: Duration = Duration::from_millis(500);
 
-/// Share of its weight with which a plastic solid is in equilibrium; the rest sets it in motion.
-const AT_REST: f64 = 0.99;
+/// Share of its weight by which the load of a plastic solid changes from window to window, so that each takes an iteration.
+const RESTLESS: f64 = 0.01;
 
-/// Seconds by the clock of one step of `dt` [s] of a solid that moves under its weight, its factorization apart where it is elastic.
+/// Seconds by the clock of one step of `dt` [s] of a solid that moves under its weight, its factorization apart where one serves all
+/// steps.
 ///
 /// # Errors
 /// A matrix cannot be factored; no equilibrium.
-pub fn step(part: &SolidPart, dt: f64) -> Result<f64, Failure> {
-    let method = TimeMethod::Newmark(Newmark { alpha: 0.25, delta: 0.5 });
+pub fn step(part: &SolidPart, plan: &CouplingPart, dt: f64) -> Result<f64, Failure> {
     if part.is_linear() {
-        time(&mut SolidSystem::new(part, method, dt).map_err(|e| part.failure(&e))?)
-    } else {
-        // Let go without stress, a soil would yield everywhere, and the more so the less it is confined.
-        time(&mut PlasticDynamics::nearly_at_rest(part, method, dt, AT_REST)?)
+        let method = TimeMethod::Newmark(Newmark { alpha: 0.25, delta: 0.5 });
+        let mut system = SolidSystem::new(part, method, dt).map_err(|e| part.failure(&e))?;
+        return time(|| system.advance(&mut |_, _, _, _| ()));
     }
+    // Let go without stress, a soil would yield everywhere, and the more so the less it is confined.
+    let (model, gravity) = (&part.model, part.model.gravity_load());
+    let mut state = initial::under_load(part, model, &gravity, &gravity)?;
+    let failure = |e: SolveError| part.failure(&e);
+    let mut solver = PlasticWindowSolver::new(model, plan.theta, dt, part.newton).map_err(failure)?;
+    let (mut load, mut heavier) = (gravity.clone(), false);
+    time(|| {
+        heavier = !heavier;
+        let factor = if heavier { 1.0 + RESTLESS } else { 1.0 };
+        load.iter_mut().zip(&gravity).for_each(|(l, g)| *l = factor * g);
+        solver.step(model, &mut state, &load).map(drop).map_err(failure)
+    })
 }
 
 /// Static solves that are estimated to take longer are not rehearsed [s].
@@ -56,12 +69,13 @@ pub fn statics(job: &Job, threads: usize) -> Option<Vec<StageTime>> {
     (seconds > LONG).then(|| vec![stage])
 }
 
-fn time<S: System>(system: &mut S) -> Result<f64, Failure> {
+/// Seconds by the clock of a step.
+fn time(mut step: impl FnMut() -> Result<(), Failure>) -> Result<f64, Failure> {
     // The first one touches what the others find warm.
-    system.advance(&mut |_, _, _, _| ())?;
+    step()?;
     let (begun, mut steps) = (Instant::now(), 0);
     while steps < 3 || begun.elapsed() < ENOUGH {
-        system.advance(&mut |_, _, _, _| ())?;
+        step()?;
         steps += 1;
     }
     Ok(begun.elapsed().as_secs_f64() / f64::from(steps))

@@ -58,29 +58,6 @@ impl<'a> PlasticDynamics<'a> {
         Ok(PlasticDynamics::with(part, step, interrupt, solver, (state, 0, load, Spent::default())))
     }
 
-    /// The solid in equilibrium with `share` of its weight, to which the rest comes at once.
-    ///
-    /// # Errors
-    /// There is no equilibrium, or a matrix cannot be factored.
-    pub fn nearly_at_rest(
-        part: &'a SolidPart,
-        method: TimeMethod,
-        step: f64,
-        share: f64,
-    ) -> Result<Self, Failure> {
-        let gravity = part.model.gravity_load();
-        let load: Vec<f64> = gravity.iter().map(|f| share * f).collect();
-        let state = initial::under_load(part, &part.model, &gravity, &load)?;
-        let solver = dynamics_solver(part, method, step)?;
-        Ok(PlasticDynamics::with(
-            part,
-            step,
-            &Interrupt::default(),
-            solver,
-            (state, 0, load, Spent::default()),
-        ))
-    }
-
     /// The solid as a checkpoint has it.
     ///
     /// # Errors
