@@ -198,6 +198,7 @@ pub fn why(found: &Found) -> String {
         Found::Unfinished(record, _) | Found::Failed(record) => match record.exit_code {
             None => "not finished".into(),
             Some(130) => "interrupted".into(),
+            Some(0) => "of another state of the scene, which was changed while the study ran".into(),
             Some(code) => format!("failed, exit code {code}: {}", record.message),
         },
     }

@@ -228,6 +228,20 @@ fn resume_runs_only_what_is_not_done() {
     );
 }
 
+/// A run whose scene was changed between its start and that of the study is no result of the study, and says why.
+#[test]
+fn a_scene_that_changes_meanwhile_is_named() {
+    let folder = folder("study_changed", &steps());
+    trackbed(arguments(&folder, "out", &[])).good();
+    let summary = "out/runs/reference/summary.json";
+    let text = fs::read_to_string(folder.join(summary)).unwrap();
+    let hash = text.split("\"scene_hash\": \"").nth(1).unwrap().split('"').next().unwrap();
+    folder.edit(summary, hash, "another");
+    let said = trackbed(arguments(&folder, "out", &["--merge"]));
+    let shown = format!("{}{}", said.stdout, said.stderr);
+    assert!(shown.contains("of another state of the scene, which was changed while the study ran"), "{shown}");
+}
+
 /// A run that fails is a row with its reason; the others go on, and it is not run again.
 #[test]
 fn a_failed_run_is_a_row() {
