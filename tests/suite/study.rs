@@ -239,7 +239,10 @@ fn a_scene_that_changes_meanwhile_is_named() {
     folder.edit(summary, hash, "another");
     let said = trackbed(arguments(&folder, "out", &["--merge"]));
     let shown = format!("{}{}", said.stdout, said.stderr);
-    assert!(shown.contains("of another state of the scene, which was changed while the study ran"), "{shown}");
+    assert!(
+        shown.contains("of another state of the scene, which was changed while the study ran"),
+        "{shown}"
+    );
 }
 
 /// A run that fails is a row with its reason; the others go on, and it is not run again.
