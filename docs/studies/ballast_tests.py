@@ -126,7 +126,7 @@ def cyclic(folder):
         low, peak = at(start + n / frequency), at(start + (n - 0.5) / frequency)
         strain = 100 * (z[low] - z[peak]) / height
         stress = (abs(force[peak]) - abs(force[low])) / side**2 / 1e3
-        rows[n] = [100 * (z[first] - z[low]) / height, strain, stress / strain / 10, 100 * (1 - volume(low) / volume(first))]
+        rows[n] = [100 * (z[first] - z[low]) / height, strain, stress / strain / 10 if strain else 0.0, 100 * (1 - volume(low) / volume(first))]
     shown = [n for n in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if n in rows]
     result = {f"N = {n}: strain, unloading strain [%], modulus [MPa], volume [%]": rows[n] for n in shown}
     if 100 in rows:
