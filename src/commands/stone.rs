@@ -282,26 +282,34 @@ fn library_info(input: &Path) -> Result<(), Failure> {
         // A stone alone, so that rigid and bonded ones may stand in one file.
         let alone = StoneLibrary { stones: vec![stone.clone()], ..library.clone() };
         let least = stone.spheres.iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
-        let (kind, volume, inertia, mut extents, sieve) = if stone.bonds.is_empty() {
+        let (kind, shape, volume, inertia, mut extents, sieve) = if stone.bonds.is_empty() {
             let c: Clump = alone.clumps().map_err(|e| fault(&e))?.swap_remove(0);
-            (format!("clump, {}", measure::union_shape(&c)), c.volume, c.inertia, c.extents(), c.sieve_size())
+            (
+                String::from("clump"),
+                Some(measure::union_shape(&c)),
+                c.volume,
+                c.inertia,
+                c.extents(),
+                c.sieve_size(),
+            )
         } else {
             let c = alone.clusters().map_err(|e| fault(&e))?.swap_remove(0);
             let kind = format!("bonded, {} bonds, density factor {:.4}", c.bonds.len(), c.density_factor);
-            (kind, c.volume, c.inertia, c.extents(), c.sieve_size())
+            (kind, None, c.volume, c.inertia, c.extents(), c.sieve_size())
         };
         extents.sort_by(|a, b| b.total_cmp(a));
         let [x, y, z] = inertia.map(|v| v / sieve.powi(5));
         let _ = writeln!(
             text,
             "{i} '{}': {kind}, {} spheres, sieve size {sieve:.6} m; for sieve size 1 m: volume {:.6} m³, inertia {x:.6} \
-             {y:.6} {z:.6} m⁵, least radius {:.4} m; b/a {:.3}, c/b {:.3}",
+             {y:.6} {z:.6} m⁵, least radius {:.4} m; b/a {:.3}, c/b {:.3}{}",
             stone.name,
             stone.spheres.len(),
             volume / sieve.powi(3),
             least / sieve,
             extents[1] / extents[0],
             extents[2] / extents[1],
+            shape.map_or(String::new(), |s| format!(", {s}")),
         );
     }
     print(&text)

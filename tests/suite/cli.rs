@@ -374,7 +374,7 @@ fn check_tells_the_stability_of_the_exchange() {
         };
         [after("W = "), after("D = ")]
     };
-    let (shipped, twice) = (numbers("20"), numbers("40"));
+    let (shipped, twice) = (numbers("40"), numbers("80"));
     for k in 0..2 {
         assert!(shipped[k] > 0.05 && shipped[k] < 1.0, "{shipped:?}");
         assert!((twice[k] / shipped[k] - 2.0).abs() < 0.01, "{shipped:?} {twice:?}");

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Makes the main scene small, yet with more than the 2500 spheres from which on the grains share their work.
 pub(super) const SMALL: [&str; 12] = [
-    "grains.0.count=250",
+    "grains.0.count=640",
     "grains.1.count=10",
     "grains.2.count=10",
     "compaction=",

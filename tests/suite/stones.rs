@@ -192,5 +192,5 @@ fn the_shipped_libraries_are_what_their_commands_make() {
         );
         found += 1;
     }
-    assert_eq!(found, 3);
+    assert_eq!(found, 4);
 }
