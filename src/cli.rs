@@ -1,5 +1,6 @@
 //! The command line.
 
+mod convert;
 mod render;
 
 use crate::progress::Verbosity;
@@ -7,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+pub use convert::ConvertArgs;
 pub use render::RenderArgs;
 
 /// Coupled DEM–FEM solver for ballasted railway track.
@@ -66,6 +68,8 @@ pub enum Command {
     View(ViewArgs),
     /// Draw a picture, or a video, of the results of a run into a file: no display, no browser.
     Render(Box<RenderArgs>),
+    /// Convert parameter decks, packings, animations and force chains of older programs, and frames of ours, into each other.
+    Convert(ConvertArgs),
     /// Read a mesh: count and measure it, find its faults, or convert it.
     Mesh {
         /// What to do with the mesh.

@@ -1,6 +1,7 @@
 //! What each command does.
 
 mod check;
+mod convert;
 mod explain;
 mod mesh;
 mod modal;
@@ -48,6 +49,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Mesh { command: MeshCommand::Convert { mesh, output, format } } => {
             mesh::convert(&mesh, &output, format)
         }
+        Command::Convert(args) => convert::convert(&args),
         Command::Stone { command } => stone::stone(&command),
         Command::View(args) => view::view(&args),
         Command::Render(args) => render::render(&args),

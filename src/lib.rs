@@ -8,6 +8,7 @@
 
 pub mod cli;
 pub mod commands;
+pub mod convert;
 pub mod failure;
 pub mod guard;
 mod machine;

@@ -10,6 +10,7 @@ mod suite {
     mod checkpoint_kill;
     mod cli;
     mod contact_laws;
+    mod convert;
     mod determinism;
     mod examples;
     mod exchange;
@@ -27,12 +28,14 @@ mod suite {
     mod mesh_orders;
     mod meshed_sleeper;
     mod messages;
+    mod observe;
     mod packings;
     mod plausible;
     mod rail;
     mod random_runs;
     mod render;
     mod report;
+    mod runout;
     mod scenes;
     mod solid_edges;
     mod solid_keys;

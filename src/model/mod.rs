@@ -5,17 +5,19 @@ pub mod exchange;
 mod faults;
 pub mod grains;
 mod output;
+mod probe;
 pub mod solid;
 mod tables;
 pub mod track;
 
 pub use faults::{read_scene, resolve};
 pub use output::OutputPlan;
+pub use probe::Observed;
 
 use crate::failure::Failure;
 use crate::message::shown;
 use crate::scene::units::vector;
-use crate::scene::{Document, Probe, Scene, SceneError, Table};
+use crate::scene::{Document, Scene, SceneError, Table};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
 
@@ -38,8 +40,8 @@ pub struct Job {
     pub solid_step: Option<f64>,
     /// What is written.
     pub output: OutputPlan,
-    /// Observed nodes: (name, node index).
-    pub probes: Vec<(String, usize)>,
+    /// What is observed, by name.
+    pub probes: Vec<(String, Observed)>,
 }
 
 impl Job {
@@ -91,7 +93,7 @@ impl Job {
         let solid_step = solid_step(scene, end)?;
         let probes = scene
             .rows("probe", &scene.probe)
-            .map(|p| probe(&p, solid.as_ref()))
+            .map(|p| probe::probe(&p, solid.as_ref(), grains.as_ref()))
             .collect::<Result<Vec<_>, _>>()?;
         let output = OutputPlan::new(scene, end)?;
         let title = if scene.title.is_empty() {
@@ -143,6 +145,9 @@ fn refuse_tables_of_grains(scene: &Table<Scene>) -> Result<(), SceneError> {
         ("deposition", scene.deposition.is_some()),
         ("compaction", !scene.compaction.is_empty()),
         ("measure", !scene.measure.is_empty()),
+        ("runout", scene.runout.is_some()),
+        ("specimen", scene.specimen.is_some()),
+        ("events", scene.events.is_some()),
         ("track", scene.track.is_some()),
     ];
     match tables.into_iter().find(|(_, there)| *there) {
@@ -212,31 +217,4 @@ fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneError>
         (None, true) => Err(time.missing("solid_step", "the step of the solid")),
         (None, false) => Ok(None),
     }
-}
-
-fn probe(probe: &Table<Probe>, solid: Option<&solid::SolidPart>) -> Result<(String, usize), SceneError> {
-    let Some(solid) = solid else {
-        return Err(probe.here("a probe", "a [solid] whose nodes it can observe"));
-    };
-    let mesh = solid.model.mesh();
-    // Sleepers are elsewhere until they are set down.
-    let ground = solid.sleepers.as_ref().map_or(mesh.node_count(), |s| s.ground_nodes());
-    let node = match (probe.node, probe.at) {
-        (Some(id), None) => solid::find_node(probe, mesh, id)?,
-        (None, Some(at)) => {
-            let at = vector(&at);
-            let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
-            let nearest = mesh.coordinates[..ground]
-                .iter()
-                .enumerate()
-                .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
-            nearest.map_or(0, |(i, _)| i)
-        }
-        _ => return Err(probe.error("node", "both or none of `node` and `at`", "one of them")),
-    };
-    let name = probe.name.clone().unwrap_or_else(|| format!("n{}", mesh.node_ids[node]));
-    if name.is_empty() || name.contains([',', '"', '\n']) {
-        return Err(probe.error("name", format!("\"{name}\""), "a name without commas or quotes"));
-    }
-    Ok((name, node))
 }

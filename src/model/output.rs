@@ -1,7 +1,7 @@
 //! What a run writes, resolved.
 
 use crate::scene::{Chains, Output, Scene, SceneError, Table};
-use crate::write::{CHOSEN, FORMATS, Format, Part};
+use crate::write::{CHOSEN, EXTRA, FORMATS, Format, Part, SOLID_EXTRA};
 use std::collections::BTreeSet;
 use std::time::Duration;
 
@@ -27,6 +27,12 @@ pub struct OutputPlan {
     pub state: bool,
     /// Fields that frames hold of those that may be chosen; none: all.
     pub fields: Option<Vec<String>>,
+    /// Fields of the grains beside those that all frames may have.
+    pub extra: Vec<&'static str>,
+    /// Tensors of the solid beside those that all frames may have.
+    pub tensors: Vec<&'static str>,
+    /// Last part of the run that has frames of its own: how long [s], how many.
+    pub last: Option<(f64, u32)>,
     /// Frames show the contacts above the mean force only.
     pub strong_chains: bool,
 }
@@ -65,6 +71,12 @@ impl OutputPlan {
             packing: o.packing.unwrap_or(false),
             state: o.state.unwrap_or(true),
             fields: fields(scene, &o)?,
+            extra: extra(scene, &o),
+            tensors: SOLID_EXTRA
+                .into_iter()
+                .filter(|name| o.fields.iter().flatten().any(|n| n == name))
+                .collect(),
+            last: last(scene, &o, end, frames)?,
             strong_chains: o.chains == Some(Chains::Strong),
         })
     }
@@ -77,8 +89,12 @@ impl OutputPlan {
 fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, SceneError> {
     let [solid, grains] = CHOSEN;
     let has = |present: bool, names: &'static [&'static str]| names.iter().filter(move |_| present);
-    let known: BTreeSet<&str> =
-        has(scene.solid.is_some(), solid).chain(has(!scene.grains.is_empty(), grains)).copied().collect();
+    let known: BTreeSet<&str> = has(scene.solid.is_some(), solid)
+        .chain(has(!scene.grains.is_empty(), grains))
+        .chain(has(scene.solid.is_some(), &SOLID_EXTRA))
+        .chain(EXTRA.iter().filter(|name| has_extra(scene, name)))
+        .copied()
+        .collect();
     for (k, name) in o.fields.iter().flatten().enumerate() {
         if !known.contains(name.as_str()) {
             let expected = format!("one of {}", known.iter().copied().collect::<Vec<_>>().join(", "));
@@ -86,6 +102,52 @@ fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, Scene
         }
     }
     Ok(o.fields.clone())
+}
+
+/// The last part of a run, in more detail.
+fn last(
+    scene: &Scene,
+    o: &Table<Output>,
+    end: f64,
+    frames: u32,
+) -> Result<Option<(f64, u32)>, SceneError> {
+    let Some(last) = o.optional("last", &o.last) else { return Ok(None) };
+    if scene.track.as_ref().is_some_and(|t| t.jump.is_some()) {
+        return Err(last.here("it beside [track.jump]", "no such key: such a run has no fixed end"));
+    }
+    let time = last.time.si;
+    last.check("time", time, |t| t > 0.0 && t < end, &format!("above 0, below the end at {end} s"))?;
+    let most = 100_000 - frames.min(100_000);
+    last.check("frames", f64::from(last.frames), |n| (1.0..=f64::from(most)).contains(&n), "1 or more, 100000 with the others")?;
+    Ok(Some((time, last.frames)))
+}
+
+/// Whether the grains of a scene have a field beside those that all have.
+fn has_extra(scene: &Scene, name: &str) -> bool {
+    !scene.grains.is_empty()
+        && match name {
+            // Where a grain began says nothing once it was put back between the borders.
+            "displacement" | "initial_position" => scene.periodic.is_none(),
+            // The sum of contacts, bonds and gravity is all that acts.
+            "acceleration" => {
+                let held = scene.grains.iter().any(|g| g.motion.is_some());
+                !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
+            }
+            _ => !scene.bond.is_empty(),
+        }
+}
+
+/// Fields of the grains beside those that all frames may have: those named, else those of bonds and of a slide.
+fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
+    let wanted = |name: &str| match &o.fields {
+        Some(named) => named.iter().any(|n| n == name),
+        None => match name {
+            "broken_bonds" => true,
+            "displacement" | "initial_position" => scene.runout.is_some(),
+            _ => false,
+        },
+    };
+    EXTRA.into_iter().filter(|name| has_extra(scene, name) && wanted(name)).collect()
 }
 
 /// Whether a format shows nothing but the solid.

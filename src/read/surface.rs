@@ -3,24 +3,26 @@
 //! Besides STL and OBJ (`stl.rs`, `obj.rs`) the plain list that solvers of the field exchange: a line with
 //! the number of vertices and of triangles, the vertices (`x y z`), then the triangles (three vertex numbers, counted
 //! from 1; from 0 where a 0 occurs). Comments, separators and number forms are those of the other lists
-//! (`table`). Triangles may be wound either way, and the surface may be closed or open.
+//! (`table`). Triangles may be wound either way, and the surface may be closed or open. Terrain comes from grids of heights too
+//! (`asc.rs`, `geotiff.rs`), and a body from the skin of a finite-element mesh (`skin.rs`).
 
 use std::path::Path;
 
 use super::error::ReadError;
 use super::table::Table;
-use super::{obj, stl};
+use super::{MESH_ENDINGS, asc, geotiff, obj, skin, stl};
 
 pub use trackbed_dem::shape::polyhedron::Surface;
 
 /// Endings of surface files that can be read.
-pub const SURFACE_ENDINGS: [&str; 6] = ["stl", "obj", "dat", "txt", "tri", "srf"];
+pub const SURFACE_ENDINGS: [&str; 9] = ["stl", "obj", "dat", "txt", "tri", "srf", "asc", "tif", "tiff"];
 
 /// Vertices of an STL file nearer than this times the diagonal of its box are one, where equal ones alone leave it open.
 const STL_TOLERANCE: f64 = 1e-6;
 
-/// Reads a surface, identified by the ending of its name: `.stl` (text or binary), `.obj`, and the plain list `.dat`, `.txt`,
-/// `.tri`, `.srf`. Lengths are taken as metres.
+/// Reads a surface, identified by the ending of its name: `.stl` (text or binary), `.obj`, the plain list `.dat`, `.txt`,
+/// `.tri`, `.srf`, the grids of heights `.asc` (ESRI) and `.tif`, `.tiff` (GeoTIFF), or the skin of a mesh (`.cdb`, `.msh`,
+/// `.inp`, `.vtu`, `.vtk`). Lengths are taken as metres.
 ///
 /// Equal vertices are merged, since STL repeats each for every triangle; where an STL file then still is open, vertices
 /// within 1e-6 of its size are merged too.
@@ -33,9 +35,13 @@ pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
         "stl" => stl::read_stl(path).map(|soup| mended(&soup)),
         "obj" => obj::read_obj(path),
         "dat" | "txt" | "tri" | "srf" => read_plain(path),
+        "asc" => asc::read_asc(path),
+        "tif" | "tiff" => geotiff::read_geotiff(path),
+        _ if MESH_ENDINGS.contains(&ending.as_str()) => skin::read_skin(path),
         _ => {
             let found = if ending.is_empty() { "no ending".to_string() } else { format!("\".{ending}\"") };
-            let expected = ".stl, .obj, or .dat, .txt, .tri or .srf with a list of vertices and triangles";
+            let expected = ".stl, .obj, .asc, .tif, a mesh such as .cdb, or .dat, .txt, .tri or .srf with a list of vertices and \
+                            triangles";
             Err(ReadError::whole(path, "ending of the file name", found, expected))
         }
     }

@@ -82,5 +82,6 @@ pub fn summary(view: GrainsView<'_>) -> BondSummary {
         energy_of_breaks: view.state.ledger.released_by_breaks,
         fragments: fragments.sizes.len(),
         largest_fragment: fragments.sizes.iter().copied().max().unwrap_or(0),
+        events: None,
     }
 }

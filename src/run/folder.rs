@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// What a run may leave beside the files of its formats.
-const FILES: [&str; 18] = [
+const FILES: [&str; 25] = [
     "push.csv",
     "breaks.csv",
     "summary.json",
@@ -26,6 +26,13 @@ const FILES: [&str; 18] = [
     "run.json",
     "end.state",
     "report.html",
+    "runout.vti",
+    "runout.png",
+    "outline.csv",
+    "fragments.csv",
+    "origins.csv",
+    "events.csv",
+    "specimen.svg",
 ];
 
 /// All files of known names.

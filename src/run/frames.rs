@@ -1,14 +1,17 @@
 //! What the writers show of a running system.
 
+use super::runout;
 use super::system::{GrainsView, SolidView};
 use super::wall_output;
 use crate::failure::Failure;
 use crate::model::OutputPlan;
 use crate::model::grains::GrainsPart;
-use crate::write::{ChainFrame, Frame, GrainFrame, Part, SolidFrame, WallFrame, WallKind, Writers};
+use crate::write::{ChainFrame, Extra, Frame, GrainFrame, NO_BODY, Part, SolidFrame, WallFrame, WallKind, Writers};
 use std::path::Path;
 use trackbed_dem as dem;
+use trackbed_dem::bond::{Break, BreakMode};
 use trackbed_dem::shape::Shape;
+use trackbed_fem::element::stiffness_points;
 use trackbed_fem::stress;
 
 /// Yield function of a material without a yield surface: inside by definition.
@@ -20,10 +23,11 @@ struct SolidFields {
     von_mises: Vec<f64>,
     equivalent_plastic_strain: Vec<f64>,
     yield_function: Vec<f64>,
+    tensors: Vec<(&'static str, Vec<[f64; 6]>)>,
 }
 
 impl SolidFields {
-    fn of(view: SolidView<'_>) -> SolidFields {
+    fn of(view: SolidView<'_>, extra: &[&'static str]) -> SolidFields {
         let SolidView { model, state } = view;
         let (stress, equivalent_plastic_strain, yield_function) = if state.points.is_empty() {
             let nodes = model.mesh().node_count();
@@ -36,7 +40,8 @@ impl SolidFields {
             )
         };
         let von_mises = stress.iter().map(stress::von_mises).collect();
-        SolidFields { stress, von_mises, equivalent_plastic_strain, yield_function }
+        let tensors = extra.iter().map(|name| (*name, strains(view, *name == "plastic_strain"))).collect();
+        SolidFields { stress, von_mises, equivalent_plastic_strain, yield_function, tensors }
     }
 
     fn frame<'a>(&'a self, view: SolidView<'a>) -> SolidFrame<'a> {
@@ -48,8 +53,28 @@ impl SolidFields {
             von_mises: &self.von_mises,
             equivalent_plastic_strain: &self.equivalent_plastic_strain,
             yield_function: &self.yield_function,
+            tensors: &self.tensors,
         }
     }
+}
+
+/// Strain at every node, total or plastic: that of the Gauss points, continued to the nodes as stresses are.
+fn strains(view: SolidView<'_>, plastic: bool) -> Vec<[f64; 6]> {
+    let SolidView { model, state } = view;
+    let tensor = |[xx, yy, zz, xy, yz, zx]: [f64; 6]| [xx, yy, zz, 0.5 * xy, 0.5 * yz, 0.5 * zx];
+    if plastic && state.points.is_empty() {
+        return vec![[0.0; 6]; model.mesh().node_count()];
+    }
+    stress::nodal_from_points(model, |element, p| {
+        if plastic {
+            return tensor(state.points[p].plastic_strain);
+        }
+        let kind = model.mesh().connectivity.kind(element);
+        let rule = stiffness_points(kind, model.quadrature());
+        let strains = model.element_strains(element);
+        let moved = model.mesh().element_values(element, &state.u);
+        tensor(strains.strain(&strains.at(rule[p - model.point_start(element)].xi), &moved))
+    })
 }
 
 /// The grains of a frame, and how they are shown.
@@ -60,6 +85,8 @@ pub struct Shown<'a> {
     pub part: &'a GrainsPart,
     /// Whether contacts above the mean normal force are shown alone.
     pub strong_only: bool,
+    /// Fields of the grains beside those that all frames may have.
+    pub extra: &'a [&'static str],
     /// Adds what else is drawn with the walls.
     pub draw: &'a dyn Fn(&mut WallFrame),
 }
@@ -71,17 +98,17 @@ pub struct Shown<'a> {
 pub fn write(
     writers: &mut Writers,
     (number, time): (usize, f64),
-    solid: Option<SolidView<'_>>,
+    (solid, tensors): (Option<SolidView<'_>>, &[&'static str]),
     grains: Option<Shown<'_>>,
 ) -> Result<(), Failure> {
-    let solid = solid.filter(|_| writers.show(Part::Solid)).map(|view| (SolidFields::of(view), view));
+    let solid = solid.filter(|_| writers.show(Part::Solid)).map(|view| (SolidFields::of(view, tensors), view));
     let mut frame = Frame { number, time, ..Frame::default() };
     frame.solid = solid.as_ref().map(|(fields, view)| fields.frame(*view));
-    let Some(Shown { view, part, strong_only, draw }) = grains else { return Ok(writers.frame(&frame)?) };
+    let Some(Shown { view, part, strong_only, extra, draw }) = grains else { return Ok(writers.frame(&frame)?) };
     // Computed once for all that is shown of them.
     let any = writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
-    let spheres = writers.show(Part::Grains).then(|| spheres(view, &contacts));
+    let spheres = writers.show(Part::Grains).then(|| spheres(view, &contacts, extra));
     let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {
         let mut walls = walls(view, part);
@@ -102,7 +129,7 @@ pub fn write(
 /// As [`write`].
 pub fn write_state(dir: &Path, output: &OutputPlan, view: SolidView<'_>) -> Result<(), Failure> {
     let mut writers = Writers::begin(dir, &output.formats)?.only(&output.fields);
-    write(&mut writers, (0, 0.0), Some(view), None)?;
+    write(&mut writers, (0, 0.0), (Some(view), &output.tensors), None)?;
     Ok(writers.end()?)
 }
 
@@ -126,7 +153,11 @@ fn kind(partner: &dem::Partner) -> u32 {
 const BOND: u32 = 5;
 
 /// The grains: one point per sphere.
-fn spheres(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord]) -> GrainFrame {
+fn spheres(
+    view: GrainsView<'_>,
+    contacts: &[dem::measure::ContactRecord],
+    extra: &[&'static str],
+) -> GrainFrame {
     let stress = dem::measure::mean_stress_of(view.model, view.state, contacts);
     let neighbours = dem::measure::neighbours(view.model, contacts);
     let force = dem::measure::contact_forces_of(view.model, view.state, contacts);
@@ -150,7 +181,34 @@ fn spheres(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord]) -> Gr
             frame.fragment.push(fragments[body]);
         }
     }
+    frame.extra = extra.iter().map(|name| (*name, self::extra(name, view, &frame.id, &force))).collect();
     frame
+}
+
+/// A field that not every frame has, for the spheres of the bodies `id`; `force` is that of contacts and bonds on each body.
+fn extra(name: &str, view: GrainsView<'_>, id: &[u32], force: &[dem::Vec3]) -> Extra {
+    let GrainsView { model, state } = view;
+    let vectors = |of: &dyn Fn(usize) -> dem::Vec3| {
+        Extra::Vectors(id.iter().map(|b| of(*b as usize).into()).collect())
+    };
+    let counts = |of: &dyn Fn(&Break) -> bool| {
+        let mut count = vec![0; model.body_count()];
+        state.breaks().iter().filter(|b| of(b)).flat_map(|b| b.bodies).for_each(|b| count[b as usize] += 1);
+        Extra::Counts(id.iter().map(|b| count[*b as usize]).collect())
+    };
+    match name {
+        "displacement" => {
+            let from = runout::origins(model);
+            vectors(&|b| state.position(b) - from[b])
+        }
+        "initial_position" => {
+            let from = runout::origins(model);
+            vectors(&|b| from[b])
+        }
+        "acceleration" => vectors(&|b| force[b] / model.mass(b) + model.gravity()),
+        "broken_by_shear" => counts(&|b| b.mode == BreakMode::Shear),
+        _ => counts(&|_| true),
+    }
 }
 
 /// The way that puts a body back between periodic borders; `None` where there are none.
@@ -196,6 +254,8 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
         frame.normal_force.push(c.normal_force);
         frame.tangential_force.push(tangential.norm());
         frame.kind.push(kind(&c.b));
+        let partner = if let dem::Partner::Body(b) = c.b { b as u32 } else { NO_BODY };
+        frame.partners.push([c.a as u32, partner]);
     }
     if !strong_only {
         for b in dem::measure::bond_records(view.model, view.state) {
@@ -204,6 +264,7 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
             frame.tangential_force.push(b.shear.norm());
             frame.kind.push(BOND);
             frame.strong.push(0);
+            frame.partners.push([b.a as u32, b.b as u32]);
         }
     }
     frame

@@ -32,6 +32,8 @@ pub struct BondTable {
     pub contact: bool,
     /// Spread of the strengths; default none.
     pub spread: Option<StrengthSpreadTable>,
+    /// Spread of the stiffnesses; default none.
+    pub stiffness_spread: Option<StiffnessSpreadTable>,
     /// Boxes in which strength or stiffness are others.
     #[serde(default)]
     pub region: Vec<StrengthRegion>,
@@ -51,7 +53,7 @@ pub struct Parallel {
     pub normal_stiffness: Option<f64>,
     /// With `normal_stiffness`: shear stiffness per area [Pa/m].
     pub shear_stiffness: Option<f64>,
-    /// Tensile strength [Pa]; default unbreakable.
+    /// Tensile strength [Pa], 0: the first load breaks it; default unbreakable.
     pub tensile_strength: Option<Quantity<Stress>>,
     /// Shear strength [Pa], with `friction_angle` the cohesion; default unbreakable.
     pub shear_strength: Option<Quantity<Stress>>,
@@ -119,7 +121,21 @@ pub struct StrengthSpreadTable {
     pub together: bool,
 }
 
-/// Distribution of strengths.
+/// Spread of the stiffnesses: one factor for all of a bond.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StiffnessSpreadTable {
+    /// Distribution.
+    pub kind: SpreadKind,
+    /// Standard deviation over the mean, of `normal`.
+    pub deviation: Option<f64>,
+    /// Modulus m of `weibull`.
+    pub modulus: Option<f64>,
+    /// Seed; default 1.
+    pub seed: Option<u64>,
+}
+
+/// Distribution of strengths and stiffnesses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpreadKind {

@@ -17,8 +17,10 @@ mod include;
 pub mod material;
 mod output;
 pub mod periodic;
+pub mod runout;
 pub mod schema;
 pub mod solid;
+pub mod specimen;
 mod table;
 pub mod track;
 pub mod units;
@@ -83,6 +85,12 @@ pub struct Scene {
     /// Boxes whose packing is measured.
     #[serde(default)]
     pub measure: Vec<compaction::Measure>,
+    /// How far a slide runs and what it leaves.
+    pub runout: Option<runout::Runout>,
+    /// Stress and strain of a specimen between platens.
+    pub specimen: Option<specimen::Specimen>,
+    /// How breaks of bonds are joined to acoustic events.
+    pub events: Option<specimen::Events>,
     /// Sleeper and its load.
     pub track: Option<track::TrackTable>,
     /// Exchange between grains and solid; needed when a scene has both.
@@ -129,7 +137,8 @@ fn yes() -> bool {
     true
 }
 
-/// A node of the solid, by number or by the place nearest to it, whose motion goes to `history.csv`.
+/// What is observed in `history.csv`: a node of the solid, by number or by the place nearest to it, a grain, a group, or the
+/// grains in a box.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
@@ -139,4 +148,10 @@ pub struct Probe {
     pub node: Option<u32>,
     /// Place [m]; the nearest node is taken.
     pub at: Option<[Quantity<Length>; 3]>,
+    /// Number of a grain, from 0.
+    pub grain: Option<u32>,
+    /// Name of a group of grains.
+    pub group: Option<String>,
+    /// Box `[[x, y, z], [x, y, z]]` whose grains are observed [m].
+    pub region: Option<[[Quantity<Length>; 3]; 2]>,
 }

@@ -31,9 +31,21 @@ pub struct Output {
     pub chains: Option<Chains>,
     /// Fields of solid and grains that frames hold beside what they need to be drawn; default all.
     pub fields: Option<Vec<String>>,
+    /// Last part of the run, with frames of its own.
+    pub last: Option<Last>,
     /// Formats of the frames by key: switched on or off.
     #[schemars(skip)]
     pub formats: BTreeMap<&'static str, bool>,
+}
+
+/// Last part of a run, with frames of its own.
+#[derive(Clone, Copy, Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Last {
+    /// How long it is [s].
+    pub time: Quantity<Time>,
+    /// Frames in it.
+    pub frames: u32,
 }
 
 /// Contacts that the frames show.
@@ -49,7 +61,7 @@ pub enum Chains {
 
 /// Every key of the table: its own, then those of the formats.
 static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "state", "chains", "fields"];
+    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "state", "chains", "fields", "last"];
     own.into_iter().chain(FORMATS.iter().map(|format| format.key)).collect()
 });
 
@@ -92,6 +104,7 @@ impl<'de> Deserialize<'de> for Output {
                         "packing" => output.packing = Some(map.next_value()?),
                         "state" => output.state = Some(map.next_value()?),
                         "chains" => output.chains = Some(map.next_value()?),
+                        "last" => output.last = Some(map.next_value()?),
                         "fields" => output.fields = Some(map.next_value()?),
                         format => {
                             output.formats.insert(format, map.next_value()?);

@@ -6,6 +6,13 @@ pub const CHOSEN: [&[&str]; 2] = [
     &["velocity", "spin", "orientation", "mean_stress", "force", "coordination", "fragment"],
 ];
 
+/// Fields of the grains that are written where a scene names them, or where it has what they show: bonds, a slide.
+pub const EXTRA: [&str; 5] =
+    ["displacement", "initial_position", "acceleration", "broken_bonds", "broken_by_shear"];
+
+/// Fields of the solid that are written where a scene names them.
+pub const SOLID_EXTRA: [&str; 2] = ["strain", "plastic_strain"];
+
 /// The fields that are written: all, or those with these names and what every frame needs to be drawn: places, sizes, numbers of
 /// bodies, parts and nodes, displacement.
 #[derive(Clone, Copy, Debug, Default)]

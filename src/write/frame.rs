@@ -39,6 +39,8 @@ pub struct SolidFrame<'a> {
     pub equivalent_plastic_strain: &'a [f64],
     /// Yield function at the nodes, negative inside the surface [Pa]. Shape `[nodes]`.
     pub yield_function: &'a [f64],
+    /// Tensors at the nodes that not every frame has, by name: xx, yy, zz, xy, yz, zx. Shape `[nodes]` each.
+    pub tensors: &'a [(&'static str, Vec<[f64; 6]>)],
 }
 
 /// The grains at one moment: one item per sphere, the spheres of a clump with the `id` of their body.
@@ -67,7 +69,21 @@ pub struct GrainFrame {
     pub coordination: Vec<u32>,
     /// Number of the fragment: the bodies that bonds hold together.
     pub fragment: Vec<u32>,
+    /// Fields that not every frame has, by name.
+    pub extra: Vec<(&'static str, Extra)>,
 }
+
+/// A field of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Extra {
+    /// Three numbers for each sphere.
+    Vectors(Vec<[f64; 3]>),
+    /// A whole number for each sphere.
+    Counts(Vec<u32>),
+}
+
+/// Number of a partner that is no body: a wall, the solid.
+pub const NO_BODY: u32 = u32::MAX;
 
 /// The contacts at one moment. Every field has the shape `[contacts]`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -82,6 +98,8 @@ pub struct ChainFrame {
     pub kind: Vec<u32>,
     /// 1 where the normal force is above the mean of all contacts, else 0.
     pub strong: Vec<u32>,
+    /// Numbers of the two partners, as `id` of the grains; [`NO_BODY`] for what is no body.
+    pub partners: Vec<[u32; 2]>,
 }
 
 /// The walls at one moment.

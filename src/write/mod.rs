@@ -10,6 +10,7 @@ pub mod atomic;
 mod cdb;
 mod choice;
 pub mod csv;
+pub mod depth_map;
 pub mod error;
 mod frame;
 mod gmsh;
@@ -32,9 +33,9 @@ pub mod vtp;
 pub mod vtu;
 pub mod writer;
 
-pub use choice::{CHOSEN, Choice};
+pub use choice::{CHOSEN, Choice, EXTRA, SOLID_EXTRA};
 pub use error::WriteError;
-pub use frame::{ChainFrame, Frame, GrainFrame, SolidFrame, WallFrame, WallKind};
+pub use frame::{ChainFrame, Extra, Frame, GrainFrame, NO_BODY, SolidFrame, WallFrame, WallKind};
 pub use mesh_file::{MeshOptions, write_mesh_file};
 pub use writer::{Format, Mark, Part, Writers};
 

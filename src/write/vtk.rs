@@ -218,6 +218,20 @@ pub fn write(
     counts: &[(&str, usize)],
     sections: &[Section],
 ) -> Result<(), WriteError> {
+    let counts: Vec<(&str, String)> = counts.iter().map(|(k, n)| (*k, n.to_string())).collect();
+    write_with(file, (kind, &[]), &counts, sections)
+}
+
+/// Writes a data set with attributes of its own and of its piece, as images have them.
+///
+/// # Errors
+/// What the system refuses.
+pub fn write_with(
+    file: &Path,
+    (kind, attributes): (&str, &[(&str, String)]),
+    piece: &[(&str, String)],
+    sections: &[Section],
+) -> Result<(), WriteError> {
     let arrays: Vec<&Array> = sections.iter().flat_map(|section| &section.arrays).collect();
     let texts = arrays.par_iter().map(|array| array.encoded()).collect::<Result<Vec<String>, _>>();
     let mut texts = texts.map_err(WriteError::io(file))?.into_iter();
@@ -231,10 +245,10 @@ pub fn write(
             ("compressor", "vtkZLibDataCompressor"),
         ]);
         let written = root.write_inner_content(|xml| {
-            xml.create_element(kind).write_inner_content(|xml| {
-                let counts: Vec<(&str, String)> = counts.iter().map(|(k, n)| (*k, n.to_string())).collect();
-                let counts = counts.iter().map(|(k, n)| (*k, n.as_str()));
-                xml.create_element("Piece").with_attributes(counts).write_inner_content(|xml| {
+            let set = xml.create_element(kind).with_attributes(attributes.iter().map(|(k, v)| (*k, v.as_str())));
+            set.write_inner_content(|xml| {
+                let piece = piece.iter().map(|(k, v)| (*k, v.as_str()));
+                xml.create_element("Piece").with_attributes(piece).write_inner_content(|xml| {
                     sections.iter().try_for_each(|section| write_section(xml, section, &mut texts))
                 })?;
                 Ok::<(), quick_xml::Error>(())

@@ -60,6 +60,7 @@ fn write_solid(file: &Path, mesh: &Mesh) {
         von_mises: &scalar,
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
+            tensors: &[],
     };
     vtu::write_solid(file, &frame, Choice::default()).unwrap();
 }
@@ -77,6 +78,7 @@ fn grains(count: usize) -> GrainFrame {
         mean_stress: vec![-2.0e3; count],
         force: (0..count).map(vector).collect(),
         coordination: vec![6; count],
+        extra: Vec::new(),
         fragment: vec![1; count],
     }
 }
@@ -88,6 +90,7 @@ fn chains(count: usize) -> ChainFrame {
         tangential_force: vec![0.1; count],
         kind: vec![0; count],
         strong: vec![1; count],
+            partners: vec![[0, 1]; count],
     }
 }
 

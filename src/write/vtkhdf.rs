@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::choice::Choice;
 use super::error::{WriteError, check_field};
-use super::frame::{Frame, GrainFrame, SolidFrame};
+use super::frame::{Extra, Frame, GrainFrame, SolidFrame};
 use super::hdf5::{Attribute, File, GroupId, Kind};
 use super::vtk::matrices;
 use super::vtu::cell_type;
@@ -90,7 +90,7 @@ fn ids<'a>(name: &'static str, values: &'a [u32]) -> Field<'a> {
 }
 
 /// The fields that are written.
-fn chosen<'a, const N: usize>(fields: [Field<'a>; N], choice: Choice<'_>) -> Vec<Field<'a>> {
+fn chosen<'a>(fields: impl IntoIterator<Item = Field<'a>>, choice: Choice<'_>) -> Vec<Field<'a>> {
     fields.into_iter().filter(|field| choice.has(field.name)).collect()
 }
 
@@ -230,7 +230,7 @@ impl Series {
     fn solid(&mut self, time: f64, frame: &SolidFrame<'_>, choice: Choice<'_>) -> Result<(), WriteError> {
         let mesh = frame.mesh;
         let stress = Values::Doubles(9, Cow::Owned(matrices(frame.stress)));
-        let fields = [
+        let mut fields = vec![
             doubles("displacement", 3, frame.displacement),
             doubles("velocity", 3, frame.velocity),
             Field { name: "stress", values: stress },
@@ -238,6 +238,10 @@ impl Series {
             doubles("equivalent_plastic_strain", 1, frame.equivalent_plastic_strain),
             doubles("yield_function", 1, frame.yield_function),
         ];
+        fields.extend(frame.tensors.iter().map(|(name, values)| Field {
+            name,
+            values: Values::Doubles(9, Cow::Owned(matrices(values))),
+        }));
         let nodes = mesh.node_count();
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", mesh.coordinates.as_flattened(), 3, nodes)?;
@@ -272,7 +276,7 @@ impl Series {
 
     /// Adds a step of the grains.
     fn grains(&mut self, time: f64, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
-        let fields = [
+        let mut fields = vec![
             doubles("radius", 1, &frame.radius),
             doubles("velocity", 3, frame.velocity.as_flattened()),
             doubles("spin", 3, frame.spin.as_flattened()),
@@ -284,6 +288,10 @@ impl Series {
             ids("coordination", &frame.coordination),
             ids("fragment", &frame.fragment),
         ];
+        fields.extend(frame.extra.iter().map(|(name, extra)| match extra {
+            Extra::Vectors(values) => doubles(name, 3, values.as_flattened()),
+            Extra::Counts(values) => ids(name, values),
+        }));
         let count = frame.position.len();
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", frame.position.as_flattened(), 3, count)?;

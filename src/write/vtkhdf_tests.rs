@@ -41,6 +41,7 @@ fn grains(count: usize, time: f64) -> GrainFrame {
         mean_stress: vec![-time; count],
         force: (0..count).map(|i| v(i, 3.0)).collect(),
         coordination: vec![6; count],
+        extra: Vec::new(),
         fragment: vec![1; count],
     }
 }
@@ -124,6 +125,7 @@ fn vtk_finds_the_solid_of_every_time() {
             von_mises: &scalar,
             equivalent_plastic_strain: &scalar,
             yield_function: &scalar,
+            tensors: &[],
         };
         writer.frame(&Frame { number, time, solid: Some(solid), ..Frame::default() }).unwrap();
         writeln!(expected, "t = {time:.17e}: {n} points, 2 cells").unwrap();

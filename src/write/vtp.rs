@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::choice::Choice;
 use super::error::WriteError;
-use super::frame::{ChainFrame, GrainFrame, WallFrame};
+use super::frame::{ChainFrame, Extra, GrainFrame, WallFrame};
 use super::vtk::{self, Fields, Section};
 
 /// Writes the grains: point data of the names of [`GrainFrame`], as far as they are chosen.
@@ -27,11 +27,18 @@ pub fn write_grains(file: &Path, frame: &GrainFrame, choice: Choice<'_>) -> Resu
     fields.vector("force", frame.force.as_flattened())?;
     fields.ids("coordination", &frame.coordination)?;
     fields.ids("fragment", &frame.fragment)?;
+    for (name, extra) in &frame.extra {
+        match extra {
+            Extra::Vectors(values) => fields.vector(name, values.as_flattened())?,
+            Extra::Counts(values) => fields.ids(name, values)?,
+        }
+    }
     let verts = Section::cells_in_order("Verts", count, 1);
     write(file, &frame.position, fields, verts, ("NumberOfVerts", count))
 }
 
-/// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`.
+/// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`, numbers `a`, `b` of
+/// the partners.
 ///
 /// # Errors
 /// As [`write_grains`].
@@ -45,6 +52,9 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     fields.scalar("magnitude", &magnitude)?;
     fields.ids("kind", &frame.kind)?;
     fields.ids("strong", &frame.strong)?;
+    for (k, name) in ["a", "b"].into_iter().enumerate() {
+        fields.ids(name, &frame.partners.iter().map(|p| p[k]).collect::<Vec<_>>())?;
+    }
     let lines = Section::cells_in_order("Lines", count, 2);
     write(file, frame.ends.as_flattened(), fields, lines, ("NumberOfLines", count))
 }
@@ -108,6 +118,7 @@ mod tests {
             mean_stress: vec![-3.0; count],
             force: (0..count).map(v).collect(),
             coordination: vec![6; count],
+            extra: Vec::new(),
             fragment: vec![1; count],
         }
     }
@@ -161,6 +172,7 @@ mod tests {
             tangential_force: vec![4.0],
             kind: vec![1],
             strong: vec![1],
+            partners: vec![[0, 1]; 1],
         };
         write_chains(&file, &frame).unwrap();
         let DataSet::PolyData { mut pieces, .. } = vtkio::Vtk::import(&file).unwrap().data else {

@@ -29,6 +29,9 @@ pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Resul
     fields.scalar("von_mises", frame.von_mises)?;
     fields.scalar("equivalent_plastic_strain", frame.equivalent_plastic_strain)?;
     fields.scalar("yield_function", frame.yield_function)?;
+    for (name, values) in frame.tensors {
+        fields.tensor(name, values)?;
+    }
     fields.ids("node_id", &frame.mesh.node_ids)?;
     write_grid(file, frame.mesh, fields, &BTreeMap::new())
 }
@@ -143,6 +146,7 @@ mod tests {
             von_mises: &scalar,
             equivalent_plastic_strain: &scalar,
             yield_function: &scalar,
+            tensors: &[],
         };
         let mut bad = stress.clone();
         bad[5][4] = f64::NAN;

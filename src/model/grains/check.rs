@@ -21,7 +21,7 @@ pub(super) fn find<T>(
 }
 
 /// A box with a volume, from `key` of a table.
-pub(super) fn region<T>(
+pub(in crate::model) fn region<T>(
     table: &Table<T>,
     key: &str,
     corners: &[[Quantity<Length>; 3]; 2],

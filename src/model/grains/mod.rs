@@ -13,7 +13,9 @@ mod part;
 mod periodic;
 mod preview;
 mod refused;
+mod runout;
 mod sources;
+mod specimen;
 mod steps;
 mod track;
 mod walls;
@@ -23,6 +25,7 @@ mod wind;
 use crate::failure::Failure;
 use crate::scene::{Scene, Table};
 use check::find;
+pub(in crate::model) use check::region;
 use steps::StepPlan;
 use trackbed_dem::Vec3;
 
@@ -35,6 +38,8 @@ pub use measure::{MeasurePlan, RadialPlan};
 pub use part::{GrainsPart, PackingPlan, SurfaceMaterials};
 pub use preview::{Preview, check_steps, preview, with_sleepers};
 pub use refused::refused;
+pub use runout::{MOST_CELLS, RunoutPlan};
+pub use specimen::{EventPlan, Platen, SpecimenPlan};
 
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.
 ///
@@ -59,6 +64,9 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
     let wind = wind::build(scene)?;
     let water = water::build(scene, &gravity)?;
     let measures = measure::build(scene)?;
+    let runout = runout::build(scene, &groups)?;
+    let specimen = specimen::build(scene, &groups, &walls)?;
+    let events = specimen::events(scene)?;
     bonds::rules(scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
     let fixed = match (bonds.is_empty(), periodic.iter().any(Option::is_some)) {
         (false, _) => Some("are bonded"),
@@ -79,6 +87,9 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
         periodic,
         packing: PackingPlan { deposition, compaction },
         measures,
+        runout,
+        specimen,
+        events,
         track,
         flow,
     })

@@ -8,6 +8,8 @@ use super::groups::GroupsPart;
 use super::materials::MaterialsPart;
 use super::measure::MeasurePlan;
 use super::periodic::Borders;
+use super::runout::RunoutPlan;
+use super::specimen::{EventPlan, SpecimenPlan};
 use super::steps::StepPlan;
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
@@ -40,6 +42,12 @@ pub struct GrainsPart {
     pub packing: PackingPlan,
     /// Boxes that are measured.
     pub measures: Vec<MeasurePlan>,
+    /// What of a slide is measured.
+    pub runout: Option<RunoutPlan>,
+    /// A specimen between platens.
+    pub specimen: Option<SpecimenPlan>,
+    /// How breaks are joined to acoustic events.
+    pub events: Option<EventPlan>,
     /// Sleepers, rail and load.
     pub track: TrackPart,
     /// Inlets and outlets.

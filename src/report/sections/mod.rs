@@ -13,6 +13,7 @@ mod overview;
 mod packing;
 mod reproduce;
 mod settlement;
+mod slopes;
 mod solid;
 mod steps;
 mod track;
@@ -27,7 +28,7 @@ type Make = fn(&[RunData]) -> Option<Section>;
 
 /// All sections that the runs have something for.
 pub fn all(runs: &[RunData]) -> Vec<Section> {
-    let sections: [Make; 20] = [
+    let sections: [Make; 22] = [
         verdict::verdict,
         compare::compare,
         overview::overview,
@@ -40,6 +41,8 @@ pub fn all(runs: &[RunData]) -> Vec<Section> {
         packing::packing,
         gradation::gradation,
         flow::flow,
+        slopes::runout,
+        slopes::specimen,
         bonds::bonds,
         solid::solid,
         solid::safety,

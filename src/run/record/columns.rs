@@ -3,13 +3,17 @@
 use super::histories::{Energies, Interface, Inventory, Probes, Rails, Sleepers, Supports};
 use crate::run::bond_output::{Bonds, Groups};
 use crate::run::recorder::{Now, Recorder};
+use crate::run::runout::Slides;
+use crate::run::specimen::Specimens;
 use crate::run::system::System;
 use crate::run::wall_output::Walls;
 use crate::write::csv::{Column, Row};
 
 /// Everything that is recorded, in the order of the columns behind the time.
-fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 10] {
-    [&Sleepers, &Interface, &Energies, &Rails, &Bonds, &Groups, &Supports, &Probes, &Walls, &Inventory]
+fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 12] {
+    [
+        &Sleepers, &Interface, &Energies, &Rails, &Bonds, &Groups, &Supports, &Probes, &Walls, &Inventory, &Slides, &Specimens,
+    ]
 }
 
 fn record<S: System>(now: &Now<'_, S>, row: &mut Row) {

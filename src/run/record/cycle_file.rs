@@ -30,8 +30,8 @@ fn load_of(job: &Job) -> Option<&CyclicLoad> {
     job.grains.as_ref()?.track.load.as_ref()
 }
 
-/// The row of a cycle.
-pub fn record(job: &Job, c: &Cycle, row: &mut Row) {
+/// The row of a cycle; `broken` are the bonds broken so far by tension and by shear.
+pub fn record(job: &Job, c: &Cycle, broken: (u64, u64), row: &mut Row) {
     row.put("cycle", "", f64::from(c.number));
     row.put("settlement", "m", c.settlement);
     row.put("resilient_deflection", "m", c.resilient_deflection);
@@ -50,9 +50,13 @@ pub fn record(job: &Job, c: &Cycle, row: &mut Row) {
         row.put("simulated", "", f64::from(c.simulated));
         row.put("jump_error", "m", c.jump_error);
     }
+    if job.grains.as_ref().is_some_and(|g| !g.bonds.is_empty()) {
+        row.put("broken_by_tension", "", broken.0 as f64);
+        row.put("broken_by_shear", "", broken.1 as f64);
+    }
 }
 
 /// Its columns.
 pub fn columns(job: &Job) -> Vec<Column> {
-    Row::columns_of(|row| record(job, &Cycle::default(), row))
+    Row::columns_of(|row| record(job, &Cycle::default(), (0, 0), row))
 }

@@ -1,8 +1,10 @@
 //! Columns of the sleepers, the interface, the energies, the rails, the supports, the probes, inlets and outlets.
 
+use crate::model::Observed;
 use crate::run::recorder::{Now, Recorder};
-use crate::run::system::System;
+use crate::run::system::{GrainsView, System};
 use crate::write::csv::Row;
+use trackbed_dem as dem;
 
 /// Place, load and shape of each sleeper.
 pub struct Sleepers;
@@ -101,13 +103,47 @@ pub struct Probes;
 
 impl<S: System> Recorder<S> for Probes {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
-        let Some(solid) = now.system.solid() else { return };
-        for (name, node) in &now.job.probes {
-            let of_node = |field: &[f64]| [field[3 * node], field[3 * node + 1], field[3 * node + 2]];
-            row.vector(format_args!("{name}_u"), "m", of_node(&solid.state.u));
-            row.vector(format_args!("{name}_v"), "m/s", of_node(&solid.state.v));
+        for (name, observed) in &now.job.probes {
+            match (observed, now.system.solid(), now.system.grains()) {
+                (Observed::Node(node), Some(solid), _) => {
+                    let of_node = |field: &[f64]| [field[3 * node], field[3 * node + 1], field[3 * node + 2]];
+                    row.vector(format_args!("{name}_u"), "m", of_node(&solid.state.u));
+                    row.vector(format_args!("{name}_v"), "m/s", of_node(&solid.state.v));
+                }
+                (observed, _, Some(view)) => of_grains(name, *observed, view, row),
+                _ => {}
+            }
         }
     }
+}
+
+/// Number, mean place, velocity, spin and mean stress of the grains that a probe observes, each weighted by mass, stress by volume; zeros
+/// without any.
+fn of_grains(name: &str, observed: Observed, view: GrainsView<'_>, row: &mut Row) {
+    let GrainsView { model, state } = view;
+    let seen = |b: usize| match observed {
+        Observed::Node(_) => false,
+        Observed::Grain(grain) => b == grain,
+        Observed::Group(part) => model.part(b) == part,
+        Observed::Region(region) => region.holds(&model.wrap(&state.position(b))),
+    };
+    let bodies: Vec<usize> = (0..model.body_count()).filter(|&b| state.present(b) && seen(b)).collect();
+    let mass: f64 = bodies.iter().map(|&b| model.mass(b)).sum();
+    let mean = |of: &dyn Fn(usize) -> dem::Vec3| {
+        let sum: dem::Vec3 = bodies.iter().map(|&b| of(b) * model.mass(b)).sum();
+        sum / mass.max(f64::MIN_POSITIVE)
+    };
+    if !matches!(observed, Observed::Grain(_)) {
+        row.put(format_args!("{name}_grains"), "", bodies.len() as f64);
+    }
+    row.vector(format_args!("{name}_x"), "m", mean(&|b| state.position(b)));
+    row.vector(format_args!("{name}_v"), "m/s", mean(&|b| state.velocity(b)));
+    row.vector(format_args!("{name}_spin"), "rad/s", mean(&|b| state.spin(b)));
+    let stress = dem::measure::mean_stress(model, state);
+    let volume: f64 = bodies.iter().map(|&b| model.volume(b)).sum();
+    let trace = |b: usize| stress[b][0] + stress[b][1] + stress[b][2];
+    let sum: f64 = bodies.iter().map(|&b| model.volume(b) * trace(b) / 3.0).sum();
+    row.put(format_args!("{name}_mean_stress"), "Pa", sum / volume.max(f64::MIN_POSITIVE));
 }
 
 /// Grains that are there, that came in and that went out.

@@ -12,6 +12,7 @@ use super::flow::Flow;
 use super::folder;
 use super::frames::{self, Shown};
 use super::recorder::Now;
+use super::specimen::{self, SpecimenRecord};
 use super::system::System;
 use super::track_output;
 use crate::failure::Failure;
@@ -53,6 +54,8 @@ struct Course {
     watch: EnergyWatch,
     /// Settlement of each sleeper since the run began against time, for the plot.
     settlement: Vec<Vec<[f64; 2]>>,
+    /// Stress and strain of a specimen.
+    specimen: Vec<specimen::Point>,
     first_heights: Vec<f64>,
 }
 
@@ -148,6 +151,10 @@ impl<'a> Results<'a> {
     ) -> Result<(), Failure> {
         let course = &mut self.course;
         course.settle(time, system, track);
+        let plan = self.job.grains.as_ref().and_then(|g| g.specimen.as_ref());
+        if let Some((plan, view)) = plan.zip(system.grains()) {
+            course.specimen.push(specimen::point(plan, view, time));
+        }
         course.balance.now = system.stored();
         course.balance.spent = system.spent();
         course.balance.spent.jumps = course.jump_energy;
@@ -180,7 +187,8 @@ impl<'a> Results<'a> {
             return Ok(None);
         };
         if let Some(file) = &mut self.cycles_file {
-            file.row(&Row::values_of(|row| cycle_file::record(self.job, &cycle, row)))?;
+            let broken = system.grains().map_or((0, 0), |g| g.state.broken_bonds());
+            file.row(&Row::values_of(|row| cycle_file::record(self.job, &cycle, broken, row)))?;
         }
         if let Some(plan) = self.job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()) {
             let error = if plan.grains { self.energy_error(system) } else { 0.0 };
@@ -237,9 +245,11 @@ impl<'a> Results<'a> {
             view,
             part,
             strong_only: self.job.output.strong_chains,
+            extra: &self.job.output.extra,
             draw,
         });
-        frames::write(&mut self.writers, (self.course.frame, time), system.solid(), grains)?;
+        let solid = (system.solid(), self.job.output.tensors.as_slice());
+        frames::write(&mut self.writers, (self.course.frame, time), solid, grains)?;
         self.course.frame += 1;
         Ok(())
     }
@@ -265,6 +275,17 @@ impl<'a> Results<'a> {
     /// How the energy account stands to what was turned over.
     pub fn energy_watch(&self) -> &EnergyWatch {
         &self.course.watch
+    }
+
+    /// Constants of the specimen, and its curve as a plot.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn specimen<S: System>(&self, system: &S) -> Result<Option<SpecimenRecord>, Failure> {
+        let plan = self.job.grains.as_ref().and_then(|g| g.specimen.as_ref());
+        let Some((plan, view)) = plan.zip(system.grains()) else { return Ok(None) };
+        self.plot_specimen(plan.brazilian)?;
+        Ok(specimen::record(plan, &self.course.specimen, view))
     }
 
     /// Finished load cycles.

@@ -2,6 +2,7 @@
 
 use super::Results;
 use crate::failure::Failure;
+use crate::run::specimen::Point;
 use crate::write::svg::{LinePlot, Series};
 use trackbed_coupling::track::cycles::Cycle;
 
@@ -13,6 +14,30 @@ impl Results<'_> {
     pub fn plot_settlement(&self) -> Result<(), Failure> {
         self.plot_lowering()?;
         self.plot_cycles()
+    }
+
+    /// `specimen.svg`: stress against axial and lateral strain.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn plot_specimen(&self, brazilian: bool) -> Result<(), Failure> {
+        let curve = &self.course.specimen;
+        let series = |name: &str, x: fn(&Point) -> f64| Series {
+            name: name.into(),
+            points: curve.iter().map(|p| [1e3 * x(p), 1e-6 * p.stress]).collect(),
+        };
+        let mut curves = vec![series("platens", |p| p.strain)];
+        if !brazilian {
+            curves.push(series("axial, of the grains", |p| p.axial));
+            curves.push(series("lateral, to the left", |p| -p.lateral));
+        }
+        let plot = LinePlot {
+            title: format!("{}: stress and strain", self.job.title),
+            x_label: "strain [1e-3]".into(),
+            y_label: "stress [MPa]".into(),
+            series: curves,
+        };
+        Ok(plot.write(&self.dir.join("specimen.svg"))?)
     }
 
     /// `sleeper.svg`: lowering of every sleeper against time.

@@ -10,6 +10,7 @@ use crate::model::solid::Analysis;
 use crate::run::context::Run;
 use crate::run::from::END;
 use crate::run::packing;
+use crate::run::runout;
 use crate::run::summary::NewtonRecord;
 use crate::run::system::{GrainsSystem, System};
 use trackbed_coupling::track::TrackSystem;
@@ -75,6 +76,9 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     let grains = state.grains.as_ref().expect("a run with grains");
     time_loop::with_grains(run, &mut system, grains, resumed, &mut state.summary)?;
     state.summary.bed.packing = record_packing(run, &system, grains)?;
+    if let Some(view) = system.grains() {
+        state.summary.bed.runout = runout::record(run.dir, view, &grains.part)?;
+    }
     Ok(())
 }
 

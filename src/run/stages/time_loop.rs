@@ -7,11 +7,12 @@ use crate::progress::Progress;
 use crate::run::bond_output;
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
+use crate::run::events;
 use crate::run::flow::Flow;
 use crate::run::from::{self, END};
 use crate::run::record::Results;
 use crate::run::summary::{
-    BedStiffness, EnergyRecord, MomentumRecord, SettlementRecord, StageRecord, Summary,
+    BedStiffness, BondSummary, EnergyRecord, MomentumRecord, PlasticRecord, SettlementRecord, StageRecord, Summary,
 };
 use crate::run::system::System;
 use crate::run::track_output;
@@ -45,14 +46,32 @@ struct Place {
 struct Cadence {
     /// Length of a window [s].
     window: f64,
-    /// Frames over the run.
+    /// Frames over the run, but for its last part where that has its own.
     frames: u64,
+    /// Window that the last part begins with, and its frames.
+    last: Option<(u64, u64)>,
     /// Windows between two rows of the history.
     every: u64,
     /// Windows after the last cycle, whenever that ends.
     tail: u64,
     /// Whether cycles are jumped over: then neither time nor steps show how far a run is.
     jumps: bool,
+}
+
+impl Cadence {
+    /// The frame after the next one, `next`, when that is due at the window `reached` of `whole`.
+    fn frame_after(&self, next: u64, reached: u64, whole: u64) -> Option<u64> {
+        // Frames of the first part are counted before those of the last.
+        let (begin, last) = self.last.unwrap_or((whole, 0));
+        let first = if begin > 0 { self.frames } else { 0 };
+        let (count, from, done, of) = if next > first && last > 0 {
+            (last, first, reached.saturating_sub(begin), whole - begin)
+        } else {
+            (first, 0, reached.min(begin), begin)
+        };
+        let place = next - from;
+        (count > 0 && place <= count && done * count >= place * of).then(|| from + done * count / of + 1)
+    }
 }
 
 /// The parts of a running loop beside the system.
@@ -155,6 +174,10 @@ impl<'a> TimeLoop<'a> {
         let cadence = Cadence {
             window,
             frames: u64::from(job.output.frames).min(windows),
+            last: job.output.last.map(|(time, frames)| {
+                let begin = (((job.end - time) / window).floor().max(0.0) as u64).min(windows - 1);
+                (begin, u64::from(frames).min(windows - begin))
+            }),
             every: ((job.output.history_interval / window).round() as u64).max(1),
             tail: load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows)),
             jumps: part.is_some_and(|g| g.track.after.jump.is_some()),
@@ -206,10 +229,9 @@ impl<'a> TimeLoop<'a> {
         }
         self.place.done = k;
         let (reached, whole) = share(&self.cadence, &self.recorder, &self.place);
-        let (frames, next) = (self.cadence.frames, self.place.next_frame);
-        if frames > 0 && reached * frames >= next * whole && next <= frames {
+        if let Some(next) = self.cadence.frame_after(self.place.next_frame, reached, whole) {
             self.recorder.frame(time, system, &self.track).map_err(|e| e.at(time))?;
-            self.place.next_frame = reached * frames / whole + 1;
+            self.place.next_frame = next;
         }
         if let Some(text) = system.progress() {
             self.progress.message(text);
@@ -286,7 +308,8 @@ impl<'a> TimeLoop<'a> {
             && !part.bonds.is_empty()
         {
             bond_output::write_breaks(dir, view.state)?;
-            summary.bonds = Some(bond_output::summary(view));
+            let events = events::record(dir, view.state.breaks(), part.events)?;
+            summary.bonds = Some(BondSummary { events, ..bond_output::summary(view) });
         }
         let done = self.place.done;
         let (grain_steps, solid_steps) = system.steps_done(done);
@@ -313,6 +336,8 @@ impl<'a> TimeLoop<'a> {
         summary.track.sleepers = self.track.record();
         summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.remarks()));
         summary.energy = Some(energy(&self.recorder));
+        summary.bed.specimen = self.recorder.specimen(system)?;
+        summary.solid.plastic = system.solid().and_then(PlasticRecord::of);
         self.recorder.end()?;
         self.recorder.plot_settlement()
     }

@@ -8,6 +8,8 @@ pub use records::*;
 pub use verdict::Verdict;
 
 use super::flow::FlowRecord;
+use super::runout::RunoutRecord;
+use super::specimen::SpecimenRecord;
 use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
 use crate::write::WriteError;
@@ -89,6 +91,9 @@ pub struct SolidRecord {
     /// How equilibrium was found in a plastic solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub newton: Option<NewtonRecord>,
+    /// How far a solid has yielded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plastic: Option<PlasticRecord>,
     /// Sums of the reactions of named supports at the end.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionRecord>,
@@ -126,6 +131,12 @@ pub struct BedRecord {
     /// The grains at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<PackingRecord>,
+    /// How far a slide has run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub runout: Option<RunoutRecord>,
+    /// Constants of a specimen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub specimen: Option<SpecimenRecord>,
 }
 
 impl Summary {

@@ -1,6 +1,8 @@
 //! The parts of `summary.json`.
 
 use crate::model::exchange::ContactClass;
+use crate::run::events::EventRecord;
+use crate::run::system::SolidView;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::scheme::{Passes, Scheme};
@@ -103,6 +105,9 @@ pub struct BondSummary {
     pub fragments: usize,
     /// Bodies of the largest piece.
     pub largest_fragment: u32,
+    /// Acoustic events.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub events: Option<EventRecord>,
 }
 
 /// Interface audit.
@@ -139,6 +144,45 @@ pub struct StaticsRecord {
     pub largest_displacement: (f64, u32),
     /// Strain energy [J].
     pub strain_energy: f64,
+}
+
+/// How far a solid has yielded at the end.
+#[derive(Debug, Serialize)]
+pub struct PlasticRecord {
+    /// Share of the Gauss points with plastic strain.
+    pub yielded_share: f64,
+    /// Largest equivalent plastic strain at a Gauss point.
+    pub largest_plastic_strain: f64,
+    /// Number of the element that it is in.
+    pub element: u32,
+    /// Middle of that element [m].
+    pub place: [f64; 3],
+}
+
+impl PlasticRecord {
+    /// Of a solid; none of one that cannot yield.
+    pub fn of(view: SolidView<'_>) -> Option<PlasticRecord> {
+        let SolidView { model, state } = view;
+        if model.is_linear() || state.points.is_empty() {
+            return None;
+        }
+        let kappa = |p: usize| state.points[p].kappa;
+        let count = state.points.len();
+        let yielded = (0..count).filter(|p| kappa(*p) > 0.0).count();
+        let worst = (0..count).max_by(|a, b| kappa(*a).total_cmp(&kappa(*b)))?;
+        let mesh = model.mesh();
+        let element = (0..mesh.element_count()).rfind(|e| model.point_start(*e) <= worst)?;
+        let nodes = &mesh.connectivity[element];
+        let mean = |d: usize| {
+            nodes.iter().map(|n| mesh.coordinates[*n as usize][d]).sum::<f64>() / nodes.len() as f64
+        };
+        Some(PlasticRecord {
+            yielded_share: yielded as f64 / count as f64,
+            largest_plastic_strain: kappa(worst),
+            element: mesh.element_ids[element],
+            place: [mean(0), mean(1), mean(2)],
+        })
+    }
 }
 
 /// How equilibrium was found in a plastic solid.

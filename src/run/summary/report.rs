@@ -2,7 +2,10 @@
 
 use super::Summary;
 use crate::run::flow::FlowRecord;
+use crate::run::events::EventRecord;
 use crate::run::packing;
+use crate::run::runout::RunoutRecord;
+use crate::run::specimen::SpecimenRecord;
 use trackbed_coupling::scheme::Scheme;
 
 impl Summary {
@@ -17,6 +20,8 @@ impl Summary {
         self.report_track(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
         lines.extend(packing::report(&self.bed.growth, &self.bed.compaction, self.bed.packing.as_ref()));
+        lines.extend(self.bed.runout.iter().flat_map(RunoutRecord::report));
+        lines.extend(self.bed.specimen.iter().flat_map(SpecimenRecord::report));
         lines.extend(self.verdict.report());
         lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
         lines.join("\n") + "\n"
@@ -54,6 +59,16 @@ impl Summary {
                 n.assembly_seconds,
                 n.factor_seconds,
                 n.solve_seconds
+            ));
+        }
+        if let Some(p) = &self.solid.plastic {
+            let [x, y, z] = p.place;
+            lines.push(format!(
+                "solid: {:.2} % of the Gauss points have yielded, largest plastic strain {:.3e} in element {} at ({x:.3}, \
+                 {y:.3}, {z:.3}) m",
+                100.0 * p.yielded_share,
+                p.largest_plastic_strain,
+                p.element
             ));
         }
         for r in &self.solid.reactions {
@@ -97,6 +112,7 @@ impl Summary {
                 b.fragments,
                 b.largest_fragment
             ));
+            lines.extend(b.events.iter().map(EventRecord::report));
         }
     }
 

@@ -26,10 +26,10 @@ fn two_kinds_of_bond() {
 }
 
 #[test]
-fn strength_of_zero() {
+fn strength_below_zero() {
     bonded()
-        .scene("young = \"1 MPa\"", "young = \"1 MPa\"\ntensile_strength = 0")
-        .refused("scene.toml:21: bond.0.parallel.tensile_strength: found 0, expected above 0");
+        .scene("young = \"1 MPa\"", "young = \"1 MPa\"\ntensile_strength = -1")
+        .refused("scene.toml:21: bond.0.parallel.tensile_strength: found -1, expected 0 or more");
 }
 
 #[test]

@@ -137,7 +137,7 @@ impl Surface {
     }
 
     /// The same triangles with the vertices that they use, in the order of the vertices.
-    pub(super) fn without_loose_vertices(self) -> Surface {
+    pub fn without_loose_vertices(self) -> Surface {
         let mut used = vec![false; self.vertices.len()];
         self.triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
         let mut number = vec![0_u32; used.len()];

@@ -74,6 +74,9 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
     }
 }
 
+/// Strength that stands for none [Pa]: the first load breaks the bond.
+const NO_STRENGTH: f64 = 1e-9;
+
 fn above_zero(x: f64) -> bool {
     x > 0.0
 }
@@ -84,8 +87,8 @@ fn parallel(p: &Table<Parallel>) -> Result<ParallelBond, SceneError> {
     p.check("stiffness_ratio", p.stiffness_ratio, above_zero, "above 0")?;
     p.check("normal_stiffness", p.normal_stiffness, above_zero, "above 0")?;
     p.check("shear_stiffness", p.shear_stiffness, |k| k >= 0.0, "0 or more")?;
-    p.check("tensile_strength", p.tensile_strength, above_zero, "above 0")?;
-    p.check("shear_strength", p.shear_strength, above_zero, "above 0")?;
+    p.check("tensile_strength", p.tensile_strength, |s| s >= 0.0, "0 or more")?;
+    p.check("shear_strength", p.shear_strength, |s| s >= 0.0, "0 or more")?;
     let angle = p.friction_angle.map(|a| a.si);
     p.check(
         "friction_angle",
@@ -104,7 +107,7 @@ fn parallel(p: &Table<Parallel>) -> Result<ParallelBond, SceneError> {
             return Err(p.error("young", "another set of stiffnesses", expected));
         }
     };
-    let shear = p.shear_strength.map_or(f64::INFINITY, |s| s.si);
+    let shear = p.shear_strength.map_or(f64::INFINITY, |s| s.si.max(NO_STRENGTH));
     let shear_strength = match angle {
         Some(a) if p.shear_strength.is_some() => {
             ShearStrength::MohrCoulomb { cohesion: shear, friction: libm::tan(a) }
@@ -117,7 +120,7 @@ fn parallel(p: &Table<Parallel>) -> Result<ParallelBond, SceneError> {
     Ok(ParallelBond {
         radius_factor: p.radius_factor.unwrap_or(1.0),
         stiffness,
-        tensile_strength: p.tensile_strength.map_or(f64::INFINITY, |s| s.si),
+        tensile_strength: p.tensile_strength.map_or(f64::INFINITY, |s| s.si.max(NO_STRENGTH)),
         shear_strength,
         moment_factor: p.moment_factor.unwrap_or(1.0),
         criterion: Criterion::Stress,

@@ -29,6 +29,8 @@ pub struct Rule {
     pub seed: u64,
     /// Whether tension and shear vary together.
     pub together: bool,
+    /// How stiffnesses vary, and the seed of that.
+    pub stiffness: (Spread, u64),
     /// Boxes in which bonds are weaker or stronger.
     pub regions: Vec<BondRegion>,
 }
@@ -152,10 +154,16 @@ impl BondPart {
                 pairs.into_iter().filter(|[a, b]| seen.insert((*a.min(b), *a.max(b)))).collect();
             let tension = factors(rule.spread, rule.seed, 0, pairs.len());
             let shear = factors(rule.spread, rule.seed, u64::from(!rule.together), pairs.len());
+            // 0 and 1 are the strengths' random numbers.
+            let stiffness = factors(rule.stiffness.0, rule.stiffness.1, 2, pairs.len());
             for (k, &[a, b]) in pairs.iter().enumerate() {
                 let middle = (bodies[a].position + bodies[b].position) * 0.5;
-                let mut bond =
-                    BondInput { tension: tension[k], shear: shear[k], ..BondInput::new(a, b, kind) };
+                let mut bond = BondInput {
+                    tension: tension[k],
+                    shear: shear[k],
+                    stiffness: stiffness[k],
+                    ..BondInput::new(a, b, kind)
+                };
                 for region in &rule.regions {
                     if (0..3).all(|d| middle[d] >= region.low[d] && middle[d] <= region.high[d]) {
                         bond.tension *= region.strength;

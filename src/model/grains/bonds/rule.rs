@@ -33,10 +33,15 @@ pub(super) fn rule(table: &Table<BondTable>, bodies: &Joinable<'_>) -> Result<Ru
     let between =
         table.between.as_ref().map(|[a, b]| Ok::<_, SceneError>([find(a)?, find(b)?])).transpose()?;
     let source = source(table, between.is_some(), bodies)?;
-    let spread = spread(table)?;
+    let spread = table.optional("spread", &table.spread);
+    let spread = spread.map_or(Ok(Spread::Constant), |s| law(&s, s.kind, s.deviation, s.modulus))?;
+    let stiffness = table.optional("stiffness_spread", &table.stiffness_spread);
+    let stiffness_seed = stiffness.as_ref().and_then(|s| s.seed).unwrap_or(1);
+    let stiffness = stiffness.map_or(Ok(Spread::Constant), |s| law(&s, s.kind, s.deviation, s.modulus))?;
     let regions = regions(table)?;
     let (seed, together) = table.spread.as_ref().map_or((1, false), |s| (s.seed.unwrap_or(1), s.together));
-    Ok(Rule { between, source, spread, seed, together, regions })
+    let stiffness = (stiffness, stiffness_seed);
+    Ok(Rule { between, source, spread, seed, together, stiffness, regions })
 }
 
 /// Which pairs a table joins; `between` is whether it names two groups.
@@ -76,21 +81,25 @@ fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Res
     Ok(source)
 }
 
-/// How strengths vary from bond to bond.
-fn spread(table: &Table<BondTable>) -> Result<Spread, SceneError> {
-    let Some(s) = table.optional("spread", &table.spread) else { return Ok(Spread::Constant) };
-    match (s.kind, s.deviation, s.modulus) {
+/// How strengths or stiffnesses vary from bond to bond.
+fn law<T>(
+    table: &Table<T>,
+    kind: SpreadKind,
+    deviation: Option<f64>,
+    modulus: Option<f64>,
+) -> Result<Spread, SceneError> {
+    match (kind, deviation, modulus) {
         (SpreadKind::Normal, Some(deviation), None) => {
-            s.check("deviation", deviation, |d| d > 0.0 && d <= 10.0, "above 0, at most 10")?;
+            table.check("deviation", deviation, |d| d > 0.0 && d <= 10.0, "above 0, at most 10")?;
             Ok(Spread::Normal { deviation })
         }
         (SpreadKind::Weibull, None, Some(modulus)) => {
-            s.check("modulus", modulus, |m| m > 0.05 && m <= 1e3, "above 0.05, at most 1000")?;
+            table.check("modulus", modulus, |m| m > 0.05 && m <= 1e3, "above 0.05, at most 1000")?;
             Ok(Spread::Weibull { modulus })
         }
         _ => {
             let expected = "`deviation` for `normal`, `modulus` for `weibull`";
-            Err(s.here("other keys", expected))
+            Err(table.here("other keys", expected))
         }
     }
 }

@@ -1,0 +1,136 @@
+//! `ANIMATION_3D.DAT`: places, sizes and velocities of grains, moment by moment.
+//!
+//! The older programs show their form in a figure only, of which it is known that a frame has place, size and velocity of
+//! each particle and may have a last column of the user's. The form here: a head `3D: TIME COUNT`, then COUNT rows
+//! `x y z r vx vy vz`, with an eighth column where there is one: the number of the part or fragment.
+
+use super::rows;
+use crate::failure::Failure;
+use crate::read::ReadError;
+use crate::write::csv::{Field, write_table};
+use crate::write::{GrainFrame, WriteError, atomic};
+use std::path::Path;
+
+/// What a moment begins with.
+pub const HEAD: &str = "3D:";
+
+/// Grains at one moment. Fields have the shape `[spheres]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// Time [s], or a step.
+    pub time: f64,
+    /// Centres [m].
+    pub position: Vec<[f64; 3]>,
+    /// Radii [m].
+    pub radius: Vec<f64>,
+    /// Velocities [m/s].
+    pub velocity: Vec<[f64; 3]>,
+    /// The last column; none where the file has none.
+    pub part: Option<Vec<f64>>,
+}
+
+impl Moment {
+    /// As a frame of ours: spheres numbered in their order. Parts are numbered in the order of their values.
+    pub fn frame(&self) -> GrainFrame {
+        let count = self.position.len();
+        let mut values = self.part.clone().unwrap_or_default();
+        values.sort_unstable_by(f64::total_cmp);
+        values.dedup();
+        let place = |v: &f64| values.binary_search_by(|w| w.total_cmp(v)).unwrap_or(0) as u32;
+        let whole = values.iter().all(|v| v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v));
+        let number = |v: &f64| if whole { *v as u32 } else { place(v) };
+        let part = self.part.as_ref().map_or_else(|| vec![0; count], |p| p.iter().map(number).collect());
+        GrainFrame {
+            position: self.position.clone(),
+            radius: self.radius.clone(),
+            velocity: self.velocity.clone(),
+            spin: vec![[0.0; 3]; count],
+            orientation: vec![[1.0, 0.0, 0.0, 0.0]; count],
+            id: (0..count as u32).collect(),
+            part: part.clone(),
+            mean_stress: vec![0.0; count],
+            force: vec![[0.0; 3]; count],
+            coordination: vec![0; count],
+            fragment: part,
+            extra: Vec::new(),
+        }
+    }
+}
+
+/// Reads all moments of a file.
+///
+/// # Errors
+/// What is damaged, with its line; no moment; rows of other widths within a moment.
+pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
+    let mut moments = Vec::new();
+    for block in rows::blocks(file, text, HEAD, [7, 8])? {
+        let mut moment = Moment { time: block.time, ..Moment::default() };
+        let with_part = block.rows.first().is_some_and(|(_, row)| row.len() == 8);
+        let mut part = Vec::new();
+        for (line, row) in &block.rows {
+            if (row.len() == 8) != with_part {
+                let expected = format!("{}, as in the row before", if with_part { 8 } else { 7 });
+                return Err(ReadError::at(file, *line, "columns", row.len().to_string(), expected).into());
+            }
+            if row[3] <= 0.0 {
+                return Err(ReadError::at(file, *line, "radius", row[3].to_string(), "above 0").into());
+            }
+            moment.position.push([row[0], row[1], row[2]]);
+            moment.radius.push(row[3]);
+            moment.velocity.push([row[4], row[5], row[6]]);
+            part.extend(row.get(7));
+        }
+        moment.part = with_part.then_some(part);
+        moments.push(moment);
+    }
+    if moments.is_empty() {
+        return Err(ReadError::whole(file, "moments", "none", "at least one").into());
+    }
+    Ok(moments)
+}
+
+/// Writes moments in the form.
+///
+/// # Errors
+/// The disk refuses.
+pub fn write(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
+    let failed = |error| WriteError::io(output)(error);
+    atomic::write(output, |out| {
+        for m in moments {
+            writeln!(out, "{HEAD} {} {}", m.time, m.position.len()).map_err(failed)?;
+            for (k, (([x, y, z], r), [u, v, w])) in
+                m.position.iter().zip(&m.radius).zip(&m.velocity).enumerate()
+            {
+                let part = m.part.as_ref().map_or(String::new(), |p| format!(" {}", p[k]));
+                writeln!(out, "{x} {y} {z} {r} {u} {v} {w}{part}").map_err(failed)?;
+            }
+        }
+        Ok(())
+    })?;
+    Ok(vec![format!("{} moments", moments.len())])
+}
+
+/// A row of the table: moment, number of the sphere in it.
+type Row<'a> = (&'a Moment, usize);
+
+/// Writes moments as one table.
+///
+/// # Errors
+/// The disk refuses.
+pub fn to_csv(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
+    let columns: [Field<Row<'_>>; 10] = [
+        ("time", "s", |(m, _)| m.time),
+        ("id", "", |(_, k)| *k as f64),
+        ("x", "m", |(m, k)| m.position[*k][0]),
+        ("y", "m", |(m, k)| m.position[*k][1]),
+        ("z", "m", |(m, k)| m.position[*k][2]),
+        ("r", "m", |(m, k)| m.radius[*k]),
+        ("vx", "m/s", |(m, k)| m.velocity[*k][0]),
+        ("vy", "m/s", |(m, k)| m.velocity[*k][1]),
+        ("vz", "m/s", |(m, k)| m.velocity[*k][2]),
+        ("part", "", |(m, k)| m.part.as_ref().map_or(0.0, |p| p[*k])),
+    ];
+    let rows = moments.iter().flat_map(|m| (0..m.position.len()).map(move |k| (m, k)));
+    write_table(output, &columns, rows)?;
+    Ok(vec![format!("{} moments", moments.len())])
+}

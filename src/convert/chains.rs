@@ -1,0 +1,124 @@
+//! Force-chain files: contacts with their partners and forces, moment by moment.
+//!
+//! The form: a head `3DF: TIME COUNT`, then COUNT rows `i j Fn Ft`, the numbers of the two particles from 1 on and the
+//! normal and tangential force [N]. Read are rows of five columns too, whose first counts the rows. We write four, and 0 for
+//! a partner that is no particle.
+
+use super::animation;
+use super::rows;
+use crate::failure::Failure;
+use crate::read::ReadError;
+use crate::write::csv::{Field, write_table};
+use crate::write::{ChainFrame, WriteError, atomic};
+use std::path::Path;
+
+/// What a moment begins with.
+pub const HEAD: &str = "3DF:";
+
+/// Kind of a chain to a wall in our frames, and of one between grains.
+const BETWEEN_GRAINS: u32 = 0;
+
+/// A contact: its partners by number from 1, 0 for what is no particle, and its forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Chain {
+    /// First particle.
+    pub first: u32,
+    /// Second particle.
+    pub second: u32,
+    /// Normal force [N].
+    pub normal: f64,
+    /// Tangential force [N].
+    pub tangential: f64,
+}
+
+/// Contacts at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// Time [s], or a step.
+    pub time: f64,
+    /// The contacts.
+    pub chains: Vec<Chain>,
+}
+
+impl Moment {
+    /// As chains between the grains of the same moment, and how many were left out because a partner is no grain of it.
+    pub fn frame(&self, grains: &animation::Moment) -> (ChainFrame, usize) {
+        let mut frame = ChainFrame::default();
+        let place = |number: u32| grains.position.get((number as usize).checked_sub(1)?);
+        let mean = self.chains.iter().map(|c| c.normal).sum::<f64>() / self.chains.len().max(1) as f64;
+        let mut lost = 0;
+        for c in &self.chains {
+            let (Some(a), Some(b)) = (place(c.first), place(c.second)) else {
+                lost += 1;
+                continue;
+            };
+            frame.ends.push([*a, *b]);
+            frame.normal_force.push(c.normal);
+            frame.tangential_force.push(c.tangential);
+            frame.kind.push(BETWEEN_GRAINS);
+            frame.strong.push(u32::from(c.normal > mean));
+            frame.partners.push([c.first - 1, c.second - 1]);
+        }
+        (frame, lost)
+    }
+}
+
+/// Reads all moments of a file.
+///
+/// # Errors
+/// What is damaged, with its line; no moment.
+pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
+    let mut moments = Vec::new();
+    for block in rows::blocks(file, text, HEAD, [4, 5])? {
+        let mut chains = Vec::with_capacity(block.rows.len());
+        for (line, row) in &block.rows {
+            let [i, j, normal, tangential] = row[row.len() - 4..] else { unreachable!("widths are checked") };
+            let number = |n: f64| {
+                let fits = n >= 0.0 && n.fract() == 0.0 && n < f64::from(u32::MAX);
+                let expected = "the number of a particle";
+                if fits { Ok(n as u32) } else { Err(ReadError::at(file, *line, "particle", n.to_string(), expected)) }
+            };
+            chains.push(Chain { first: number(i)?, second: number(j)?, normal, tangential });
+        }
+        moments.push(Moment { time: block.time, chains });
+    }
+    if moments.is_empty() {
+        return Err(ReadError::whole(file, "moments", "none", "at least one").into());
+    }
+    Ok(moments)
+}
+
+/// Writes moments in the form.
+///
+/// # Errors
+/// The disk refuses.
+pub fn write(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
+    let failed = |error| WriteError::io(output)(error);
+    atomic::write(output, |out| {
+        for m in moments {
+            writeln!(out, "{HEAD} {} {}", m.time, m.chains.len()).map_err(failed)?;
+            for c in &m.chains {
+                writeln!(out, "{} {} {} {}", c.first, c.second, c.normal, c.tangential).map_err(failed)?;
+            }
+        }
+        Ok(())
+    })?;
+    Ok(vec![format!("{} moments", moments.len())])
+}
+
+const COLUMNS: [Field<(f64, Chain)>; 5] = [
+    ("time", "s", |(t, _)| *t),
+    ("i", "", |(_, c)| f64::from(c.first)),
+    ("j", "", |(_, c)| f64::from(c.second)),
+    ("normal_force", "N", |(_, c)| c.normal),
+    ("tangential_force", "N", |(_, c)| c.tangential),
+];
+
+/// Writes moments as one table.
+///
+/// # Errors
+/// The disk refuses.
+pub fn to_csv(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
+    write_table(output, &COLUMNS, moments.iter().flat_map(|m| m.chains.iter().map(|c| (m.time, *c))))?;
+    Ok(vec![format!("{} moments", moments.len())])
+}

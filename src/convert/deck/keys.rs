@@ -1,0 +1,82 @@
+//! The keys of both decks in the order of their lines.
+
+/// A value of a line: its name, and other spellings of it in comments.
+pub type Key = (&'static str, &'static [&'static str]);
+
+/// What a line holds.
+pub type Line = &'static [Key];
+
+/// The deck of 2011, for key blocks on terrain.
+pub const GEOLOGY: &[Line] = &[
+    &[("restart", &[])],
+    &[("pattern", &[])],
+    &[("BOND_MODEL", &[])],
+    &[("nstep", &[])],
+    &[("NFILL", &[]), ("NGROWTH", &["NGRWOTH"])],
+    &[("CTime", &[])],
+    &[("NPrint", &["MPrint"])],
+    &[("NLast", &["MLast"])],
+    &[("isearch", &["isearh"])],
+    &[("icont", &[])],
+    &[("IPATTERN", &[])],
+    &[("DMAX/D", &[]), ("DMIN/D", &[])],
+    &[("cc", &[])],
+    &[("D", &[])],
+    &[("dens", &[])],
+    &[("YoungM", &[]), ("PoissonR", &[])],
+    &[("rns", &[])],
+    &[("rzs", &[])],
+    &[("amu", &[]), ("eps", &[])],
+    &[("X0", &["XO"]), ("Y0", &[]), ("Z0", &[])],
+    &[("mxnb", &[]), ("MAXNB_W", &[])],
+    &[("GROWTH", &[])],
+    &[("skin", &[])],
+    &[("temperature", &[])],
+    &[("nu_Wall", &[]), ("eps_Wall", &[])],
+    &[("gz", &[])],
+    &[("ARF", &[])],
+    &[("RPBN", &[]), ("RPBS", &[])],
+    &[("BSTRENGTH", &["BSTENGTH"])],
+    &[("BRATIO", &[])],
+    &[("NICEX", &[]), ("NICEY", &[]), ("NICEZ", &[])],
+    &[("TContact", &[])],
+];
+
+/// The deck of 2013, for spheres, disks and ice too.
+pub const GENERAL: &[Line] = &[
+    &[("restart", &[])],
+    &[("pattern", &[])],
+    &[("BOND_MODEL", &[])],
+    &[("nstep", &[])],
+    &[("Tstrain", &["Istrain"])],
+    &[("CTime", &[])],
+    &[("NPrint", &["MPrint"])],
+    &[("MLast", &["NLast"])],
+    &[("isearch", &["isearh"])],
+    &[("icont", &[])],
+    &[("IPATTERN", &[])],
+    &[("DMAX/D", &[]), ("DMIN/D", &[])],
+    &[("cc", &[])],
+    &[("D", &[])],
+    &[("dens", &[])],
+    &[("YoungM", &[]), ("YMSIGMA", &[]), ("PoissonR", &[])],
+    &[("rns", &[])],
+    &[("rzs", &[])],
+    &[("amu", &[]), ("eps", &[])],
+    &[("X0", &["XO"]), ("Y0", &[]), ("Z0", &[])],
+    &[("mxnb", &[])],
+    &[("skin", &[])],
+    &[("temperature", &[])],
+    &[("Nwall", &[]), ("NPOINT", &[])],
+    &[("nu_Wall", &[]), ("eps_Wall", &[])],
+    &[("gz", &[])],
+    &[("BONDNS", &[])],
+    &[("MEANBOND", &[]), ("BSIGMA", &[])],
+    &[("TContact", &[])],
+    &[("Form drag coefficient", &["drag coefficient"])],
+    &[("wave height", &[])],
+    &[("wave length", &[])],
+    &[("r1disk", &[])],
+    &[("r2disk", &[])],
+    &[("viscous damping coefficient", &[])],
+];

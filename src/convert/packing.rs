@@ -1,0 +1,60 @@
+//! Packing files: spheres that a run starts with.
+//!
+//! Rows `x y z r` with blanks or commas, in front of each the number of the sphere where there are five columns; a first row
+//! of one number is their count. Written is what `packing` of `[[grains]]` reads.
+
+use super::rows;
+use crate::failure::Failure;
+use crate::read::{ReadError, number};
+use crate::write::csv::{Field, write_table};
+use std::path::Path;
+
+const COLUMNS: [Field<[f64; 4]>; 4] =
+    [("x", "m", |s| s[0]), ("y", "m", |s| s[1]), ("z", "m", |s| s[2]), ("r", "m", |s| s[3])];
+
+/// Reads the spheres of a packing.
+///
+/// # Errors
+/// What is damaged, with its line.
+pub fn parse(file: &Path, text: &str) -> Result<Vec<[f64; 4]>, ReadError> {
+    let mut spheres = Vec::new();
+    let mut count = None;
+    for (line, body) in text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())) {
+        // A heading, and comments.
+        if body.is_empty() || !number::looks_numeric(body) && spheres.is_empty() {
+            continue;
+        }
+        let row = rows::numbers(file, line, body)?;
+        match row[..] {
+            [n] if spheres.is_empty() && count.is_none() => count = Some(n),
+            [x, y, z, r] | [_, x, y, z, r] => {
+                if r <= 0.0 {
+                    return Err(ReadError::at(file, line, "radius", r.to_string(), "above 0"));
+                }
+                spheres.push([x, y, z, r]);
+            }
+            _ => {
+                let expected = "x y z r, or these behind a number";
+                return Err(ReadError::at(file, line, "columns", row.len().to_string(), expected));
+            }
+        }
+    }
+    if let Some(n) = count.filter(|n| *n != spheres.len() as f64) {
+        let expected = format!("{n}, as its first row says");
+        return Err(ReadError::whole(file, "spheres", spheres.len().to_string(), expected));
+    }
+    if spheres.is_empty() {
+        return Err(ReadError::whole(file, "spheres", "none", "a packing, an animation, force chains, or a deck"));
+    }
+    Ok(spheres)
+}
+
+/// Writes a packing as ours.
+///
+/// # Errors
+/// What is damaged; the disk refuses.
+pub fn convert((file, text): (&Path, &str), output: &Path) -> Result<Vec<String>, Failure> {
+    let spheres = parse(file, text)?;
+    write_table(output, &COLUMNS, &spheres)?;
+    Ok(vec![format!("{} spheres", spheres.len())])
+}

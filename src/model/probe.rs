@@ -1,0 +1,92 @@
+//! `[[probe]]` resolved: what of a run is observed.
+
+use super::grains::GrainsPart;
+use super::solid::{self, SolidPart};
+use crate::scene::units::vector;
+use crate::scene::{Probe, SceneError, Table};
+use trackbed_dem::measure::BoxRegion;
+
+/// What a probe observes.
+#[derive(Clone, Copy, Debug)]
+pub enum Observed {
+    /// A node of the solid, by index.
+    Node(usize),
+    /// A grain, by number.
+    Grain(usize),
+    /// A group of grains, by number.
+    Group(u32),
+    /// The grains with their centre in a box.
+    Region(BoxRegion),
+}
+
+/// The probe of a table, with its name.
+pub(super) fn probe(
+    table: &Table<Probe>,
+    solid: Option<&SolidPart>,
+    grains: Option<&GrainsPart>,
+) -> Result<(String, Observed), SceneError> {
+    let given = [
+        table.node.is_some(),
+        table.at.is_some(),
+        table.grain.is_some(),
+        table.group.is_some(),
+        table.region.is_some(),
+    ];
+    if given.iter().filter(|g| **g).count() != 1 {
+        let found = "none or several of `node`, `at`, `grain`, `group`, `region`";
+        return Err(table.here(found, "one of them"));
+    }
+    let (own, observed) = match (table.node.is_some() || table.at.is_some(), solid, grains) {
+        (true, Some(solid), _) => node(table, solid)?,
+        (true, None, _) => return Err(table.here("a probe", "a [solid] whose nodes it can observe")),
+        (false, _, Some(grains)) => of_grains(table, grains)?,
+        (false, _, None) => return Err(table.here("a probe", "[[grains]] that it can observe")),
+    };
+    let name = table.name.clone().unwrap_or(own);
+    if name.is_empty() || name.contains([',', '"', '\n']) {
+        return Err(table.error("name", format!("\"{name}\""), "a name without commas or quotes"));
+    }
+    Ok((name, observed))
+}
+
+/// A node by its number, or the one nearest to a place.
+fn node(table: &Table<Probe>, solid: &SolidPart) -> Result<(String, Observed), SceneError> {
+    let mesh = solid.model.mesh();
+    // Sleepers are elsewhere until they are set down.
+    let ground = solid.sleepers.as_ref().map_or(mesh.node_count(), |s| s.ground_nodes());
+    let node = match (table.node, table.at) {
+        (Some(id), _) => solid::find_node(table, mesh, id)?,
+        (None, at) => {
+            let at = at.map_or([0.0; 3], |at| vector(&at));
+            let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();
+            let nearest = mesh.coordinates[..ground]
+                .iter()
+                .enumerate()
+                .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+            nearest.map_or(0, |(i, _)| i)
+        }
+    };
+    Ok((format!("n{}", mesh.node_ids[node]), Observed::Node(node)))
+}
+
+/// A grain, a group, or the grains in a box.
+fn of_grains(table: &Table<Probe>, grains: &GrainsPart) -> Result<(String, Observed), SceneError> {
+    if let Some(grain) = table.grain {
+        let count = grains.groups.bodies.len();
+        if grain as usize >= count {
+            let expected = format!("the number of a grain, 0 to {}", count.saturating_sub(1));
+            return Err(table.error("grain", grain.to_string(), expected));
+        }
+        return Ok((format!("grain{grain}"), Observed::Grain(grain as usize)));
+    }
+    if let Some(group) = &table.group {
+        let Some(part) = grains.groups.names.iter().position(|n| n == group) else {
+            let known = format!("the name of a [[grains]]: {}", grains.groups.names.join(", "));
+            return Err(table.error("group", format!("\"{group}\""), known));
+        };
+        return Ok((group.clone(), Observed::Group(part as u32)));
+    }
+    let corners = table.region.unwrap_or_default();
+    let region = super::grains::region(table, "region", &corners)?;
+    Ok(("region".into(), Observed::Region(region)))
+}

@@ -1,0 +1,66 @@
+//! Slides and specimens of rock.
+
+use super::overlay::{facts, one, overlay};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, plots};
+use crate::report::plot::{Plot, Side};
+
+/// Run-out of a slide.
+pub fn runout(runs: &[RunData]) -> Option<Section> {
+    let of = |column: &'static str| one(runs, move |r| r.table("history")?.points("time", column));
+    let time = || Side::new("time", "s");
+    let figures = plots([
+        Plot::new("Front of the slide", time(), Side::new("place along the slide", "m"), of("runout_front")).figure(),
+        Plot::new("Motion of the slide", time(), Side::new("kinetic energy", "J").with_zero(), of("runout_kinetic")).figure(),
+    ]);
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let sums = facts(
+        runs,
+        &[
+            ("way of the front", &path("runout.advance", "m")),
+            ("height from crown to toe", &path("runout.drop", "m")),
+            ("distance from crown to toe", &path("runout.length", "m")),
+            ("reach angle", &path("runout.reach_angle", "°")),
+            ("area of the deposit", &path("runout.deposit_area", "m²")),
+            ("its length along the slide", &path("runout.deposit_length", "m")),
+            ("its width", &path("runout.deposit_width", "m")),
+            ("its largest depth", &path("runout.deepest", "m")),
+            ("its volume with pores", &path("runout.deposit_volume", "m³")),
+            ("volume of the grains", &path("runout.solid_volume", "m³")),
+            ("fragments", &path("runout.fragments", "")),
+            ("share of the largest", &path("runout.largest_share", "")),
+            ("grains below the ground", &path("runout.below_ground", "")),
+        ],
+    );
+    Section::new("runout", "Run-out", figures + &sums)
+}
+
+/// Curve and constants of a specimen.
+pub fn specimen(runs: &[RunData]) -> Option<Section> {
+    let curve = overlay(runs, |run| {
+        let Some(table) = run.table("history") else { return Vec::new() };
+        [("platens", "specimen_strain"), ("grains, axial", "specimen_axial_strain"), ("lateral", "specimen_lateral_strain")]
+            .into_iter()
+            .filter_map(|(name, x)| Some((name.to_string(), table.points(x, "specimen_stress")?)))
+            .collect()
+    });
+    let figures =
+        plots([Plot::new("Stress and strain", Side::new("strain", ""), Side::new("stress", "Pa").with_zero(), curve).figure()]);
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let sums = facts(
+        runs,
+        &[
+            ("strength", &path("specimen.strength", "Pa")),
+            ("strain at the peak", &path("specimen.peak_strain", "")),
+            ("pressure on the sides then", &path("specimen.confinement", "Pa")),
+            ("modulus", &path("specimen.modulus", "Pa")),
+            ("Poisson's ratio", &path("specimen.poisson", "")),
+            ("cracks in tension at the peak", &path("specimen.tension_cracks_at_peak", "")),
+            ("cracks in shear at the peak", &path("specimen.shear_cracks_at_peak", "")),
+            ("tension cracks within 30° of the axis", &path("specimen.axial_cracks", "")),
+            ("b-value of the acoustic events", &path("bonds.events.b_value", "")),
+            ("its error", &path("bonds.events.b_error", "")),
+        ],
+    );
+    Section::new("specimen", "Specimen", figures + &sums)
+}

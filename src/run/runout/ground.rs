@@ -1,0 +1,111 @@
+//! Height of the ground under a grid of places: planes that are not upright, and triangles.
+
+use crate::model::grains::GrainsPart;
+use crate::run::system::GrainsView;
+use trackbed_dem::{Vec3, WallShape};
+
+/// Least upward part of a plane's normal for it to be ground.
+const UPRIGHT: f64 = 1e-3;
+/// Part of a triangle's width by which a place may miss it: what lies on the edge of two belongs to one at least.
+const EDGE: f64 = 1e-9;
+
+/// A grid in plan: lower corner [m], side of a cell [m], cells along x and y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Lower corner [m].
+    pub low: [f64; 2],
+    /// Side of a cell [m].
+    pub cell: f64,
+    /// Cells along x and y.
+    pub counts: [usize; 2],
+}
+
+impl Plan {
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.counts[0] * self.counts[1]
+    }
+
+    /// Middle of cell (i, j) [m].
+    pub fn middle(&self, i: usize, j: usize) -> [f64; 2] {
+        [self.low[0] + (i as f64 + 0.5) * self.cell, self.low[1] + (j as f64 + 0.5) * self.cell]
+    }
+
+    /// Place of cell (i, j) in a list, x running fastest.
+    pub fn index(&self, i: usize, j: usize) -> usize {
+        j * self.counts[0] + i
+    }
+
+    /// The cell that holds a coordinate along an axis, the nearest one for what lies beyond.
+    pub fn along(&self, axis: usize, x: f64) -> usize {
+        let cell = ((x - self.low[axis]) / self.cell).floor().max(0.0) as usize;
+        cell.min(self.counts[axis] - 1)
+    }
+}
+
+/// Height of the ground in the middle of each cell [m]; none where there is none. Of surfaces above each other the highest
+/// counts, so a closed body of terrain is as good as its upper side.
+pub fn heights(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan) -> Vec<Option<f64>> {
+    let cells = (0..plan.counts[1]).flat_map(|j| (0..plan.counts[0]).map(move |i| (i, j)));
+    under(view, part, plan, &cells.map(|(i, j)| plan.middle(i, j)).collect::<Vec<_>>())
+}
+
+/// Height of the ground at places in plan [m]; none where there is none.
+pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f64; 2]]) -> Vec<Option<f64>> {
+    let mut ground: Vec<Option<f64>> = vec![None; places.len()];
+    let mut raise = |k: usize, z: f64| ground[k] = Some(ground[k].map_or(z, |g: f64| g.max(z)));
+    let planes = part.walls.planes.iter().enumerate();
+    let planes = planes.map(|(k, p)| (view.state.plane_point(view.model, k), p.normal));
+    let others = part.walls.others.iter().filter_map(|wall| match &wall.shape {
+        WallShape::Plane { point, normal } => Some((*point, *normal)),
+        _ => None,
+    });
+    for (point, normal) in planes.chain(others) {
+        let n = normal.normalize();
+        if n.z >= UPRIGHT {
+            for (k, [x, y]) in places.iter().enumerate() {
+                raise(k, point.z - (n.x * (x - point.x) + n.y * (y - point.y)) / n.z);
+            }
+        }
+    }
+    let mut of_cell: Vec<Vec<u32>> = vec![Vec::new(); plan.len()];
+    for (k, [x, y]) in places.iter().enumerate() {
+        of_cell[plan.index(plan.along(0, *x), plan.along(1, *y))].push(k as u32);
+    }
+    for (k, wall) in part.walls.others.iter().enumerate() {
+        if let WallShape::Triangles { vertices, triangles } = &wall.shape {
+            let at = |v: u32| view.state.wall_point(view.model, k, &vertices[v as usize]);
+            for t in triangles {
+                below(plan, t.map(at), places, &of_cell, &mut raise);
+            }
+        }
+    }
+    ground
+}
+
+/// Calls `raise` with the height of a triangle at every place that it covers.
+fn below(
+    plan: &Plan,
+    [a, b, c]: [Vec3; 3],
+    places: &[[f64; 2]],
+    of_cell: &[Vec<u32>],
+    raise: &mut impl FnMut(usize, f64),
+) {
+    let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+    let twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    if twice == 0.0 {
+        return;
+    }
+    for j in plan.along(1, low.y)..=plan.along(1, high.y) {
+        for i in plan.along(0, low.x)..=plan.along(0, high.x) {
+            for &k in &of_cell[plan.index(i, j)] {
+                let [x, y] = places[k as usize];
+                let v = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / twice;
+                let w = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / twice;
+                if v >= -EDGE && w >= -EDGE && v + w <= 1.0 + EDGE {
+                    raise(k as usize, a.z + v * (b.z - a.z) + w * (c.z - a.z));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! How far a slide has run and what it has left: front, reach, deposit, fragments, who came from where.
+//!
+//! The *crown* is where the highest grain of the slide lay at the start, the *toe* the grain of the front at the end: the
+//! one behind which a share of the mass lies, along the direction of the slide. H and L are the height and the horizontal
+//! distance between the two, the reach angle atan(H/L) is that of Heim's Fahrböschung (Heim, Bergsturz und Menschenleben,
+//! 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle is that between the centres of mass at start and end.
+//!
+//! Places at the start are those of the run proper.
+
+mod deposit;
+mod files;
+mod ground;
+mod records;
+
+pub use records::RunoutRecord;
+
+use super::recorder::{Now, Recorder};
+use super::system::{GrainsView, System};
+use crate::failure::Failure;
+use crate::model::grains::{GrainsPart, RunoutPlan};
+use crate::write::csv::Row;
+use std::path::Path;
+use trackbed_dem::{self as dem, Vec3};
+
+/// Fragments that the summary lists.
+const LISTED: usize = 10;
+
+/// Places of the bodies when the run began [m]. Shape `[bodies]`.
+pub fn origins(model: &dem::Model) -> Vec<Vec3> {
+    let start = dem::State::new(model);
+    (0..model.body_count()).map(|b| start.position(b)).collect()
+}
+
+/// The bodies that slide and are there.
+fn slide(view: GrainsView<'_>, plan: &RunoutPlan) -> Vec<usize> {
+    let GrainsView { model, state } = view;
+    (0..model.body_count()).filter(|&b| state.present(b) && plan.has(model.part(b))).collect()
+}
+
+/// Where a place lies along the direction of the slide [m].
+fn along(plan: &RunoutPlan, x: &Vec3) -> f64 {
+    x.x * plan.direction[0] + x.y * plan.direction[1]
+}
+
+/// The body behind which a share of the mass lies; none without bodies.
+fn front(
+    view: GrainsView<'_>,
+    plan: &RunoutPlan,
+    bodies: &[usize],
+    share: f64,
+    place: impl Fn(usize) -> Vec3,
+) -> Option<usize> {
+    let mut ordered: Vec<(f64, usize)> = bodies.iter().map(|&b| (along(plan, &place(b)), b)).collect();
+    ordered.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let total: f64 = bodies.iter().map(|&b| view.model.mass(b)).sum();
+    let mut behind = 0.0;
+    let at = ordered.iter().position(|(_, b)| {
+        behind += view.model.mass(*b);
+        behind >= share * total
+    });
+    at.or(ordered.len().checked_sub(1)).map(|k| ordered[k].1)
+}
+
+/// Centre of mass of bodies [m].
+fn centre(view: GrainsView<'_>, bodies: &[usize], place: impl Fn(usize) -> Vec3) -> Vec3 {
+    let mass: f64 = bodies.iter().map(|&b| view.model.mass(b)).sum();
+    let sum: Vec3 = bodies.iter().map(|&b| place(b) * view.model.mass(b)).sum();
+    sum / mass.max(f64::MIN_POSITIVE)
+}
+
+/// Kinetic energy of bodies [J].
+fn kinetic(view: GrainsView<'_>, bodies: &[usize]) -> f64 {
+    let energy = |b: usize| {
+        let (v, q) = (view.state.velocity(b), view.state.orientation(view.model, b));
+        let w = q.inverse() * view.state.spin(b);
+        0.5 * (view.model.mass(b) * v.norm_squared() + view.model.inertia(b).dot(&w.component_mul(&w)))
+    };
+    bodies.iter().map(|&b| energy(b)).sum()
+}
+
+/// Front, centre of mass, kinetic energy and largest fragment of a slide against time.
+pub struct Slides;
+
+impl<S: System> Recorder<S> for Slides {
+    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
+        let Some(plan) = now.job.grains.as_ref().and_then(|g| g.runout.as_ref()) else { return };
+        let Some(view) = now.system.grains() else { return };
+        let bodies = slide(view, plan);
+        let place = |b: usize| view.state.position(b);
+        let at = front(view, plan, &bodies, plan.share, place).map_or(0.0, |b| along(plan, &place(b)));
+        row.put("runout_front", "m", at);
+        row.vector("runout_centre", "m", centre(view, &bodies, place));
+        row.put("runout_kinetic", "J", kinetic(view, &bodies));
+        let speed = |b: &usize| view.state.velocity(*b).norm();
+        row.put("runout_fastest", "m/s", bodies.iter().map(speed).fold(0.0, f64::max));
+    }
+}
+
+/// Measures a slide at its end and writes its files.
+///
+/// # Errors
+/// The disk refuses.
+pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Option<RunoutRecord>, Failure> {
+    let Some(plan) = &part.runout else { return Ok(None) };
+    let GrainsView { model, state } = view;
+    let bodies = slide(view, plan);
+    if bodies.is_empty() {
+        return Ok(None);
+    }
+    let from = origins(model);
+    let travel: Vec<f64> = from.iter().enumerate().map(|(b, x)| (state.position(b) - x).norm()).collect();
+    let map = deposit::measure(view, part, plan, &bodies, &travel);
+    let fragments = records::fragments(view, &bodies);
+    files::write(dir, view, &map, &fragments, (&bodies, &from))?;
+    let (start, end) = (|b: usize| from[b], |b: usize| state.position(b));
+    let crown = bodies.iter().copied().max_by(|a, b| from[*a].z.total_cmp(&from[*b].z)).expect("some body");
+    let toe = front(view, plan, &bodies, plan.share, end).expect("some body");
+    let first = front(view, plan, &bodies, plan.share, start).expect("some body");
+    let farthest = bodies.iter().map(|&b| along(plan, &end(b))).fold(f64::NEG_INFINITY, f64::max);
+    let (drop, length) = fall(plan, &from[crown], &end(toe));
+    let centres = [centre(view, &bodies, start), centre(view, &bodies, end)];
+    let (centre_drop, centre_length) = fall(plan, &centres[0], &centres[1]);
+    let solid: f64 = bodies.iter().map(|&b| model.volume(b)).sum();
+    let mass: f64 = bodies.iter().map(|&b| model.mass(b)).sum();
+    let gravity = model.gravity();
+    let released: f64 = bodies.iter().map(|&b| model.mass(b) * gravity.dot(&(end(b) - from[b]))).sum();
+    let across = [-plan.direction[1], plan.direction[0]];
+    let places: Vec<[f64; 2]> = bodies.iter().map(|&b| [end(b).x, end(b).y]).collect();
+    let ground = ground::under(view, part, &map.plan, &places);
+    let through = bodies.iter().zip(&ground).filter(|(b, z)| z.is_some_and(|z| end(**b).z < z)).count();
+    let (cells, area) = (map.cells().count(), map.plan.cell * map.plan.cell);
+    let bulk: f64 = map.cells().map(|(i, j)| map.depth[map.plan.index(i, j)] * area).sum();
+    let moved = bodies.iter().filter(|b| travel[**b] > 2.0 * model.radius(**b)).map(|&b| model.mass(b)).sum::<f64>();
+    Ok(Some(RunoutRecord {
+        grains: bodies.len(),
+        mass,
+        solid_volume: solid,
+        moved_share: moved / mass,
+        front: along(plan, &end(toe)),
+        advance: along(plan, &end(toe)) - along(plan, &from[first]),
+        farthest,
+        drop,
+        length,
+        reach_angle: libm::atan2(drop, length).to_degrees(),
+        travel_angle: libm::atan2(centre_drop, centre_length).to_degrees(),
+        centre_start: centres[0].into(),
+        centre_end: centres[1].into(),
+        cell: map.plan.cell,
+        deposit_area: cells as f64 * area,
+        deposit_length: map.extent(plan.direction),
+        deposit_width: map.extent(across),
+        deposit_volume: bulk,
+        deepest: map.depth.iter().copied().fold(0.0, f64::max),
+        potential_released: released,
+        kinetic_left: kinetic(view, &bodies),
+        below_ground: through,
+        beyond_ground: ground.iter().filter(|z| z.is_none()).count(),
+        fragments: fragments.len(),
+        largest_share: fragments.first().map_or(0.0, |f| f.volume / solid),
+        largest: fragments.into_iter().take(LISTED).collect(),
+    }))
+}
+
+/// Height and distance along the slide from one place to another [m].
+fn fall(plan: &RunoutPlan, from: &Vec3, to: &Vec3) -> (f64, f64) {
+    (from.z - to.z, along(plan, to) - along(plan, from))
+}

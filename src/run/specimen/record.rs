@@ -1,0 +1,136 @@
+//! Constants of a specimen, from its curve.
+
+use super::Point;
+use crate::model::grains::SpecimenPlan;
+use crate::run::runout;
+use crate::run::system::GrainsView;
+use serde::Serialize;
+use trackbed_dem::bond::{Break, BreakMode};
+
+/// What a test found.
+#[derive(Debug, Serialize)]
+pub struct SpecimenRecord {
+    /// Largest stress [Pa], in the Brazilian test the tensile strength.
+    pub strength: f64,
+    /// Strain at the largest stress.
+    pub peak_strain: f64,
+    /// Mean pressure on the sides then [Pa].
+    pub confinement: f64,
+    /// Slope of the stress over the axial strain of the grains between two shares of the peak [Pa].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub modulus: Option<f64>,
+    /// Slope of the stress over the strain by the platens there [Pa].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub platen_modulus: Option<f64>,
+    /// Slope of the lateral over the axial strain there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub poisson: Option<f64>,
+    /// Stress at the end over the largest.
+    pub residual: f64,
+    /// Bonds broken by tension up to the peak.
+    pub tension_cracks_at_peak: usize,
+    /// Bonds broken by shear up to the peak.
+    pub shear_cracks_at_peak: usize,
+    /// Stress at which a hundredth of the bonds broken at the peak were broken, over the peak: where cracks begin.
+    pub crack_initiation: f64,
+    /// Share of the tension cracks whose plane is within 30° of the axis; half of them where they lie at random.
+    pub axial_cracks: f64,
+}
+
+/// Finds the constants; none of a curve without stress.
+pub fn record(plan: &SpecimenPlan, curve: &[Point], view: GrainsView<'_>) -> Option<SpecimenRecord> {
+    let top = curve.iter().enumerate().max_by(|a, b| a.1.stress.total_cmp(&b.1.stress))?.0;
+    let peak = curve[top];
+    if peak.stress <= 0.0 {
+        return None;
+    }
+    let [low, high] = plan.between.map(|s| s * peak.stress);
+    let branch: Vec<&Point> = {
+        let begin = curve[..=top].iter().rposition(|p| p.stress < low).map_or(0, |k| k + 1);
+        let begin = begin.min(top);
+        let end = curve[begin..=top].iter().position(|p| p.stress > high).map_or(top, |k| begin + k);
+        curve[begin..=end].iter().collect()
+    };
+    // A disc has no uniform strain.
+    let slope = |x: fn(&Point) -> f64, y: fn(&Point) -> f64| slope(&branch, x, y).filter(|_| !plan.brazilian);
+    let breaks = view.state.breaks();
+    let by_peak = |mode: BreakMode| breaks.iter().filter(|b| b.time <= peak.time && b.mode == mode).count();
+    let cracks = breaks.iter().filter(|b| b.time <= peak.time).count();
+    let first = breaks.get((cracks / 100).min(breaks.len().saturating_sub(1))).map(|b| b.time);
+    let at = |time: f64| curve.iter().find(|p| p.time >= time).map_or(peak.stress, |p| p.stress);
+    Some(SpecimenRecord {
+        strength: peak.stress,
+        peak_strain: peak.strain,
+        confinement: peak.confinement,
+        modulus: slope(|p| p.axial, |p| p.stress),
+        platen_modulus: slope(|p| p.strain, |p| p.stress),
+        poisson: slope(|p| p.axial, |p| p.lateral),
+        residual: curve[curve.len() - 1].stress / peak.stress,
+        tension_cracks_at_peak: by_peak(BreakMode::Tension),
+        shear_cracks_at_peak: by_peak(BreakMode::Shear),
+        crack_initiation: first.map_or(1.0, at) / peak.stress,
+        axial_cracks: axial(plan, breaks, view),
+    })
+}
+
+/// Share of tension cracks along the axis.
+fn axial(plan: &SpecimenPlan, breaks: &[Break], view: GrainsView<'_>) -> f64 {
+    let from = runout::origins(view.model);
+    let (mut along, mut all) = (0.0, 0.0_f64);
+    for b in breaks.iter().filter(|b| b.mode == BreakMode::Tension) {
+        let normal = from[b.bodies[1] as usize] - from[b.bodies[0] as usize];
+        all += 1.0;
+        along += f64::from(u8::from(normal[plan.axis].abs() < 0.5 * normal.norm()));
+    }
+    along / all.max(1.0)
+}
+
+/// Slope by least squares; none of fewer than three points, or of points above each other.
+fn slope(points: &[&Point], x: fn(&Point) -> f64, y: fn(&Point) -> f64) -> Option<f64> {
+    let count = points.len() as f64;
+    let mean = |of: fn(&Point) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;
+    let (mx, my) = (mean(x), mean(y));
+    let square: f64 = points.iter().map(|p| (x(p) - mx).powi(2)).sum();
+    let cross: f64 = points.iter().map(|p| (x(p) - mx) * (y(p) - my)).sum();
+    (points.len() > 2 && square > 0.0).then(|| cross / square)
+}
+
+impl SpecimenRecord {
+    /// Lines of the report.
+    pub fn report(&self) -> Vec<String> {
+        let known = |name: &str, value: Option<f64>, unit: &str| {
+            value.map_or(String::new(), |v| format!(", {name} {v:.4e}{unit}"))
+        };
+        let mut line = format!("specimen: strength {:.4e} Pa at a strain of {:.3e}", self.strength, self.peak_strain);
+        if self.confinement > 0.0 {
+            line += &format!(" under {:.3e} Pa", self.confinement);
+        }
+        line += &known("modulus", self.modulus, " Pa");
+        line += &known("by platens", self.platen_modulus, " Pa");
+        line += &known("Poisson's ratio", self.poisson, "");
+        let cracks = format!(
+            "cracks at the peak: {} in tension, {} in shear; the first at {:.0} % of it; {:.0} % of the tension cracks \
+             within 30° of the axis (50 % at random)",
+            self.tension_cracks_at_peak,
+            self.shear_cracks_at_peak,
+            100.0 * self.crack_initiation,
+            100.0 * self.axial_cracks
+        );
+        vec![line, cracks]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_by_least_squares() {
+        let line = |k: u32| Point { axial: f64::from(k), stress: 3.0 * f64::from(k) + 1.0, ..Point::default() };
+        let points: Vec<Point> = (0..5).map(line).collect();
+        let points: Vec<&Point> = points.iter().collect();
+        assert_eq!(slope(&points, |p| p.axial, |p| p.stress), Some(3.0));
+        assert_eq!(slope(&points[..2], |p| p.axial, |p| p.stress), None);
+        assert_eq!(slope(&points, |p| p.lateral, |p| p.stress), None);
+    }
+}

@@ -1,0 +1,212 @@
+//! Slides: closed forms, terrain from every form of surface, what their files hold, what is refused.
+
+use super::support::{Folder, Table, json, repository, run, trackbed};
+use std::f64::consts::PI;
+use std::fmt::Write;
+use std::fs;
+
+const DIP: f64 = 30.0;
+
+/// Heights of a plane that falls along x by [`DIP`], from 0 at x = 0, on a grid of 1 m.
+fn incline() -> String {
+    let mut text = String::from("ncols 42\nnrows 11\nxllcenter -2\nyllcenter -5\ncellsize 1\n");
+    for _ in 0..11 {
+        for column in 0..42 {
+            write!(text, "{} ", -(f64::from(column) - 2.0) * (DIP * PI / 180.0).tan()).unwrap();
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A block of 4 x 4 x 2 bonded spheres that rests on the incline.
+fn block(radius: f64) -> String {
+    let (sin, cos) = (DIP * PI / 180.0).sin_cos();
+    let mut rows = String::from("x,y,z,r\n");
+    for (i, j, k) in (0..4).flat_map(|i| (0..4).flat_map(move |j| (0..2).map(move |k| (i, j, k)))) {
+        let (s, h) = (2.0 * radius * f64::from(i), radius * (1.0 + 2.0 * f64::from(k)));
+        let y = 2.0 * radius * (f64::from(j) - 1.5);
+        writeln!(rows, "{},{y},{},{radius}", s * cos + h * sin, h * cos - s * sin).unwrap();
+    }
+    rows
+}
+
+fn scene(terrain: &str) -> String {
+    format!(
+        r#"[[material]]
+name = "rock"
+density = 2600
+stiffness = "20 MN/m"
+tangential_ratio = 0.5
+friction = 0.3
+restitution = 0.3
+[[grains]]
+name = "block"
+shape = "sphere"
+material = "rock"
+packing = "block.csv"
+[[bond]]
+name = "bonds"
+gap = "1 mm"
+damping = 0.5
+[bond.parallel]
+young = "1 GPa"
+[[walls]]
+kind = "mesh"
+material = "rock"
+file = "{terrain}"
+[runout]
+direction = [1, 0]
+cell = 0.5
+[time]
+end = 2.0
+[output]
+frames = 2
+"#
+    )
+}
+
+/// s = g (sin a - mu cos a) t²/2 along the slope, within 0.5 %; the angle of the centre's way is that of the slope.
+#[test]
+fn a_block_slides_as_the_closed_form_says() {
+    let folder = Folder::new("slide");
+    folder.write("incline.asc", &incline());
+    folder.write("block.csv", &block(0.25));
+    let file = folder.write("scene.toml", &scene("incline.asc"));
+    run(&file, &folder.join("r"), &[]).good();
+    let summary = json(&folder.join("r/summary.json"));
+    let runout = &summary["runout"];
+    let of = |key: &str| runout[key].as_f64().unwrap();
+    let (sin, cos) = (DIP * PI / 180.0).sin_cos();
+    let way = 9.81 * (sin - 0.3 * cos) * 2.0_f64.powi(2) / 2.0;
+    let found = (runout["centre_end"][0].as_f64().unwrap() - runout["centre_start"][0].as_f64().unwrap()) / cos;
+    println!("way {found:.5} m, closed form {way:.5} m; travel angle {:.4}", of("travel_angle"));
+    assert!((found / way - 1.0).abs() < 5e-3, "{found} {way}");
+    assert!((of("travel_angle") - DIP).abs() < 0.05, "{runout}");
+    assert!((of("advance") / cos / way - 1.0).abs() < 5e-3, "{runout}");
+    assert_eq!((of("largest_share"), of("moved_share"), of("below_ground")), (1.0, 1.0, 0.0));
+    assert!(summary["energy"]["largest_relative_error"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
+    // Two layers: between four radii and, at an edge of a cell, the slope of a cell more.
+    assert!(of("deepest") > 0.9 && of("deepest") < 1.0 / cos + 0.5, "{runout}");
+    let front = Table::read(&folder.join("r/history.csv")).column("runout_front");
+    assert!((front[front.len() - 1] - of("front")).abs() < 1e-12);
+    let origins = fs::read_to_string(folder.join("r/origins.csv")).unwrap();
+    assert!(origins.starts_with("id,x0 [m],y0 [m],z0 [m],x [m],y [m],z [m],fragment\n0,"), "{origins}");
+    for name in ["runout.vti", "runout.png", "outline.csv", "fragments.csv"] {
+        assert!(folder.join("r").join(name).exists(), "{name}");
+    }
+    let frame = fs::read_to_string(folder.join("r/frames/grains_00002.vtp")).unwrap();
+    assert!(frame.contains("Name=\"displacement\"") && frame.contains("Name=\"initial_position\""));
+}
+
+/// The same slope as a closed body of numbers in any order, as older programs exchange it, and as a mesh of elements.
+#[test]
+fn terrain_comes_in_every_form() {
+    let folder = Folder::new("terrain");
+    folder.write("block.csv", &block(0.25));
+    let fall = |x: f64| -x * (DIP * PI / 180.0).tan();
+    let corners: Vec<[f64; 3]> = [-2.0, 40.0]
+        .into_iter()
+        .flat_map(|x| [-5.0, 5.0].map(|y| [[x, y, fall(x)], [x, y, -40.0]]))
+        .flatten()
+        .collect();
+    let mut list = String::from("8 14\n");
+    for [x, y, z] in &corners {
+        writeln!(list, "{x:e} {y:e} {z:e}").unwrap();
+    }
+    // Numbers ascend in each row, so the winding says nothing; two triangles inside are joined to three others by an edge.
+    for t in [
+        "1 3 5", "3 5 7", "2 4 6", "4 6 8", "1 2 3", "2 3 4", "5 6 7", "6 7 8", "1 2 5", "2 5 6", "3 4 7", "4 7 8", "1 2 7",
+        "2 7 8",
+    ] {
+        writeln!(list, "{t}").unwrap();
+    }
+    folder.write("body.dat", &list);
+    let file = folder.write("scene.toml", &scene("body.dat"));
+    run(&file, &folder.join("r"), &["time.end=0.5"]).good();
+    let runout = json(&folder.join("r/summary.json"))["runout"].clone();
+    let (sin, cos) = (DIP * PI / 180.0).sin_cos();
+    let way = 9.81 * (sin - 0.3 * cos) * 0.25 / 2.0;
+    let found = (runout["centre_end"][0].as_f64().unwrap() - runout["centre_start"][0].as_f64().unwrap()) / cos;
+    assert!((found / way - 1.0).abs() < 2e-2, "{found} {way}");
+    assert_eq!((runout["below_ground"].as_u64(), runout["beyond_ground"].as_u64()), (Some(0), Some(0)));
+}
+
+/// A container is the skin of a mesh of elements.
+#[test]
+fn a_mesh_of_elements_is_filled() {
+    let folder = Folder::new("skin");
+    let mesh = repository().join("inputs/coupled/slab_mixed");
+    let mesh = fs::read_dir(mesh).unwrap().map(|e| e.unwrap().path()).find(|p| p.extension().is_some_and(|e| e == "inp"));
+    let mesh = mesh.unwrap();
+    let info = trackbed(["stone", "info", &mesh.display().to_string()]).good().stdout;
+    assert!(info.contains("volume"), "{info}");
+    let text = scene("x.stl");
+    let (head, _) = text.split_once("[[grains]]").unwrap();
+    let file = folder.write(
+        "scene.toml",
+        &format!(
+            "{head}[[grains]]\nname = \"fill\"\nshape = \"sphere\"\nmaterial = \"rock\"\ncount = 50\nsize = [0.02, 0.02]\n\
+             region = {{ surface = {:?} }}\n[time]\nend = 1e-4\n[output]\nframes = 0\n",
+            mesh.display()
+        ),
+    );
+    run(&file, &folder.join("r"), &[]).good();
+    assert_eq!(json(&folder.join("r/summary.json"))["model"]["bodies"], 50);
+}
+
+#[test]
+fn what_is_no_slide_is_refused() {
+    let folder = Folder::new("refused");
+    folder.write("incline.asc", &incline());
+    folder.write("block.csv", &block(0.25));
+    let file = folder.write("scene.toml", &scene("incline.asc"));
+    for (set, sentence) in [
+        ("runout.direction=[0, 0]", "runout.direction: found 0, expected a vector that is not null"),
+        ("runout.groups=[\"x\"]", "runout.groups.0: found \"x\", expected the name of a [[grains]]: block"),
+        ("runout.groups=[]", "runout.groups: found none, expected at least one group that can slide"),
+        ("runout.cell=0", "runout.cell: found 0, expected a length above 0"),
+        ("runout.depth=-1", "runout.depth: found -1, expected a length above 0"),
+        ("runout.share=0.2", "runout.share: found 0.2, expected 0.5 to 1"),
+        ("output.fields=[\"broken\"]", "output.fields.0: found \"broken\", expected one of acceleration, broken_bonds,"),
+        ("bond.0.stiffness_spread={ kind = \"normal\" }", "bond.0.stiffness_spread: found other keys, expected `deviation`"),
+    ] {
+        let outcome = trackbed(["check", &file.display().to_string(), "--set", set]);
+        assert_eq!(outcome.code, 2, "{set}: {outcome:?}");
+        assert!(outcome.stderr.contains(sentence), "{sentence}\n{}", outcome.stderr);
+    }
+}
+
+/// Stiffness of a chain of bonds whose moduli differ: the scatter softens it as the mean of the compliances says.
+#[test]
+fn stiffnesses_spread() {
+    let folder = Folder::new("spread");
+    let spheres: Vec<String> = (0..202).map(|k| format!("[0, 0, {}, 0.01]", 0.02 * f64::from(k))).collect();
+    let (middle, ends) = (&spheres[1..201], [&spheres[0], &spheres[201]]);
+    let file = folder.write(
+        "scene.toml",
+        &format!(
+            "gravity = [0, 0, 0]\n[[material]]\nname = \"rock\"\ndensity = 2600\nstiffness = 1e6\nfriction = 0.5\nrestitution = 0.5\n\
+             [[grains]]\nname = \"foot\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\nmotion = [0, 0, 0]\n\
+             [[grains]]\nname = \"row\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\n\
+             [[grains]]\nname = \"head\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\nmotion = [0, 0, 0.01]\nrecord = true\n\
+             [[bond]]\nname = \"b\"\ngap = 1e-4\ndamping = 1.0\n[bond.parallel]\nyoung = 1e9\n\
+             [time]\nend = 0.03\n[output]\nframes = 0\n",
+            ends[0],
+            middle.join(", "),
+            ends[1]
+        ),
+    );
+    let force = |set: &[&str], out: &str| {
+        run(&file, &folder.join(out), set).good();
+        // Over the second half of the pull: waves along the chain average out.
+        let force = Table::read(&folder.join(out).join("history.csv")).column("head_force_z");
+        -force[force.len() / 2..].iter().sum::<f64>()
+    };
+    let alike = force(&[], "a");
+    let spread = force(&["bond.0.stiffness_spread={ kind = \"normal\", deviation = 0.2 }"], "b");
+    // E[1/x] of a normal law about 1 with a deviation of 0.2 is 1.0456; 201 bonds leave a scatter of 1.6 %.
+    println!("softer by {:.4}, expected 1.0456", alike / spread);
+    assert!((alike / spread - 1.0456).abs() < 0.05, "{alike} {spread}");
+    assert!((alike / spread - 1.0).abs() > 5e-3);
+}
