@@ -86,7 +86,7 @@ fn of_grains(table: &Table<Probe>, grains: &GrainsPart) -> Result<(String, Obser
         };
         return Ok((group.clone(), Observed::Group(part as u32)));
     }
-    let corners = table.region.unwrap_or_default();
+    let corners = table.need("region", table.region, "the corners of a box")?;
     let region = super::grains::region(table, "region", &corners)?;
     Ok(("region".into(), Observed::Region(region)))
 }
