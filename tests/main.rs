@@ -41,6 +41,7 @@ mod suite {
     mod solid_keys;
     mod solid_runs;
     mod solid_scenes;
+    mod specimen;
     mod start;
     mod stones;
     mod structure;

@@ -76,7 +76,11 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
             let number = |n: f64| {
                 let fits = n >= 0.0 && n.fract() == 0.0 && n < f64::from(u32::MAX);
                 let expected = "the number of a particle";
-                if fits { Ok(n as u32) } else { Err(ReadError::at(file, *line, "particle", n.to_string(), expected)) }
+                if fits {
+                    Ok(n as u32)
+                } else {
+                    Err(ReadError::at(file, *line, "particle", n.to_string(), expected))
+                }
             };
             chains.push(Chain { first: number(i)?, second: number(j)?, normal, tangential });
         }

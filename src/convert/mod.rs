@@ -5,31 +5,17 @@
 mod animation;
 mod chains;
 mod deck;
+mod options;
 mod packing;
 mod results;
 mod rows;
 
+pub use options::Options;
+
 use crate::failure::Failure;
 use crate::read::source::{self, LARGEST};
 use crate::write::{FORMATS, Frame, Writers};
-use std::path::{Path, PathBuf};
-
-/// What is converted to what, and what the files themselves do not say.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// Of a deck: packing that its `restart` reads.
-    pub packing: Option<PathBuf>,
-    /// Of a deck: terrain or structure.
-    pub terrain: Option<PathBuf>,
-    /// Of a deck without packing: box that grains are scattered in [m].
-    pub region: Option<[f64; 3]>,
-    /// Of chains: animation with the places of their grains.
-    pub grains: Option<PathBuf>,
-    /// Of a folder: format of its frames, `"vtk"` where none is named.
-    pub format: Option<String>,
-    /// Whether files may be replaced.
-    pub force: bool,
-}
+use std::path::Path;
 
 /// What a file turned out to be.
 enum Input {
@@ -68,7 +54,10 @@ pub fn convert(input: &Path, output: &Path, options: &Options) -> Result<Vec<Str
         (Input::Chains(text), "") => {
             let Some(grains) = &options.grains else {
                 let expected = "--grains ANIMATION beside a folder of frames: the file has no places";
-                return Err(Failure::Input(format!("{}: found chains, expected {expected}", input.display())));
+                return Err(Failure::Input(format!(
+                    "{}: found chains, expected {expected}",
+                    input.display()
+                )));
             };
             let Input::Animation(animation) = look(grains)? else {
                 let found = grains.display();
@@ -129,12 +118,19 @@ fn folder(
         missed += lost.unwrap_or(0);
         let grains = moment.frame();
         let time = moment.time;
-        writers.frame(&Frame { number, time, grains: Some(&grains), chains: frame.as_ref(), ..Frame::default() })?;
+        writers.frame(&Frame {
+            number,
+            time,
+            grains: Some(&grains),
+            chains: frame.as_ref(),
+            ..Frame::default()
+        })?;
     }
     writers.end()?;
     let mut lines = vec![format!("{} frames", moments.len())];
     if missed > 0 {
-        lines.push(format!("{missed} chains to walls left out: the files do not say where these are touched"));
+        lines
+            .push(format!("{missed} chains to walls left out: the files do not say where these are touched"));
     }
     Ok(lines)
 }

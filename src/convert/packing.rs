@@ -44,7 +44,12 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<[f64; 4]>, ReadError> {
         return Err(ReadError::whole(file, "spheres", spheres.len().to_string(), expected));
     }
     if spheres.is_empty() {
-        return Err(ReadError::whole(file, "spheres", "none", "a packing, an animation, force chains, or a deck"));
+        return Err(ReadError::whole(
+            file,
+            "spheres",
+            "none",
+            "a packing, an animation, force chains, or a deck",
+        ));
     }
     Ok(spheres)
 }

@@ -41,7 +41,9 @@ pub fn grains(dir: &Path) -> Result<Vec<animation::Moment>, Failure> {
 pub fn chains(dir: &Path) -> Result<Vec<chains::Moment>, Failure> {
     let mut moments = Vec::new();
     for frame in series::read(dir)? {
-        let (Some(file), Some(grains)) = (frame.file(Part::Chains), frame.file(Part::Grains)) else { continue };
+        let (Some(file), Some(grains)) = (frame.file(Part::Chains), frame.file(Part::Grains)) else {
+            continue;
+        };
         let ids = Arrays::open(grains, "PolyData")?.indices("PointData", "id")?;
         let mut number = HashMap::new();
         for (k, id) in ids.iter().enumerate() {

@@ -105,12 +105,7 @@ fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, Scene
 }
 
 /// The last part of a run, in more detail.
-fn last(
-    scene: &Scene,
-    o: &Table<Output>,
-    end: f64,
-    frames: u32,
-) -> Result<Option<(f64, u32)>, SceneError> {
+fn last(scene: &Scene, o: &Table<Output>, end: f64, frames: u32) -> Result<Option<(f64, u32)>, SceneError> {
     let Some(last) = o.optional("last", &o.last) else { return Ok(None) };
     if scene.track.as_ref().is_some_and(|t| t.jump.is_some()) {
         return Err(last.here("it beside [track.jump]", "no such key: such a run has no fixed end"));
@@ -118,7 +113,12 @@ fn last(
     let time = last.time.si;
     last.check("time", time, |t| t > 0.0 && t < end, &format!("above 0, below the end at {end} s"))?;
     let most = 100_000 - frames.min(100_000);
-    last.check("frames", f64::from(last.frames), |n| (1.0..=f64::from(most)).contains(&n), "1 or more, 100000 with the others")?;
+    last.check(
+        "frames",
+        f64::from(last.frames),
+        |n| (1.0..=f64::from(most)).contains(&n),
+        "1 or more, 100000 with the others",
+    )?;
     Ok(Some((time, last.frames)))
 }
 

@@ -104,7 +104,8 @@ pub fn read_asc(file: &Path) -> Result<Surface, ReadError> {
 fn parse(file: &Path, text: &str) -> Result<Surface, ReadError> {
     let mut head = Head::default();
     let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line)).peekable();
-    while let Some((line, words)) = lines.peek().map(|(n, l)| (*n, l.split_whitespace().collect::<Vec<_>>())) {
+    while let Some((line, words)) = lines.peek().map(|(n, l)| (*n, l.split_whitespace().collect::<Vec<_>>()))
+    {
         if words.first().is_some_and(|w| number::looks_numeric(w) || is_no_number(w)) {
             break;
         }

@@ -47,17 +47,29 @@ fn every_fault_has_its_sentence() {
     let cases = [
         (String::new(), "a.asc: ncols: found nothing, expected a line with its value"),
         (HEAD.to_string(), "a.asc: heights: found 0, expected 3 times 2, as ncols and nrows say"),
-        (format!("{HEAD}1 2 3 4 5 6 7"), "a.asc:7: height: found \"7\", expected the end after 3 times 2 heights"),
+        (
+            format!("{HEAD}1 2 3 4 5 6 7"),
+            "a.asc:7: height: found \"7\", expected the end after 3 times 2 heights",
+        ),
         (format!("{HEAD}1 2 3 4 5x 6"), "a.asc:7: height: found \"5x\", expected a number"),
         (format!("{HEAD}1 2 3 4 1e999 6"), "a.asc:7: height: found \"1e999\", expected a finite number"),
-        (HEAD.replace("ncols 3", "ncols 3.5"), "a.asc:1: ncols: found 3.5, expected a whole number from 2 to 100000000"),
-        (HEAD.replace("ncols 3", "ncols 1e99"), "a.asc:1: ncols: found 1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000, expected a whole number from 2 to 100000000"),
+        (
+            HEAD.replace("ncols 3", "ncols 3.5"),
+            "a.asc:1: ncols: found 3.5, expected a whole number from 2 to 100000000",
+        ),
+        (
+            HEAD.replace("ncols 3", "ncols 1e99"),
+            "a.asc:1: ncols: found 1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000, expected a whole number from 2 to 100000000",
+        ),
         (
             HEAD.replace("ncols 3", "ncols 90000000").replace("NROWS 2", "NROWS 90000000"),
             "a.asc: ncols and nrows: found 90000000 times 90000000 heights, expected at most 100000000 in all",
         ),
         (HEAD.replace("cellsize 10", "cellsize 0"), "a.asc:5: cellsize: found 0, expected a length above 0"),
-        (HEAD.replace("cellsize 10", "cellsize"), "a.asc:5: cellsize: found \"\", expected one finite number"),
+        (
+            HEAD.replace("cellsize 10", "cellsize"),
+            "a.asc:5: cellsize: found \"\", expected one finite number",
+        ),
         (format!("ncols 3\n{HEAD}"), "a.asc:2: ncols: found it again, expected each name once"),
         (
             format!("xllcenter 3\n{HEAD}"),

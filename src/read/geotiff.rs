@@ -33,7 +33,8 @@ type Source = Decoder<Cursor<Vec<u8>>>;
 /// What is no TIFF, or damaged; more than one band; no place; a grid that is turned; degrees in place of metres.
 pub fn read_geotiff(file: &Path) -> Result<Surface, ReadError> {
     let bytes = read_bytes(file, "GeoTIFF")?;
-    let broken = |e: tiff::TiffError| ReadError::whole(file, "GeoTIFF", e.to_string(), "a TIFF that can be read");
+    let broken =
+        |e: tiff::TiffError| ReadError::whole(file, "GeoTIFF", e.to_string(), "a TIFF that can be read");
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MOST_SAMPLES;
     let mut source = Decoder::new(Cursor::new(bytes)).map_err(broken)?.with_limits(limits);
@@ -77,7 +78,12 @@ fn place(file: &Path, source: &mut Source) -> Result<([f64; 2], [f64; 2]), ReadE
         ([dx, dy, ..], [i, j, _, x, y, ..], _) => ([x - i * dx, y + j * dy], [*dx, *dy]),
         (_, _, [a, b, _, x, d, e, _, y, ..]) => {
             if *b != 0.0 || *d != 0.0 {
-                return Err(ReadError::whole(file, "transformation", "a grid that is turned", "rows along x"));
+                return Err(ReadError::whole(
+                    file,
+                    "transformation",
+                    "a grid that is turned",
+                    "rows along x",
+                ));
             }
             ([*x, *y], [*a, -e])
         }

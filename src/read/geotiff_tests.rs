@@ -11,8 +11,13 @@ struct Tags<'a> {
     absent: &'a str,
 }
 
-const GOOD: Tags<'static> =
-    Tags { scale: &[10.0, 20.0, 0.0], tie: &[0.0, 0.0, 0.0, 100.0, 240.0, 0.0], matrix: &[], keys: &[], absent: "" };
+const GOOD: Tags<'static> = Tags {
+    scale: &[10.0, 20.0, 0.0],
+    tie: &[0.0, 0.0, 0.0, 100.0, 240.0, 0.0],
+    matrix: &[],
+    keys: &[],
+    absent: "",
+};
 
 fn file<C: ColorType>(tags: &Tags<'_>, size: [u32; 2], values: &[C::Inner]) -> Result<Surface, String>
 where
@@ -93,7 +98,10 @@ fn what_makes_no_terrain_is_refused() {
     let colours = file::<RGB8>(&GOOD, [2, 2], &[0; 12]).unwrap_err();
     assert_eq!(colours, "a.tif: bands: found 12 values for 2 times 2 samples, expected one band");
     let row = file::<Gray32Float>(&GOOD, [3, 1], &SIX[..3]).unwrap_err();
-    assert_eq!(row, "a.tif: size: found 3 times 1 samples, expected 2 or more each way, at most 100000000 in all");
+    assert_eq!(
+        row,
+        "a.tif: size: found 3 times 1 samples, expected 2 or more each way, at most 100000000 in all"
+    );
     for bytes in [&b""[..], b"II", b"II*\0\x08\0\0\0", b"ncols 3", &[0xff; 64]] {
         let sentence = read(bytes).unwrap_err();
         assert!(sentence.starts_with("a.tif: GeoTIFF: found "), "{sentence}");

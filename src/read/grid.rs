@@ -42,7 +42,8 @@ impl Grid {
         }
         for row in 1..self.rows {
             for column in 1..self.columns {
-                let at = |down: usize, right: usize| index[(row - 1 + down) * self.columns + column - 1 + right];
+                let at =
+                    |down: usize, right: usize| index[(row - 1 + down) * self.columns + column - 1 + right];
                 let (north_west, north_east) = (at(0, 0), at(0, 1));
                 let (south_west, south_east) = (at(1, 0), at(1, 1));
                 let here: Vec<u32> = [south_west, south_east, north_east, north_west]
@@ -56,7 +57,8 @@ impl Grid {
             }
         }
         if surface.triangles.is_empty() {
-            let found = format!("{} samples, none of which has neighbours on two sides", surface.vertices.len());
+            let found =
+                format!("{} samples, none of which has neighbours on two sides", surface.vertices.len());
             return Err(ReadError::whole(file, "heights", found, "heights that make a surface"));
         }
         Ok(surface.without_loose_vertices())

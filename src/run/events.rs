@@ -133,7 +133,14 @@ fn joined(breaks: &[Break], plan: Option<EventPlan>) -> Vec<Event> {
         let first = root(&mut parent, k);
         if first == k {
             number[k] = events.len();
-            events.push(Event { time: b.time, duration: 0.0, place: Vec3::zeros(), breaks: 0, shear: 0, energy: 0.0 });
+            events.push(Event {
+                time: b.time,
+                duration: 0.0,
+                place: Vec3::zeros(),
+                breaks: 0,
+                shear: 0,
+                energy: 0.0,
+            });
         }
         let event = &mut events[number[first]];
         event.duration = b.time - event.time;
@@ -184,7 +191,14 @@ mod tests {
     use super::*;
 
     fn broken(time: f64, x: f64, energy: f64) -> Break {
-        Break { time, bond: 0, bodies: [0, 1], place: Vec3::new(x, 0.0, 0.0), mode: BreakMode::Tension, energy }
+        Break {
+            time,
+            bond: 0,
+            bodies: [0, 1],
+            place: Vec3::new(x, 0.0, 0.0),
+            mode: BreakMode::Tension,
+            energy,
+        }
     }
 
     /// A chain of neighbours is one event; what is late or far is another.

@@ -6,7 +6,9 @@ use super::wall_output;
 use crate::failure::Failure;
 use crate::model::OutputPlan;
 use crate::model::grains::GrainsPart;
-use crate::write::{ChainFrame, Extra, Frame, GrainFrame, NO_BODY, Part, SolidFrame, WallFrame, WallKind, Writers};
+use crate::write::{
+    ChainFrame, Extra, Frame, GrainFrame, NO_BODY, Part, SolidFrame, WallFrame, WallKind, Writers,
+};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::bond::{Break, BreakMode};
@@ -101,10 +103,13 @@ pub fn write(
     (solid, tensors): (Option<SolidView<'_>>, &[&'static str]),
     grains: Option<Shown<'_>>,
 ) -> Result<(), Failure> {
-    let solid = solid.filter(|_| writers.show(Part::Solid)).map(|view| (SolidFields::of(view, tensors), view));
+    let solid =
+        solid.filter(|_| writers.show(Part::Solid)).map(|view| (SolidFields::of(view, tensors), view));
     let mut frame = Frame { number, time, ..Frame::default() };
     frame.solid = solid.as_ref().map(|(fields, view)| fields.frame(*view));
-    let Some(Shown { view, part, strong_only, extra, draw }) = grains else { return Ok(writers.frame(&frame)?) };
+    let Some(Shown { view, part, strong_only, extra, draw }) = grains else {
+        return Ok(writers.frame(&frame)?);
+    };
     // Computed once for all that is shown of them.
     let any = writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
@@ -188,9 +193,8 @@ fn spheres(
 /// A field that not every frame has, for the spheres of the bodies `id`; `force` is that of contacts and bonds on each body.
 fn extra(name: &str, view: GrainsView<'_>, id: &[u32], force: &[dem::Vec3]) -> Extra {
     let GrainsView { model, state } = view;
-    let vectors = |of: &dyn Fn(usize) -> dem::Vec3| {
-        Extra::Vectors(id.iter().map(|b| of(*b as usize).into()).collect())
-    };
+    let vectors =
+        |of: &dyn Fn(usize) -> dem::Vec3| Extra::Vectors(id.iter().map(|b| of(*b as usize).into()).collect());
     let counts = |of: &dyn Fn(&Break) -> bool| {
         let mut count = vec![0; model.body_count()];
         state.breaks().iter().filter(|b| of(b)).flat_map(|b| b.bodies).for_each(|b| count[b as usize] += 1);

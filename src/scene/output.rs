@@ -61,7 +61,17 @@ pub enum Chains {
 
 /// Every key of the table: its own, then those of the formats.
 static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let own = ["frames", "history_interval", "checkpoint", "tables", "packing", "state", "chains", "fields", "last"];
+    let own = [
+        "frames",
+        "history_interval",
+        "checkpoint",
+        "tables",
+        "packing",
+        "state",
+        "chains",
+        "fields",
+        "last",
+    ];
     own.into_iter().chain(FORMATS.iter().map(|format| format.key)).collect()
 });
 

@@ -139,11 +139,14 @@ mod tests {
         };
         write_vti(&dir.join("a.vti"), &map).unwrap();
         let text = std::fs::read_to_string(dir.join("a.vti")).unwrap();
-        for part in ["WholeExtent=\"0 3 0 2 0 0\"", "Origin=\"10 20 3\"", "Spacing=\"5 5 5\"", "Name=\"depth\""] {
+        for part in
+            ["WholeExtent=\"0 3 0 2 0 0\"", "Origin=\"10 20 3\"", "Spacing=\"5 5 5\"", "Name=\"depth\""]
+        {
             assert!(text.contains(part), "{part}");
         }
         write_png(&dir.join("a.png"), &map).unwrap();
-        let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(dir.join("a.png")).unwrap()));
+        let decoder =
+            png::Decoder::new(std::io::BufReader::new(std::fs::File::open(dir.join("a.png")).unwrap()));
         let mut reader = decoder.read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();

@@ -16,7 +16,7 @@ fn written(mesh: &Mesh) -> (Vec<String>, Vec<Vec<f64>>, Vec<[usize; 8]>) {
         von_mises: &scalar,
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
-            tensors: &[],
+        tensors: &[],
     };
     let dir = sample::folder(&format!("tecplot_{n}"));
     let file = dir.join("solid.dat");
@@ -117,7 +117,7 @@ fn a_value_that_is_not_finite_is_named() {
         von_mises: &scalar,
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
-            tensors: &[],
+        tensors: &[],
     };
     let dir = sample::folder("tecplot_nan");
     let error = write_solid(&dir.join("solid.dat"), &frame, "a", 0.0, 1).unwrap_err();

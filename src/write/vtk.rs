@@ -245,7 +245,8 @@ pub fn write_with(
             ("compressor", "vtkZLibDataCompressor"),
         ]);
         let written = root.write_inner_content(|xml| {
-            let set = xml.create_element(kind).with_attributes(attributes.iter().map(|(k, v)| (*k, v.as_str())));
+            let set =
+                xml.create_element(kind).with_attributes(attributes.iter().map(|(k, v)| (*k, v.as_str())));
             set.write_inner_content(|xml| {
                 let piece = piece.iter().map(|(k, v)| (*k, v.as_str()));
                 xml.create_element("Piece").with_attributes(piece).write_inner_content(|xml| {

@@ -60,7 +60,7 @@ fn write_solid(file: &Path, mesh: &Mesh) {
         von_mises: &scalar,
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
-            tensors: &[],
+        tensors: &[],
     };
     vtu::write_solid(file, &frame, Choice::default()).unwrap();
 }
@@ -90,7 +90,7 @@ fn chains(count: usize) -> ChainFrame {
         tangential_force: vec![0.1; count],
         kind: vec![0; count],
         strong: vec![1; count],
-            partners: vec![[0, 1]; count],
+        partners: vec![[0, 1]; count],
     }
 }
 

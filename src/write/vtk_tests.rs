@@ -54,7 +54,7 @@ fn time_of_a_field_and_of_a_frame() {
         von_mises: &scalar,
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
-            tensors: &[],
+        tensors: &[],
     };
     let file = dir.join("solid.vtu");
     let whole = fastest(&|| vtu::write_solid(&file, &frame, Choice::default()).unwrap());

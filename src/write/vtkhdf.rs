@@ -238,10 +238,12 @@ impl Series {
             doubles("equivalent_plastic_strain", 1, frame.equivalent_plastic_strain),
             doubles("yield_function", 1, frame.yield_function),
         ];
-        fields.extend(frame.tensors.iter().map(|(name, values)| Field {
-            name,
-            values: Values::Doubles(9, Cow::Owned(matrices(values))),
-        }));
+        fields.extend(
+            frame.tensors.iter().map(|(name, values)| Field {
+                name,
+                values: Values::Doubles(9, Cow::Owned(matrices(values))),
+            }),
+        );
         let nodes = mesh.node_count();
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", mesh.coordinates.as_flattened(), 3, nodes)?;

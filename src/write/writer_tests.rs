@@ -17,7 +17,7 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
         von_mises: &scalar,
         equivalent_plastic_strain: &scalar,
         yield_function: &scalar,
-            tensors: &[],
+        tensors: &[],
     };
     let grains = GrainFrame {
         position: vec![[0.0; 3]],
@@ -39,7 +39,7 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
         tangential_force: vec![0.0],
         kind: vec![0],
         strong: vec![1],
-            partners: vec![[0, 1]; 1],
+        partners: vec![[0, 1]; 1],
     };
     let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let walls = WallFrame { points, polygons: vec![vec![0, 1, 2]], id: vec![0], kind: vec![0] };

@@ -29,6 +29,7 @@ fn both_decks_run() {
     for (key, line) in GEOLOGY.split_whitespace().zip(said.lines()) {
         assert!(line.starts_with(&format!("{key}: ")), "{line}");
     }
+    assert!(said.contains("NLast: output.last: "), "{said}");
     assert!(said.contains("ARF: not used: no coefficient of rolling friction is above 1"), "{said}");
     let scene = fs::read_to_string(folder.join("geology.toml")).unwrap();
     for part in [
@@ -40,12 +41,21 @@ fn both_decks_run() {
     ] {
         assert!(scene.contains(part), "{part}\n{scene}");
     }
-    run(&folder.join("geology.toml"), &folder.join("g"), &["time.end=0.2", "output.frames=1"]).good();
+    run(
+        &folder.join("geology.toml"),
+        &folder.join("g"),
+        &["time.end=0.2", "output.frames=1", "output.last="],
+    )
+    .good();
     assert_eq!(json(&folder.join("g/summary.json"))["model"]["bodies"], 6006);
 
     let refused = convert(&folder, &["general.par", "general.toml"]);
     assert_eq!(refused.code, 2);
-    assert!(refused.stderr.contains("general.par:1: restart: found \".true.\", expected --packing FILE, or --box X,Y,Z"));
+    assert!(
+        refused
+            .stderr
+            .contains("general.par:1: restart: found \".true.\", expected --packing FILE, or --box X,Y,Z")
+    );
     let said = convert(&folder, &["general.par", "general.toml", "--box", "0.15,0.15,0.15"]).good().stdout;
     for (key, line) in GENERAL.split_whitespace().zip(said.lines()) {
         assert!(line.starts_with(&format!("{key}: ")), "{line}");
@@ -55,7 +65,13 @@ fn both_decks_run() {
     assert!(scene.contains("spread = { kind = \"normal\", deviation = 0.15 }"), "{scene}");
     assert!(scene.contains("stiffness_spread = { kind = \"normal\", deviation = 0.2 }"), "{scene}");
     // Grains at random places do not touch: they settle before they are bonded.
-    let settle = ["time.end=0.001", "output.frames=1", "deposition={ max_time = 0.6 }", "bond.0.gap=0.0005"];
+    let settle = [
+        "time.end=0.001",
+        "output.frames=1",
+        "output.last=",
+        "deposition={ max_time = 0.6 }",
+        "bond.0.gap=0.0005",
+    ];
     run(&folder.join("general.toml"), &folder.join("s"), &settle).good();
     let bonds = &json(&folder.join("s/summary.json"))["bonds"]["made"];
     assert!(bonds.as_u64().unwrap() > 500, "{bonds}");
@@ -73,7 +89,12 @@ fn packings_are_read_by_decks() {
     assert_eq!(fs::read_to_string(folder.join("again.csv")).unwrap(), packing);
     folder.write("general.par", &deck("general.par"));
     convert(&folder, &["general.par", "scene.toml", "--packing", "packing.csv"]).good();
-    run(&folder.join("scene.toml"), &folder.join("r"), &["time.end=0.001", "output.frames=1"]).good();
+    run(
+        &folder.join("scene.toml"),
+        &folder.join("r"),
+        &["time.end=0.001", "output.frames=1", "output.last="],
+    )
+    .good();
     let summary = json(&folder.join("r/summary.json"));
     assert_eq!((&summary["model"]["bodies"], &summary["bonds"]["made"]), (&3.into(), &2.into()));
 }
@@ -111,7 +132,10 @@ fn animations_and_chains_come_back() {
     assert!(folder.join("hdf/grains.vtkhdf").exists());
     let again = convert(&folder, &["a.3df", "same.3df"]);
     assert_eq!(again.code, 2);
-    assert_eq!(again.stderr, "trackbed: output: found same.3df, which exists, expected a new file, or --force\n");
+    assert_eq!(
+        again.stderr,
+        "error: output: found same.3df, which exists, expected a new file, or --force\n"
+    );
 }
 
 /// Frames of a run as animation and chains: places, numbers of partners and forces are those of the run.
@@ -145,7 +169,11 @@ frames = 1
     run(&folder.join("scene.toml"), &folder.join("r"), &[]).good();
     convert(&folder, &["r", "a.dat"]).good();
     let animation = fs::read_to_string(folder.join("a.dat")).unwrap();
-    assert_eq!(animation.lines().filter(|l| l.starts_with("3D: ") && l.ends_with(" 2")).count(), 2, "{animation}");
+    assert_eq!(
+        animation.lines().filter(|l| l.starts_with("3D: ") && l.ends_with(" 2")).count(),
+        2,
+        "{animation}"
+    );
     convert(&folder, &["r", "a.3df"]).good();
     let chains = fs::read_to_string(folder.join("a.3df")).unwrap();
     let last: Vec<Vec<f64>> = chains
@@ -169,22 +197,50 @@ fn hostile_files_are_refused() {
     let folder = Folder::new("hostile");
     let good = deck("geology.par");
     let cases: Vec<(String, &str, &str)> = vec![
-        (String::new(), "a.csv", "a: spheres: found none, expected a packing, an animation, force chains, or a deck"),
+        (
+            String::new(),
+            "a.csv",
+            "a: spheres: found none, expected a packing, an animation, force chains, or a deck",
+        ),
         ("1 2\n".into(), "a.csv", "a:1: columns: found 2, expected x y z r, or these behind a number"),
         ("1 2 3 -1\n".into(), "a.csv", "a:1: radius: found -1, expected above 0"),
         ("2\n1 2 3 1\n".into(), "a.csv", "a: spheres: found 1, expected 2, as its first row says"),
         ("3D: 0 2\n0 0 0 1 0 0 0\n".into(), "a.csv", "a:1: rows: found 1, expected 2, as the head says"),
         ("3D: 0 1\n0 0 0 1 0 0\n".into(), "a.csv", "a:2: columns: found 6, expected 7 or 8"),
-        ("3D: 0 1\n0 0 0 1 0 0 nan\n".into(), "a.csv", "a:2: number: found \"nan\", expected a finite number"),
-        ("3D: 0 1e99\n".into(), "a.csv", "a:1: number of rows: found 1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000, expected a whole number"),
+        (
+            "3D: 0 1\n0 0 0 1 0 0 nan\n".into(),
+            "a.csv",
+            "a:2: number: found \"nan\", expected a finite number",
+        ),
+        (
+            "3D: 0 1e99\n".into(),
+            "a.csv",
+            "a:1: number of rows: found 1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000, expected a whole number",
+        ),
         ("3DF: 0\n".into(), "a.csv", "a:1: 3DF:: found 1 numbers, expected time and number of rows"),
-        ("3DF: 0 1\n1 -2 3 4\n".into(), "a.csv", "a:2: particle: found -2, expected the number of a particle"),
-        ("3DF: 0 1\n1 2 3 4\n".into(), "a.toml", "output: found a.toml, expected .csv, .3df, or a folder for frames for a"),
-        (good.replace("15.0   ", "-15.0  "), "a.toml", "a:14: D: found \"-15.0\", expected a diameter above 0"),
+        (
+            "3DF: 0 1\n1 -2 3 4\n".into(),
+            "a.csv",
+            "a:2: particle: found -2, expected the number of a particle",
+        ),
+        (
+            "3DF: 0 1\n1 2 3 4\n".into(),
+            "a.toml",
+            "output: found a.toml, expected .csv, .3df, or a folder for frames for a",
+        ),
+        (
+            good.replace("15.0   ", "-15.0  "),
+            "a.toml",
+            "a:14: D: found \"-15.0\", expected a diameter above 0",
+        ),
         (good.replace("HEX", "BCC"), "a.toml", "a:2: pattern: found \"BCC\", expected HEX, FCC or LOS"),
         (good.replace("(rzs)", "(rns)"), "a.toml", "a:18: comment: found \"(rns)\", expected that of rzs"),
         (good.replace("0.5, 0.2 ", "0.5 "), "a.toml", "a:19: amu, eps: found 1 values, expected 2"),
-        (good.replace(".true.", "maybe("), "a.toml", "a:1: comment: found "),
+        (
+            good.replace(".true.", "maybe("),
+            "a.toml",
+            "a:1: restart: found \"maybe\", expected .true. or .false.",
+        ),
         (
             good.lines().take(31).collect::<Vec<_>>().join("\n"),
             "a.toml",

@@ -79,7 +79,8 @@ fn a_block_slides_as_the_closed_form_says() {
     let of = |key: &str| runout[key].as_f64().unwrap();
     let (sin, cos) = (DIP * PI / 180.0).sin_cos();
     let way = 9.81 * (sin - 0.3 * cos) * 2.0_f64.powi(2) / 2.0;
-    let found = (runout["centre_end"][0].as_f64().unwrap() - runout["centre_start"][0].as_f64().unwrap()) / cos;
+    let found =
+        (runout["centre_end"][0].as_f64().unwrap() - runout["centre_start"][0].as_f64().unwrap()) / cos;
     println!("way {found:.5} m, closed form {way:.5} m; travel angle {:.4}", of("travel_angle"));
     assert!((found / way - 1.0).abs() < 5e-3, "{found} {way}");
     assert!((of("travel_angle") - DIP).abs() < 0.05, "{runout}");
@@ -116,8 +117,8 @@ fn terrain_comes_in_every_form() {
     }
     // Numbers ascend in each row, so the winding says nothing; two triangles inside are joined to three others by an edge.
     for t in [
-        "1 3 5", "3 5 7", "2 4 6", "4 6 8", "1 2 3", "2 3 4", "5 6 7", "6 7 8", "1 2 5", "2 5 6", "3 4 7", "4 7 8", "1 2 7",
-        "2 7 8",
+        "1 3 5", "3 5 7", "2 4 6", "4 6 8", "1 2 3", "2 3 4", "5 6 7", "6 7 8", "1 2 5", "2 5 6", "3 4 7",
+        "4 7 8", "1 2 7", "2 7 8",
     ] {
         writeln!(list, "{t}").unwrap();
     }
@@ -127,7 +128,8 @@ fn terrain_comes_in_every_form() {
     let runout = json(&folder.join("r/summary.json"))["runout"].clone();
     let (sin, cos) = (DIP * PI / 180.0).sin_cos();
     let way = 9.81 * (sin - 0.3 * cos) * 0.25 / 2.0;
-    let found = (runout["centre_end"][0].as_f64().unwrap() - runout["centre_start"][0].as_f64().unwrap()) / cos;
+    let found =
+        (runout["centre_end"][0].as_f64().unwrap() - runout["centre_start"][0].as_f64().unwrap()) / cos;
     assert!((found / way - 1.0).abs() < 2e-2, "{found} {way}");
     assert_eq!((runout["below_ground"].as_u64(), runout["beyond_ground"].as_u64()), (Some(0), Some(0)));
 }
@@ -137,7 +139,10 @@ fn terrain_comes_in_every_form() {
 fn a_mesh_of_elements_is_filled() {
     let folder = Folder::new("skin");
     let mesh = repository().join("inputs/coupled/slab_mixed");
-    let mesh = fs::read_dir(mesh).unwrap().map(|e| e.unwrap().path()).find(|p| p.extension().is_some_and(|e| e == "inp"));
+    let mesh = fs::read_dir(mesh)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .find(|p| p.extension().is_some_and(|e| e == "inp"));
     let mesh = mesh.unwrap();
     let info = trackbed(["stone", "info", &mesh.display().to_string()]).good().stdout;
     assert!(info.contains("volume"), "{info}");
@@ -168,8 +173,14 @@ fn what_is_no_slide_is_refused() {
         ("runout.cell=0", "runout.cell: found 0, expected a length above 0"),
         ("runout.depth=-1", "runout.depth: found -1, expected a length above 0"),
         ("runout.share=0.2", "runout.share: found 0.2, expected 0.5 to 1"),
-        ("output.fields=[\"broken\"]", "output.fields.0: found \"broken\", expected one of acceleration, broken_bonds,"),
-        ("bond.0.stiffness_spread={ kind = \"normal\" }", "bond.0.stiffness_spread: found other keys, expected `deviation`"),
+        (
+            "output.fields=[\"broken\"]",
+            "output.fields.0: found \"broken\", expected one of acceleration, broken_bonds,",
+        ),
+        (
+            "bond.0.stiffness_spread={ kind = \"normal\" }",
+            "bond.0.stiffness_spread: found other keys, expected `deviation`",
+        ),
     ] {
         let outcome = trackbed(["check", &file.display().to_string(), "--set", set]);
         assert_eq!(outcome.code, 2, "{set}: {outcome:?}");

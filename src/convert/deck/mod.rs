@@ -9,7 +9,7 @@ mod rest;
 mod scene;
 mod values;
 
-use super::Options;
+use super::options::Options;
 use crate::failure::Failure;
 use crate::write::{WriteError, atomic};
 use std::path::Path;
@@ -19,7 +19,11 @@ use values::Deck;
 ///
 /// # Errors
 /// A line that is not what its place says, values out of range, files that a key needs.
-pub fn convert((file, text): (&Path, &str), output: &Path, options: &Options) -> Result<Vec<String>, Failure> {
+pub fn convert(
+    (file, text): (&Path, &str),
+    output: &Path,
+    options: &Options,
+) -> Result<Vec<String>, Failure> {
     let deck = Deck::parse(file, text)?;
     let made = scene::scene(&deck, output, options)?;
     atomic::write(output, |out| out.write_all(made.text.as_bytes()).map_err(WriteError::io(output)))?;

@@ -1,7 +1,7 @@
 //! What becomes of the keys of bonds, walls, time and output, and which have no meaning here.
 
 use super::scene::{Maker, relative, strength};
-use crate::convert::Options;
+use crate::convert::options::Options;
 use crate::failure::Failure;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -42,7 +42,10 @@ impl Maker<'_> {
                 self.used(key, how);
             }
         }
-        for (key, of, table) in [("BSIGMA", mean / 1e6, "spread"), ("YMSIGMA", self.stiffness / self.diameter, "stiffness_spread")] {
+        for (key, of, table) in [
+            ("BSIGMA", mean / 1e6, "spread"),
+            ("YMSIGMA", self.stiffness / self.diameter, "stiffness_spread"),
+        ] {
             if d.has(key) {
                 let deviation = d.number(key, |s| s >= 0.0, "0 or more")? / of;
                 if deviation > 0.0 {
@@ -58,7 +61,9 @@ impl Maker<'_> {
     pub(super) fn walls(&mut self, output: &Path, options: &Options) -> Result<(), Failure> {
         if let Some(terrain) = &options.terrain {
             let file = relative(terrain, output);
-            self.line(&format!("[[walls]]\nname = \"terrain\"\nkind = \"mesh\"\nmaterial = \"walls\"\nfile = {file:?}\n"));
+            self.line(&format!(
+                "[[walls]]\nname = \"terrain\"\nkind = \"mesh\"\nmaterial = \"walls\"\nfile = {file:?}\n"
+            ));
         } else if let Some(size) = options.region.filter(|_| !self.deck.geology) {
             let low = [0, 1, 2].map(|k| self.deck.number(["X0", "Y0", "Z0"][k], |_| true, "a coordinate"));
             for (k, low) in low.into_iter().enumerate() {
@@ -79,7 +84,7 @@ impl Maker<'_> {
     }
 
     /// Duration and outputs. The step is that of the older programs only as far as it sets the duration.
-    pub(super) fn time(&mut self) -> Result<(), Failure> {
+    pub(super) fn duration(&mut self) -> Result<(), Failure> {
         let d = self.deck;
         let above = |x: f64| x > 0.0;
         let steps = d.number("nstep", above, "above 0")?;
@@ -113,7 +118,10 @@ impl Maker<'_> {
             self.left("icont", "the step follows the contacts");
         } else {
             self.used("nstep", "time.end = nstep x step of the deck");
-            self.used("icont", &format!("that step: contact time {contact:.3e} s / icont; ours follows the contacts"));
+            self.used(
+                "icont",
+                &format!("that step: contact time {contact:.3e} s / icont; ours follows the contacts"),
+            );
             self.left("Tstrain", "CTime says that nstep ends the run");
         }
         self.used(last, "output.last: as many frames in the last of the equal intervals");
@@ -121,7 +129,8 @@ impl Maker<'_> {
     }
 
     pub(super) fn rest(&mut self) -> Result<(), Failure> {
-        let growth = "the packing is not grown anew: give it by --packing, or use region and growth of [[grains]]";
+        let growth =
+            "the packing is not grown anew: give it by --packing, or use region and growth of [[grains]]";
         let inner = "lists grow as needed";
         let search = "the search is made when a grain may have moved too far";
         for (key, why) in [
@@ -131,9 +140,15 @@ impl Maker<'_> {
             ("isearch", search),
             ("mxnb", inner),
             ("MAXNB_W", inner),
-            ("skin", "a matter of the search; as the size of a grid over the diameter, as its text says, 0.6 would be odd: doubtful"),
+            (
+                "skin",
+                "a matter of the search; as the size of a grid over the diameter, as its text says, 0.6 would be odd: doubtful",
+            ),
             ("temperature", "not explained: doubtful"),
-            ("BRATIO", "the stiffness of a part of the key block over that of the rest; which part is not said: add [[bond.region]]"),
+            (
+                "BRATIO",
+                "the stiffness of a part of the key block over that of the rest; which part is not said: add [[bond.region]]",
+            ),
             ("Form drag coefficient", "for water, whose level the deck has not: add [water]"),
             ("wave height", "for water, whose level the deck has not: add [water]"),
             ("wave length", "for water, whose level the deck has not: add [water]"),

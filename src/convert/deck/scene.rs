@@ -1,7 +1,7 @@
 //! What becomes of the keys of a deck.
 
 use super::values::Deck;
-use crate::convert::Options;
+use crate::convert::options::Options;
 use crate::failure::Failure;
 use std::fmt::Write;
 use std::path::Path;
@@ -36,8 +36,14 @@ pub fn scene(deck: &Deck, output: &Path, options: &Options) -> Result<Made, Fail
     let diameter = deck.number("D", above, "a diameter above 0")?;
     let young = deck.number("YoungM", above, "a modulus above 0")?;
     let bonded = deck.number(strength(deck), |s| s >= 0.0, "0 MPa or more")? > 0.0;
-    let mut maker =
-        Maker { deck, text: String::new(), became: Vec::new(), diameter, stiffness: young * diameter, bonded };
+    let mut maker = Maker {
+        deck,
+        text: String::new(),
+        became: Vec::new(),
+        diameter,
+        stiffness: young * diameter,
+        bonded,
+    };
     maker.materials()?;
     maker.grains(output, options)?;
     if bonded {
@@ -48,7 +54,7 @@ pub fn scene(deck: &Deck, output: &Path, options: &Options) -> Result<Made, Fail
         }
     }
     maker.walls(output, options)?;
-    maker.time()?;
+    maker.duration()?;
     maker.rest()?;
     Ok(maker.finish())
 }
@@ -85,18 +91,24 @@ impl Maker<'_> {
         let dashpots = d.number("rzs", |r| (0.0..=1.0).contains(&r), "0 to 1")?;
         let friction = d.number("amu", |r| r >= 0.0, "0 or more")?;
         let restitution = d.number("eps", |r| r > 0.0 && r <= 1.0, "above 0, at most 1")?;
-        let hertz = match d.number("TContact", |m| m == 1.0 || m == 2.0, "1 or 2")? {
-            1.0 => false,
-            _ => true,
-        };
+        let hertz = d.number("TContact", |m| m == 1.0 || m == 2.0, "1 or 2")? == 2.0;
         let gravity = d.number("gz", |g| g >= 0.0, "0 or more, downwards")?;
-        let (rolling, why) = match d.has("ARF").then(|| d.number("ARF", |a| a >= 0.0, "0 or more")).transpose()? {
-            Some(a) if a <= 1.0 => (Some(a), ""),
-            Some(_) => (None, "no coefficient of rolling friction is above 1, and no other meaning is given: doubtful"),
-            None => (None, ""),
-        };
-        let wall = [d.number("nu_Wall", |r| r >= 0.0, "0 or more")?, d.number("eps_Wall", above, "above 0, at most 1")?];
-        self.line(&format!("gravity = [0.0, 0.0, -{gravity:?}]\n\n[[material]]\nname = \"grains\"\ndensity = {density:?}"));
+        let (rolling, why) =
+            match d.has("ARF").then(|| d.number("ARF", |a| a >= 0.0, "0 or more")).transpose()? {
+                Some(a) if a <= 1.0 => (Some(a), ""),
+                Some(_) => (
+                    None,
+                    "no coefficient of rolling friction is above 1, and no other meaning is given: doubtful",
+                ),
+                None => (None, ""),
+            };
+        let wall = [
+            d.number("nu_Wall", |r| r >= 0.0, "0 or more")?,
+            d.number("eps_Wall", above, "above 0, at most 1")?,
+        ];
+        self.line(&format!(
+            "gravity = [0.0, 0.0, -{gravity:?}]\n\n[[material]]\nname = \"grains\"\ndensity = {density:?}"
+        ));
         let spring = match hertz {
             true => format!("young = {young:?}\npoisson = {poisson:?}"),
             false => format!("stiffness = {:?}\ntangential_ratio = {ratio:?}", self.stiffness),
@@ -105,9 +117,17 @@ impl Maker<'_> {
         let rolling_line = rolling.map_or(String::new(), |a| format!("rolling_friction = {a:?}\n"));
         self.line(&format!("tangential_damping_ratio = {dashpots:?}\nfriction = {friction:?}\nrestitution = {restitution:?}\n{rolling_line}"));
         // A wall as stiff as the grains: the pair then has their stiffness.
-        self.line(&format!("[[material]]\nname = \"walls\"\n{spring}\nfriction = {:?}\nrestitution = {:?}\n", wall[0], wall[1]));
-        self.line(&format!("[[contact]]\nbetween = [\"grains\", \"walls\"]\nfriction = {:?}\nrestitution = {:?}\n", wall[0], wall[1]));
-        for (key, how) in [("gz", "gravity"), ("dens", "density"), ("rzs", "tangential_damping_ratio"), ("amu", "friction")] {
+        self.line(&format!(
+            "[[material]]\nname = \"walls\"\n{spring}\nfriction = {:?}\nrestitution = {:?}\n",
+            wall[0], wall[1]
+        ));
+        self.line(&format!(
+            "[[contact]]\nbetween = [\"grains\", \"walls\"]\nfriction = {:?}\nrestitution = {:?}\n",
+            wall[0], wall[1]
+        ));
+        for (key, how) in
+            [("gz", "gravity"), ("dens", "density"), ("rzs", "tangential_damping_ratio"), ("amu", "friction")]
+        {
             self.used(key, how);
         }
         self.used("eps", "restitution");
@@ -150,11 +170,14 @@ impl Maker<'_> {
             }
             self.line(&format!("packing = {:?}\n", relative(packing, output)));
             self.used("restart", "the packing of --packing");
-            for key in ["pattern", "NICEX", "NICEY", "NICEZ", "IPATTERN", "DMAX/D", "DMIN/D", "cc", "X0", "Y0", "Z0"] {
+            for key in
+                ["pattern", "NICEX", "NICEY", "NICEZ", "IPATTERN", "DMAX/D", "DMIN/D", "cc", "X0", "Y0", "Z0"]
+            {
                 self.left(key, "the packing has places and sizes");
             }
         } else if d.geology {
-            let count = |k| d.number(k, |n| n >= 1.0 && n.fract() == 0.0 && n < 1e7, "a whole number from 1 on");
+            let count =
+                |k| d.number(k, |n| n >= 1.0 && n.fract() == 0.0 && n < 1e7, "a whole number from 1 on");
             let counts = [count("NICEX")?, count("NICEY")?, count("NICEZ")?].map(|n| n as u64);
             self.line(&format!(
                 "lattice = {{ kind = \"{kind}\", size = {:?}, low = [{x:?}, {y:?}, {z:?}], counts = {counts:?} }}\n",
@@ -196,12 +219,16 @@ impl Maker<'_> {
             3.0 => {
                 let deviation = 0.25 * (most - least);
                 let mean = self.diameter;
-                format!("law = \"normal\", mean = {mean:?}, deviation = {deviation:?}, low = {least:?}, high = {most:?}")
+                format!(
+                    "law = \"normal\", mean = {mean:?}, deviation = {deviation:?}, low = {least:?}, high = {most:?}"
+                )
             }
             _ => {
                 let deviation = 0.25 * libm::log(most / least);
                 let median = self.diameter;
-                format!("law = \"log_normal\", median = {median:?}, deviation = {deviation:?}, low = {least:?}, high = {most:?}")
+                format!(
+                    "law = \"log_normal\", median = {median:?}, deviation = {deviation:?}, low = {least:?}, high = {most:?}"
+                )
             }
         };
         let high = [0, 1, 2].map(|k| low[k] + size[k]);
@@ -210,7 +237,10 @@ impl Maker<'_> {
         ));
         self.used("cc", "concentration");
         for key in ["IPATTERN", "DMAX/D", "DMIN/D"] {
-            self.used(key, "sizes; of normal laws two deviations reach the limits, which the deck leaves open");
+            self.used(
+                key,
+                "sizes; of normal laws two deviations reach the limits, which the deck leaves open",
+            );
         }
         for key in ["X0", "Y0", "Z0"] {
             self.used(key, "lower corner of the box of --box");
@@ -226,7 +256,8 @@ impl Maker<'_> {
         let mut head = format!("# From a parameter deck of {name}. What became of its keys:\n");
         for key in self.deck.keys() {
             let became = self.became.iter().find(|(k, _, _)| *k == key);
-            let (used, how) = became.map_or((false, "no meaning here"), |(_, used, how)| (*used, how.as_str()));
+            let (used, how) =
+                became.map_or((false, "no meaning here"), |(_, used, how)| (*used, how.as_str()));
             let line = if used { format!("{key}: {how}") } else { format!("{key}: not used: {how}") };
             writeln!(head, "#   {line}").expect("writing to a string does not fail");
             remarks.push(line);

@@ -114,11 +114,10 @@ fn names_one(comment: &str, keys: Line) -> bool {
     keys.iter().any(|(name, others)| {
         let spelled = |n: &str| {
             let n = n.to_ascii_lowercase();
-            let at = comment.match_indices(&n).any(|(at, _)| {
+            comment.match_indices(&n).any(|(at, _)| {
                 let open = |c: Option<char>| c.is_none_or(|c| !c.is_ascii_alphanumeric() && c != '_');
                 open(comment[..at].chars().next_back()) && open(comment[at + n.len()..].chars().next())
-            });
-            at
+            })
         };
         spelled(name) || others.iter().any(|n| spelled(n))
     })

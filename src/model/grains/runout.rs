@@ -65,5 +65,4 @@ impl RunoutPlan {
     pub fn has(&self, part: u32) -> bool {
         self.parts.binary_search(&part).is_ok()
     }
-
 }

@@ -114,7 +114,16 @@ pub(super) fn build(
     }
     let brazilian = table.test == SpecimenTest::Brazilian;
     let sides = (sides, side_area);
-    Ok(Some(SpecimenPlan { brazilian, platens, axis: table.axis as usize, length, area, sides, parts, between }))
+    Ok(Some(SpecimenPlan {
+        brazilian,
+        platens,
+        axis: table.axis as usize,
+        length,
+        area,
+        sides,
+        parts,
+        between,
+    }))
 }
 
 /// What the force is divided by: the section, or π D t/2.

@@ -10,16 +10,23 @@ pub fn runout(runs: &[RunData]) -> Option<Section> {
     let of = |column: &'static str| one(runs, move |r| r.table("history")?.points("time", column));
     let time = || Side::new("time", "s");
     let figures = plots([
-        Plot::new("Front of the slide", time(), Side::new("place along the slide", "m"), of("runout_front")).figure(),
-        Plot::new("Motion of the slide", time(), Side::new("kinetic energy", "J").with_zero(), of("runout_kinetic")).figure(),
+        Plot::new("Front of the slide", time(), Side::new("place along the slide", "m"), of("runout_front"))
+            .figure(),
+        Plot::new(
+            "Motion of the slide",
+            time(),
+            Side::new("kinetic energy", "J").with_zero(),
+            of("runout_kinetic"),
+        )
+        .figure(),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(
         runs,
         &[
             ("way of the front", &path("runout.advance", "m")),
-            ("height from crown to toe", &path("runout.drop", "m")),
-            ("distance from crown to toe", &path("runout.length", "m")),
+            ("height from head to toe", &path("runout.drop", "m")),
+            ("distance from head to toe", &path("runout.length", "m")),
             ("reach angle", &path("runout.reach_angle", "°")),
             ("area of the deposit", &path("runout.deposit_area", "m²")),
             ("its length along the slide", &path("runout.deposit_length", "m")),
@@ -39,13 +46,22 @@ pub fn runout(runs: &[RunData]) -> Option<Section> {
 pub fn specimen(runs: &[RunData]) -> Option<Section> {
     let curve = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
-        [("platens", "specimen_strain"), ("grains, axial", "specimen_axial_strain"), ("lateral", "specimen_lateral_strain")]
-            .into_iter()
-            .filter_map(|(name, x)| Some((name.to_string(), table.points(x, "specimen_stress")?)))
-            .collect()
+        [
+            ("platens", "specimen_strain"),
+            ("grains, axial", "specimen_axial_strain"),
+            ("lateral", "specimen_lateral_strain"),
+        ]
+        .into_iter()
+        .filter_map(|(name, x)| Some((name.to_string(), table.points(x, "specimen_stress")?)))
+        .collect()
     });
-    let figures =
-        plots([Plot::new("Stress and strain", Side::new("strain", ""), Side::new("stress", "Pa").with_zero(), curve).figure()]);
+    let figures = plots([Plot::new(
+        "Stress and strain",
+        Side::new("strain", ""),
+        Side::new("stress", "Pa").with_zero(),
+        curve,
+    )
+    .figure()]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(
         runs,

@@ -12,7 +12,8 @@ use crate::write::csv::{Column, Row};
 /// Everything that is recorded, in the order of the columns behind the time.
 fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 12] {
     [
-        &Sleepers, &Interface, &Energies, &Rails, &Bonds, &Groups, &Supports, &Probes, &Walls, &Inventory, &Slides, &Specimens,
+        &Sleepers, &Interface, &Energies, &Rails, &Bonds, &Groups, &Supports, &Probes, &Walls, &Inventory,
+        &Slides, &Specimens,
     ]
 }
 

@@ -62,7 +62,8 @@ pub fn measure(
             }
         }
     }
-    let (mut solid, mut way, mut mass) = (vec![0.0; plan.len()], vec![0.0; plan.len()], vec![0.0; plan.len()]);
+    let (mut solid, mut way, mut mass) =
+        (vec![0.0; plan.len()], vec![0.0; plan.len()], vec![0.0; plan.len()]);
     for &b in slide {
         let x = view.state.position(b);
         let k = plan.index(plan.along(0, x.x), plan.along(1, x.y));
@@ -86,7 +87,9 @@ impl Deposit {
     /// Cells that belong to it.
     pub fn cells(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let [nx, ny] = self.plan.counts;
-        (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j))).filter(|(i, j)| self.inside[self.plan.index(*i, *j)])
+        (0..ny)
+            .flat_map(move |j| (0..nx).map(move |i| (i, j)))
+            .filter(|(i, j)| self.inside[self.plan.index(*i, *j)])
     }
 
     /// Extent along a direction of its cells, from the first to the last middle and a cell more [m]; 0 without cells.
@@ -126,7 +129,9 @@ impl Deposit {
             let (mut at, mut came, mut line) = (start, None, Vec::new());
             loop {
                 let ways = next.get_mut(&at).expect("sides of a closed line go on");
-                let left = |to: &[isize; 2]| came.map_or(0, |[x, y]: [isize; 2]| x * (to[1] - at[1]) - y * (to[0] - at[0]));
+                let left = |to: &[isize; 2]| {
+                    came.map_or(0, |[x, y]: [isize; 2]| x * (to[1] - at[1]) - y * (to[0] - at[0]))
+                };
                 let best = (0..ways.len()).max_by_key(|k| left(&ways[*k])).expect("a way on");
                 let to = ways.swap_remove(best);
                 if ways.is_empty() {

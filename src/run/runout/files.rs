@@ -12,11 +12,8 @@ use trackbed_dem::{self as dem, Vec3};
 /// A corner of an outline: number of the line, place.
 type Corner = (usize, [f64; 2]);
 
-const OUTLINE: [Field<Corner>; 3] = [
-    ("line", "", |(line, _)| *line as f64),
-    ("x", "m", |(_, x)| x[0]),
-    ("y", "m", |(_, x)| x[1]),
-];
+const OUTLINE: [Field<Corner>; 3] =
+    [("line", "", |(line, _)| *line as f64), ("x", "m", |(_, x)| x[0]), ("y", "m", |(_, x)| x[1])];
 
 const FRAGMENTS: [Field<FragmentRecord>; 7] = [
     ("bodies", "", |f| f.bodies as f64),

@@ -1,8 +1,8 @@
-//! Height of the ground under a grid of places: planes that are not upright, and triangles.
+//! Height of the ground under a grid of places: planes that are not upright, and triangles, of walls that stand still.
 
 use crate::model::grains::GrainsPart;
 use crate::run::system::GrainsView;
-use trackbed_dem::{Vec3, WallShape};
+use trackbed_dem::{Motion, Vec3, WallInput, WallShape};
 
 /// Least upward part of a plane's normal for it to be ground.
 const UPRIGHT: f64 = 1e-3;
@@ -56,7 +56,7 @@ pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f6
     let mut raise = |k: usize, z: f64| ground[k] = Some(ground[k].map_or(z, |g: f64| g.max(z)));
     let planes = part.walls.planes.iter().enumerate();
     let planes = planes.map(|(k, p)| (view.state.plane_point(view.model, k), p.normal));
-    let others = part.walls.others.iter().filter_map(|wall| match &wall.shape {
+    let others = part.walls.others.iter().filter(|w| stands(w)).filter_map(|wall| match &wall.shape {
         WallShape::Plane { point, normal } => Some((*point, *normal)),
         _ => None,
     });
@@ -72,15 +72,21 @@ pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f6
     for (k, [x, y]) in places.iter().enumerate() {
         of_cell[plan.index(plan.along(0, *x), plan.along(1, *y))].push(k as u32);
     }
-    for (k, wall) in part.walls.others.iter().enumerate() {
+    for wall in part.walls.others.iter().filter(|w| stands(w)) {
         if let WallShape::Triangles { vertices, triangles } = &wall.shape {
-            let at = |v: u32| view.state.wall_point(view.model, k, &vertices[v as usize]);
             for t in triangles {
-                below(plan, t.map(at), places, &of_cell, &mut raise);
+                below(plan, t.map(|v| vertices[v as usize]), places, &of_cell, &mut raise);
             }
         }
     }
     ground
+}
+
+/// Whether a wall stands still: a wagon that is tipped is no ground.
+fn stands(wall: &WallInput) -> bool {
+    let Motion { velocity, angular_velocity, oscillation, .. } = &wall.motion;
+    let still = *velocity == Vec3::zeros() && *angular_velocity == Vec3::zeros();
+    still && oscillation.is_none() && wall.servo.is_none() && wall.body.is_none()
 }
 
 /// Calls `raise` with the height of a triangle at every place that it covers.

@@ -1,6 +1,6 @@
 //! How far a slide has run and what it has left: front, reach, deposit, fragments, who came from where.
 //!
-//! The *crown* is where the highest grain of the slide lay at the start, the *toe* the grain of the front at the end: the
+//! The *head* is where the highest grain of the slide lay at the start, the *toe* the grain of the front at the end: the
 //! one behind which a share of the mass lies, along the direction of the slide. H and L are the height and the horizontal
 //! distance between the two, the reach angle atan(H/L) is that of Heim's Fahrböschung (Heim, Bergsturz und Menschenleben,
 //! 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle is that between the centres of mass at start and end.
@@ -113,11 +113,11 @@ pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Opt
     let fragments = records::fragments(view, &bodies);
     files::write(dir, view, &map, &fragments, (&bodies, &from))?;
     let (start, end) = (|b: usize| from[b], |b: usize| state.position(b));
-    let crown = bodies.iter().copied().max_by(|a, b| from[*a].z.total_cmp(&from[*b].z)).expect("some body");
+    let head = bodies.iter().copied().max_by(|a, b| from[*a].z.total_cmp(&from[*b].z)).expect("some body");
     let toe = front(view, plan, &bodies, plan.share, end).expect("some body");
     let first = front(view, plan, &bodies, plan.share, start).expect("some body");
     let farthest = bodies.iter().map(|&b| along(plan, &end(b))).fold(f64::NEG_INFINITY, f64::max);
-    let (drop, length) = fall(plan, &from[crown], &end(toe));
+    let (drop, length) = fall(plan, &from[head], &end(toe));
     let centres = [centre(view, &bodies, start), centre(view, &bodies, end)];
     let (centre_drop, centre_length) = fall(plan, &centres[0], &centres[1]);
     let solid: f64 = bodies.iter().map(|&b| model.volume(b)).sum();
@@ -130,7 +130,8 @@ pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Opt
     let through = bodies.iter().zip(&ground).filter(|(b, z)| z.is_some_and(|z| end(**b).z < z)).count();
     let (cells, area) = (map.cells().count(), map.plan.cell * map.plan.cell);
     let bulk: f64 = map.cells().map(|(i, j)| map.depth[map.plan.index(i, j)] * area).sum();
-    let moved = bodies.iter().filter(|b| travel[**b] > 2.0 * model.radius(**b)).map(|&b| model.mass(b)).sum::<f64>();
+    let moved =
+        bodies.iter().filter(|b| travel[**b] > 2.0 * model.radius(**b)).map(|&b| model.mass(b)).sum::<f64>();
     Ok(Some(RunoutRecord {
         grains: bodies.len(),
         mass,

@@ -21,11 +21,11 @@ pub struct RunoutRecord {
     pub advance: f64,
     /// Place of the farthest grain [m].
     pub farthest: f64,
-    /// Height from the crown to the toe [m].
+    /// Height from the head to the toe [m].
     pub drop: f64,
-    /// Horizontal distance from the crown to the toe along the direction [m].
+    /// Horizontal distance from the head to the toe along the direction [m].
     pub length: f64,
-    /// Angle of the line from crown to toe [degrees].
+    /// Angle of the line from head to toe [degrees].
     pub reach_angle: f64,
     /// Angle of the line between the centres of mass [degrees].
     pub travel_angle: f64,

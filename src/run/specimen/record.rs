@@ -101,7 +101,8 @@ impl SpecimenRecord {
         let known = |name: &str, value: Option<f64>, unit: &str| {
             value.map_or(String::new(), |v| format!(", {name} {v:.4e}{unit}"))
         };
-        let mut line = format!("specimen: strength {:.4e} Pa at a strain of {:.3e}", self.strength, self.peak_strain);
+        let mut line =
+            format!("specimen: strength {:.4e} Pa at a strain of {:.3e}", self.strength, self.peak_strain);
         if self.confinement > 0.0 {
             line += &format!(" under {:.3e} Pa", self.confinement);
         }
@@ -126,7 +127,8 @@ mod tests {
 
     #[test]
     fn a_slope_by_least_squares() {
-        let line = |k: u32| Point { axial: f64::from(k), stress: 3.0 * f64::from(k) + 1.0, ..Point::default() };
+        let line =
+            |k: u32| Point { axial: f64::from(k), stress: 3.0 * f64::from(k) + 1.0, ..Point::default() };
         let points: Vec<Point> = (0..5).map(line).collect();
         let points: Vec<&Point> = points.iter().collect();
         assert_eq!(slope(&points, |p| p.axial, |p| p.stress), Some(3.0));

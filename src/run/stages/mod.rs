@@ -2,6 +2,7 @@
 //! [`STAGES`].
 
 mod bedding;
+mod cadence;
 mod compaction;
 mod coupling_remarks;
 mod equilibrium;

@@ -1,5 +1,6 @@
 //! The loop over the windows of a run: steps, records, accounts.
 
+use super::cadence::Cadence;
 use super::stage::{GrainsState, Packed, RUN, Settled};
 use crate::failure::Failure;
 use crate::model::grains::GrainsPart;
@@ -12,7 +13,8 @@ use crate::run::flow::Flow;
 use crate::run::from::{self, END};
 use crate::run::record::Results;
 use crate::run::summary::{
-    BedStiffness, BondSummary, EnergyRecord, MomentumRecord, PlasticRecord, SettlementRecord, StageRecord, Summary,
+    BedStiffness, BondSummary, EnergyRecord, MomentumRecord, PlasticRecord, SettlementRecord, StageRecord,
+    Summary,
 };
 use crate::run::system::System;
 use crate::run::track_output;
@@ -40,38 +42,6 @@ struct Place {
     seconds: f64,
     /// Windows of the whole run, which are fewer where cycles are jumped over.
     windows: u64,
-}
-
-/// When something is written, in windows.
-struct Cadence {
-    /// Length of a window [s].
-    window: f64,
-    /// Frames over the run, but for its last part where that has its own.
-    frames: u64,
-    /// Window that the last part begins with, and its frames.
-    last: Option<(u64, u64)>,
-    /// Windows between two rows of the history.
-    every: u64,
-    /// Windows after the last cycle, whenever that ends.
-    tail: u64,
-    /// Whether cycles are jumped over: then neither time nor steps show how far a run is.
-    jumps: bool,
-}
-
-impl Cadence {
-    /// The frame after the next one, `next`, when that is due at the window `reached` of `whole`.
-    fn frame_after(&self, next: u64, reached: u64, whole: u64) -> Option<u64> {
-        // Frames of the first part are counted before those of the last.
-        let (begin, last) = self.last.unwrap_or((whole, 0));
-        let first = if begin > 0 { self.frames } else { 0 };
-        let (count, from, done, of) = if next > first && last > 0 {
-            (last, first, reached.saturating_sub(begin), whole - begin)
-        } else {
-            (first, 0, reached.min(begin), begin)
-        };
-        let place = next - from;
-        (count > 0 && place <= count && done * count >= place * of).then(|| from + done * count / of + 1)
-    }
 }
 
 /// The parts of a running loop beside the system.
@@ -171,17 +141,8 @@ impl<'a> TimeLoop<'a> {
         let windows = ((job.end / window).ceil() as u64).max(1);
         let part = grains.map(|(part, _)| part);
         let load = part.and_then(|g| g.track.load.as_ref());
-        let cadence = Cadence {
-            window,
-            frames: u64::from(job.output.frames).min(windows),
-            last: job.output.last.map(|(time, frames)| {
-                let begin = (((job.end - time) / window).floor().max(0.0) as u64).min(windows - 1);
-                (begin, u64::from(frames).min(windows - begin))
-            }),
-            every: ((job.output.history_interval / window).round() as u64).max(1),
-            tail: load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows)),
-            jumps: part.is_some_and(|g| g.track.after.jump.is_some()),
-        };
+        let cadence =
+            Cadence::new(job, window, windows, load, part.is_some_and(|g| g.track.after.jump.is_some()));
         let input = part.map_or_else(TrackInput::default, |part| part.track.input());
         let mut track = Track::new(input, system.grains());
         let mut flow = Flow::new(part, system.grains(), window, job.end);

@@ -8,9 +8,9 @@ pub use records::*;
 pub use verdict::Verdict;
 
 use super::flow::FlowRecord;
+use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
 use super::runout::RunoutRecord;
 use super::specimen::SpecimenRecord;
-use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
 use crate::failure::Failure;
 use crate::write::WriteError;
 use serde::Serialize;

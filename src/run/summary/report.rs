@@ -1,8 +1,8 @@
 //! What a run prints when it has ended, also in `log.txt`.
 
 use super::Summary;
-use crate::run::flow::FlowRecord;
 use crate::run::events::EventRecord;
+use crate::run::flow::FlowRecord;
 use crate::run::packing;
 use crate::run::runout::RunoutRecord;
 use crate::run::specimen::SpecimenRecord;
