@@ -125,7 +125,7 @@ fn animations_and_chains_come_back() {
     let said = convert(&folder, &["a.3df", "frames", "--grains", "ANIMATION_3D.DAT"]).good().stdout;
     assert!(said.starts_with("2 frames\n1 chains to walls left out"), "{said}");
     convert(&folder, &["frames", "back.dat"]).good();
-    assert_eq!(fs::read_to_string(folder.join("back.dat")).unwrap(), ANIMATION.replace(" 1\n", " 1\n"));
+    assert_eq!(fs::read_to_string(folder.join("back.dat")).unwrap(), ANIMATION);
     convert(&folder, &["frames", "back.3df"]).good();
     assert_eq!(fs::read_to_string(folder.join("back.3df")).unwrap(), "3DF: 0.25 1\n1 2 45895.55 22947.77\n");
     convert(&folder, &["ANIMATION_3D.DAT", "hdf", "--format", "vtkhdf"]).good();
