@@ -49,6 +49,7 @@ mod suite {
     mod summary;
     pub mod support;
     mod track;
+    mod trade;
     mod train;
     mod tutorials;
     mod verdict;

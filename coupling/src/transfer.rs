@@ -10,6 +10,7 @@ use crate::face::{self, cross};
 use crate::surface::SolidSurface;
 use std::ops::Range;
 use trackbed_dem::surface::SurfaceContact;
+use trackbed_fem::mesh::Face;
 
 /// Largest deviation between nodal loads and contact forces over all exchanges so far.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -139,19 +140,30 @@ impl Transfer {
         total
     }
 
-    /// Largest mean pressure on one face over a window of duration `window` [s]: normal force over area [Pa].
+    /// Largest mean pressure on one face of an element over a window of duration `window` [s]: normal force over area [Pa].
+    /// Flat facets of one face, which follow each other, count together.
     pub fn peak_face_pressure(&self, surface: &SolidSurface, window: f64) -> f64 {
         self.peak_pressure_on(0..self.face_impulse.len(), surface, window)
     }
 
     /// The same of some faces [Pa].
     pub fn peak_pressure_on(&self, faces: Range<usize>, surface: &SolidSurface, window: f64) -> f64 {
-        let first = faces.start as u32;
-        let pressure = |(impulse, patch): (&[f64; 3], u32)| {
-            let area = surface.area_vector(patch);
-            -face::dot(*impulse, area) / (window * face::dot(area, area))
-        };
-        self.face_impulse[faces].iter().zip(first..).map(pressure).fold(0.0, f64::max)
+        let mut patch = faces.start;
+        let mut peak = 0.0_f64;
+        let same = |a: &Face, b: &Face| (a.element, a.side) == (b.element, b.side);
+        for whole in surface.faces()[faces].chunk_by(same) {
+            let (mut impulse, mut area) = ([0.0; 3], [0.0; 3]);
+            for part in patch..patch + whole.len() {
+                let own = surface.area_vector(part as u32);
+                for d in 0..3 {
+                    impulse[d] += self.face_impulse[part][d];
+                    area[d] += own[d];
+                }
+            }
+            peak = peak.max(-face::dot(impulse, area) / (window * face::dot(area, area)));
+            patch += whole.len();
+        }
+        peak
     }
 
     /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.

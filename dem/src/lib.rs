@@ -39,7 +39,7 @@ pub use spatial::{bvh, detect, distance, surface};
 
 pub use body_force::{BodyForce, DragArea, Measured, Orbit, Water, Wave, WaveError, Wind};
 pub use error::{ModelError, Partner, StepError};
-pub use input::{AppliedForce, LocalDamping, ModelInput, TimeStep};
+pub use input::{AppliedForce, LocalDamping, ModelInput, SearchSkin, TimeStep};
 pub use law::material::{Material, PairOverride};
 pub use model::Model;
 pub use shape::Shape;

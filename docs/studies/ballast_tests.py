@@ -1,6 +1,6 @@
 """Figures of the ballast tests from their folders of results, one line each, and the mean and spread of the main ones.
 
-    python3 docs/studies/ballast_tests.py box|shear|triaxial|cyclic|oedometer|push FOLDER...
+    python3 docs/studies/ballast_tests.py box|shear|triaxial|cyclic|oedometer|push|crushing FOLDER...
 
 FOLDER holds what `trackbed run` left: cycles.csv, history.csv, push.csv, summary.json. Needs Python 3 and nothing else.
 """
@@ -168,6 +168,51 @@ def push(folder):
     }
 
 
+def crushing(folder):
+    """Crushing force: the largest before the force falls to half of it with a tenth of the bonds broken. Nominal strength F/d2 by the sieve size and
+    by the distance of the platens at that moment; the upper platen starts where the scene or an override puts it."""
+    with open(os.path.join(folder, "summary.json")) as file:
+        text = " ".join(json.load(file)["overrides"])
+    size, top = re.search(r"size=\[([0-9.e-]+)", text), re.search(r"walls\.(?:upper|1)\.point=\[0, 0, ([0-9.e-]+)", text)
+    size, top = float(size[1]) if size else 0.045, float(top[1]) if top else 0.07
+    h = table(folder, "history.csv")
+    force, bonds = h["upper_force_z"], h["bonds"]
+    peak = 0
+    for i in range(len(force)):
+        if force[i] > force[peak]:
+            peak = i
+        elif force[i] < 0.5 * force[peak] and bonds[i] < 0.9 * bonds[0]:
+            break  # what comes after is its rubble
+    force, gap = force[peak], top + h["upper_displacement_z"][peak]
+    return {"sieve size [mm]": 1e3 * size, "force [kN]": force / 1e3, "F/d2 [MPa]": force / size**2 / 1e6, "by the platens [MPa]": force / gap**2 / 1e6}
+
+
+def weibull(strengths):
+    """Modulus and scale of Weibull's law, by least squares of ln ln 1/P on ln of the strength; P = 1 - i/(n + 1) survive the i-th."""
+    ranked = sorted(strengths)
+    x = [math.log(v) for v in ranked]
+    y = [math.log(-math.log(1 - (i + 1) / (len(ranked) + 1))) for i in range(len(ranked))]
+    modulus = slope(x, y)
+    fit = slope(x, y) * slope(y, x)
+    return [modulus, math.exp(mean(x) - mean(y) / modulus), fit]
+
+
+def crushing_sizes(found):
+    """Of each size: force, strengths, and Weibull's modulus, scale and R2; then how the scale falls with the size."""
+    sizes = sorted({f["sieve size [mm]"] for f in found})
+    scales = {}
+    for key in ("F/d2 [MPa]", "by the platens [MPa]"):
+        for d in sizes:
+            own = [f for f in found if f["sieve size [mm]"] == d]
+            forces, strengths = [f["force [kN]"] for f in own], [f[key] for f in own]
+            modulus, scale, fit = weibull(strengths)
+            scales[key, d] = scale
+            print(f"  {d:g} mm, {len(own)} stones, {key}: force {mean(forces):.3g} kN ({min(forces):.3g} to {max(forces):.3g}), strength mean {mean(strengths):.3g}, "
+                  f"Weibull modulus {modulus:.2f}, scale {scale:.3g} MPa, R2 {fit:.3f}")
+        if len(sizes) > 1:
+            print(f"  {key}: scale grows as d^{slope([math.log(d) for d in sizes], [math.log(scales[key, d]) for d in sizes]):.2f}")
+
+
 def written(value):
     return ", ".join(f"{v:.3g}" for v in value) if isinstance(value, list) else f"{value:.3g}"
 
@@ -178,6 +223,8 @@ def main():
     for folder in folders:
         found.append(test(folder))
         print(os.path.basename(os.path.normpath(folder)) + ": " + "; ".join(f"{k} {written(v)}" for k, v in found[-1].items()))
+    if test is crushing and len(found) > 2:
+        return crushing_sizes(found)
     for key in found[0] if len(found) > 1 else []:
         columns = zip(*(f[key] if isinstance(f[key], list) else [f[key]] for f in found))
         print(f"  {key}: " + "; ".join(f"mean {mean(v):.3g}, {min(v):.3g} to {max(v):.3g}" for v in columns))

@@ -115,6 +115,8 @@ fn refuse_idle_keys(scene: &Table<Scene>) -> Result<(), SceneError> {
             ("grain_step_fraction", time.grain_step_fraction.is_some()),
             ("accept_step_above_limit", time.accept_step_above_limit),
             ("impact_speed", time.impact_speed.is_some()),
+            ("search_skin", time.search_skin.is_some()),
+            ("mass_factor", time.mass_factor.is_some()),
             ("flow_interval", time.flow_interval.is_some()),
         ];
         time.refuse(idle, "no such key without [[grains]]")?;

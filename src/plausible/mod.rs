@@ -8,6 +8,7 @@
 mod bed;
 mod findings;
 mod grains;
+mod inertia;
 mod materials;
 mod run;
 mod solid;
@@ -28,6 +29,7 @@ pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
     bed::weigh(&mut findings, scene, job);
     track::weigh(&mut findings, scene, job);
     run::weigh(&mut findings, scene, job);
+    inertia::weigh(&mut findings, scene, job);
     let mut all = findings.0;
     all.sort_by_key(|finding| !finding.serious);
     all

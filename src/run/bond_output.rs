@@ -1,7 +1,7 @@
 //! What a run says of bonds and of groups of grains: columns of `history.csv`, `breaks.csv`, the summary.
 
 use super::recorder::{Now, Recorder};
-use super::summary::BondSummary;
+use super::summary::{BondSummary, BreakageRecord};
 use super::system::{GrainsView, System};
 use crate::failure::Failure;
 use crate::write::csv::{Field, Row, write_table};
@@ -83,5 +83,12 @@ pub fn summary(view: GrainsView<'_>) -> BondSummary {
         fragments: fragments.sizes.len(),
         largest_fragment: fragments.sizes.iter().copied().max().unwrap_or(0),
         events: None,
+        breakage: dem::measure::breakage(view.model, view.state).map(|b| BreakageRecord {
+            marsal: b.marsal,
+            ballast_index: b.ballast,
+            sieves: b.sieves,
+            passing_before: b.before,
+            passing_after: b.after,
+        }),
     }
 }

@@ -129,6 +129,11 @@ pub struct TimeControl {
     /// Largest speed at which grains are expected to meet [m/s], for the step limit of contacts after Hertz;
     /// default: an estimate.
     pub impact_speed: Option<Quantity<Velocity>>,
+    /// Distance beyond touch up to which the search lists neighbours, over the mean radius of all spheres, 0.01–2; default 0.2.
+    pub search_skin: Option<f64>,
+    /// Factor on the inertial mass of grains, rigid sleepers and rigid bodies in the run proper, 1–10,000, their weight kept;
+    /// default 1.
+    pub mass_factor: Option<f64>,
     /// Time between two looks at inlets and outlets of grains [s]; default 1 ms, at least one step or window.
     pub flow_interval: Option<Quantity<Time>>,
 }

@@ -5,10 +5,12 @@
 //! go to the grains, so that damping and friction see the surface move. With a [`Spread`] it is the discs' mean motion
 //! that they see.
 
+mod facets;
 mod sides;
 
 use crate::face::{self, Form, Location};
 use crate::spread::Spread;
+pub use facets::facets;
 use sides::Sides;
 use trackbed_dem::bvh::Bvh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};

@@ -1,6 +1,6 @@
 //! Checks of a model's input: every refusal names what it found.
 
-use super::input::{ModelInput, TimeStep};
+use super::input::{ModelInput, SearchSkin, TimeStep};
 use super::timestep;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind};
@@ -210,7 +210,8 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
         }
         _ => {}
     }
-    if let Some(skin) = input.skin.filter(|&s| !positive(s)) {
+    let (SearchSkin::Share(skin) | SearchSkin::Distance(skin)) = input.skin;
+    if !positive(skin) {
         return error("skin", skin, POSITIVE);
     }
     if let Some((quantity, value, requirement)) = input.body_forces.iter().find_map(|f| f.fault()) {

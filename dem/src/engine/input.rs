@@ -34,6 +34,23 @@ pub enum TimeStep {
     FixedAboveLimit(f64),
 }
 
+/// Distance beyond touch up to which neighbours are listed. A wide one is searched for less often and lists more pairs that
+/// do not touch; it changes no bit of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SearchSkin {
+    /// This share of the mean radius of all spheres [-].
+    Share(f64),
+    /// This distance [m].
+    Distance(f64),
+}
+
+impl Default for SearchSkin {
+    /// A fifth of the mean radius.
+    fn default() -> SearchSkin {
+        SearchSkin::Share(0.2)
+    }
+}
+
 impl TimeStep {
     /// Share of what the contacts allow that is usually taken.
     pub const SHARE: f64 = 0.8;
@@ -90,8 +107,8 @@ pub struct ModelInput {
     /// Largest speed at which two bodies are expected to meet [m/s]: sets the overlap at which contacts after Hertz are
     /// taken for the limit of the time step; the estimate of [`crate::engine::timestep`] when `None`.
     pub impact_speed: Option<f64>,
-    /// Distance beyond touch up to which neighbours are listed [m]; 0.2 of the mean sphere radius when `None`.
-    pub skin: Option<f64>,
+    /// Distance beyond touch up to which neighbours are listed.
+    pub skin: SearchSkin,
     /// Local damping, for deposition only.
     pub damping: Option<LocalDamping>,
     /// Kinds of bonds.
@@ -119,7 +136,7 @@ impl Default for ModelInput {
             body_forces: Vec::new(),
             time_step: TimeStep::Auto { fraction: 0.1 },
             impact_speed: None,
-            skin: None,
+            skin: SearchSkin::default(),
             damping: None,
             bond_kinds: Vec::new(),
             bonds: Vec::new(),

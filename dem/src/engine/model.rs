@@ -2,7 +2,7 @@
 
 use super::check;
 use super::collision;
-use super::input::ModelInput;
+use super::input::{ModelInput, SearchSkin};
 use super::steps::Steps;
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
@@ -88,7 +88,10 @@ impl Model {
         let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Solid).count();
-        let skin = input.skin.unwrap_or(0.2 * mean);
+        let skin = match input.skin {
+            SearchSkin::Share(share) => share * mean,
+            SearchSkin::Distance(distance) => distance,
+        };
         check::adhesion(&input)?;
         check::polyhedra(&bodies, &input, &laws)?;
         super::check_periodic::check(&input, &bodies, skin)?;

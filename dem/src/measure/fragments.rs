@@ -12,9 +12,19 @@ pub struct Fragments {
     pub sizes: Vec<u32>,
 }
 
-/// Finds the fragments (union–find with path halving).
+/// Finds the fragments.
 pub fn fragments(model: &Model, state: &State) -> Fragments {
-    let mut parent: Vec<u32> = (0..model.body_count() as u32).collect();
+    let mut bonds = Vec::with_capacity(state.bond_count());
+    state.each_bond(|number, _| bonds.push(model.bonds[number as usize].ends));
+    let of = components(model.body_count(), bonds);
+    let mut sizes = vec![0; of.iter().map(|k| *k as usize + 1).max().unwrap_or(0)];
+    of.iter().for_each(|&k| sizes[k as usize] += 1);
+    Fragments { of, sizes }
+}
+
+/// Fragment of each of `count` bodies that pairs of them join (union–find with path halving).
+pub(super) fn components(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..count as u32).collect();
     let root = |parent: &mut Vec<u32>, mut k: u32| {
         while parent[k as usize] != k {
             parent[k as usize] = parent[parent[k as usize] as usize];
@@ -22,23 +32,21 @@ pub fn fragments(model: &Model, state: &State) -> Fragments {
         }
         k
     };
-    state.each_bond(|number, _| {
-        let [a, b] = model.bonds[number as usize].ends;
+    for [a, b] in pairs {
         let (a, b) = (root(&mut parent, a), root(&mut parent, b));
         // The smaller body is the root, whatever the order of the bonds.
         parent[a.max(b) as usize] = a.min(b);
-    });
-    let mut of = vec![0; parent.len()];
-    let mut sizes = Vec::new();
-    for body in 0..parent.len() {
+    }
+    let mut of = vec![0; count];
+    let mut fragments = 0;
+    for body in 0..count {
         let first = root(&mut parent, body as u32) as usize;
         if first == body {
-            of[body] = sizes.len() as u32;
-            sizes.push(0);
+            of[body] = fragments;
+            fragments += 1;
         } else {
             of[body] = of[first];
         }
-        sizes[of[body] as usize] += 1;
     }
-    Fragments { of, sizes }
+    of
 }

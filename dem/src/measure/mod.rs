@@ -6,6 +6,7 @@
 //! forces that the next step will find.
 
 mod bonds;
+mod breakage;
 mod clip;
 mod contacts;
 mod coordination;
@@ -20,6 +21,7 @@ mod sieve;
 mod stress;
 
 pub use bonds::{BondRecord, records as bond_records};
+pub use breakage::{Breakage, breakage};
 pub use clip::sphere_box_volume;
 pub(crate) use contacts::visit;
 pub use contacts::{ContactRecord, contact_forces, contact_forces_of, contacts, coordination};

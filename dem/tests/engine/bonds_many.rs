@@ -233,7 +233,10 @@ fn restart_changes_nothing() {
 #[test]
 fn skin_changes_nothing() {
     let run_with = |skin: f64| {
-        let mut run = Run::new(ModelInput { skin: Some(skin), ..falling(6, cement(), 2.0) });
+        let mut run = Run::new(ModelInput {
+            skin: trackbed_dem::SearchSkin::Distance(skin),
+            ..falling(6, cement(), 2.0)
+        });
         run.steps(4000);
         (bits(&mut run), run.work.rebuilds())
     };

@@ -53,7 +53,8 @@ fn pools_of_one_two_and_three_threads() {
 #[test]
 fn skin_changes_nothing() {
     let run_with = |skin: f64| {
-        let mut run = Run::new(ModelInput { skin: Some(skin), ..pile(4, true) });
+        let mut run =
+            Run::new(ModelInput { skin: trackbed_dem::SearchSkin::Distance(skin), ..pile(4, true) });
         run.steps(4000);
         (bits(&run), run.work.rebuilds())
     };
@@ -190,7 +191,7 @@ fn walls_of_all_kinds() {
 #[test]
 fn skin_changes_nothing_at_walls() {
     let run_with = |skin: f64, kind: usize| {
-        let mut input = ModelInput { skin: Some(skin), ..mill(5) };
+        let mut input = ModelInput { skin: trackbed_dem::SearchSkin::Distance(skin), ..mill(5) };
         input.walls = input
             .walls
             .into_iter()

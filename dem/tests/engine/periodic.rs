@@ -224,7 +224,7 @@ fn threads_and_restarts_do_not_show() {
         pool.install(|| {
             let mut input = bed(14, 8);
             input.gravity.x = 6.0;
-            input.skin = skin;
+            input.skin = skin.map_or(input.skin, trackbed_dem::SearchSkin::Distance);
             input.bodies.iter_mut().for_each(|b| b.velocity += Vec3::new(2.0, 1.0, -0.5));
             let mut run = Run::new(input);
             assert!(run.model.sphere_count() > 2500);

@@ -3,10 +3,10 @@
 use super::class::WITH_SLEEPERS;
 use super::{CouplingPart, TransferPlan, WindowPlan};
 use crate::model::solid::SolidPart;
-use crate::scene::coupling::{Coupling, SchemeName, Substeps, TransferTable};
+use crate::scene::coupling::{Coupling, FacesName, SchemeName, Substeps, TransferTable};
 use crate::scene::{SceneError, Table};
 use trackbed_coupling::scheme::Scheme;
-use trackbed_coupling::surface::SolidSurface;
+use trackbed_coupling::surface::{SolidSurface, facets};
 
 /// Passes of the iterated scheme, unless the scene says otherwise.
 const PASSES: u32 = 20;
@@ -38,6 +38,9 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart) -> Result<CouplingPart, Sce
     faces.retain(|f| (f.element as usize) < ground);
     if faces.is_empty() {
         return Err(c.error("direction", "no boundary face that looks this way", "at least one"));
+    }
+    if c.faces == FacesName::Flat {
+        faces = faces.iter().flat_map(facets).collect();
     }
     let ground_faces = faces.len();
     if solid.sleepers.is_some() {

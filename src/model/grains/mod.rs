@@ -51,7 +51,9 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
     let impact_speed = steps::impact_speed(scene, &materials)?;
     let of_coupling = scene.optional("coupling", &scene.coupling);
     let ground = of_coupling.map(|c| find(scene, &c, "material", &c.material)).transpose()?;
-    let steps = StepPlan { step: steps::time_step(&scene.below("time", &scene.time))?, impact_speed };
+    let time = scene.below("time", &scene.time);
+    let (step, skin) = (steps::time_step(&time)?, steps::search_skin(&time)?);
+    let steps = StepPlan { step, impact_speed, skin, mass_factor: steps::mass_factor(scene)? };
     let mut bonds = bonds::kinds(scene)?;
     let mut groups = groups::build(scene, &mut materials, &mut bonds)?;
     let periodic = periodic::build(scene, &groups)?;
@@ -73,7 +75,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
         (true, true) => Some("cross a periodic border"),
         (true, false) => None,
     };
-    let track = track::build(scene, &gravity, fixed, &mut groups)?;
+    let track = track::build(scene, &gravity, fixed, steps.mass_factor, &mut groups)?;
     Ok(GrainsPart {
         materials,
         groups,

@@ -10,7 +10,7 @@ use super::measure::MeasurePlan;
 use super::periodic::Borders;
 use super::runout::RunoutPlan;
 use super::specimen::{EventPlan, SpecimenPlan};
-use super::steps::StepPlan;
+use super::steps::{StepPlan, add_inertia};
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
@@ -97,7 +97,7 @@ impl GrainsPart {
         let alone = ModelInput {
             other_surface: None,
             body_forces: self.water.into_iter().collect(),
-            ..self.input(self.groups.bodies.clone())
+            ..self.true_input(self.groups.bodies.clone())
         };
         let mut input = ModelInput { contacts, damping, ..alone };
         soften(&mut input, plan.stiffness_factor);
@@ -134,8 +134,15 @@ impl GrainsPart {
         deposition.is_some() || !self.groups.growths.is_empty() || !compaction.is_empty()
     }
 
-    /// The model of the run proper with the given bodies.
-    pub fn input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
+    /// The model of the run proper with the given bodies, which have their true masses.
+    pub fn input(&self, bodies: Vec<BodyInput>) -> ModelInput {
+        let mut input = self.true_input(bodies);
+        add_inertia(&mut input, self.steps.mass_factor);
+        input
+    }
+
+    /// The same without a factor on the masses: beds are made with the true ones, for falling is no quasi-static motion.
+    fn true_input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
         for moving in &self.groups.moving {
             for body in bodies.iter_mut().filter(|b| b.part == moving.part) {
                 (body.velocity, body.fixed) = (moving.velocity, [true; 6]);
@@ -155,7 +162,7 @@ impl GrainsPart {
             body_forces: self.body_forces().collect(),
             time_step: self.time_step(),
             impact_speed: self.steps.impact_speed,
-            skin: None,
+            skin: self.steps.skin,
             damping: None,
             periodic: self.periodic,
             ..ModelInput::default()
@@ -190,7 +197,7 @@ impl GrainsPart {
         self.surface.sleepers = meshed.map(|s| (first, s.material));
     }
 
-    /// A sleeper as a body with its centre above `centre` at height `z` [m].
+    /// A sleeper as a body with its centre above `centre` at height `z` [m], with its true mass.
     pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
             shape: plan.shape,
@@ -198,7 +205,7 @@ impl GrainsPart {
             part: self.groups.names.len() as u32 - 1,
             position: Vec3::new(centre[0], centre[1], z),
             fixed: plan.row.held,
-            mass: Some(plan.row.mass),
+            mass: Some(plan.row.mass / self.steps.mass_factor),
             ..BodyInput::default()
         }
     }

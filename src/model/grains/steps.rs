@@ -3,7 +3,7 @@
 use super::laws;
 use super::materials::MaterialsPart;
 use crate::scene::{Scene, SceneError, Table, TimeControl};
-use trackbed_dem::TimeStep;
+use trackbed_dem::{ModelInput, SearchSkin, TimeStep};
 
 /// How the step of the grains is found.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,56 @@ pub struct StepPlan {
     pub step: TimeStep,
     /// Approach speed that contacts whose stiffness grows are to be stable at [m/s].
     pub impact_speed: Option<f64>,
+    /// How far beyond touch neighbours are listed.
+    pub skin: SearchSkin,
+    /// Factor on inertial masses of the run proper.
+    pub mass_factor: f64,
+}
+
+/// Makes all bodies heavier by a factor under a gravity that is weaker by it: the same weights and contacts, more inertia. Every account
+/// stays that of a system as it is, with `factor` times the kinetic energy at the same speed.
+pub(super) fn add_inertia(input: &mut ModelInput, factor: f64) {
+    if factor == 1.0 {
+        return;
+    }
+    input.gravity /= factor;
+    input.materials.iter_mut().for_each(|m| m.density *= factor);
+    input.bodies.iter_mut().for_each(|b| b.mass = b.mass.map(|mass| mass * factor));
+    for body in input.walls.iter_mut().filter_map(|w| w.body.as_mut()) {
+        body.mass *= factor;
+        body.inertia = body.inertia.map(|inertia| inertia.map(|i| i * factor));
+    }
+}
+
+/// The distance beyond touch up to which neighbours are listed.
+pub(super) fn search_skin(time: &Table<TimeControl>) -> Result<SearchSkin, SceneError> {
+    let good = |s| (0.01..=2.0).contains(&s);
+    let share = time.check("search_skin", time.search_skin, good, "0.01 to 2")?;
+    Ok(share.map_or_else(SearchSkin::default, SearchSkin::Share))
+}
+
+/// The factor on inertial masses; refused where motion itself is the result.
+pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
+    let time = scene.below("time", &scene.time);
+    let good = |f| (1.0..=1e4).contains(&f);
+    let Some(factor) = time.check("mass_factor", time.mass_factor, good, "1 to 10000")? else {
+        return Ok(1.0);
+    };
+    let rail = scene.track.as_ref().and_then(|t| t.rail.as_ref());
+    let dynamic = [
+        ("[water]", scene.water.is_some()),
+        ("[wind]", scene.wind.is_some()),
+        ("an inlet", scene.grains.iter().any(|g| g.inlet.is_some())),
+        ("[[outlet]]", !scene.outlet.is_empty()),
+        ("a rail with mass", rail.is_some_and(|r| r.mass.is_some())),
+    ];
+    match dynamic.into_iter().find(|(_, there)| *there) {
+        Some((what, _)) => {
+            let expected = format!("no such key beside {what}: it is for beds that are pressed slowly");
+            Err(time.error("mass_factor", factor.to_string(), expected))
+        }
+        None => Ok(factor),
+    }
 }
 
 /// Refuses an impact speed that no contact asks for.

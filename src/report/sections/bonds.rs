@@ -35,6 +35,8 @@ pub fn bonds(runs: &[RunData]) -> Option<Section> {
             ("energy set free by breaks", &path("bonds.energy_of_breaks", "J")),
             ("pieces at the end", &path("bonds.fragments", "")),
             ("bodies of the largest piece", &path("bonds.largest_fragment", "")),
+            ("breakage by Marsal, share of the mass", &path("bonds.breakage.marsal", "")),
+            ("ballast breakage index", &path("bonds.breakage.ballast_index", "")),
         ],
     );
     Section::new("bonds", "Bonds", figures + &sums)

@@ -108,6 +108,25 @@ pub struct BondSummary {
     /// Acoustic events.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub events: Option<EventRecord>,
+    /// Sieve curves of the bonded stones before and after.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub breakage: Option<BreakageRecord>,
+}
+
+/// Breakage of bonded stones by their sieve curves.
+#[derive(Debug, Serialize)]
+pub struct BreakageRecord {
+    /// Marsal's index: what sieves hold back less than before, as a share of the mass.
+    pub marsal: f64,
+    /// Ballast breakage index of Indraratna, Lackenby & Christie; absent where it is not defined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ballast_index: Option<f64>,
+    /// Sieves [m].
+    pub sieves: Vec<f64>,
+    /// Share of the mass that passed each at the start.
+    pub passing_before: Vec<f64>,
+    /// Share that passes at the end.
+    pub passing_after: Vec<f64>,
 }
 
 /// Interface audit.

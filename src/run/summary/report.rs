@@ -113,6 +113,14 @@ impl Summary {
                 b.largest_fragment
             ));
             lines.extend(b.events.iter().map(EventRecord::report));
+            if let Some(b) = &b.breakage {
+                let index =
+                    b.ballast_index.map_or(String::new(), |i| format!(", ballast breakage index {i:.3}"));
+                lines.push(format!(
+                    "breakage of the bonded stones: {:.1} % by Marsal{index}",
+                    100.0 * b.marsal
+                ));
+            }
         }
     }
 

@@ -17,11 +17,13 @@ use trackbed_dem::Vec3;
 use trackbed_dem::shape::Shape;
 
 /// Sleepers, their load, and what goes on about it. The shape of rigid sleepers is added to those of the groups, and so is
-/// their name; `fixed` is why grains cannot be moved by a jump, if they cannot.
+/// their name; `fixed` is why grains cannot be moved by a jump, if they cannot. Rows of sleepers have the mass of the run proper,
+/// `mass_factor` times the true one.
 pub(super) fn build(
     scene: &Table<Scene>,
     gravity: &Vec3,
     fixed: Option<&str>,
+    mass_factor: f64,
     groups: &mut GroupsPart,
 ) -> Result<TrackPart, Failure> {
     let mut part = TrackPart::default();
@@ -30,7 +32,7 @@ pub(super) fn build(
     let material = find(scene, s, "material", &s.material)?;
     let half = sleeper::half(s)?;
     let meshed = s.mesh.is_some();
-    let mass = match s.mass {
+    let mut mass = match s.mass {
         Some(mass) => mass.si,
         // Its elements have one.
         None if meshed => 0.0,
@@ -39,6 +41,7 @@ pub(super) fn build(
     let shape = groups.shapes.len();
     if !meshed {
         s.check("mass", mass, |m| m > 0.0, "a mass above 0")?;
+        mass *= mass_factor;
         groups.add_shape(Shape::Box { half });
         groups.names.push("sleeper".into());
     }

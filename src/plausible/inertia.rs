@@ -1,0 +1,65 @@
+//! How slow a pressed bed moves for its inertia: whether a factor on its masses leaves it quasi-static.
+
+use super::findings::{Findings, shown};
+use crate::model::Job;
+use crate::scene::Scene;
+use std::f64::consts::PI;
+
+/// Inertial number below which a granular bed is quasi-static: its stresses do not depend on it there (GDR MiDi, Eur. Phys. J. E
+/// 14 (2004) 341; da Cruz et al., Phys. Rev. E 72 (2005) 021309).
+const QUASI_STATIC: f64 = 1e-3;
+/// The same beyond which it flows and inertia rules.
+const INERTIAL: f64 = 0.1;
+/// Modulus of a bed of stones of size d and contact stiffness K, over K/d. 0.18 in the box test of this program (125 MPa with 50 MN/m
+/// and stones of 0.07 m).
+const MODULUS: f64 = 0.18;
+/// Factor on masses from which a scene without a cyclic load is remarked on: no rate is known of it.
+const UNKNOWN: f64 = 100.0;
+
+/// Weighs a factor on the masses of grains by the inertial number I = ε̇ d √(f ρ / p) that a cyclic load is likely to bring about,
+/// with the strain rate ε̇ = π ν Δp/M of a haversine of the frequency ν and the range Δp on a bed of modulus M.
+pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
+    let Some(factor) = scene.time.mass_factor.filter(|f| *f > 1.0) else { return };
+    let key = "time.mass_factor";
+    let Some(number) = number(scene, job, factor) else {
+        if factor > UNKNOWN {
+            let found = format!(
+                "{}, in a scene without a cyclic load, which would tell how slow it is",
+                shown(factor, "")
+            );
+            findings.add(factor > 30.0 * UNKNOWN, key, found, "at most 100");
+        }
+        return;
+    };
+    if number > QUASI_STATIC {
+        let found = format!(
+            "{}, at which the inertial number of the loaded bed is about {number:.1e}",
+            shown(factor, "")
+        );
+        let fitting = factor * (QUASI_STATIC / number).powi(2);
+        let usual = if fitting >= 1.0 {
+            format!("below 1e-3, where beds are quasi-static: a factor of {fitting:.1} at most")
+        } else {
+            "below 1e-3, where beds are quasi-static: none, for the load is too quick".to_string()
+        };
+        findings.add(number > INERTIAL, key, found, usual);
+    }
+}
+
+/// The likely inertial number; none where there is no load of a frequency on stones with a stiffness.
+fn number(scene: &Scene, job: &Job, factor: f64) -> Option<f64> {
+    let (track, grains) = (scene.track.as_ref()?, job.grains.as_ref()?);
+    let load = track.load.as_ref()?;
+    let (frequency, least, most) = (load.frequency?.si, load.minimum?.si, load.maximum?.si);
+    let stones = grains.groups.bodies.first()?;
+    let material = grains.material(stones);
+    let size = 2.0 * grains.groups.mean_reach();
+    let area = track.sleeper.size[0].si * track.sleeper.size[1].si;
+    if material.stiffness <= 0.0 || material.young.is_some() || size <= 0.0 || most <= least {
+        return None;
+    }
+    let modulus = MODULUS * material.stiffness / size;
+    let rate = PI * frequency * (most - least) / area / modulus;
+    let pressure = 0.5 * (least + most) / area;
+    Some(rate * size * (factor * material.density / pressure).sqrt())
+}
