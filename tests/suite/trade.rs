@@ -167,7 +167,5 @@ fn breakage_of_a_crushed_stone() {
     );
     let last =
         |b: &serde_json::Value, key: &str| b[key].as_array().unwrap().last().unwrap().as_f64().unwrap();
-    assert!(
-        (last(&broken, "passing_after") - 1.0).abs() < 1e-12
-    );
+    assert!((last(&broken, "passing_after") - 1.0).abs() < 1e-12);
 }
