@@ -35,7 +35,7 @@ pub enum TimeStep {
 }
 
 /// Distance beyond touch up to which neighbours are listed. A wide one is searched for less often and lists more pairs that
-/// do not touch; it changes no bit of a result.
+/// do not touch; it changes no bit of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SearchSkin {
     /// This share of the mean radius of all spheres [-].

@@ -51,6 +51,7 @@ pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
     let dynamic = [
         ("[water]", scene.water.is_some()),
         ("[wind]", scene.wind.is_some()),
+        ("[runout]", scene.runout.is_some()),
         ("an inlet", scene.grains.iter().any(|g| g.inlet.is_some())),
         ("[[outlet]]", !scene.outlet.is_empty()),
         ("a rail with mass", rail.is_some_and(|r| r.mass.is_some())),
