@@ -14,6 +14,9 @@ const POISSON: Usual = Usual::or_zero(0.01, 0.495, "");
 /// From gas-like soils on a model scale to steel.
 const SOLID_YOUNG: Usual = Usual::new(1e5, 1e12, "Pa");
 const FRICTION: Usual = Usual::or_zero(0.01, 1.5, "");
+/// Joints of rough rock reach 70 degrees at small stress.
+const ASPERITIES: Usual = Usual::or_zero(0.05, 3.0, "");
+const ASPERITY_PRESSURE: Usual = Usual::new(1e4, 1e9, "Pa");
 const RESTITUTION: Usual = Usual::new(0.01, 1.0, "");
 const ROLLING: Usual = Usual::or_zero(1e-4, 0.9, "");
 const RATIO: Usual = Usual::or_zero(0.05, 2.0, "");
@@ -37,6 +40,8 @@ fn grain(findings: &mut Findings, k: usize, m: &GrainMaterial) {
     findings.weigh_some(key("poisson"), m.poisson, POISSON);
     findings.weigh_some(key("tangential_ratio"), m.tangential_ratio, RATIO);
     findings.weigh(key("friction"), m.friction, FRICTION);
+    findings.weigh(key("asperity_friction"), m.asperity_friction, ASPERITIES);
+    findings.weigh_some(key("asperity_pressure"), m.asperity_pressure.map(|v| v.si), ASPERITY_PRESSURE);
     findings.weigh(key("restitution"), m.restitution, RESTITUTION);
     findings.weigh(key("rolling_friction"), m.rolling_friction, ROLLING);
     findings.weigh(key("twisting_friction"), m.twisting_friction, ROLLING);

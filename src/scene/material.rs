@@ -28,6 +28,11 @@ pub struct GrainMaterial {
     pub tangential_damping_ratio: f64,
     /// Coulomb friction coefficient, 0 or more.
     pub friction: f64,
+    /// Friction that asperities add at vanishing force: μ + μₐ/(1 + F/(p R²)); default 0, none.
+    #[serde(default)]
+    pub asperity_friction: f64,
+    /// p of it [Pa]: normal force over the effective radius squared at which half is left; needed with `asperity_friction`.
+    pub asperity_pressure: Option<Quantity<Stress>>,
     /// Coefficient of restitution, above 0 and at most 1.
     pub restitution: f64,
     /// Rolling resistance: largest moment over effective radius times normal force; default 0, none.

@@ -124,3 +124,66 @@ fn a_stone_falls_through_air_as_the_closed_form_says() {
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 1e-9);
     assert!(sources(&summary).iter().any(|s| s.contains("Haider")));
 }
+
+/// On rough rock a light frame stays where a heavy one slides, with the acceleration of the closed form: the friction of each foot is
+/// that of its own load, and the moment of friction about the centre loads the lower feet more. Measured 0.01 %.
+#[test]
+fn friction_of_rough_rock_falls_with_the_pressure() {
+    let folder = Folder::new("asperities");
+    let scene = repository().join("inputs/verify/asperities/scene.toml");
+    run(&scene, &folder.join("out"), &["output.packing=true", "output.vtk=false"]).good();
+    let place = |group: usize| {
+        let text = std::fs::read_to_string(folder.join(format!("out/packing_{group}.csv"))).unwrap();
+        let row: Vec<f64> = text.lines().nth(1).unwrap().split(',').map(|v| v.parse().unwrap()).collect();
+        [row[0], row[2]]
+    };
+    let ([light, _], [heavy, height]) = (place(0), place(1));
+    assert!(light < 2e-3 && heavy > 0.4, "{light} {heavy}");
+
+    // Volume of the frame by `trackbed stone info`, friction at the feet, rows 0.2 m apart.
+    let (mass, angle) = (7850.0 * 0.040550 * 0.24_f64.powi(3), 35.0_f64.to_radians());
+    let friction = |load: f64| load * (0.3 + 0.9 / (1.0 + load / (1e4 * 0.02 * 0.02)));
+    let (mean, mut more, mut total) = (mass * 9.81 * angle.cos() / 4.0, 0.0, 0.0);
+    for _ in 0..50 {
+        total = 2.0 * (friction(mean + more) + friction(mean - more));
+        more = total * height / 0.4;
+    }
+    let expected = 9.81 * angle.sin() - total / mass;
+
+    let history = Table::read(&folder.join("out/history.csv"));
+    let (time, kinetic) = (history.column("time"), history.column("grains_kinetic"));
+    let late = time.iter().position(|t| *t > 0.4).unwrap();
+    let speed = |at: usize| (2.0 * kinetic[at] / mass).sqrt();
+    let end = time.len() - 1;
+    let found = (speed(end) - speed(late)) / (time[end] - time[late]);
+    println!("acceleration {found:.5} m/s2, closed form {expected:.5}");
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found} for {expected}");
+}
+
+/// Constants of asperities come in twos, and belong to the linear law.
+#[test]
+fn asperities_out_of_place_are_refused() {
+    let scene = repository().join("inputs/verify/asperities/scene.toml");
+    for (set, message) in [
+        ("material.0.asperity_pressure=", "the pressure at which half of `asperity_friction` is left"),
+        ("material.0.asperity_friction=0", "no such key without `asperity_friction`"),
+        ("material.0.asperity_friction=-1", "0 or more"),
+        ("material.0.asperity_pressure=0", "a pressure above 0"),
+    ] {
+        let folder = Folder::new("no_asperities");
+        let said = run(&scene, &folder.join("out"), &[set]).bad();
+        assert!(said.contains(message), "{set}: {said}");
+    }
+    let hertz = [
+        "material.0.stiffness=",
+        "material.0.young=1e7",
+        "material.0.poisson=0.3",
+        "material.1.stiffness=",
+        "material.1.young=1e7",
+        "material.1.poisson=0.3",
+        "material.2.stiffness=",
+    ];
+    let folder = Folder::new("hertz_asperities");
+    let said = run(&scene, &folder.join("out"), &hertz).bad();
+    assert!(said.contains("no such key, as no law of its contacts knows asperities"), "{said}");
+}

@@ -46,6 +46,8 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
                 NOT_NEGATIVE,
             ),
             ("friction", m.friction, not_negative(m.friction), NOT_NEGATIVE),
+            ("asperity friction", m.asperity_friction, not_negative(m.asperity_friction), NOT_NEGATIVE),
+            ("asperity pressure", m.asperity_pressure, m.asperity_pressure > 0.0, POSITIVE),
             ("restitution", m.restitution, restitution(m.restitution), RESTITUTION),
             ("Young's modulus", m.young.unwrap_or(1.0), m.young.is_none_or(positive), POSITIVE),
             (

@@ -111,7 +111,7 @@ pub fn grow(
             ..now.clone()
         });
         let model = Model::new(ModelInput {
-            materials: vec![Material { friction: how.friction, ..material }],
+            materials: vec![material.with_friction(how.friction)],
             shapes: shapes.to_vec(),
             bodies: small.collect(),
             planes: planes.clone(),

@@ -184,7 +184,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
             memory.spring = memory.spring * c.kept;
         }
         let grip = T::grip(&law.tangential, own.circle);
-        let limit = common.friction * normal;
+        let limit = T::limit(&law.tangential, common.friction, normal, touch.radius);
         let slid = slide::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, dt, on);
         dashpot = dashpot + slid.dashpot;
         let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };

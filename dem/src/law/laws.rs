@@ -4,7 +4,7 @@ use super::contact::{History, Linearised};
 use super::contact_law::ContactLaw;
 use super::material::{Material, Pair, PairOverride};
 use super::normal::Expected;
-use super::table::{HertzLaw, LinearLaw, Mixed, Row, number_of, once, title};
+use super::table::{HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
 use crate::lanes::Pack;
 
 /// The mixed constants of all pairs of materials.
@@ -68,6 +68,7 @@ impl<L: ContactLaw> PairTable<L> {
 #[derive(Clone, Debug)]
 pub(crate) enum Laws {
     Linear(PairTable<LinearLaw>),
+    Rough(PairTable<RoughLaw>),
     Hertz(PairTable<HertzLaw>),
     Mixed(PairTable<Mixed>),
 }
@@ -77,6 +78,7 @@ macro_rules! with_law {
     ($laws:expr, $table:ident => $body:expr) => {
         match $laws {
             $crate::law::Laws::Linear($table) => $body,
+            $crate::law::Laws::Rough($table) => $body,
             $crate::law::Laws::Hertz($table) => $body,
             $crate::law::Laws::Mixed($table) => $body,
         }
@@ -91,10 +93,13 @@ impl Laws {
         let all = (0..count).flat_map(|i| (i..count).map(move |j| (i, j)));
         let rows = all.filter_map(|(i, j)| number_of(&Pair::of(materials, exceptions, i, j)).ok().flatten());
         let rows: std::collections::BTreeSet<usize> = rows.collect();
-        let only = |row: Row| rows.iter().all(|&r| r == row as usize);
-        if only(Row::Linear) {
+        let only = |own: &[Row]| rows.iter().all(|&r| own.iter().any(|&row| r == row as usize));
+        if only(&[Row::Linear]) {
             Laws::Linear(PairTable::new(materials, exceptions))
-        } else if only(Row::Hertz) {
+        } else if only(&[Row::Linear, Row::Rough]) {
+            // Pairs without asperities have the bits of the linear law there.
+            Laws::Rough(PairTable::new(materials, exceptions))
+        } else if only(&[Row::Hertz]) {
             Laws::Hertz(PairTable::new(materials, exceptions))
         } else {
             Laws::Mixed(PairTable::new(materials, exceptions))

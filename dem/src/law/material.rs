@@ -16,8 +16,12 @@ pub struct Material {
     pub tangential_ratio: f64,
     /// Tangential over normal damping coefficient, Cs/Cn [-].
     pub tangential_damping_ratio: f64,
-    /// Coulomb friction coefficient [-].
+    /// Coulomb friction coefficient [-]; with asperities that at large forces.
     pub friction: f64,
+    /// Friction that asperities add at vanishing force [-] (`rough.rs`); zero: none.
+    pub asperity_friction: f64,
+    /// Normal force over the square of the effective radius at which half of it is left [Pa].
+    pub asperity_pressure: f64,
     /// Coefficient of restitution of a central impact, in (0, 1].
     pub restitution: f64,
     /// Young's modulus [Pa]; the stiffness of contacts then follows from their sizes.
@@ -40,6 +44,8 @@ impl Material {
         tangential_ratio: 0.5,
         tangential_damping_ratio: 0.0,
         friction: 0.0,
+        asperity_friction: 0.0,
+        asperity_pressure: f64::INFINITY,
         restitution: 1.0,
         young: None,
         poisson: 0.0,
@@ -47,6 +53,13 @@ impl Material {
         twisting_friction: 0.0,
         normal: None,
     };
+}
+
+impl Material {
+    /// The same material with one coefficient of friction at all forces.
+    pub fn with_friction(self, friction: f64) -> Material {
+        Material { friction, asperity_friction: 0.0, ..self }
+    }
 }
 
 impl Default for Material {
@@ -63,7 +76,7 @@ pub struct PairOverride {
     pub a: usize,
     /// Second material (index); may equal the first.
     pub b: usize,
-    /// Friction coefficient [-].
+    /// Friction coefficient [-]; in place of that of asperities too.
     pub friction: Option<f64>,
     /// Coefficient of restitution, in (0, 1].
     pub restitution: Option<f64>,

@@ -22,6 +22,7 @@ pub mod mindlin;
 mod mixed;
 pub mod normal;
 pub mod restitution;
+pub mod rough;
 pub(crate) mod slide;
 pub mod spring;
 pub mod table;

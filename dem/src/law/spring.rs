@@ -19,7 +19,7 @@ pub struct Spring<R = f64> {
     /// Tangential stiffness Ks [N/m].
     pub stiffness: R,
     /// 1/Ks [m/N].
-    compliance: R,
+    pub(super) compliance: R,
 }
 
 constants!(Spring { stiffness, compliance });

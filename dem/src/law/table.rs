@@ -1,6 +1,6 @@
 //! The laws there are: one row for each combination of a normal and a tangential law.
 //!
-//! A new law is a file beside this one and a row here. All rows can meet in one model (`mixed.rs`); two have kernels of
+//! A new law is a file beside this one and a row here. All rows can meet in one model (`mixed.rs`); some have kernels of
 //! their own for models that have no other ([`Laws`]).
 
 use super::composed::Composed;
@@ -11,18 +11,22 @@ use super::material::{LawName, Material, Pair};
 use super::mindlin::Mindlin;
 use super::mixed::combinations;
 use super::normal::NormalLaw;
+use super::rough::{self, Rough};
 use super::spring::Spring;
 use super::tangential::TangentialLaw;
 use super::walton_braun::WaltonBraun;
 
 combinations! {
     Linear(Linear, Spring) = "linear spring-dashpot",
+    Rough(Linear, Rough) = "linear spring-dashpot, rough",
     Hertz(Hertz, Mindlin) = "Hertz-Mindlin",
     WaltonBraun(WaltonBraun, Spring) = "Walton-Braun",
 }
 
 /// The linear law.
 pub type LinearLaw = Composed<Linear, Spring>;
+/// The linear law with friction that falls with the pressure.
+pub type RoughLaw = Composed<Linear, Rough>;
 /// Hertz's law with Mindlin's.
 pub type HertzLaw = Composed<Hertz, Mindlin>;
 
@@ -137,7 +141,8 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
             None => return Ok(None),
         },
     };
-    let tangential = pair.given(|e| e.tangential).filter(|t| *t != LawName::NONE);
+    let rough = rough::asperities(pair).filter(|_| normal == Linear::NAME).map(|_| rough::NAME);
+    let tangential = pair.given(|e| e.tangential).filter(|t| *t != LawName::NONE).or(rough);
     let fits = |c: &Combination| c.normal == normal && tangential.is_none_or(|LawName(t)| c.tangential == t);
     match COMBINATIONS.iter().position(fits) {
         Some(k) => Ok(Some(k)),

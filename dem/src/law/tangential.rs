@@ -40,6 +40,13 @@ pub trait TangentialLaw<N: NormalLaw>: Constants {
     /// The springs of contacts whose circles have the radius `circle` [m].
     fn grip<R: Real>(law: &Self::Lanes<R>, circle: R) -> Grip<R>;
 
+    /// Largest tangential force [N] of contacts with the coefficient `friction`, the normal force `normal` [N] and the effective
+    /// radius `radius` [m].
+    #[inline(always)]
+    fn limit<R: Real>(_: &Self::Lanes<R>, friction: R, normal: R, _radius: R) -> R {
+        friction * normal
+    }
+
     /// How springs are carried over from the overlap before, d − ḋ dt; `None`: as they are.
     fn carry<R: Real>(
         law: &Self::Lanes<R>,

@@ -78,6 +78,11 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
         let expected = "no such key, as no law of its contacts has a dashpot";
         return Err(m.error("tangential_damping_ratio", "a value", expected));
     }
+    let linear = |law: &&Combination| law.normal == "linear";
+    if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(linear) {
+        let expected = "no such key, as no law of its contacts knows asperities";
+        return Err(m.error("asperity_friction", "a value", expected));
+    }
     if m.tangential_ratio.is_some() && unused("tangential_ratio") {
         let expected = "no such key beside `young`: Poisson's ratio sets it";
         return Err(m.error("tangential_ratio", "a value", expected));

@@ -85,6 +85,7 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
             "0 to 1",
         )?;
         m.check("friction", m.friction, |f| f >= 0.0, "0 or more")?;
+        asperities(&m)?;
         m.check("restitution", m.restitution, |e| (LEAST_RESTITUTION..=1.0).contains(&e), "0.0001 to 1")?;
         for (k, value) in
             [("rolling_friction", m.rolling_friction), ("twisting_friction", m.twisting_friction)]
@@ -98,6 +99,8 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
             tangential_ratio: m.tangential_ratio.unwrap_or(0.5),
             tangential_damping_ratio: m.tangential_damping_ratio,
             friction: m.friction,
+            asperity_friction: m.asperity_friction,
+            asperity_pressure: m.asperity_pressure.map_or(f64::INFINITY, |p| p.si),
             restitution: m.restitution,
             young: m.young.map(|y| y.si),
             poisson: m.poisson.unwrap_or(0.0),
@@ -107,6 +110,20 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
         });
     }
     Ok(out)
+}
+
+fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
+    m.check("asperity_friction", m.asperity_friction, |f| f >= 0.0, "0 or more")?;
+    m.check("asperity_pressure", m.asperity_pressure, |p| p > 0.0, "a pressure above 0")?;
+    match (m.asperity_friction > 0.0, &m.asperity_pressure) {
+        (true, None) => {
+            Err(m.missing("asperity_pressure", "the pressure at which half of `asperity_friction` is left"))
+        }
+        (false, Some(_)) => {
+            Err(m.error("asperity_pressure", "a value", "no such key without `asperity_friction`"))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {

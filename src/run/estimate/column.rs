@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::bond::BondInput;
-use trackbed_dem::{BackEnd, BodyInput, Material, ModelInput, Plane, Shape, Vec3};
+use trackbed_dem::{BackEnd, BodyInput, ModelInput, Plane, Shape, Vec3};
 
 /// Spheres that a column has, if the scene has many more.
 const SPHERES: usize = 2000;
@@ -208,7 +208,7 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>) {
 /// Gives the last planes, those around the column, a material of their own without friction.
 fn smooth(input: &mut ModelInput, count: usize) {
     let of = input.bodies.first().map_or(0, |b| b.material);
-    input.materials.push(Material { friction: 0.0, ..input.materials[of] });
+    input.materials.push(input.materials[of].with_friction(0.0));
     let (material, first) = (input.materials.len() - 1, input.planes.len() - count);
     input.planes[first..].iter_mut().for_each(|plane| plane.material = material);
 }

@@ -95,6 +95,12 @@ pub fn rotation_of_everything_rotates_the_force<L: ContactLaw>(material: &Materi
     assert!(largest > 0.0);
 }
 
+/// Largest tangential force at a normal force [N], in closed form.
+fn limit(m: &Material, normal: f64) -> f64 {
+    let added = m.asperity_friction / (1.0 + normal / (m.asperity_pressure * RADIUS * RADIUS));
+    (m.friction + added) * normal
+}
+
 /// Coulomb's limit, and no pull: along a path on which contacts slide and stick.
 pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
@@ -105,7 +111,7 @@ pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
         for m in path.moments() {
             let f = m.evaluate(&law, &mut history, path.dt());
             let tangential = f.force - m.geometry.normal * f.normal;
-            let limit = material.friction * f.normal;
+            let limit = limit(material, f.normal);
             assert!(f.normal >= 0.0 && tangential.norm() <= limit * (1.0 + 1e-12) + 1e-300);
             *if tangential.norm() > limit * (1.0 - 1e-9) { &mut sliding } else { &mut sticking } += 1;
         }

@@ -7,7 +7,7 @@ mod lanes;
 use super::composed::Composed;
 use super::material::{Material, Pair};
 use super::spring::Spring;
-use super::table::{HertzLaw, LinearLaw};
+use super::table::{HertzLaw, LinearLaw, RoughLaw};
 use super::walton_braun::WaltonBraun;
 use super::{ContactForce, ContactGeometry, ContactLaw, History};
 use crate::base::Vec3;
@@ -82,6 +82,7 @@ macro_rules! conforms {
 
 conforms! {
     linear: LinearLaw, SOFT;
+    rough: RoughLaw, Material { asperity_friction: 1.0, asperity_pressure: 2e5, ..SOFT };
     hertz: HertzLaw, GLASS;
     walton_braun: Composed<WaltonBraun, Spring>, SOFT;
 }
