@@ -171,8 +171,8 @@ fn asperities_out_of_place_are_refused() {
         ("material.0.asperity_pressure=0", "a pressure above 0"),
     ] {
         let folder = Folder::new("no_asperities");
-        let said = run(&scene, &folder.join("out"), &[set]).bad();
-        assert!(said.contains(message), "{set}: {said}");
+        let outcome = run(&scene, &folder.join("out"), &[set]);
+        assert!(outcome.code == 2 && outcome.stderr.contains(message), "{set}: {outcome:?}");
     }
     let hertz = [
         "material.0.stiffness=",
@@ -184,6 +184,7 @@ fn asperities_out_of_place_are_refused() {
         "material.2.stiffness=",
     ];
     let folder = Folder::new("hertz_asperities");
-    let said = run(&scene, &folder.join("out"), &hertz).bad();
-    assert!(said.contains("no such key, as no law of its contacts knows asperities"), "{said}");
+    let outcome = run(&scene, &folder.join("out"), &hertz);
+    let message = "no such key, as no law of its contacts knows asperities";
+    assert!(outcome.code == 2 && outcome.stderr.contains(message), "{outcome:?}");
 }
