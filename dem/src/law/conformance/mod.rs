@@ -82,7 +82,7 @@ macro_rules! conforms {
 
 conforms! {
     linear: LinearLaw, SOFT;
-    rough: RoughLaw, Material { asperity_friction: 1.0, asperity_pressure: 2e5, ..SOFT };
+    rough: RoughLaw, Material { friction: 0.2, asperity_friction: 0.4, asperity_pressure: 2e5, ..SOFT };
     hertz: HertzLaw, GLASS;
     walton_braun: Composed<WaltonBraun, Spring>, SOFT;
 }
