@@ -133,7 +133,7 @@ fn friction_of_rough_rock_falls_with_the_pressure() {
     let scene = repository().join("inputs/verify/asperities/scene.toml");
     run(&scene, &folder.join("out"), &["output.packing=true", "output.vtk=false"]).good();
     let place = |group: usize| {
-        let text = std::fs::read_to_string(folder.join(format!("out/packing_{group}.csv"))).unwrap();
+        let text = std::fs::read_to_string(folder.join(&format!("out/packing_{group}.csv"))).unwrap();
         let row: Vec<f64> = text.lines().nth(1).unwrap().split(',').map(|v| v.parse().unwrap()).collect();
         [row[0], row[2]]
     };
