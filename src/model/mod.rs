@@ -143,6 +143,7 @@ fn refuse_tables_of_grains(scene: &Table<Scene>) -> Result<(), SceneError> {
         ("contact", !scene.contact.is_empty()),
         ("walls", !scene.walls.is_empty()),
         ("periodic", scene.periodic.is_some()),
+        ("structure", !scene.structure.is_empty()),
         ("outlet", !scene.outlet.is_empty()),
         ("deposition", scene.deposition.is_some()),
         ("compaction", !scene.compaction.is_empty()),

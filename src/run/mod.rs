@@ -27,6 +27,7 @@ mod runout;
 mod sources;
 mod specimen;
 pub(crate) mod stages;
+mod structures;
 mod summary;
 mod system;
 mod track_output;

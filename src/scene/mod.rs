@@ -21,6 +21,7 @@ pub mod runout;
 pub mod schema;
 pub mod solid;
 pub mod specimen;
+pub mod structure;
 mod table;
 pub mod track;
 pub mod units;
@@ -75,6 +76,9 @@ pub struct Scene {
     /// Fixed or moving walls.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,
+    /// Structures whose loads are recorded.
+    #[serde(default)]
+    pub structure: Vec<structure::Structure>,
     /// Axes along which the grains repeat themselves.
     pub periodic: Option<periodic::Periodic>,
     /// Gravity deposition before the run proper.

@@ -201,3 +201,69 @@ fn refused_packing(folder: &Folder, row: &str, expected: &str) {
     let Outcome { code, stderr, .. } = trackbed(["check", &folder.join("scene.toml").display().to_string()]);
     assert!(code == 2 && stderr.contains(expected), "{code}: {stderr}");
 }
+
+/// The same pile as a cylinder and as a mesh, between periodic borders: the load on it is that on the wall, it comes from where the floes come from and
+/// lies at their height, and the summary has the largest.
+#[test]
+fn loads_on_structures_are_recorded() {
+    let (before, rest) = ICE.split_once("[[grains]]\nname = \"pile\"").unwrap();
+    let after = rest.split_once("[time]").unwrap().1;
+    let corners = [[0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
+    let at = |z: f64| corners.map(|[x, y]| format!("[{x}, {y}, {z}]")).join(", ");
+    let mesh = format!(
+        "[[walls]]\nkind = \"triangles\"\nname = \"pile\"\nmaterial = \"ice\"\nrecord = true\nvertices = [{}, {}]\n\
+         triangles = [[0, 1, 5], [0, 5, 4], [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]]\n",
+        at(-1.0),
+        at(3.0)
+    );
+    let round = "[[walls]]\nkind = \"cylinder\"\nname = \"pile\"\nmaterial = \"ice\"\nrecord = true\nbase = [0, 0, -1]\n\
+                 height = 4\nradius = 0.8\n";
+    for (kind, wall) in [("round", round), ("mesh", &mesh)] {
+        let text = format!(
+            "{before}{wall}[[structure]]\nname = \"tower\"\nparts = [\"pile\"]\naxis = [0, 0]\nfoot = 1\nsectors = 12\n\
+             levels = [0.7, 1.3]\n[periodic]\ny = [-5, 5]\n[time]{after}history_interval = \"2 ms\"\n"
+        );
+        let folder = Folder::new(&format!("loads_{kind}"));
+        let scene = folder.write("scene.toml", &text);
+        let out = folder.join("out");
+        run(&scene, &out, &[]).good();
+        let history = Table::read(&out.join("history.csv"));
+        let column = |name: &str| history.column(name);
+        let (load, force) = (column("tower_load_x"), column("pile_force_x"));
+        let most = load.iter().fold(0.0_f64, |m, f| m.max(*f));
+        // The wall has the force of the step before.
+        let off: f64 = load.iter().zip(&force).map(|(a, b)| (a - b).abs()).sum::<f64>();
+        let all: f64 = load.iter().map(|f| f.abs()).sum();
+        assert!(most > 100.0 && off < 0.05 * all, "{kind}: {most} {off} {all}");
+        let largest = |name: &str| column(name).iter().fold(0.0_f64, |m, f| m.max(*f));
+        let sectors: Vec<f64> = (0..12).map(|k| largest(&format!("tower_sector{k}"))).collect();
+        let front = sectors[4..8].iter().fold(0.0_f64, |m, f| m.max(*f));
+        let back = sectors[..3].iter().chain(&sectors[9..]).fold(0.0_f64, |m, f| m.max(*f));
+        assert!(front > 0.5 * most && back < 0.1 * front, "{kind}: {sectors:?}");
+        let level = largest("tower_load_level");
+        assert!(
+            (largest("tower_layer1") / level - 1.0).abs() < 1e-9 && largest("tower_layer0") == 0.0,
+            "{kind}"
+        );
+        // Floes lie at the height that moments refer to.
+        assert!(largest("tower_load_moment_y") < 0.25 * most, "{kind}");
+        let record = &json(&out.join("summary.json"))["structures"][0];
+        assert!((record["largest"].as_f64().unwrap() / level - 1.0).abs() < 1e-12, "{record}");
+        assert_eq!(record["sectors"].as_array().unwrap().len(), 12);
+        let page = folder.join("page.html").display().to_string();
+        trackbed(["report", &out.display().to_string(), "--out", &page]).good();
+        assert!(fs::read_to_string(&page).unwrap().contains("Largest load of each sector"));
+        for (old, new, expected) in [
+            (
+                "[\"pile\"]",
+                "[\"pole\"]",
+                "structure.0.parts: found \"pole\", expected names among \"pile\", \"ice\"",
+            ),
+            ("[\"pile\"]", "[]", "structure.0.parts: found nothing"),
+            ("levels = [0.7, 1.3]", "levels = [1.3, 0.7]", "structure.0.levels: found [1.3, 0.7]"),
+            ("sectors = 12", "sectors = 361", "structure.0.sectors: found 361, expected at most 360"),
+        ] {
+            refused(&text.replace(old, new), expected);
+        }
+    }
+}

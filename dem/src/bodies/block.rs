@@ -76,6 +76,12 @@ impl PointMotion {
         PointMotion { velocity: Record::of(velocity, 0.0), spin: Record::default(), arm: Vec3::zeros() }
     }
 
+    /// Motion of a rigid whole at a point `arm` away from where it has a velocity [m/s], with one over its mass [1/kg].
+    #[inline(always)]
+    pub fn of_whole(velocity: &Vec3, spin: &Vec3, arm: Vec3, inverse_mass: f64) -> PointMotion {
+        PointMotion { velocity: Record::of(velocity, inverse_mass), spin: Record::of(spin, 0.0), arm }
+    }
+
     #[inline(always)]
     pub fn spin(&self) -> Vec3 {
         xyz(&self.spin)

@@ -4,6 +4,7 @@ use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
 use crate::lanes::record::Record;
+use std::ops::AddAssign;
 
 /// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,4 +48,24 @@ pub(crate) struct Tally {
     /// Largest speed of a point of a body [m/s].
     pub fastest: f64,
     pub failure: Option<Failure>,
+}
+
+/// What the grains felt from one wall in one step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WallSum {
+    /// Force on the grains [N] and its moment about the wall's centre [N m].
+    pub force: Vec3,
+    pub moment: Vec3,
+    /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+impl AddAssign<&WallSum> for WallSum {
+    fn add_assign(&mut self, other: &WallSum) {
+        self.force += other.force;
+        self.moment += other.moment;
+        self.stiffness += other.stiffness;
+        self.damping += other.damping;
+    }
 }

@@ -29,6 +29,16 @@ use crate::shape::Shape;
 pub(crate) use skin::Skin;
 pub(crate) use work::{Act, ForceWork, Seen};
 
+impl BodyForce {
+    /// Waves that it depends on.
+    pub(crate) fn wave(&self) -> Option<&Wave> {
+        match self {
+            BodyForce::Water(water) => water.wave.as_ref(),
+            BodyForce::Wind(_) => None,
+        }
+    }
+}
+
 /// Writes the list of all body forces.
 macro_rules! body_forces {
     ($($name:ident = $source:expr),+ $(,)?) => {

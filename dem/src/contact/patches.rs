@@ -27,32 +27,11 @@ use crate::base::failure::Failure;
 use crate::base::ledger::Impulse;
 use crate::bodies::block::Block;
 use crate::bodies::members::Members;
-use crate::bodies::sums::Tally;
+use crate::bodies::sums::{Tally, WallSum};
 use crate::lanes::record::xyz;
 use crate::law::{ContactGeometry, History};
 use crate::pairs::patches::{PatchContact, PatchList, PatchPair};
 use crate::spatial::surface::{Feature, PatchPoint, Surface, SurfaceContact};
-use std::ops::AddAssign;
-
-/// What the grains felt from one wall in one step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct WallSum {
-    /// Force on the grains [N] and its moment about the wall's centre [N m].
-    pub force: Vec3,
-    pub moment: Vec3,
-    /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.
-    pub stiffness: f64,
-    pub damping: f64,
-}
-
-impl AddAssign<&WallSum> for WallSum {
-    fn add_assign(&mut self, other: &WallSum) {
-        self.force += other.force;
-        self.moment += other.moment;
-        self.stiffness += other.stiffness;
-        self.damping += other.damping;
-    }
-}
 
 /// Scratch of a block for its contacts with patches, and what they leave.
 #[derive(Clone, Debug, Default)]

@@ -15,6 +15,7 @@ use crate::pairs::cross::ImageName;
 use crate::pairs::patch_search as patches;
 use crate::shape::cuboid;
 use crate::spatial::cells::Cells;
+use crate::spatial::patchwork::{WallNow, Walls};
 use crate::spatial::periodic::Space;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
@@ -22,9 +23,9 @@ use rayon::prelude::*;
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
     super::bonds::hold(model, state, &mut work.held);
-    let Work { members, blocks: works, parallel, held, .. } = &mut *work;
+    let Work { members, blocks: works, parallel, held, walls: standing, .. } = &mut *work;
     let all = All::new(model, state, members, held);
-    let kinds = model.solids.then(|| Search::new(now(model, state, members)));
+    let kinds = model.solids.then(|| Search::new(now(model, state, members, standing)));
     let walls = model.walls.placed(&state.walls);
     let one = |(b, w): (usize, &mut BlockWork)| {
         let c = &mut w.candidates;
@@ -250,13 +251,20 @@ impl<'a> All<'a> {
 }
 
 /// Bodies and planes as they are.
-pub(crate) fn now<'a>(model: &'a Model, state: &'a State, members: &'a [Members]) -> Now<'a> {
+pub(crate) fn now<'a>(
+    model: &'a Model,
+    state: &'a State,
+    members: &'a [Members],
+    walls: &'a [WallNow],
+) -> Now<'a> {
     Now {
         blocks: Part { first: 0, list: &state.blocks },
         members: Part { first: 0, list: members },
         shapes: &model.shapes,
         cores: &model.cores,
         planes: (&model.planes, &state.planes),
+        walls: Walls { patches: &model.patches, walls },
+        periodic: model.periodic.as_ref(),
     }
 }
 

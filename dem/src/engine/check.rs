@@ -277,8 +277,7 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     let Some(first) = bodies.iter().find(is_one) else { return Ok(()) };
     let error = |problem: String| Err(ModelError::Shape { shape: first.shape, problem });
     for (what, there) in [
-        ("surfaces of triangles", !input.triangles.is_empty()),
-        ("walls other than planes", !input.walls.is_empty()),
+        ("a rigid body of triangles", input.walls.iter().any(|w| w.body.is_some())),
         ("an external surface", surfaces(input).next().is_some()),
         ("bonds", !input.bonds.is_empty()),
     ] {

@@ -13,6 +13,7 @@ use crate::law::Laws;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::Plane;
+use crate::spatial::patchwork::Patch;
 use crate::spatial::periodic::Periodic;
 use crate::wall::{WallInput, set::Walls};
 
@@ -52,9 +53,45 @@ pub struct Model {
     pub(crate) block: usize,
     /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
+    /// Patches of the walls, where bodies with faces may touch them.
+    pub(crate) patches: Vec<Patch>,
     pub(crate) periodic: Option<Periodic>,
     steps: Steps,
     limit: DtLimit,
+}
+
+/// Sizes of the spheres of a model.
+struct Sizes {
+    /// Smallest and largest radius [m]; of boxes alone a length scale for the search and for the speed bound.
+    radii: (f64, f64),
+    spheres: usize,
+    /// Most spheres of a body.
+    largest: usize,
+    /// Mean radius [m].
+    mean: f64,
+}
+
+impl Sizes {
+    fn new(bodies: &Bodies, shapes: &[Shape]) -> Sizes {
+        let mut radii = (f64::INFINITY, 0.0_f64);
+        let (mut spheres, mut sum) = (0_usize, 0.0);
+        for body in bodies.iter() {
+            for_members(&shapes[body.shape], body.scale, |_, r| {
+                radii = (radii.0.min(r), radii.1.max(r));
+                spheres += 1;
+                sum += r;
+            });
+        }
+        if spheres == 0 {
+            // Boxes alone: a length scale for the search and for the speed bound.
+            let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
+            radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
+        }
+        let largest = shapes.iter().map(|s| if let Shape::Clump(c) = s { c.spheres.len() } else { 1 });
+        let largest = largest.max().unwrap_or(1).max(1);
+        let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
+        Sizes { radii, spheres, largest, mean }
+    }
 }
 
 impl Model {
@@ -66,27 +103,12 @@ impl Model {
         check::input(&input)?;
         let bodies = Bodies::new(&input.bodies, &input.shapes, &input.materials)?;
         let laws = Laws::new(&input.materials, &input.contacts);
-        let walls: Vec<WallInput> = input.all_walls().collect();
-        let mut walls = Walls::new(&walls, input.triangles.len())?;
+        let given: Vec<WallInput> = input.all_walls().collect();
+        let mut walls = Walls::new(&given, input.triangles.len())?;
+        let faces = bodies.iter().any(|b| input.shapes[b.shape].dilated());
+        let patches = if faces { walls.patchwork(&given) } else { Vec::new() };
         check::rigid_pairs(&bodies, &input, &laws)?;
-
-        let mut radii = (f64::INFINITY, 0.0_f64);
-        let (mut spheres, mut sum) = (0_usize, 0.0);
-        for body in bodies.iter() {
-            for_members(&input.shapes[body.shape], body.scale, |_, r| {
-                radii = (radii.0.min(r), radii.1.max(r));
-                spheres += 1;
-                sum += r;
-            });
-        }
-        if spheres == 0 {
-            // Boxes alone: a length scale for the search and for the speed bound.
-            let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
-            radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
-        }
-        let largest = input.shapes.iter().map(|s| if let Shape::Clump(c) = s { c.spheres.len() } else { 1 });
-        let largest = largest.max().unwrap_or(1).max(1);
-        let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
+        let Sizes { radii, spheres, largest, mean } = Sizes::new(&bodies, &input.shapes);
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Solid).count();
         let skin = match input.skin {
             SearchSkin::Share(share) => share * mean,
@@ -94,7 +116,7 @@ impl Model {
         };
         check::adhesion(&input)?;
         check::polyhedra(&bodies, &input, &laws)?;
-        super::check_periodic::check(&input, &bodies, skin)?;
+        super::check_periodic::check(&input, &bodies, &patches, skin)?;
         let periodic = Periodic::new(&input.periodic);
         let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
         check::absent_bonds(&input)?;
@@ -107,11 +129,10 @@ impl Model {
         let longest = of_fluids.fold(rigid.min(timestep::landing(&bodies, &input, &laws)), f64::min);
         let steps = Steps::new(&input.time_step, &limit, longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
-        let surface = check::surfaces(&input).map(|m| m as u32);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
         let solids = round < bodies.len();
         let body_materials = sorted(bodies.iter().map(|b| b.material));
-        let patch_materials = sorted(walls_and_surface.chain(surface));
+        let patch_materials = sorted(walls_and_surface.chain(check::surfaces(&input).map(|m| m as u32)));
         let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
         Ok(Model {
             // Spheres of a block are numbered with 16 bits.
@@ -137,6 +158,7 @@ impl Model {
             body_forces: input.body_forces,
             shapes: input.shapes,
             skin,
+            patches,
             periodic,
             bonds,
             radii,

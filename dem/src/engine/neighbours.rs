@@ -18,6 +18,7 @@ use crate::lanes::record::xyz;
 use crate::pairs::cross::{self, Cross, ImageName};
 use crate::pairs::patch_search as patches;
 use crate::shape::cuboid;
+use crate::spatial::patchwork::Walls;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
@@ -78,7 +79,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     let State { blocks, lists, cross, planes, walls, near, .. } = &mut *state;
     let (blocks, near, planes) = (&*blocks, *near, &*planes);
     let walls = model.walls.placed(walls);
-    let Work { members, blocks: works, merging: pool, parallel, .. } = &mut *work;
+    let Work { members, blocks: works, merging: pool, parallel, walls: standing, .. } = &mut *work;
     let (members, pool) = (&*members, &*pool);
     let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
     let now = Now {
@@ -87,6 +88,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         shapes: &model.shapes,
         cores: &model.cores,
         planes: (&model.planes, planes),
+        walls: Walls { patches: &model.patches, walls: standing },
+        periodic: model.periodic.as_ref(),
     };
 
     let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {

@@ -13,18 +13,19 @@ use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
 use crate::bodies::block::Block;
 use crate::bodies::members::Members;
-use crate::bodies::sums::{Sums, Tally};
+use crate::bodies::sums::{Sums, Tally, WallSum};
 use crate::body_force::Seen;
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
 use crate::contact::kind::{self, Now};
-use crate::contact::patches::{self, Against, WallSum};
+use crate::contact::patches::{self, Against};
 use crate::contact::planes::PlaneNow;
 use crate::contact::prefetch::Prefetch;
 use crate::contact::single::Setting;
 use crate::contact::{dispatch, images, planes};
 use crate::integrate::leapfrog::{self, Drive};
 use crate::pairs::cross::{Cross, CrossForces, Slots};
+use crate::spatial::patchwork;
 use crate::spatial::surface::Surface;
 use crate::wall::set::PlacedWalls;
 
@@ -60,6 +61,9 @@ pub fn step<S: Surface>(
         work.arrange(model, state);
     }
     applied::place(model, state, applied, &mut work.applied)?;
+    if !model.patches.is_empty() {
+        model.walls.now(&state.walls, 0.0, &mut work.walls);
+    }
     neighbours::update(model, state, work, surface);
     if !model.bonds.is_empty() {
         let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
@@ -79,6 +83,8 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let material = work.material;
     let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, .. } = state;
     let motions = &planes[..];
+    let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
+    let patchwork = patchwork::Walls { patches: &model.patches, walls: &work.walls };
     // Contacts between blocks: they read their own block and later ones, and write slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
         out.clear_books();
@@ -86,13 +92,21 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         if !pairs.kinds.is_empty() {
             let planes = (&model.planes[..], motions);
             let (shapes, cores) = (&model.shapes[..], &model.cores[..]);
-            kind::forces(&setting, &Now { blocks, members, shapes, cores, planes }, b, pairs, out);
+            let now = Now {
+                blocks,
+                members,
+                shapes,
+                cores,
+                planes,
+                walls: patchwork,
+                periodic: model.periodic.as_ref(),
+            };
+            kind::forces(&setting, &now, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
             images::images(periodic, setting.laws, blocks, members, b, pairs, out, dt);
         }
     };
-    let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let shared = Shared {
         model,
         setting,

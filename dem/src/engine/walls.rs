@@ -9,7 +9,7 @@ use super::work::Work;
 use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
-use crate::contact::patches::WallSum;
+use crate::bodies::sums::WallSum;
 use crate::integrate::rotation;
 use crate::shape::plane::PlaneMotion;
 use crate::wall::body::{self, Ground};
@@ -31,6 +31,11 @@ pub(crate) fn advance(
         let mut sum = WallSum::default();
         for w in &work.blocks {
             if let Some(part) = w.patches.wall_sums.get(k) {
+                sum += part;
+            }
+        }
+        for w in &work.cross {
+            if let Some(part) = w.wall_sums.get(k) {
                 sum += part;
             }
         }

@@ -14,6 +14,7 @@ use crate::lanes::record::xyz;
 use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::CrossForces;
 use crate::pairs::merge::Merging;
+use crate::spatial::patchwork::WallNow;
 use crate::spatial::surface::SurfaceContact;
 use nalgebra::UnitQuaternion;
 
@@ -49,6 +50,8 @@ pub struct Work {
     /// What the processor computes four lanes with.
     pub(crate) simd: Simd,
     pub(crate) planes: Vec<PlaneNow>,
+    /// Walls of patches where they are, where bodies with faces may touch them.
+    pub(crate) walls: Vec<WallNow>,
     /// The material of all bodies and of all planes, where there is only one.
     pub(crate) material: Option<u32>,
     pub(crate) plane_material: Option<u32>,

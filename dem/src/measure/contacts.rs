@@ -13,6 +13,8 @@ use crate::pairs::cross::{Cross, ImagePair};
 use crate::pairs::patches::PatchContact;
 use crate::shape::plane::PlaneMotion;
 use crate::spatial::detect;
+use crate::spatial::patchwork::{WallNow, Walls};
+use crate::spatial::periodic::Periodic;
 use std::borrow::Cow;
 
 /// One contact.
@@ -43,6 +45,7 @@ pub struct ContactRecord {
 struct Snapshot<'a> {
     model: &'a Model,
     planes: &'a [PlaneMotion],
+    walls: Vec<WallNow>,
     blocks: Cow<'a, [Block]>,
     /// Spheres of each block, and the places of their bodies; of blocks of single spheres, none.
     spheres: Vec<Vec<Record>>,
@@ -59,7 +62,11 @@ impl<'a> Snapshot<'a> {
             blocks.to_mut().iter_mut().for_each(|block| move_back(block, back));
         }
         let (spheres, owners) = blocks.iter().map(|block| members(model, block)).unzip();
-        Snapshot { model, planes: &state.planes, blocks, spheres, owners, back, last: state.pace.last }
+        let mut walls = Vec::new();
+        if !model.patches.is_empty() {
+            model.walls.now(&state.walls, back, &mut walls);
+        }
+        Snapshot { model, planes: &state.planes, walls, blocks, spheres, owners, back, last: state.pace.last }
     }
 }
 
@@ -98,6 +105,14 @@ impl Scene for Snapshot<'_> {
             material: plane.material as u32,
             open: motion.open,
         }
+    }
+
+    fn walls(&self) -> Walls<'_> {
+        Walls { patches: &self.model.patches, walls: &self.walls }
+    }
+
+    fn periodic(&self) -> Option<&Periodic> {
+        self.model.periodic.as_ref()
     }
 }
 

@@ -1,4 +1,4 @@
-//! The force on a group of bodies.
+//! The force on a group of bodies, and loads on structures.
 
 use super::bonds::records;
 use super::contacts::contacts;
@@ -23,4 +23,26 @@ pub fn force_on(model: &Model, state: &State, of: impl Fn(usize) -> bool) -> Vec
         add(c.a, b, c.force);
     }
     sum
+}
+
+/// Calls `f` with place [m] and force [N] of each contact on a structure: bodies and walls that `body` and `wall` pick. Of bodies that touch
+/// an image across a periodic border the place is on the structure itself.
+pub fn loads_on(
+    model: &Model,
+    state: &State,
+    (body, wall): (impl Fn(usize) -> bool, impl Fn(usize) -> bool),
+    mut f: impl FnMut(Vec3, Vec3),
+) {
+    for c in contacts(model, state) {
+        let first = body(c.a);
+        let second = match c.b {
+            Partner::Body(b) => body(b),
+            other => model.walls.wall_of_partner(other).is_some_and(&wall),
+        };
+        match (first, second) {
+            (true, false) => f(c.point, c.force),
+            (false, true) => f(c.point - c.shift, -c.force),
+            _ => {}
+        }
+    }
 }

@@ -31,7 +31,7 @@ pub use coordination::{
 pub use energy::{Energies, energies, momentum};
 pub(crate) use energy::{energies_of, momentum_of};
 pub use footprint::{bytes, kernels};
-pub use force_on::force_on;
+pub use force_on::{force_on, loads_on};
 pub use fragments::{Fragments, fragments};
 pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
 pub use radial::radial_distribution;

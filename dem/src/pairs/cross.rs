@@ -7,6 +7,7 @@ use crate::base::failure::Failure;
 use crate::base::held::held;
 use crate::base::ledger::Impulse;
 use crate::bodies::part::Part;
+use crate::bodies::sums::WallSum;
 use crate::lanes::record::Record;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
@@ -76,6 +77,8 @@ pub(crate) struct CrossForces {
     /// Work that planes do on bodies that are not made of spheres, and their impulse.
     pub work_walls: f64,
     pub walls: Impulse,
+    /// What those bodies felt from each wall of patches; empty in blocks near none.
+    pub wall_sums: Vec<WallSum>,
     /// Angular impulse about the origin that contacts across periodic borders give in this step.
     pub couple: Vec3,
     pub failure: Option<Failure>,
@@ -85,6 +88,7 @@ impl CrossForces {
     /// Begins a step: nothing is dissipated yet.
     pub fn clear_books(&mut self) {
         (self.dashpot, self.friction, self.work_walls) = (0.0, 0.0, 0.0);
+        self.wall_sums.clear();
         (self.walls, self.couple, self.failure) = (Impulse::default(), Vec3::zeros(), None);
     }
 

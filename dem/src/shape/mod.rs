@@ -47,6 +47,11 @@ impl Shape {
         if let Shape::Polyhedron(it) = self { it.radius * scale } else { 0.0 }
     }
 
+    /// Whether it is a dilated polyhedron.
+    pub(crate) fn dilated(&self) -> bool {
+        matches!(self, Shape::Polyhedron(_))
+    }
+
     /// Faces, edges and corners; none of shapes without faces.
     pub(crate) fn core(&self) -> Core {
         match self {

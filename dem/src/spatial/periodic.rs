@@ -7,7 +7,8 @@
 //!
 //! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2: periodic boundary conditions and the
 //! nearest image.
-//! Limits: spheres and clumps, between planes along the periodic axes; no bonds, no other walls.
+//! Bodies with faces have no image pairs: of their partners the nearest image counts, so that none may be longer than a third of the box.
+//! Limits: planes along the periodic axes; no bonds; walls of patches beside bodies with faces only.
 
 use super::cells::Cells;
 use crate::base::Vec3;
@@ -48,6 +49,24 @@ impl Periodic {
     #[inline(always)]
     pub fn way(&self, turns: &Turns) -> Vec3 {
         Vec3::from_fn(|d, _| f64::from(turns[d]) * self.length[d])
+    }
+
+    /// The way that takes the image of a point which is nearest to another one from the point itself [m].
+    pub fn nearest(&self, to: &Vec3, of: &Vec3) -> Vec3 {
+        Vec3::from_fn(|d, _| {
+            if self.length[d] > 0.0 {
+                ((to[d] - of[d]) / self.length[d]).round() * self.length[d]
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// Ways to the neighbouring images of the box, and none [m].
+    pub fn around(&self) -> Vec<Vec3> {
+        let turns = |d: usize| if self.length[d] > 0.0 { -1..=1 } else { 0..=0 };
+        let ways = turns(0).flat_map(|x| turns(1).flat_map(move |y| turns(2).map(move |z| [x, y, z])));
+        ways.map(|t| self.way(&t)).collect()
     }
 
     /// A point put back into the box.

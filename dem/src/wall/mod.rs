@@ -10,7 +10,6 @@
 pub mod body;
 pub(crate) mod check;
 pub mod input;
-pub(crate) mod round;
 pub mod servo;
 pub(crate) mod set;
 pub mod state;

@@ -5,14 +5,17 @@
 
 use super::body::Body;
 use super::input::{Motion, WallInput, WallShape};
-use super::round::{Part, Round};
 use super::servo::Servo;
 use super::state::WallState;
 use super::triangulated::{self, SLACK, Triangle};
 use crate::base::Vec3;
 use crate::base::error::{ModelError, Partner};
+use crate::integrate::rotation;
 use crate::shape::triangle::Region;
 use crate::spatial::bvh::Bvh;
+use crate::spatial::facet;
+use crate::spatial::patchwork::{Form, Patch, WallNow};
+use crate::spatial::round::{Part, Round};
 use crate::spatial::surface::{Feature, PatchPoint, Surface};
 use nalgebra::UnitQuaternion;
 use std::collections::HashMap;
@@ -58,6 +61,8 @@ pub struct Walls {
     entries: Vec<Entry>,
     triangles: Vec<Triangle>,
     rounds: Vec<Round>,
+    /// Wall of each triangle.
+    of_triangles: Vec<u32>,
     pub(crate) walls: Vec<Wall>,
     /// Walls that were given as plain triangle surfaces.
     plain: usize,
@@ -89,6 +94,7 @@ impl Walls {
                     let kind = Kind::Triangle(self.triangles.len() as u32);
                     self.entries.push(Entry { wall: index as u32, kind, flat });
                     self.triangles.push(t);
+                    self.of_triangles.push(index as u32);
                 }
             }
             shape => {
@@ -190,6 +196,15 @@ impl Walls {
         self.entries[patch as usize].wall as usize
     }
 
+    /// Wall of what a contact names; of no wall of patches none.
+    pub(crate) fn wall_of_partner(&self, partner: Partner) -> Option<usize> {
+        match partner {
+            Partner::Wall(wall) => Some(wall as usize),
+            Partner::Triangle(t) => self.of_triangles.get(t as usize).map(|wall| *wall as usize),
+            _ => None,
+        }
+    }
+
     /// Material (index) of a patch.
     #[inline]
     pub fn material(&self, patch: u32) -> u32 {
@@ -202,6 +217,48 @@ impl Walls {
             Kind::Triangle(t) => Partner::Triangle(t),
             Kind::Round(_) => Partner::Wall(self.wall_of(patch) as u32),
         }
+    }
+
+    /// All patches as bodies with faces and edges see them; `input`: the walls as they were given.
+    pub(crate) fn patchwork(&self, input: &[WallInput]) -> Vec<Patch> {
+        let mut out: Vec<Patch> = Vec::with_capacity(self.entries.len());
+        for (k, wall) in input.iter().enumerate() {
+            let first = out.len() as u32;
+            let forms: Vec<Form> = match &wall.shape {
+                WallShape::Triangles { vertices, triangles } => {
+                    let same = triangulated::welded(vertices);
+                    let facets = facet::facets(vertices, triangles, &same);
+                    facets.into_iter().map(|f| Form::Facet(Box::new(f))).collect()
+                }
+                shape => rounds(shape).into_iter().map(Form::Round).collect(),
+            };
+            let named = forms.into_iter().zip(first..);
+            out.extend(named.map(|(form, patch)| Patch::new(k as u32, form, self.partner(patch))));
+        }
+        out
+    }
+
+    /// Where the walls are, moved back in time by `back` seconds.
+    pub(crate) fn now(&self, states: &[WallState], back: f64, out: &mut Vec<WallNow>) {
+        out.clear();
+        out.extend(self.walls.iter().zip(states).map(|(wall, state)| {
+            let mut state = state.clone();
+            if back != 0.0 {
+                state.offset -= state.velocity * back;
+                state.orientation = rotation::by(&(state.spin * -back)) * state.orientation;
+            }
+            WallNow {
+                origin: state.to_world(&wall.centre, &Vec3::zeros()),
+                orientation: state.orientation,
+                centre: wall.centre + state.offset,
+                velocity: state.velocity,
+                spin: state.spin,
+                material: wall.material,
+                inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
+                open: state.open,
+                driven: wall.servo.is_some(),
+            }
+        }));
     }
 
     /// The walls where they are now.

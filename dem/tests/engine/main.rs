@@ -22,6 +22,7 @@ mod physics_packing;
 mod physics_settling;
 mod physics_spheres;
 mod polyhedra;
+mod polyhedra_walls;
 mod refusals;
 mod rolling;
 mod round_walls;

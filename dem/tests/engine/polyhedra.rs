@@ -377,8 +377,8 @@ fn refusals() {
     assert!(refused(&young).contains("grows with the overlap"));
     let surface = |i: &mut ModelInput| i.surface_material = Some(0);
     assert!(refused(&surface).contains("an external surface"));
-    let periodic = |i: &mut ModelInput| i.periodic[0] = Some([0.0, 3.0]);
-    assert!(refused(&periodic).contains("polyhedron"));
+    let narrow = |i: &mut ModelInput| i.periodic[0] = Some([0.0, 0.2]);
+    assert!(refused(&narrow).contains("three diameters"));
     let absent = |i: &mut ModelInput| i.bodies[0].absent = true;
     assert!(refused(&absent).contains("not made of spheres"));
 }

@@ -17,6 +17,7 @@ mod runout;
 mod sources;
 mod specimen;
 mod steps;
+mod structures;
 mod track;
 mod walls;
 mod water;
@@ -40,6 +41,7 @@ pub use preview::{Preview, check_steps, preview, with_sleepers};
 pub use refused::refused;
 pub use runout::{MOST_CELLS, RunoutPlan};
 pub use specimen::{EventPlan, Platen, SpecimenPlan};
+pub use structures::StructurePlan;
 
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.
 ///
@@ -69,6 +71,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
     let runout = runout::build(scene, &groups)?;
     let specimen = specimen::build(scene, &groups, &walls)?;
     let events = specimen::events(scene)?;
+    let structures = structures::build(scene, &walls, &groups.names)?;
     bonds::rules(scene, &groups.names, groups.bodies.len(), settling, &mut bonds)?;
     let fixed = match (bonds.is_empty(), periodic.iter().any(Option::is_some)) {
         (false, _) => Some("are bonded"),
@@ -92,6 +95,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
         runout,
         specimen,
         events,
+        structures,
         track,
         flow,
     })

@@ -11,6 +11,7 @@ use super::periodic::Borders;
 use super::runout::RunoutPlan;
 use super::specimen::{EventPlan, SpecimenPlan};
 use super::steps::{StepPlan, add_inertia};
+use super::structures::StructurePlan;
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
@@ -48,6 +49,8 @@ pub struct GrainsPart {
     pub specimen: Option<SpecimenPlan>,
     /// How breaks are joined to acoustic events.
     pub events: Option<EventPlan>,
+    /// Structures whose loads are recorded.
+    pub structures: Vec<StructurePlan>,
     /// Sleepers, rail and load.
     pub track: TrackPart,
     /// Inlets and outlets.

@@ -7,6 +7,7 @@ mod compare;
 mod flow;
 mod gradation;
 mod laws;
+mod loads;
 mod loops;
 mod overlay;
 mod overview;
@@ -28,7 +29,7 @@ type Make = fn(&[RunData]) -> Option<Section>;
 
 /// All sections that the runs have something for.
 pub fn all(runs: &[RunData]) -> Vec<Section> {
-    let sections: [Make; 22] = [
+    let sections: [Make; 23] = [
         verdict::verdict,
         compare::compare,
         overview::overview,
@@ -38,6 +39,7 @@ pub fn all(runs: &[RunData]) -> Vec<Section> {
         track::sleepers,
         track::push,
         walls::walls,
+        loads::loads,
         packing::packing,
         gradation::gradation,
         flow::flow,

@@ -5,15 +5,27 @@ use crate::run::bond_output::{Bonds, Groups};
 use crate::run::recorder::{Now, Recorder};
 use crate::run::runout::Slides;
 use crate::run::specimen::Specimens;
+use crate::run::structures::Structures;
 use crate::run::system::System;
 use crate::run::wall_output::Walls;
 use crate::write::csv::{Column, Row};
 
 /// Everything that is recorded, in the order of the columns behind the time.
-fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 12] {
+fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 13] {
     [
-        &Sleepers, &Interface, &Energies, &Rails, &Bonds, &Groups, &Supports, &Probes, &Walls, &Inventory,
-        &Slides, &Specimens,
+        &Sleepers,
+        &Interface,
+        &Energies,
+        &Rails,
+        &Bonds,
+        &Groups,
+        &Supports,
+        &Probes,
+        &Walls,
+        &Inventory,
+        &Slides,
+        &Specimens,
+        &Structures,
     ]
 }
 

@@ -13,11 +13,13 @@ use super::folder;
 use super::frames::{self, Shown};
 use super::recorder::Now;
 use super::specimen::{self, SpecimenRecord};
+use super::structures;
+use super::summary::LoadRecord;
 use super::system::System;
 use super::track_output;
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::write::csv::{History, Mark, Row};
+use crate::write::csv::{Column, History, Mark, Row};
 use crate::write::{self, WallFrame, WriteError, Writers};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -33,6 +35,8 @@ pub struct Results<'a> {
     dir: PathBuf,
     writers: Writers,
     history: History,
+    /// Columns of the history, where structures have some.
+    columns: Vec<Column>,
     cycles_file: Option<History>,
     course: Course,
 }
@@ -57,6 +61,9 @@ struct Course {
     /// Stress and strain of a specimen.
     specimen: Vec<specimen::Point>,
     first_heights: Vec<f64>,
+    /// Loads on structures.
+    #[serde(default)]
+    loads: Vec<LoadRecord>,
 }
 
 /// How far the files have come.
@@ -88,11 +95,13 @@ impl<'a> Results<'a> {
             ..Course::default()
         };
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
-        let history = History::create(&dir.join("history.csv"), columns::columns(&now))?;
+        let columns = columns::columns(&now);
+        let history = History::create(&dir.join("history.csv"), columns.clone())?;
+        let columns = of_structures(job, columns);
         let cycles_file =
             load.map(|_| History::create(&dir.join("cycles.csv"), cycle_file::columns(job))).transpose()?;
         let writers = Writers::begin(dir, &job.output.formats)?.only(&job.output.fields);
-        Ok(Results { job, dir: dir.to_path_buf(), writers, history, cycles_file, course })
+        Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
     }
 
     /// Resumes the files of a run in `dir` where a checkpoint has them; what was written later is removed.
@@ -112,7 +121,9 @@ impl<'a> Results<'a> {
         let course: Course = loaded.take()?;
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
         let file = dir.join("history.csv");
-        let history = History::resume(&file, columns::columns(&now), marks.history).map_err(unfit)?;
+        let columns = columns::columns(&now);
+        let history = History::resume(&file, columns.clone(), marks.history).map_err(unfit)?;
+        let columns = of_structures(job, columns);
         let cycles_file = marks
             .cycles
             .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_file::columns(job), mark))
@@ -121,7 +132,7 @@ impl<'a> Results<'a> {
         let writers = Writers::resume(dir, &job.output.formats, &marks.writers).map_err(unfit)?;
         let writers = writers.only(&job.output.fields);
         folder::remove_later_frames(dir, course.frame)?;
-        Ok(Results { job, dir: dir.to_path_buf(), writers, history, cycles_file, course })
+        Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
     }
 
     /// Puts into a checkpoint what [`Results::resume`] goes on from. The rows written are on the disk then.
@@ -162,7 +173,9 @@ impl<'a> Results<'a> {
         course.largest_error = course.largest_error.max(course.balance.error().abs());
         let judged = course.watch.follow(&course.balance);
         let now = Now { time, system, job: self.job, track, flow, balance: &course.balance };
-        self.history.row(&columns::values(&now))?;
+        let values = columns::values(&now);
+        self.history.row(&values)?;
+        structures::follow(&self.columns, &values, &mut self.course.loads);
         judged
     }
 
@@ -288,10 +301,21 @@ impl<'a> Results<'a> {
         Ok(specimen::record(plan, &self.course.specimen, view))
     }
 
+    /// Loads on structures.
+    pub fn loads(&self) -> &[LoadRecord] {
+        &self.course.loads
+    }
+
     /// Finished load cycles.
     pub fn cycles(&self) -> &[Cycle] {
         self.course.cycles.as_ref().map_or(&[], |c| &c.done)
     }
+}
+
+/// The columns, where any are of structures.
+fn of_structures(job: &Job, columns: Vec<Column>) -> Vec<Column> {
+    let there = job.grains.as_ref().is_some_and(|part| !part.structures.is_empty());
+    if there { columns } else { Vec::new() }
 }
 
 impl Course {

@@ -42,6 +42,9 @@ pub struct Summary {
     /// Bonds between grains.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bonds: Option<BondSummary>,
+    /// Loads on structures.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub structures: Vec<LoadRecord>,
     /// Force and moment across the interface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingRecord>,

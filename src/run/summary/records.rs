@@ -308,3 +308,19 @@ pub struct BedStiffness {
     /// Mean of the last ten cycles [N/m].
     pub mean_of_last_ten: f64,
 }
+
+/// The level load on a structure over a run.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct LoadRecord {
+    /// Name of the structure.
+    pub name: String,
+    /// Largest level load at any row of the history [N], and when [s].
+    pub largest: f64,
+    pub time: f64,
+    /// Mean level load over the rows, as a vector [N].
+    pub mean: [f64; 2],
+    /// Largest load of each sector, towards the axis [N].
+    pub sectors: Vec<f64>,
+    /// Rows so far.
+    pub rows: u64,
+}

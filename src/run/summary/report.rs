@@ -101,6 +101,12 @@ impl Summary {
                 m.linear, m.angular
             ));
         }
+        for s in &self.structures {
+            lines.push(format!(
+                "load on {}: at most {:.3e} N at {:.3} s, mean {:.3e} N along x, {:.3e} N along y",
+                s.name, s.largest, s.time, s.mean[0], s.mean[1]
+            ));
+        }
         if let Some(b) = &self.bonds {
             lines.push(format!(
                 "bonds: {} of {} broken ({} by tension, {} by shear), {:.3e} J set free; {} fragments, the largest of {} bodies",

@@ -11,7 +11,7 @@
 //! Limits: laws whose stiffness depends on the overlap are refused (`engine/check.rs`); a core that another core reaches ends the run.
 
 use super::pair::{PairKind, Touch, Touches};
-use super::scene::{Placed, PlaneView};
+use super::scene::{Placed, PlaneView, Pose};
 use super::side::{Planes, Solids, Spheres};
 use crate::base::Vec3;
 use crate::lanes::record::{Record, xyz};
@@ -28,13 +28,13 @@ use nalgebra::{Rotation3, UnitQuaternion};
 pub(crate) const LENGTH: f64 = 2.0;
 
 /// Share of the sum of both radii above which an overlap has lost its meaning: the cores are about to meet.
-const DEEPEST: f64 = 0.9;
+pub(super) const DEEPEST: f64 = 0.9;
 
 /// Loss of distance over the sum of both radii after which a direction is looked for anew.
 const STALE: f64 = 0.05;
 
 /// Share of the reach that is added to it where features are left out, so that rounding leaves out none that touches.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// Two dilated polyhedra, or one and a box.
 pub(crate) struct DilatedDilated;
@@ -46,15 +46,15 @@ pub(crate) struct DilatedPlane;
 pub(crate) struct SphereDilated;
 
 /// Takes points of one body's frame to another's: both frames have unscaled lengths.
-struct Frame {
-    turn: Rotation3<f64>,
-    way: Vec3,
-    scale: f64,
+pub(super) struct Frame {
+    pub turn: Rotation3<f64>,
+    pub way: Vec3,
+    pub scale: f64,
 }
 
 impl Frame {
     /// From the frame of `a` to that of `b`.
-    fn new(a: &Placed<'_>, b: &Placed<'_>) -> Frame {
+    pub fn new(a: &Pose, b: &Pose) -> Frame {
         let back: UnitQuaternion<f64> = b.orientation.inverse();
         Frame {
             turn: (back * a.orientation).to_rotation_matrix(),
@@ -68,23 +68,23 @@ impl Frame {
         Frame { turn: Rotation3::identity(), way: Vec3::zeros(), scale: 1.0 }
     }
 
-    fn point(&self, x: &Vec3) -> Vec3 {
+    pub fn point(&self, x: &Vec3) -> Vec3 {
         self.turn * (x * self.scale) + self.way
     }
 }
 
 /// How far the corners of two cores lie along a direction, in the frame of the second.
-struct Heights {
-    n: Vec3,
-    first: ArrayVec<f64, CORNERS>,
-    second: ArrayVec<f64, CORNERS>,
+pub(super) struct Heights {
+    pub n: Vec3,
+    pub first: ArrayVec<f64, CORNERS>,
+    pub second: ArrayVec<f64, CORNERS>,
     /// The first's lowest and the second's highest.
-    low: f64,
-    high: f64,
+    pub low: f64,
+    pub high: f64,
 }
 
 impl Heights {
-    fn new() -> Heights {
+    pub fn new() -> Heights {
         let [first, second] = [ArrayVec::new(), ArrayVec::new()];
         Heights { n: Vec3::zeros(), first, second, low: 0.0, high: 0.0 }
     }
@@ -95,13 +95,13 @@ impl Heights {
         let aside = n.dot(&two.frame.way);
         (self.n, self.low, self.high) = (n, f64::INFINITY, f64::NEG_INFINITY);
         self.first.clear();
-        for x in &two.first.corners {
+        for x in two.first {
             let h = own.dot(x) + aside;
             self.low = if h < self.low { h } else { self.low };
             self.first.push(h);
         }
         self.second.clear();
-        for x in &two.second.corners {
+        for x in two.second {
             let h = n.dot(x);
             self.high = if h > self.high { h } else { self.high };
             self.second.push(h);
@@ -109,38 +109,38 @@ impl Heights {
     }
 }
 
-/// Two cores in the frame of the second.
-struct Two<'a> {
-    frame: Frame,
-    first: &'a Core,
-    second: &'a Core,
+/// The corners of two cores, in the frame of the second.
+pub(super) struct Two<'a> {
+    pub frame: Frame,
+    pub first: &'a [Vec3],
+    pub second: &'a [Vec3],
 }
 
 impl<'a> Two<'a> {
     fn new(a: &Placed<'a>, b: &Placed<'a>) -> Two<'a> {
-        Two { frame: Frame::new(a, b), first: a.core, second: b.core }
+        Two { frame: Frame::new(&a.pose(), &b.pose()), first: &a.core.corners, second: &b.core.corners }
     }
 
     /// From the farthest point of the second to the first's that is farthest the other way, along a direction.
     fn between(&self, n: &Vec3) -> Vec3 {
-        let first = farthest(&self.first.corners, &-self.frame.turn.inverse_transform_vector(n));
-        self.frame.point(first) - farthest(&self.second.corners, n)
+        let first = farthest(self.first, &-self.frame.turn.inverse_transform_vector(n));
+        self.frame.point(first) - farthest(self.second, n)
     }
 
     /// A unit vector along which the first lies beyond the second, and how far at least, from a guess; any, as soon as that is
     /// `enough`. `None` where they overlap.
-    fn separation(&self, guess: Vec3, enough: f64) -> Option<(Vec3, f64)> {
+    pub fn separation(&self, guess: Vec3, enough: f64) -> Option<(Vec3, f64)> {
         separation(|n| self.between(n), guess, enough)
     }
 
     /// The line of centres, as a first guess.
-    fn line(&self) -> Vec3 {
+    pub fn line(&self) -> Vec3 {
         self.frame.way.try_normalize(0.0).unwrap_or(Vec3::z())
     }
 
     /// Takes `heights` along a direction in which the cores are apart, but less than `reach`. The error says whether they are farther
     /// apart, or else overlap.
-    fn heights(&self, hint: &mut Hint, reach: f64, heights: &mut Heights) -> Result<(), bool> {
+    pub fn heights(&self, hint: &mut Hint, reach: f64, heights: &mut Heights) -> Result<(), bool> {
         let mut guess = None;
         if let Some([x, y, z, before]) = *hint {
             let n = Vec3::new(x, y, z);
@@ -168,7 +168,7 @@ impl<'a> Two<'a> {
 }
 
 /// The point farthest along a direction.
-fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
+pub(super) fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
     let mut best = (0, f64::NEG_INFINITY);
     for (k, p) in points.iter().enumerate() {
         let h = p.dot(n);
@@ -180,7 +180,7 @@ fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
 }
 
 /// The set of those heights for which `near` holds.
-fn set(heights: impl IntoIterator<Item = f64>, near: impl Fn(f64) -> bool) -> u64 {
+pub(super) fn set(heights: impl IntoIterator<Item = f64>, near: impl Fn(f64) -> bool) -> u64 {
     heights.into_iter().enumerate().map(|(k, h)| u64::from(near(h)) << k).sum()
 }
 
@@ -192,7 +192,7 @@ fn around(a: &Placed<'_>, b: &Placed<'_>, reach: f64) -> bool {
 
 /// What the corners and edges of a body do to a target, in the target's frame: calls `put` with the feature, from 1 on, what it does, and its
 /// weight. Only features with a corner of the set `near` can be within reach, and what of them is in the view.
-fn skeleton(
+pub(super) fn skeleton(
     core: &Core,
     frame: &Frame,
     (near, view): (u64, &View),
@@ -214,16 +214,21 @@ fn skeleton(
         }
         let (direction, range) = (frame.turn * edge.direction, [0.0, edge.length * frame.scale]);
         if let Some(pressed) = press::edge(target, &Segment { from, direction, range, around }, reach) {
-            let weight = pressed.force.norm() / (pressed.overlap * LENGTH * reach);
+            let weight = length(&pressed, reach);
             put((CORNERS + k) as u32 + 1, &pressed, weight);
         }
     }
 }
 
+/// Share of a corner's stiffness that an edge has, by the length of it that presses.
+pub(super) fn length(pressed: &Pressed, reach: f64) -> f64 {
+    pressed.force.norm() / (pressed.overlap * LENGTH * reach)
+}
+
 /// A contact point in the world. `frame` is the body in whose frame the target lies, `own` the radius of what presses [m], in that
 /// frame's unit; `sign`: −1 where the first partner is the target.
-fn touch(
-    frame: &Placed<'_>,
+pub(super) fn touch(
+    frame: &Pose,
     feature: u32,
     p: &Pressed,
     weight: f64,
@@ -244,12 +249,12 @@ fn touch(
 }
 
 /// Effective radius of two.
-fn effective(a: f64, b: f64) -> f64 {
+pub(super) fn effective(a: f64, b: f64) -> f64 {
     if a > 0.0 && b > 0.0 { a * b / (a + b) } else { a.max(b) }
 }
 
 /// What is left to say where cores overlap: too much of it.
-fn lost(point: Vec3, normal: Vec3, reach: f64) -> Touch {
+pub(super) fn lost(point: Vec3, normal: Vec3, reach: f64) -> Touch {
     let geometry = ContactGeometry { point, normal, overlap: reach, radius: reach };
     Touch::only(geometry, DEEPEST * reach)
 }
@@ -299,16 +304,16 @@ impl PairKind for DilatedDilated {
         let (target, of_a) = (target.take(near_b), (near_a, &view.turned(-level)));
         skeleton(a.core, &two.frame, of_a, target, reach, |feature, pressed, weight| {
             let lengths = [a.radius / b.scale, reach, radius];
-            found.push(touch(b, feature << 16, pressed, weight, lengths, 1.0));
+            found.push(touch(&b.pose(), feature << 16, pressed, weight, lengths, 1.0));
         });
         // The same in the frame of the first.
         let [level, floor] = [level, floor].map(|h| (h - n.dot(&two.frame.way)) / two.frame.scale);
-        let (back, reach) = (Frame::new(b, a), sum / a.scale);
+        let (back, reach) = (Frame::new(&b.pose(), &a.pose()), sum / a.scale);
         let view = view.moved(&back.turn, back.scale, floor);
         let mut target = Part::none(a.core, view.turned(-level));
         let (target, of_b) = (target.take(near_a), (near_b, &view));
         skeleton(b.core, &back, of_b, target, reach, |feature, pressed, weight| {
-            found.push(touch(a, feature, pressed, weight, [b.radius / a.scale, reach, radius], -1.0));
+            found.push(touch(&a.pose(), feature, pressed, weight, [b.radius / a.scale, reach, radius], -1.0));
         });
     }
 }
@@ -337,7 +342,7 @@ impl PairKind for DilatedPlane {
         let near = set(corners.iter().map(|x| x.dot(&normal)), |h| h < level);
         let (of, frame) = ((near, &View::new(-normal, -level, reach, 0.0)), Frame::same());
         skeleton(body.core, &frame, of, &below, reach, |feature, pressed, weight| {
-            found.push(touch(body, feature << 16, pressed, weight, [reach, reach, body.radius], 1.0));
+            found.push(touch(&body.pose(), feature << 16, pressed, weight, [reach, reach, body.radius], 1.0));
         });
     }
 }
@@ -379,7 +384,7 @@ impl PairKind for SphereDilated {
         let own = sphere[3] / body.scale;
         let radius = effective(sphere[3], body.radius);
         // A sphere may sink into a face as deep as into another sphere.
-        found.push(Touch { bound: sum, ..touch(body, 0, &pressed, 1.0, [own, reach, radius], 1.0) });
+        found.push(Touch { bound: sum, ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0) });
     }
 }
 

@@ -51,7 +51,7 @@ fn forces_have_a_potential() {
     shapes.push(Shape::Polyhedron(Box::new(Dilated::new(&cube, 0.06).unwrap().0)));
     shapes.push(box_);
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
-    // Shallow ones, as stiff springs are, and deep ones, where four points of Gauss's rule are not enough for a whole stretch.
+    // Shallow ones, as stiff springs are, and deep ones.
     let (mut tried, mut worst) = (0, [[0.0_f64; 2]; 2]);
     while tried < 2000 {
         let [i, j] = [0, 1].map(|_| (random.uniform() * shapes.len() as f64) as usize);
@@ -100,7 +100,7 @@ fn forces_have_a_potential() {
     println!(
         "force and torque against differences of the energy, {tried} pairs, shallow and deep: {worst:?}"
     );
-    assert!(worst[0].iter().all(|w| *w < 2e-4) && worst[1].iter().all(|w| *w < 2e-3), "{worst:?}");
+    assert!(worst.iter().flatten().all(|w| *w < 2e-6), "{worst:?}");
 }
 
 /// Seen from the other side the same points, features exchanged.

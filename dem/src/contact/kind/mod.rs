@@ -9,8 +9,11 @@
 mod box_box;
 mod corner_plane;
 mod dilated;
+mod facet;
 mod pair;
 mod pass;
+mod patch;
+mod round;
 mod scene;
 mod side;
 mod sphere_box;
@@ -26,13 +29,14 @@ use crate::pairs::cross::{Cross, CrossForces};
 use pass::{Books, Of};
 
 /// All kinds. The order is that of their forces in sums, hence part of a scene's numbers.
-pub(crate) const KINDS: [&dyn Kind; 6] = [
+pub(crate) const KINDS: [&dyn Kind; 7] = [
     &Of(sphere_box::SphereBox),
     &Of(corner_plane::CornerPlane),
     &Of(box_box::BoxBox),
     &Of(dilated::SphereDilated),
     &Of(dilated::DilatedPlane),
     &Of(dilated::DilatedDilated),
+    &Of(patch::DilatedPatch),
 ];
 
 /// Forces of all pairs of kinds of block `b`; their slots follow those of the spheres.
@@ -53,6 +57,8 @@ pub(crate) fn forces(
             friction: &mut out.friction,
             work_walls: &mut out.work_walls,
             walls: &mut out.walls,
+            wall_sums: &mut out.wall_sums,
+            couple: &mut out.couple,
             failure: &mut out.failure,
         };
         kind.forces(setting, now, b, list, &mut books);

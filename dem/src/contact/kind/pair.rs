@@ -16,6 +16,9 @@ pub(crate) trait PairKind: Sync {
     /// there are.
     const SHARED: bool = false;
 
+    /// Whether they share it with those of pairs of the same first partner with other parts of the same wall.
+    const JOINED: bool = false;
+
     /// Whether the two may be nearer than `reach` [m]: exact, or rather too often than too seldom. False for shapes that
     /// the kind is not for.
     fn near(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
@@ -44,7 +47,8 @@ pub(crate) struct Touch {
     /// What touches: of the first partner in the upper 16 bits, of the second in the lower. Memory goes with it.
     pub feature: u32,
     pub geometry: ContactGeometry,
-    /// Share of the law's force that acts here: one, but where one area is stood for by several points.
+    /// Share of the law's force that acts here: one, but where one area is stood for by several points; less than zero where others count
+    /// something twice.
     pub weight: f64,
     /// Overlap above which the contact has lost its meaning [m].
     pub bound: f64,

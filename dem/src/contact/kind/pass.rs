@@ -1,15 +1,19 @@
 //! What is done with the pairs of a kind, written once for all of them.
 
-use super::pair::{PairKind, Touch, Touches, Visited};
+use super::pair::{PairKind, Touch, Touches, View, Visited};
 use super::scene::{Now, Scene, Search};
 use super::side::{First, Renamed, Second, Side, grown};
 use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Impulse;
+use crate::bodies::sums::WallSum;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
 use crate::law::ContactGeometry;
 use crate::pairs::list::{PairList, PairName, PointMemory};
+
+/// Least number of contacts that carry the mass of a pair: so small where only ends of edges touch.
+const LEAST: f64 = 1e-9;
 
 /// What the contacts of a block do besides the forces that go to slots.
 pub(crate) struct Books<'a> {
@@ -21,6 +25,10 @@ pub(crate) struct Books<'a> {
     /// Work that planes do [J], and their impulse.
     pub work_walls: &'a mut f64,
     pub walls: &'a mut Impulse,
+    /// What bodies felt from each wall of patches.
+    pub wall_sums: &'a mut Vec<WallSum>,
+    /// Angular impulse about the origin that contacts across periodic borders give.
+    pub couple: &'a mut Vec3,
     pub failure: &'a mut Option<Failure>,
 }
 
@@ -69,17 +77,37 @@ pub(crate) trait Kind: Sync {
 /// A kind of pair as a [`Kind`].
 pub(crate) struct Of<K>(pub K);
 
+/// The partners of a pair, the second as its image that is nearest to the first, and the way to that from itself [m].
+type Partners<'a, K> = (View<'a, <K as PairKind>::First>, View<'a, <K as PairKind>::Second>, Vec3);
+
 impl<K: PairKind> Of<K> {
-    fn near(&self, scene: &Now<'_>, b: usize, [i, other, j]: PairName, reach: f64) -> bool {
+    #[inline(always)]
+    fn partners<'a>(scene: &'a (impl Scene + ?Sized), b: usize, [i, other, j]: PairName) -> Partners<'a, K> {
         let first = K::First::view(scene, b, i);
-        self.0.near(&first, &K::Second::view(scene, other as usize, j), reach)
+        let mut second = K::Second::view(scene, other as usize, j);
+        let mut way = Vec3::zeros();
+        if let Some(periodic) = scene.periodic().filter(|_| K::Second::IMAGES) {
+            way = periodic.nearest(&K::First::middle(&first), &K::Second::middle(&second));
+            K::Second::image(&mut second, &way);
+        }
+        (first, second, way)
     }
 
-    /// Where a pair touches.
-    fn touches(&self, scene: &(impl Scene + ?Sized), b: usize, [i, other, j]: PairName, found: &mut Touches) {
-        found.clear();
-        let first = K::First::view(scene, b, i);
-        self.0.touches(&first, &K::Second::view(scene, other as usize, j), found);
+    fn near(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
+        let (first, second, _) = Self::partners(scene, b, name);
+        self.0.near(&first, &second, reach)
+    }
+
+    /// Whether the points of two pairs share the mass.
+    fn joined(scene: &(impl Scene + ?Sized), one: PairName, other: PairName) -> bool {
+        let wall = |j: u32| K::Second::wall(scene, j);
+        K::JOINED && one[0] == other[0] && wall(one[2]) == wall(other[2])
+    }
+
+    /// One past the last pair of a list that shares the mass with one.
+    fn last(scene: &(impl Scene + ?Sized), list: &PairList, k: usize) -> usize {
+        let more = (k + 1..list.len()).take_while(|m| Self::joined(scene, list.name(k), list.name(*m)));
+        k + 1 + more.count()
     }
 }
 
@@ -104,7 +132,7 @@ impl<K: PairKind> Kind for Of<K> {
                 if turned || still && K::Second::still(now, other as usize, j) {
                     return;
                 }
-                if self.0.near(&first, &K::Second::view(now, other as usize, j), reach) {
+                if self.near(now, b, [i, other, j], reach) {
                     out.push([i, other, j]);
                 }
             });
@@ -128,55 +156,52 @@ impl<K: PairKind> Kind for Of<K> {
         if list.len() == 0 {
             return;
         }
-        let (mut found, mut memory) = (Touches::new(), Vec::new());
-        for k in 0..list.len() {
-            let name @ [i, other, j] = list.name(k);
+        if K::JOINED {
+            books.wall_sums.resize(now.walls.walls.len(), WallSum::default());
+        }
+        let (mut found, mut memory, mut parts) = (Touches::new(), Vec::new(), Vec::new());
+        let mut k = 0;
+        while k < list.len() {
+            let end = Self::last(now, list, k);
             found.clear();
-            let (first, second) = (K::First::view(now, b, i), K::Second::view(now, other as usize, j));
-            self.0.touches_again(&first, &second, list.hint_mut(k), &mut found);
-            let slots = &mut books.slots[3 * k..][..3];
-            slots.fill(Record::default());
-            let points = list.points(k);
-            if found.is_empty() && points.is_empty() {
-                continue;
+            parts.clear();
+            for m in k..end {
+                let (first, second, way) = Self::partners(now, b, list.name(m));
+                let from = found.len();
+                self.0.touches_again(&first, &second, list.hint_mut(m), &mut found);
+                parts.push((from..found.len(), way));
             }
-            let materials = [K::First::material(now, b, i), K::Second::material(now, other as usize, j)];
-            for p in points {
-                if !found.iter().any(|t| t.feature == p.feature) {
-                    *books.friction += p.weight * single::end(setting.laws, materials, &mut { p.history });
-                }
-            }
-            let mut sums = [Vec3::zeros(); 3];
             let share = self.share(&found);
-            memory.clear();
-            for touch in &found {
-                let known = points.iter().find(|p| p.feature == touch.feature);
-                let mut point =
-                    PointMemory { feature: touch.feature, ..*known.unwrap_or(&PointMemory::FRESH) };
-                self.force(setting, now, (b, name), materials, (touch, share), &mut point, &mut sums, books);
-                memory.push(point);
+            for (m, (part, way)) in (k..end).zip(&parts) {
+                let touches = (&found[part.clone()], share, way);
+                self.pair(setting, now, (b, m), touches, list, &mut memory, books);
             }
-            list.set(k, &memory);
-            if !found.is_empty() {
-                for (record, sum) in books.slots[3 * k..][..3].iter_mut().zip(&sums) {
-                    *record = Record::of(sum, 0.0);
-                }
-            }
+            k = end;
         }
     }
 
     fn visit(&self, scene: &dyn Scene, b: usize, list: &PairList, f: &mut dyn FnMut(&Visited<'_>)) {
-        let mut found = Touches::new();
+        let (mut found, mut parts, mut at, mut end) = (Touches::new(), Vec::new(), 0, 0);
         for k in 0..list.len() {
-            let name @ [i, other, j] = list.name(k);
+            if k == end {
+                (at, end) = (k, Self::last(scene, list, k));
+                found.clear();
+                parts.clear();
+                for m in k..end {
+                    let (first, second, way) = Self::partners(scene, b, list.name(m));
+                    let from = found.len();
+                    self.0.touches(&first, &second, &mut found);
+                    parts.push((from..found.len(), way));
+                }
+            }
+            let [i, other, j] = list.name(k);
             let other = other as usize;
-            self.touches(scene, b, name, &mut found);
             let Some(body) = K::First::body(scene, b, i) else { continue };
-            let share = self.share(&found);
-            for touch in &found {
+            let (share, (part, way)) = (self.share(&found), &parts[k - at]);
+            for touch in &found[part.clone()] {
                 let point = &touch.geometry.point;
-                let (own, its) =
-                    (K::First::motion(scene, b, i, point), K::Second::motion(scene, other, j, point));
+                let own = K::First::motion(scene, b, i, point);
+                let its = K::Second::motion(scene, other, j, &(point - way));
                 let memory = list.points(k).iter().find(|p| p.feature == touch.feature);
                 f(&Visited {
                     body: scene.block(b).bodies[body],
@@ -188,7 +213,7 @@ impl<K: PairKind> Kind for Of<K> {
                     history: &memory.unwrap_or(&PointMemory::FRESH).history,
                     spin: own.spin() - its.spin(),
                     materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],
-                    shift: Vec3::zeros(),
+                    shift: *way,
                 });
             }
         }
@@ -231,26 +256,69 @@ impl<K: PairKind> Kind for Of<K> {
     }
 }
 
+/// Where a pair touches, how many contacts carry its mass together, and the way to the image of the second partner [m].
+type Found<'a> = (&'a [Touch], f64, &'a Vec3);
+
 impl<K: PairKind> Of<K> {
     /// Contacts that carry the mass of a pair together.
-    fn share(&self, found: &Touches) -> f64 {
-        if K::SHARED { found.iter().map(|t| t.weight).sum() } else { 1.0 }
+    fn share(&self, found: &[Touch]) -> f64 {
+        if K::SHARED { found.iter().map(|t| t.weight).sum::<f64>().max(LEAST) } else { 1.0 }
     }
 
-    /// Force of one contact point, added to the sums of its pair; `share`: contacts that carry the mass of the pair together.
+    /// Forces and memory of the `k`-th pair.
+    fn pair(
+        &self,
+        setting: &Setting<'_>,
+        now: &Now<'_>,
+        (b, k): (usize, usize),
+        (found, share, way): Found<'_>,
+        list: &mut PairList,
+        memory: &mut Vec<PointMemory>,
+        books: &mut Books<'_>,
+    ) {
+        let name @ [i, other, j] = list.name(k);
+        books.slots[3 * k..][..3].fill(Record::default());
+        let points = list.points(k);
+        if found.is_empty() && points.is_empty() {
+            return;
+        }
+        let materials = [K::First::material(now, b, i), K::Second::material(now, other as usize, j)];
+        for p in points {
+            if !found.iter().any(|t| t.feature == p.feature) {
+                *books.friction += p.weight * single::end(setting.laws, materials, &mut { p.history });
+            }
+        }
+        let mut sums = [Vec3::zeros(); 3];
+        memory.clear();
+        for touch in found {
+            let known = points.iter().find(|p| p.feature == touch.feature);
+            let mut point = PointMemory { feature: touch.feature, ..*known.unwrap_or(&PointMemory::FRESH) };
+            self.force(setting, now, (b, name), materials, (touch, share, way), &mut point, &mut sums, books);
+            memory.push(point);
+        }
+        list.set(k, memory);
+        if !found.is_empty() {
+            for (record, sum) in books.slots[3 * k..][..3].iter_mut().zip(&sums) {
+                *record = Record::of(sum, 0.0);
+            }
+        }
+    }
+
+    /// Force of one contact point, added to the sums of its pair.
     fn force(
         &self,
         setting: &Setting<'_>,
         now: &Now<'_>,
         (b, [i, other, j]): (usize, PairName),
         materials: [u32; 2],
-        (touch, share): (&Touch, f64),
+        (touch, share, way): (&Touch, f64, &Vec3),
         memory: &mut PointMemory,
         sums: &mut [Vec3; 3],
         books: &mut Books<'_>,
     ) {
         let (g, other, weight) = (&touch.geometry, other as usize, touch.weight);
-        let (own, its) = (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &g.point));
+        let (own, its) =
+            (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
         *books.friction += weigh(setting, materials, g, memory, weight);
         let ends = (&own, &its);
         let f = single::between(setting.laws, materials, g, ends, share, &mut memory.history, setting.dt);
@@ -261,13 +329,27 @@ impl<K: PairKind> Of<K> {
         sums[2] += f.torque_b * weight - couple;
         *books.dashpot += f.dashpot * weight;
         *books.friction += f.friction * weight;
-        if !K::Second::BODY {
+        if K::Second::IMAGES {
+            *books.couple += way.cross(&force) * setting.dt;
+        }
+        if let Some(wall) = K::Second::wall(now, j) {
+            let sum = &mut books.wall_sums[wall];
+            sum.force += force;
+            sum.moment += its.arm.cross(&force) + couple + f.moment * weight;
+            if now.walls.walls[wall].driven {
+                let stiffness =
+                    weight * setting.laws.stiffness(materials[0], materials[1], g.overlap, g.radius);
+                let mass = 1.0 / (own.inverse_mass() + its.inverse_mass());
+                sum.stiffness += stiffness;
+                sum.damping += weight.signum() * (stiffness.abs() * mass).sqrt();
+            }
+        } else if !K::Second::BODY {
             let impulse = force * setting.dt;
             *books.work_walls += force.dot(&its.at_point()) * setting.dt;
             books.walls.add(&g.point, &impulse);
             books.walls.angular += f.moment * (weight * setting.dt);
         }
-        if g.overlap > touch.bound && books.failure.is_none() {
+        if g.overlap > touch.bound && weight > 0.0 && books.failure.is_none() {
             *books.failure = Some(Failure::Overlap {
                 body: now.block(b).bodies[K::First::body(now, b, i).unwrap_or_default()],
                 partner: K::Second::partner(now, other, j),
@@ -293,7 +375,8 @@ fn weigh(
         return 0.0;
     }
     let (_, stored) = setting.laws.stored(a, b, g.overlap, g.radius, history);
-    if weight < before {
+    // A feature has weights of one sign.
+    if weight.abs() < before.abs() {
         return stored * (before - weight);
     }
     let share = before / weight;

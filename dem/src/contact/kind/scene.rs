@@ -9,6 +9,8 @@ use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::bvh::{Aabb, Bvh};
+use crate::spatial::patchwork::{Patch, WallNow, Walls};
+use crate::spatial::periodic::Periodic;
 use nalgebra::UnitQuaternion;
 
 /// A body that is not made of spheres, where it is.
@@ -27,6 +29,12 @@ pub(crate) struct Placed<'a> {
 }
 
 impl Placed<'_> {
+    /// Its frame, in lengths of the shape.
+    #[inline(always)]
+    pub fn pose(&self) -> Pose {
+        Pose { centre: self.centre, orientation: self.orientation, scale: self.scale }
+    }
+
     /// Half sides of a box [m]; `None` for other shapes.
     #[inline(always)]
     pub fn half(&self) -> Option<Vec3> {
@@ -69,6 +77,30 @@ pub(crate) struct PlaneView {
     pub open: bool,
 }
 
+/// A patch of a wall where it is, or an image of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchView<'a> {
+    pub patch: &'a Patch,
+    pub wall: &'a WallNow,
+    /// From the patch to the image [m].
+    pub shift: Vec3,
+}
+
+impl PatchView<'_> {
+    /// The frame of its wall.
+    pub fn pose(&self) -> Pose {
+        Pose { centre: self.wall.origin + self.shift, orientation: self.wall.orientation, scale: 1.0 }
+    }
+}
+
+/// A frame: where its origin is, how it is turned, and what a unit of it is [m].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pose {
+    pub centre: Vec3,
+    pub orientation: UnitQuaternion<f64>,
+    pub scale: f64,
+}
+
 /// Bodies and planes at one moment.
 pub(crate) trait Scene {
     fn block(&self, b: usize) -> &Block;
@@ -83,6 +115,11 @@ pub(crate) trait Scene {
     fn placed(&self, b: usize, k: usize) -> Placed<'_>;
 
     fn plane(&self, k: usize) -> PlaneView;
+
+    /// Walls of patches; none where no body can touch them.
+    fn walls(&self) -> Walls<'_>;
+
+    fn periodic(&self) -> Option<&Periodic>;
 }
 
 /// Bodies as the step has them.
@@ -93,6 +130,8 @@ pub(crate) struct Now<'a> {
     pub shapes: &'a [Shape],
     pub cores: &'a [Core],
     pub planes: (&'a [Plane], &'a [PlaneMotion]),
+    pub walls: Walls<'a>,
+    pub periodic: Option<&'a Periodic>,
 }
 
 impl Scene for Now<'_> {
@@ -135,6 +174,16 @@ impl Scene for Now<'_> {
             open: motion.open,
         }
     }
+
+    #[inline(always)]
+    fn walls(&self) -> Walls<'_> {
+        self.walls
+    }
+
+    #[inline(always)]
+    fn periodic(&self) -> Option<&Periodic> {
+        self.periodic
+    }
 }
 
 /// What the search for pairs needs: bodies as they are, and those that are not made of spheres in a tree.
@@ -144,6 +193,9 @@ pub(crate) struct Search<'a> {
     /// Block and place of each, ascending.
     pub solids: Vec<[u32; 2]>,
     tree: Bvh,
+    patches: Bvh,
+    /// Where images of what is looked for may be, from the bodies [m]; no way at all without borders.
+    images: Vec<Vec3>,
 }
 
 impl<'a> Search<'a> {
@@ -156,13 +208,36 @@ impl<'a> Search<'a> {
         }
         let bounds: Vec<Aabb> =
             solids.iter().map(|&[b, k]| now.placed(b as usize, k as usize).bounds()).collect();
-        Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds) }
+        let Walls { patches, walls } = now.walls;
+        let of_patch = |p: &Patch| walls[p.wall as usize].bounds(p);
+        let patches = Bvh::new(&patches.iter().map(of_patch).collect::<Vec<_>>());
+        let images = now.periodic.map_or_else(Vec::new, Periodic::around);
+        Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds), patches, images }
+    }
+
+    /// What of a tree may come within bounds, itself or an image; ascending.
+    fn near(&self, tree: &Bvh, (low, high): Aabb, row: &mut Vec<u32>) {
+        row.clear();
+        if self.images.is_empty() {
+            return tree.query(low, high, row);
+        }
+        for way in &self.images {
+            let moved = |x: [f64; 3]| std::array::from_fn(|d| x[d] - way[d]);
+            tree.query(moved(low), moved(high), row);
+        }
+        row.sort_unstable();
+        row.dedup();
+    }
+
+    /// Calls `f` with each patch of a wall that may come within bounds; ascending.
+    pub fn patches_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
+        self.near(&self.patches, bounds, row);
+        row.iter().copied().for_each(f);
     }
 
     /// Calls `f` with block and place of each body, not made of spheres, that may come within bounds; ascending.
-    pub fn solids_near(&self, (low, high): Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
-        row.clear();
-        self.tree.query(low, high, row);
+    pub fn solids_near(&self, bounds: Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
+        self.near(&self.tree, bounds, row);
         for &k in row.iter() {
             let [b, place] = self.solids[k as usize];
             f(b, place);

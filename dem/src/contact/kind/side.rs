@@ -1,10 +1,10 @@
 //! What the partners of a pair can be.
 
-use super::scene::{Placed, PlaneView, Scene, Search};
+use super::scene::{PatchView, Placed, PlaneView, Scene, Search};
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::PointMotion;
-use crate::lanes::record::Record;
+use crate::lanes::record::{Record, xyz};
 use crate::spatial::bvh::Aabb;
 
 /// Where bodies are after a new order; `None` where they do not stay.
@@ -25,10 +25,24 @@ pub(crate) trait Side {
     /// Whether it is a body, which takes forces.
     const BODY: bool;
 
+    /// Whether it has images across periodic borders.
+    const IMAGES: bool = true;
+
     /// The body, by its place in the block; `None` where it is none.
     fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize>;
 
     fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> Self::View<'a>;
+
+    /// A point amid it [m].
+    fn middle(view: &Self::View<'_>) -> Vec3;
+
+    /// Shows an image of it, moved by a way [m].
+    fn image(view: &mut Self::View<'_>, way: &Vec3);
+
+    /// The wall of patches that it belongs to.
+    fn wall(_scene: &(impl Scene + ?Sized), _number: u32) -> Option<usize> {
+        None
+    }
 
     /// Block and number after a new order of the bodies; `None` where the body does not stay.
     fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]>;
@@ -100,6 +114,13 @@ impl Side for Spheres {
         scene.sphere(block, number)
     }
 
+    // Spheres come first only, and it is the second partner of which an image is shown.
+    fn middle(view: &&Record) -> Vec3 {
+        xyz(view)
+    }
+
+    fn image(_: &mut &Record, _: &Vec3) {}
+
     fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
         names.sphere(block, number)
     }
@@ -131,6 +152,14 @@ impl Side for Solids {
     #[inline(always)]
     fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Placed<'_> {
         scene.placed(block, number as usize)
+    }
+
+    fn middle(view: &Placed<'_>) -> Vec3 {
+        view.centre
+    }
+
+    fn image(view: &mut Placed<'_>, way: &Vec3) {
+        view.centre += way;
     }
 
     fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
@@ -186,6 +215,14 @@ impl Side for Corners {
         Corner { point: body.centre + body.orientation * point, size }
     }
 
+    fn middle(view: &Corner) -> Vec3 {
+        view.point
+    }
+
+    fn image(view: &mut Corner, way: &Vec3) {
+        view.point += way;
+    }
+
     fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
         let [block, k] = names.body(block, number / CORNERS)?;
         Some([block, k * CORNERS + number % CORNERS])
@@ -212,6 +249,7 @@ pub(crate) struct Planes;
 impl Side for Planes {
     type View<'a> = PlaneView;
     const BODY: bool = false;
+    const IMAGES: bool = false;
 
     #[inline(always)]
     fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
@@ -223,6 +261,13 @@ impl Side for Planes {
         scene.plane(number as usize)
     }
 
+    // A plane lies along all periodic axes: it is its own image.
+    fn middle(view: &PlaneView) -> Vec3 {
+        view.origin
+    }
+
+    fn image(_: &mut PlaneView, _: &Vec3) {}
+
     fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
         Some([block as u32, number])
     }
@@ -231,5 +276,72 @@ impl Side for Planes {
 impl Second for Planes {
     fn around(search: &Search<'_>, block: usize, _: Aabb, _: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
         (0..search.planes as u32).for_each(|k| f(block as u32, k));
+    }
+}
+
+/// Patches of walls. They count with the block of their partner.
+pub(crate) struct Patches;
+
+impl Side for Patches {
+    type View<'a> = PatchView<'a>;
+    const BODY: bool = false;
+
+    #[inline(always)]
+    fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
+        None
+    }
+
+    #[inline(always)]
+    fn view<'a>(scene: &'a (impl Scene + ?Sized), _: usize, number: u32) -> PatchView<'a> {
+        let walls = scene.walls();
+        let patch = &walls.patches[number as usize];
+        PatchView { patch, wall: &walls.walls[patch.wall as usize], shift: Vec3::zeros() }
+    }
+
+    fn middle(view: &PatchView<'_>) -> Vec3 {
+        view.wall.origin + view.wall.orientation * view.patch.middle
+    }
+
+    fn image(view: &mut PatchView<'_>, way: &Vec3) {
+        view.shift = *way;
+    }
+
+    fn wall(scene: &(impl Scene + ?Sized), number: u32) -> Option<usize> {
+        Some(scene.walls().patches[number as usize].wall as usize)
+    }
+
+    fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+        Some([block as u32, number])
+    }
+
+    #[inline(always)]
+    fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
+        let wall = Self::view(scene, block, number).wall;
+        PointMotion::of_whole(&wall.velocity, &wall.spin, point - wall.centre, wall.inverse_mass)
+    }
+
+    #[inline(always)]
+    fn material(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> u32 {
+        Self::view(scene, block, number).wall.material
+    }
+
+    fn partner(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Partner {
+        Self::view(scene, block, number).patch.partner
+    }
+
+    fn still(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> bool {
+        Self::view(scene, block, number).wall.inverse_mass == 0.0
+    }
+}
+
+impl Second for Patches {
+    fn around(
+        search: &Search<'_>,
+        block: usize,
+        bounds: Aabb,
+        row: &mut Vec<u32>,
+        mut f: impl FnMut(u32, u32),
+    ) {
+        search.patches_near(bounds, row, |patch| f(block as u32, patch));
     }
 }

@@ -18,6 +18,21 @@ const ROUND: [[f64; 2]; 4] = [
     [0.861_136_311_594_052_6, 0.347_854_845_137_453_86],
 ];
 
+/// Points and weights for curved surfaces.
+const CURVED: [[f64; 2]; 8] = [
+    [-0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
+    [-0.796_666_477_413_626_7, 0.222_381_034_453_374_47],
+    [-0.525_532_409_916_329, 0.313_706_645_877_887_3],
+    [-0.183_434_642_495_649_8, 0.362_683_783_378_362],
+    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
+    [0.525_532_409_916_329, 0.313_706_645_877_887_3],
+    [0.796_666_477_413_626_7, 0.222_381_034_453_374_47],
+    [0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
+];
+
+/// Half length of a stretch, over its distance from where a line is nearest, up to which four points have eleven digits.
+const SHORT: f64 = 0.1;
+
 /// What is pressed into.
 pub(crate) trait Target {
     /// Whether it may be met within some bounds.
@@ -41,11 +56,13 @@ pub(crate) struct Segment {
 }
 
 /// What is nearest on a stretch.
-pub(crate) enum Nearest {
+pub(crate) enum Nearest<'a> {
     /// A plane: its normal; distance of the segment's beginning, and its slope.
     Plane { normal: Vec3, at: f64, slope: f64 },
     /// An edge or a corner: the vector from it to the segment's beginning, and its slope.
     Line { at: Vec3, slope: Vec3 },
+    /// A curved surface: distance and direction at a place along the segment.
+    Curve(&'a dyn Fn(f64) -> (f64, Vec3)),
 }
 
 /// What a corner or an edge does.
@@ -72,32 +89,78 @@ pub(crate) fn corner(target: &impl Target, p: &Vec3, reach: f64) -> Option<Press
     })
 }
 
-/// What an edge does.
-pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Option<Pressed> {
-    let (mut force, mut moment, mut squares) = (Vec3::zeros(), Vec3::zeros(), 0.0);
-    target.stretches(segment, reach, |[low, high], nearest| {
+/// What the points of an edge do together, per unit of its length.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    /// ∫ (R − d) n ds, ∫ (R − d) n s ds and ∫ (R − d)² ds.
+    force: Vec3,
+    moment: Vec3,
+    squares: f64,
+}
+
+impl Sum {
+    /// Adds a stretch by a rule of Gauss, where `at` gives distance and direction.
+    fn by_rule(
+        &mut self,
+        rule: &[[f64; 2]],
+        [low, high]: [f64; 2],
+        reach: f64,
+        at: impl Fn(f64) -> (f64, Vec3),
+    ) {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let mut add = |&[x, w]: &[f64; 2]| {
+        for [x, w] in rule {
             let s = middle + half * x;
-            let (d, n) = match nearest {
-                Nearest::Plane { normal, at, slope } => (at + slope * s, *normal),
-                Nearest::Line { at, slope } => {
-                    let way = at + slope * s;
-                    let d = way.norm();
-                    (d, way * (1.0 / d))
-                }
-            };
+            let (d, n) = at(s);
             let overlap = reach - d;
             let part = half * w * overlap;
-            force += n * part;
-            moment += n * (part * s);
-            squares += part * overlap;
-        };
-        match nearest {
-            Nearest::Plane { .. } => FLAT.iter().for_each(&mut add),
-            Nearest::Line { .. } => ROUND.iter().for_each(&mut add),
+            self.force += n * part;
+            self.moment += n * (part * s);
+            self.squares += part * overlap;
         }
+    }
+
+    /// Adds a stretch that is nearest to a point of a line, `at` + s `slope` away: in closed form, but where a rule is as good.
+    fn of_line(&mut self, range: [f64; 2], reach: f64, (at, slope): (&Vec3, &Vec3)) {
+        let a = slope.norm_squared();
+        let shift = if a > 0.0 { at.dot(slope) / a } else { 0.0 };
+        let aside = at - slope * shift;
+        let h2 = aside.norm_squared();
+        let [u, v] = range.map(|s| s + shift);
+        let (middle, half) = (0.5 * (u + v), 0.5 * (v - u));
+        if a * (half * half - SHORT * SHORT * middle * middle) <= SHORT * SHORT * h2 {
+            return self.by_rule(&ROUND, range, reach, |s| {
+                let way = at + slope * s;
+                let d = way.norm();
+                (d, way * (1.0 / d))
+            });
+        }
+        let (root, h) = (a.sqrt(), h2.sqrt().max(1e-150));
+        let [du, dv] = [u, v].map(|u| (a * u * u + h2).sqrt());
+        // ∫ 1, u and u² du, and ∫ 1/d, u/d and u²/d du, with d² = a u² + h².
+        let (one, first, second) = (v - u, 0.5 * (v * v - u * u), (v * v * v - u * u * u) / 3.0);
+        let inverse = (libm::asinh(root * v / h) - libm::asinh(root * u / h)) / root;
+        let by_first = (v - u) * (v + u) / (du + dv);
+        let by_second = 0.5 * (v * dv - u * du - h2 * inverse) / a;
+        let length = 0.5 * (v * dv - u * du + h2 * inverse);
+        let force = aside * (reach * inverse - one) + slope * (reach * by_first - first);
+        self.force += force;
+        self.moment +=
+            aside * (reach * by_first - first) + slope * (reach * by_second - second) - force * shift;
+        self.squares += (reach * reach + h2) * one - 2.0 * reach * length + a * second;
+    }
+}
+
+/// What an edge does.
+pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Option<Pressed> {
+    let mut sum = Sum::default();
+    target.stretches(segment, reach, |range, nearest| match nearest {
+        Nearest::Plane { normal, at, slope } => {
+            sum.by_rule(&FLAT, range, reach, |s| (at + slope * s, *normal));
+        }
+        Nearest::Line { at, slope } => sum.of_line(range, reach, (at, slope)),
+        Nearest::Curve(at) => sum.by_rule(&CURVED, range, reach, at),
     });
+    let Sum { force, moment, squares } = sum;
     let size = force.norm();
     if size <= 0.0 {
         return None;
@@ -144,7 +207,7 @@ impl Target for HalfSpace {
 
 /// A stretch of a segment, from and to.
 #[derive(Clone, Copy)]
-pub(super) struct Stretch(pub [f64; 2]);
+pub(crate) struct Stretch(pub [f64; 2]);
 
 impl Stretch {
     pub fn some(&self) -> bool {

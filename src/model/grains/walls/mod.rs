@@ -18,6 +18,8 @@ pub struct WallsPart {
     pub planes: Vec<Plane>,
     /// All others.
     pub others: Vec<WallInput>,
+    /// Their names.
+    pub names: Vec<String>,
     /// Those whose force goes to the history.
     pub recorded: Vec<Recorded>,
 }
@@ -107,6 +109,7 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
     }
     let servo = servo(wall)?;
     let body = body(wall)?;
+    part.names.push(name.clone());
     if wall.record {
         part.recorded.push(Recorded { name, wall: part.others.len() });
     }

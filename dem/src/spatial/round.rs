@@ -7,8 +7,8 @@
 //! around; near and far contact together carry it with a potential that is smooth across the axis, where a single
 //! contact would flip from side to side. The far patch is not seen from outside.
 
+use super::bvh::Aabb;
 use crate::base::Vec3;
-use crate::spatial::bvh::Aabb;
 
 /// Half the size of the world, for the bounds of an infinite plane [m].
 const WORLD: f64 = 1e30;

@@ -1,0 +1,192 @@
+//! A closed triangle, an edge of it or a corner as what a body's corners and edges press into (`spatial/facet.rs`).
+
+use crate::base::Vec3;
+use crate::shape::dilated::part::Bounds;
+use crate::shape::dilated::press::{Nearest, Segment, Stretch, Target};
+use crate::spatial::facet::{Facet, FacetEdge};
+
+/// A point.
+pub(super) struct Tip<'a>(pub &'a Vec3);
+
+/// A closed segment: its first end and the edge.
+pub(super) struct Rim<'a>(pub &'a Vec3, pub &'a FacetEdge);
+
+/// A closed triangle.
+pub(super) struct Closed<'a>(pub &'a Facet);
+
+/// Distance and direction of a way, within reach.
+fn near(way: Vec3, reach: f64) -> Option<(f64, Vec3)> {
+    let square = way.norm_squared();
+    if square >= reach * reach || square == 0.0 {
+        return None;
+    }
+    let d = square.sqrt();
+    Some((d, way / d))
+}
+
+/// What of a stretch is near a point.
+fn of_tip(
+    mut stretch: Stretch,
+    segment: &Segment,
+    tip: &Vec3,
+    reach: f64,
+    f: &mut impl FnMut([f64; 2], &Nearest),
+) {
+    let at = segment.from - tip;
+    stretch.near(&at, &segment.direction, reach);
+    if stretch.some() {
+        f(stretch.0, &Nearest::Line { at, slope: segment.direction });
+    }
+}
+
+/// What of a stretch, which lies between the ends of an edge, is near the edge.
+fn of_rim(
+    mut stretch: Stretch,
+    segment: &Segment,
+    (end, edge): (&Vec3, &FacetEdge),
+    reach: f64,
+    f: &mut impl FnMut([f64; 2], &Nearest),
+) {
+    let way = segment.from - end;
+    let along = segment.direction.dot(&edge.direction);
+    let at = way - edge.direction * way.dot(&edge.direction);
+    let slope = segment.direction - edge.direction * along;
+    stretch.near(&at, &slope, reach);
+    if stretch.some() {
+        f(stretch.0, &Nearest::Line { at, slope });
+    }
+}
+
+impl Target for Tip<'_> {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        near(p - self.0, reach)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        of_tip(Stretch(segment.range), segment, self.0, reach, &mut f);
+    }
+}
+
+impl Target for Rim<'_> {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        let way = p - self.0;
+        let t = way.dot(&self.1.direction).clamp(0.0, self.1.length);
+        near(way - self.1.direction * t, reach)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let Rim(end, edge) = *self;
+        let t = (segment.from - end).dot(&edge.direction);
+        let along = segment.direction.dot(&edge.direction);
+        let whole = Stretch(segment.range);
+        let mut stretch = whole;
+        stretch.cut(-t, -along);
+        stretch.cut_beyond(t - edge.length, along);
+        if stretch.some() {
+            of_rim(stretch, segment, (end, edge), reach, &mut f);
+        }
+        let mut before = whole;
+        before.cut_beyond(t, along);
+        if before.some() {
+            of_tip(before, segment, end, reach, &mut f);
+        }
+        let mut behind = whole;
+        behind.cut(edge.length - t, -along);
+        if behind.some() {
+            of_tip(behind, segment, &(end + edge.direction * edge.length), reach, &mut f);
+        }
+    }
+}
+
+impl Closed<'_> {
+    /// Whether a point stands over it, and else the edge or corner that is nearest.
+    fn way(&self, p: &Vec3) -> Vec3 {
+        let Facet { corners, edges, normal, .. } = self.0;
+        let mut best: Option<Vec3> = None;
+        let mut over = true;
+        for (corner, edge) in corners.iter().zip(edges) {
+            let way = p - corner;
+            if way.dot(&edge.side) > 0.0 {
+                over = false;
+                let t = way.dot(&edge.direction).clamp(0.0, edge.length);
+                let way = way - edge.direction * t;
+                if best.is_none_or(|b| way.norm_squared() < b.norm_squared()) {
+                    best = Some(way);
+                }
+            }
+        }
+        match best {
+            Some(way) if !over => way,
+            _ => normal * (p - corners[0]).dot(normal),
+        }
+    }
+}
+
+impl Target for Closed<'_> {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        near(self.way(p), reach)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let Facet { corners, edges, normal, .. } = self.0;
+        let whole = Stretch(segment.range);
+        let (at, slope) = ((segment.from - corners[0]).dot(normal), segment.direction.dot(normal));
+        // Beyond a side, and along it.
+        let aside = |k: usize| {
+            let way = segment.from - corners[k];
+            (way.dot(&edges[k].side), segment.direction.dot(&edges[k].side))
+        };
+        let along = |k: usize| {
+            let way = segment.from - corners[k];
+            (way.dot(&edges[k].direction), segment.direction.dot(&edges[k].direction))
+        };
+        for sign in [1.0, -1.0] {
+            let (at, slope) = (sign * at, sign * slope);
+            let mut stretch = whole;
+            stretch.cut(at - reach, slope);
+            if sign > 0.0 {
+                stretch.cut(-at, -slope)
+            } else {
+                stretch.cut_beyond(-at, -slope)
+            }
+            for k in 0..3 {
+                let (out, slope) = aside(k);
+                stretch.cut(out, slope);
+            }
+            if stretch.some() {
+                f(stretch.0, &Nearest::Plane { normal: normal * sign, at, slope });
+            }
+        }
+        for k in 0..3 {
+            let ((out, out_slope), (t, t_slope)) = (aside(k), along(k));
+            let mut stretch = whole;
+            stretch.cut_beyond(-out, -out_slope);
+            stretch.cut(-t, -t_slope);
+            stretch.cut(t - edges[k].length, t_slope);
+            if stretch.some() {
+                of_rim(stretch, segment, (&corners[k], &edges[k]), reach, &mut f);
+            }
+            // Beyond the beginning of this side and the end of the one before.
+            let before = (k + 2) % 3;
+            let (u, u_slope) = along(before);
+            let mut stretch = whole;
+            stretch.cut_beyond(t, t_slope);
+            stretch.cut_beyond(edges[before].length - u, -u_slope);
+            if stretch.some() {
+                of_tip(stretch, segment, &corners[k], reach, &mut f);
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Dilated polyhedra with the patches of walls: triangles (`spatial/facet.rs`) and round surfaces (`round.rs`).
+//!
+//! The corners and edges of the body press into the wall, those of the wall into the body, as between two bodies (`dilated.rs`): of a
+//! surface of triangles what a body with the same faces would do, however its faces are cut into triangles. Memory belongs to the features of
+//! both; over a seam of a flat side that of the side which a corner comes to has begun before it leaves the other, and what both share is taken
+//! away once, so that friction goes on.
+//!
+//! Limits: as between bodies; a core that meets a triangle ends the run. Triangles have two sides.
+
+use super::dilated::{self, DEEPEST, Frame, Heights, ROUNDING, Two, effective, set, skeleton, touch};
+use super::facet::{Closed, Rim, Tip};
+use super::pair::{PairKind, Touch, Touches};
+use super::round;
+use super::scene::{PatchView, Placed, Pose};
+use super::side::{Patches, Solids};
+use crate::base::Vec3;
+use crate::pairs::list::Hint;
+use crate::shape::dilated::part::{Bounds, Part, View};
+use crate::shape::dilated::press::{self, Pressed, Segment, Target};
+use crate::spatial::facet::{Facet, Share};
+use crate::spatial::patchwork::Form;
+
+/// Numbers of the features of a triangle: of the face, of edges and of corners as what is pressed into, and as what presses.
+const FACE: u32 = 0;
+const EDGE: u32 = 1;
+const TIP: u32 = 4;
+const PRESSING: u32 = 8;
+
+/// A dilated polyhedron and a patch of a wall.
+pub(crate) struct DilatedPatch;
+
+/// A body over a facet, both in the frame of the wall.
+fn two<'a>(body: &Placed<'a>, patch: &PatchView<'_>, facet: &'a Facet) -> Two<'a> {
+    let frame = Frame::new(&body.pose(), &patch.pose());
+    Two { frame, first: &body.core.corners, second: &facet.corners }
+}
+
+impl PairKind for DilatedPatch {
+    type First = Solids;
+    type Second = Patches;
+    const SHARED: bool = true;
+    const JOINED: bool = true;
+
+    fn near(&self, body: &Placed<'_>, patch: &PatchView<'_>, reach: f64) -> bool {
+        if !body.dilated() || patch.wall.open {
+            return false;
+        }
+        match &patch.patch.form {
+            Form::Facet(facet) => {
+                let two = two(body, patch, facet);
+                let most = body.radius + reach;
+                two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
+            }
+            Form::Round(form) => round::near(body, patch, form, reach),
+        }
+    }
+
+    fn touches(&self, body: &Placed<'_>, patch: &PatchView<'_>, found: &mut Touches) {
+        self.touches_again(body, patch, &mut None, found);
+    }
+
+    fn touches_again(&self, body: &Placed<'_>, patch: &PatchView<'_>, hint: &mut Hint, found: &mut Touches) {
+        if patch.wall.open {
+            return;
+        }
+        match &patch.patch.form {
+            Form::Facet(facet) => on_facet(body, patch, facet, hint, found),
+            Form::Round(form) => round::touches(body, patch, form, found),
+        }
+    }
+}
+
+/// A body in the frame of a wall.
+pub(super) struct Whole<'a> {
+    pub body: &'a Placed<'a>,
+    pub frame: &'a Frame,
+    /// The set of its corners that may be near, a bit each, and what of edges may be.
+    pub of: (u64, &'a View),
+    pub pose: &'a Pose,
+}
+
+impl Whole<'_> {
+    /// What its corners and edges do to a part of the wall with a number, `count` times.
+    pub fn press(&self, target: &impl Target, (number, count): (u32, f64), found: &mut Touches) {
+        let reach = self.body.radius;
+        skeleton(self.body.core, self.frame, self.of, target, reach, |feature, pressed, weight| {
+            let feature = feature << 16 | number;
+            found.push(touch(self.pose, feature, pressed, count * weight, [reach; 3], 1.0));
+        });
+    }
+}
+
+fn on_facet(body: &Placed<'_>, patch: &PatchView<'_>, facet: &Facet, hint: &mut Hint, found: &mut Touches) {
+    let (two, reach) = (two(body, patch, facet), body.radius);
+    let mut heights = Heights::new();
+    match two.heights(hint, reach, &mut heights) {
+        Ok(()) => {}
+        Err(true) => return,
+        Err(false) => return found.push(dilated::lost(body.centre, facet.normal, reach)),
+    }
+    let most = reach * (1.0 + ROUNDING);
+    let (n, level, floor) = (heights.n, heights.high + most, heights.low - most);
+    let near = set(heights.first.iter().copied(), |h| h < level);
+    let view = View::new(n, floor, reach, heights.low - heights.high);
+    let of_body = (near, &view.turned(-level));
+    let pose = patch.pose();
+    let whole = Whole { body, frame: &two.frame, of: of_body, pose: &pose };
+    whole.press(&Closed(facet), (FACE, 1.0), found);
+    for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
+        whole.press(&Rim(&facet.corners[k], edge), (EDGE + k as u32, edge.share.count), found);
+    }
+    for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
+        whole.press(&Tip(&facet.corners[k]), (TIP + k as u32, tip.count), found);
+    }
+    // What the wall does to the body, in the body's frame.
+    if !facet.edges.iter().map(|e| e.share).chain(facet.tips).any(|s| s.press > 0.0) {
+        return;
+    }
+    let back = Frame::new(&pose, &body.pose());
+    let level = (level - n.dot(&two.frame.way)) / two.frame.scale;
+    let floor = (floor - n.dot(&two.frame.way)) / two.frame.scale;
+    let view = view.moved(&back.turn, back.scale, floor);
+    let mut target = Part::none(body.core, view.turned(-level));
+    on_body(body, facet, &back, (target.take(near), &view), found);
+}
+
+/// What the edges and corners of a facet do to a body, in the body's frame.
+fn on_body(
+    body: &Placed<'_>,
+    facet: &Facet,
+    back: &Frame,
+    (target, view): (&impl Target, &View),
+    found: &mut Touches,
+) {
+    let reach = body.radius / body.scale;
+    let corners = facet.corners.map(|x| back.point(&x));
+    let presses = |share: &Share| share.press > 0.0;
+    let mut put = |number: u32, pressed: &Pressed, weight: f64| {
+        let lengths = [0.0, reach, effective(body.radius, 0.0)];
+        found.push(touch(&body.pose(), PRESSING + number, pressed, weight, lengths, -1.0));
+    };
+    for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| presses(t)) {
+        if let Some(pressed) = press::corner(target, &corners[k], reach) {
+            put(TIP + k as u32, &pressed, tip.press);
+        }
+    }
+    for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| presses(&e.share)) {
+        let (from, to) = (corners[k], corners[(k + 1) % 3]);
+        let around = Bounds::near([&from, &to], view);
+        if !target.meets(&around) {
+            continue;
+        }
+        let (direction, range) = (back.turn * edge.direction, [0.0, edge.length * back.scale]);
+        if let Some(pressed) = press::edge(target, &Segment { from, direction, range, around }, reach) {
+            put(EDGE + k as u32, &pressed, edge.share.press * dilated::length(&pressed, reach));
+        }
+    }
+}
+
+/// Points that press on a body, in the body's frame and unit, as corners do: number and place of each.
+pub(super) fn points_on_body(
+    body: &Placed<'_>,
+    points: impl Iterator<Item = (u32, Vec3)>,
+    (own, reach, weight): (f64, f64, f64),
+    found: &mut Touches,
+) {
+    let mut target = Part::none(body.core, View::everywhere(Vec3::z(), reach));
+    let target = target.all();
+    let most = body.core.reach + reach;
+    for (number, p) in points.filter(|(_, p)| p.norm_squared() < most * most) {
+        if let Some(pressed) = press::corner(target, &p, reach) {
+            let lengths = [own, reach, effective(own * body.scale, body.radius)];
+            let touch = touch(&body.pose(), number, &pressed, weight, lengths, -1.0);
+            found.push(Touch { bound: (DEEPEST * body.radius).max(touch.bound - own * body.scale), ..touch });
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "patch_tests.rs"]
+mod tests;

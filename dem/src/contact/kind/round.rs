@@ -1,0 +1,441 @@
+//! Dilated polyhedra on round walls: the sides of frusta of cones (cylinders among them), discs, spheres, and planes that move.
+//!
+//! The corners and edges of the body press on the wall as they do on a plane, by what their distance lacks to the radius. Along an edge that is
+//! integrated between the places where the wall ends or the distance is the radius; on a side of a frustum these are roots of quadratic
+//! equations. A rim that a side and a disc share counts once. The rim presses into the body too, in [`POINTS`] points; a sphere does so with its
+//! centre, as a grain does.
+//!
+//! Limits: no side or sphere presses into the middle of a face with a bulge: a body that is longer than a cylinder has edges where it touches
+//! it. Inside of a frustum the nearest generator alone is felt, so that bodies must be smaller than the wall. Rims without a disc, and those that
+//! two walls share, do not press.
+
+use super::dilated::{Frame, LENGTH, lost};
+use super::pair::Touches;
+use super::patch::{Whole, points_on_body};
+use super::scene::{PatchView, Placed};
+use crate::base::Vec3;
+use crate::shape::dilated::part::{Bounds, View};
+use crate::shape::dilated::press::{HalfSpace, Nearest, Segment, Stretch, Target};
+use crate::spatial::round::{Part, Round};
+use crate::spatial::separation::separation;
+use arrayvec::ArrayVec;
+
+/// Points of a rim that press into bodies.
+const POINTS: usize = 96;
+
+/// Numbers of what is pressed into, and of the first point of a rim that presses.
+const SIDE: u32 = 0;
+const RIM: u32 = 1;
+const PRESSING: u32 = 8;
+
+/// Rounds in which the nearest point of a segment to a circle is found, and the ends of what is near it.
+const ROUNDS: usize = 48;
+
+/// Whether a body may be within `reach` of a round patch.
+pub(super) fn near(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, reach: f64) -> bool {
+    let pose = patch.pose();
+    let at = pose.orientation.inverse() * (body.centre - pose.centre);
+    match form {
+        Round::Frustum { far: true, .. } => false,
+        Round::Plane { point, normal } => (at - point).dot(normal) < body.reach() + reach,
+        _ => (form.closest(&at).0 - at).norm() < body.reach() + reach,
+    }
+}
+
+/// Where a body touches a round patch.
+pub(super) fn touches(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, found: &mut Touches) {
+    let (pose, reach) = (patch.pose(), body.radius);
+    let frame = Frame::new(&body.pose(), &pose);
+    let at = frame.way;
+    if !near(body, patch, form, 0.0) {
+        return;
+    }
+    let view = View::everywhere(Vec3::z(), reach);
+    let whole = Whole { body, frame: &frame, of: (u64::MAX, &view), pose: &pose };
+    match form {
+        Round::Plane { point, normal } => {
+            let below = HalfSpace { point: *point, normal: *normal };
+            whole.press(&below, (SIDE, 1.0), found);
+        }
+        Round::Frustum { base, axis, height, radii, far: _ } => {
+            let side = Side::new(base, axis, *height, *radii);
+            if side.meets_core(&frame, body) {
+                return found.push(lost(body.centre, *axis, reach));
+            }
+            whole.press(&side, (SIDE, 1.0), found);
+        }
+        Round::Disc { centre, axis, radius } => {
+            let disc = Disc { centre, axis, radius: *radius };
+            whole.press(&disc, (SIDE, 1.0), found);
+            let rim = Circle { centre: *centre, axis: *axis, radius: *radius };
+            whole.press(&rim, (RIM, -1.0), found);
+            let back = Frame::new(&pose, &body.pose());
+            let weight = std::f64::consts::TAU * radius / (POINTS as f64 * LENGTH * reach);
+            let reach = reach / body.scale;
+            let x = helper(axis);
+            let y = axis.cross(&x);
+            let points = (0..POINTS).map(|k| {
+                let (sine, cosine) = libm::sincos(std::f64::consts::TAU * k as f64 / POINTS as f64);
+                (PRESSING + k as u32, back.point(&(centre + (x * cosine + y * sine) * *radius)))
+            });
+            points_on_body(body, points, (0.0, reach, weight), found);
+        }
+        Round::Sphere { centre, radius } if (at - centre).norm() > *radius => {
+            let p = Frame::new(&pose, &body.pose()).point(centre);
+            let (own, reach) = (radius / body.scale, (radius + reach) / body.scale);
+            points_on_body(body, std::iter::once((PRESSING, p)), (own, reach, 1.0), found);
+        }
+        Round::Sphere { centre, radius } => {
+            let bowl = Bowl { centre, radius: *radius };
+            whole.press(&bowl, (SIDE, 1.0), found);
+        }
+    }
+}
+
+/// A unit vector across an axis.
+fn helper(axis: &Vec3) -> Vec3 {
+    let mut x = Vec3::zeros();
+    x[axis.iamin()] = 1.0;
+    axis.cross(&x).normalize()
+}
+
+/// Places along a segment, in order.
+type Places = ArrayVec<f64, 16>;
+
+/// Calls `f` with each part of a range between places.
+fn between(range: [f64; 2], mut places: Places, mut f: impl FnMut([f64; 2])) {
+    places.retain(|s| *s > range[0] && *s < range[1]);
+    places.sort_by(f64::total_cmp);
+    let mut from = range[0];
+    for to in places.into_iter().chain([range[1]]) {
+        if to > from {
+            f([from, to]);
+        }
+        from = to;
+    }
+}
+
+/// A segment as an axis sees it: height and square of the distance along it.
+struct Seen {
+    /// Height: value and slope.
+    z: [f64; 2],
+    /// Distance², as a polynomial of degree two.
+    square: [f64; 3],
+}
+
+impl Seen {
+    fn new(segment: &Segment, centre: &Vec3, axis: &Vec3) -> Seen {
+        let way = segment.from - centre;
+        let z = [way.dot(axis), segment.direction.dot(axis)];
+        let (at, slope) = (way - axis * z[0], segment.direction - axis * z[1]);
+        Seen { z, square: [at.norm_squared(), 2.0 * at.dot(&slope), slope.norm_squared()] }
+    }
+
+    /// Places where the distance from the axis is `level[0] + level[1] s`.
+    fn at(&self, level: [f64; 2], places: &mut Places) {
+        let [c, b, a] = self.square;
+        let [c, b, a] = [c - level[0] * level[0], b - 2.0 * level[0] * level[1], a - level[1] * level[1]];
+        let root = b * b - 4.0 * a * c;
+        if root < 0.0 {
+            return;
+        }
+        let q = -0.5 * (b + root.sqrt().copysign(b));
+        for s in [q / a, c / q] {
+            if s.is_finite() && level[0] + level[1] * s >= 0.0 {
+                places.push(s);
+            }
+        }
+    }
+
+    /// The place where the height is `h`.
+    fn at_height(&self, h: f64, places: &mut Places) {
+        let s = (h - self.z[0]) / self.z[1];
+        if s.is_finite() {
+            places.push(s);
+        }
+    }
+}
+
+/// A rule of Gauss for what is neither flat nor a line.
+fn curve(range: [f64; 2], at: &dyn Fn(f64) -> (f64, Vec3), f: &mut impl FnMut([f64; 2], &Nearest)) {
+    f(range, &Nearest::Curve(at));
+}
+
+/// The side of a frustum.
+struct Side {
+    base: Vec3,
+    axis: Vec3,
+    height: f64,
+    radii: [f64; 2],
+    /// Length of a generator.
+    length: f64,
+    near: Round,
+}
+
+impl Side {
+    fn new(base: &Vec3, axis: &Vec3, height: f64, radii: [f64; 2]) -> Side {
+        let near = Round::Frustum { base: *base, axis: *axis, height, radii, far: false };
+        Side {
+            base: *base,
+            axis: *axis,
+            height,
+            radii,
+            length: libm::hypot(height, radii[1] - radii[0]),
+            near,
+        }
+    }
+
+    /// Whether a body outside has a core that meets the solid frustum. Inside its corners say so.
+    fn meets_core(&self, frame: &Frame, body: &Placed<'_>) -> bool {
+        let (point, normal, _) = self.near.closest(&frame.way);
+        let outside = (frame.way - point).dot(&normal) > 0.0;
+        let core = &body.core.corners;
+        let farthest = |n: &Vec3| {
+            let across = n - self.axis * n.dot(&self.axis);
+            let unit = across.try_normalize(0.0).unwrap_or_default();
+            let ends = [
+                self.base + unit * self.radii[0],
+                self.base + self.axis * self.height + unit * self.radii[1],
+            ];
+            if ends[0].dot(n) > ends[1].dot(n) { ends[0] } else { ends[1] }
+        };
+        let between = |n: &Vec3| {
+            let own = frame.turn.inverse_transform_vector(n);
+            let lowest = core.iter().min_by(|a, b| a.dot(&own).total_cmp(&b.dot(&own)));
+            frame.point(lowest.unwrap_or(&Vec3::zeros())) - farthest(n)
+        };
+        outside && separation(between, normal, 0.0).is_none()
+    }
+
+    fn at(&self, p: &Vec3) -> (f64, Vec3) {
+        let (point, normal, _) = self.near.closest(p);
+        let way = p - point;
+        let d = way.norm();
+        if d > 0.0 { (d, way / d) } else { (0.0, normal) }
+    }
+}
+
+impl Target for Side {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        Some(self.at(p)).filter(|(d, _)| *d < reach)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let seen = Seen::new(segment, &self.base, &self.axis);
+        let (h, run, length) = (self.height, self.radii[1] - self.radii[0], self.length);
+        let mut places = Places::new();
+        // Where a generator ends.
+        for end in [0.0, length * length] {
+            if run.abs() > 1e-12 * length {
+                seen.at([self.radii[0] + (end - seen.z[0] * h) / run, -seen.z[1] * h / run], &mut places);
+            } else {
+                seen.at_height(end / h, &mut places);
+            }
+        }
+        // Where the distance is the reach, on either side.
+        for off in [reach, -reach] {
+            if h > 1e-12 * length {
+                let level = [self.radii[0] + (off * length + seen.z[0] * run) / h, seen.z[1] * run / h];
+                seen.at(level, &mut places);
+            } else {
+                seen.at_height(-off * run.signum(), &mut places);
+            }
+        }
+        let at = |s: f64| self.at(&(segment.from + segment.direction * s));
+        between(segment.range, places, |[low, high]| {
+            let middle = 0.5 * (low + high);
+            match self.near.closest(&(segment.from + segment.direction * middle)).2 {
+                Part::Inside if at(middle).0 < reach => curve([low, high], &at, &mut f),
+                Part::Rim(_) | Part::Apex => lowest([low, high], reach, &at, &mut f),
+                _ => {}
+            }
+        });
+    }
+}
+
+/// Where a distance that has one least value in a range is below the reach.
+fn lowest(
+    range: [f64; 2],
+    reach: f64,
+    at: &dyn Fn(f64) -> (f64, Vec3),
+    f: &mut impl FnMut([f64; 2], &Nearest),
+) {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let d = |s: f64| at(s).0;
+    let [mut low, mut high] = range;
+    let (mut x, mut y) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut dx, mut dy) = (d(x), d(y));
+    for _ in 0..ROUNDS {
+        if dx < dy {
+            (high, y, dy) = (y, x, dx);
+            x = high - GOLDEN * (high - low);
+            dx = d(x);
+        } else {
+            (low, x, dx) = (x, y, dy);
+            y = low + GOLDEN * (high - low);
+            dy = d(y);
+        }
+    }
+    let ends = [range[0], range[1], 0.5 * (low + high)];
+    let least = ends.into_iter().min_by(|s, t| d(*s).total_cmp(&d(*t))).unwrap_or(low);
+    if d(least) >= reach {
+        return;
+    }
+    let border = |end: f64| {
+        if d(end) < reach {
+            return end;
+        }
+        let (mut inside, mut outside) = (least, end);
+        for _ in 0..ROUNDS {
+            let middle = 0.5 * (inside + outside);
+            if d(middle) < reach { inside = middle } else { outside = middle }
+        }
+        inside
+    };
+    let stretch = [border(range[0]), border(range[1])];
+    if stretch[0] < stretch[1] {
+        curve(stretch, at, f);
+    }
+}
+
+/// A circle.
+struct Circle {
+    centre: Vec3,
+    axis: Vec3,
+    radius: f64,
+}
+
+impl Circle {
+    fn at(&self, p: &Vec3) -> (f64, Vec3) {
+        let way = p - self.centre;
+        let across = way - self.axis * way.dot(&self.axis);
+        let way = way - across.try_normalize(0.0).unwrap_or_else(|| helper(&self.axis)) * self.radius;
+        let d = way.norm();
+        if d > 0.0 { (d, way / d) } else { (0.0, self.axis) }
+    }
+}
+
+impl Target for Circle {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        Some(self.at(p)).filter(|(d, _)| *d < reach)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let seen = Seen::new(segment, &self.centre, &self.axis);
+        let mut places = Places::new();
+        // As the disc and a cylinder are cut; and nearest to the axis, beyond which another part of the circle is.
+        seen.at([self.radius, 0.0], &mut places);
+        seen.at_height(0.0, &mut places);
+        let middle = -0.5 * seen.square[1] / seen.square[2];
+        if middle.is_finite() {
+            places.push(middle);
+        }
+        let at = |s: f64| self.at(&(segment.from + segment.direction * s));
+        between(segment.range, places, |range| lowest(range, reach, &at, &mut f));
+    }
+}
+
+/// A closed disc.
+struct Disc<'a> {
+    centre: &'a Vec3,
+    axis: &'a Vec3,
+    radius: f64,
+}
+
+impl Disc<'_> {
+    fn rim(&self) -> Circle {
+        Circle { centre: *self.centre, axis: *self.axis, radius: self.radius }
+    }
+}
+
+impl Target for Disc<'_> {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        let way = p - self.centre;
+        let z = way.dot(self.axis);
+        if (way - self.axis * z).norm() > self.radius {
+            return self.rim().distance(p, reach);
+        }
+        (z.abs() < reach).then(|| (z.abs(), self.axis * z.signum()))
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let seen = Seen::new(segment, self.centre, self.axis);
+        let mut places = Places::new();
+        seen.at([self.radius, 0.0], &mut places);
+        seen.at_height(0.0, &mut places);
+        let rim = self.rim();
+        let at = |s: f64| rim.at(&(segment.from + segment.direction * s));
+        between(segment.range, places, |[low, high]| {
+            let middle = 0.5 * (low + high);
+            let square = seen.square[0] + middle * (seen.square[1] + middle * seen.square[2]);
+            if square > self.radius * self.radius {
+                return lowest([low, high], reach, &at, &mut f);
+            }
+            let sign = (seen.z[0] + seen.z[1] * middle).signum();
+            let mut stretch = Stretch([low, high]);
+            stretch.cut(sign * seen.z[0] - reach, sign * seen.z[1]);
+            if stretch.some() {
+                let plane = Nearest::Plane {
+                    normal: self.axis * sign,
+                    at: sign * seen.z[0],
+                    slope: sign * seen.z[1],
+                };
+                f(stretch.0, &plane);
+            }
+        });
+    }
+}
+
+/// The inside of a sphere.
+struct Bowl<'a> {
+    centre: &'a Vec3,
+    radius: f64,
+}
+
+impl Bowl<'_> {
+    fn at(&self, p: &Vec3) -> (f64, Vec3) {
+        let way = p - self.centre;
+        let d = way.norm();
+        (self.radius - d, if d > 0.0 { -way / d } else { Vec3::z() })
+    }
+}
+
+impl Target for Bowl<'_> {
+    fn meets(&self, _: &Bounds) -> bool {
+        true
+    }
+
+    fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        Some(self.at(p)).filter(|(d, _)| *d < reach)
+    }
+
+    fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        let way = segment.from - self.centre;
+        let least = self.radius - reach;
+        let mut places = Places::new();
+        let b = way.dot(&segment.direction);
+        let root = b * b - way.norm_squared() + least * least;
+        if root > 0.0 && least > 0.0 {
+            places.push(-b - root.sqrt());
+            places.push(-b + root.sqrt());
+        }
+        let at = |s: f64| self.at(&(segment.from + segment.direction * s));
+        between(segment.range, places, |[low, high]| {
+            if at(0.5 * (low + high)).0 < reach {
+                curve([low, high], &at, &mut f);
+            }
+        });
+    }
+}

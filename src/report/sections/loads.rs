@@ -1,0 +1,63 @@
+//! Loads on structures: against time, by sectors around their axis, by height.
+
+use super::overlay::overlay;
+use crate::report::data::RunData;
+use crate::report::page::{Section, paragraph, plots};
+use crate::report::plot::{Plot, Side};
+use crate::results::tables::Table;
+use std::f64::consts::TAU;
+
+/// Points of a curve that a structure has in a history.
+type Curve<'a> = &'a dyn Fn(&Table, &str) -> Option<Vec<[f64; 2]>>;
+
+/// Loads on structures.
+pub fn loads(runs: &[RunData]) -> Option<Section> {
+    let of =
+        |stem: &str, f: Curve<'_>, run: &RunData| Some((stem.to_string(), f(run.table("history")?, stem)?));
+    let curves = |f: Curve<'_>| {
+        overlay(runs, |run| names(run).into_iter().filter_map(|name| of(name, f, run)).collect())
+    };
+    let time = curves(&|table, name| table.points("time", &format!("{name}_load_level")));
+    let sectors = curves(&|table, name| rose(table, name));
+    let layers = curves(&|table, name| {
+        let largest = largest(table, &format!("{name}_layer"));
+        (!largest.is_empty()).then(|| largest.iter().enumerate().map(|(k, f)| [*f, k as f64]).collect())
+    });
+    let side = |name: &str| Side::new(name, "N");
+    let html = plots([
+        Plot::new("Level load on structures", Side::new("time", "s"), side("load"), time).figure(),
+        Plot::new("Largest load of each sector", side("towards the axis, from x"), side("from y"), sectors)
+            .figure(),
+        Plot::new("Largest level load of each layer", side("load"), Side::count("layer, from below"), layers)
+            .figure(),
+    ]);
+    let note = paragraph(
+        "The closed curve has for each sector a point in the direction that the sector looks to, as far from the origin as its largest load \
+         towards the axis.",
+    );
+    if html.is_empty() { None } else { Section::new("loads", "Loads on structures", html + &note) }
+}
+
+/// Names of structures.
+fn names(run: &RunData) -> Vec<&str> {
+    run.table("history").map(|t| t.before("_load_level")).unwrap_or_default()
+}
+
+/// Largest values of the columns that a head is numbered behind.
+fn largest(table: &Table, head: &str) -> Vec<f64> {
+    let of = |k: usize| table.column(&format!("{head}{k}"));
+    (0..).map_while(of).map(|column| column.iter().fold(0.0, |m: f64, x| m.max(*x))).collect()
+}
+
+/// The largest load of each sector as a closed curve.
+fn rose(table: &Table, name: &str) -> Option<Vec<[f64; 2]>> {
+    let loads = largest(table, &format!("{name}_sector"));
+    let count = loads.len();
+    (count > 1).then(|| {
+        let at = |k: usize| {
+            let (sine, cosine) = libm::sincos((k as f64 + 0.5) / count as f64 * TAU);
+            [loads[k % count] * cosine, loads[k % count] * sine]
+        };
+        (0..=count).map(at).collect()
+    })
+}

@@ -1,0 +1,77 @@
+//! Loads on structures: columns of `history.csv`, and the largest and the mean load for the summary.
+
+use super::recorder::{Now, Recorder};
+use super::summary::LoadRecord;
+use super::system::{GrainsView, System};
+use crate::model::grains::StructurePlan;
+use crate::write::csv::{Column, Row};
+use trackbed_dem as dem;
+use trackbed_dem::Vec3;
+
+/// Load on each structure: whole, its moment, by sectors and by height.
+pub struct Structures;
+
+impl<S: System> Recorder<S> for Structures {
+    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
+        let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
+        part.structures.iter().for_each(|plan| load(plan, view, row));
+    }
+}
+
+fn load(plan: &StructurePlan, GrainsView { model, state }: GrainsView<'_>, row: &mut Row) {
+    let foot = Vec3::from(plan.foot);
+    let (mut force, mut moment) = (Vec3::zeros(), Vec3::zeros());
+    let mut sectors = vec![0.0; plan.sectors];
+    let mut layers = vec![Vec3::zeros(); if plan.levels.is_empty() { 0 } else { plan.levels.len() + 1 }];
+    let body = |b: usize| state.present(b) && plan.groups.contains(&model.part(b));
+    let wall = |w: usize| plan.walls.contains(&w);
+    dem::measure::loads_on(model, state, (body, wall), |point, f| {
+        force += f;
+        moment += (point - foot).cross(&f);
+        let way = point - foot;
+        let distance = libm::hypot(way.x, way.y);
+        if plan.sectors > 0 && distance > 0.0 {
+            sectors[plan.sector(point.into())] -= (f.x * way.x + f.y * way.y) / distance;
+        }
+        if !layers.is_empty() {
+            layers[plan.layer(point.into())] += f;
+        }
+    });
+    let name = &plan.name;
+    row.vector(format_args!("{name}_load"), "N", force);
+    row.put(format_args!("{name}_load_level"), "N", libm::hypot(force.x, force.y));
+    row.vector(format_args!("{name}_load_moment"), "N m", moment);
+    for (k, sum) in sectors.iter().enumerate() {
+        row.put(format_args!("{name}_sector{k}"), "N", *sum);
+    }
+    for (k, sum) in layers.iter().enumerate() {
+        row.put(format_args!("{name}_layer{k}"), "N", libm::hypot(sum.x, sum.y));
+    }
+}
+
+/// Takes a row of the history into the records.
+pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>) {
+    let heads = columns.iter().enumerate().filter_map(|(k, c)| Some((k, c.name.strip_suffix("_load_x")?)));
+    for (number, (k, name)) in heads.enumerate() {
+        if records.len() == number {
+            records.push(LoadRecord { name: name.into(), ..LoadRecord::default() });
+        }
+        let record = &mut records[number];
+        let [x, y, level] = [values[k], values[k + 1], values[k + 3]];
+        if level > record.largest {
+            (record.largest, record.time) = (level, values[0]);
+        }
+        let share = 1.0 / (record.rows + 1) as f64;
+        record.mean[0] += (x - record.mean[0]) * share;
+        record.mean[1] += (y - record.mean[1]) * share;
+        record.rows += 1;
+        let head = format!("{name}_sector");
+        let of = columns.iter().zip(values).filter(|(c, _)| c.name.starts_with(&head));
+        for (sector, (_, value)) in of.enumerate() {
+            if record.sectors.len() == sector {
+                record.sectors.push(0.0);
+            }
+            record.sectors[sector] = record.sectors[sector].max(*value);
+        }
+    }
+}
