@@ -8,7 +8,7 @@ import math
 import pathlib
 
 FOLDER = pathlib.Path(__file__).parent
-CELL, COLUMNS, ROWS = 20.0, 131, 61  # x from 0 to 2600 m, y from -600 to 600 m
+CELL, COLUMNS, ROWS = 20.0, 181, 61  # x from 0 to 3600 m, y from -600 to 600 m
 DIP = math.radians(32.0)
 BEND = (1000.0, 400.0)  # where the slope ends in plan, and the width of the bend
 DIAMETER, LONG, WIDE, LAYERS = 15.0, 42, 13, 11

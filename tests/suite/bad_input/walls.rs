@@ -99,7 +99,7 @@ fn oscillation_without_frequency() {
 #[test]
 fn mesh_that_is_not_there() {
     grains_scene().scene(PLANE, "kind = \"mesh\"\nfile = \"hull.ply\"").refused(
-        "hull.ply: ending of the file name: found \".ply\", expected .stl, .obj, or .dat, .txt, .tri or .srf with a list of \
+        "hull.ply: ending of the file name: found \".ply\", expected .stl, .obj, .asc, .tif, a mesh such as .cdb, or .dat, .txt, .tri or .srf with a list of \
          vertices and triangles",
     );
 }
