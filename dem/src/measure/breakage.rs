@@ -14,7 +14,6 @@
 
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::insert::gradation::achieved_passing;
 use crate::shape::cluster::Cluster;
 use std::collections::BTreeMap;
 
@@ -48,7 +47,7 @@ impl Breakage {
     pub fn of(before: &[Piece], after: &[Piece]) -> Breakage {
         let sizes = || before.iter().chain(after).map(|p| p.0);
         let sieves = series(sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
-        let curves = [before, after].map(|pieces| achieved_passing(&sieves, pieces));
+        let curves = [before, after].map(|pieces| passing(&sieves, pieces));
         let held = |curve: &[f64]| -> Vec<f64> {
             let above = curve.iter().skip(1).chain([&1.0]);
             curve.iter().zip(above).map(|(own, above)| above - own).collect()
@@ -58,6 +57,13 @@ impl Breakage {
         let [before_curve, after_curve] = curves;
         Breakage { sieves, before: before_curve, after: after_curve, marsal, ballast: ballast(before, after) }
     }
+}
+
+/// Share of the mass that passes each sieve: of pieces that are no larger.
+fn passing(sieves: &[f64], pieces: &[Piece]) -> Vec<f64> {
+    let total: f64 = pieces.iter().map(|p| p.1).sum();
+    let finer = |sieve: f64| pieces.iter().filter(|p| p.0 <= sieve).map(|p| p.1).sum::<f64>();
+    sieves.iter().map(|&s| if total > 0.0 { finer(s) / total } else { 0.0 }).collect()
 }
 
 /// Sieves of the R10 series from the largest that lets no piece of `low` [m] through to the smallest that lets `high` through.
