@@ -72,6 +72,9 @@ def scenes(page):
     history = re.sub("history = .*", lambda _: e("`[[solid.load]]`", 1).strip(), e("`[[solid.load]]`"))
     servo = re.sub("servo = .*", lambda _: e("`[[walls]]`", 1).strip(), walls)
     floor = walls.split('[[walls]]\nname = "drum"')[0]
+    platen = '[[walls]]\nkind = "plane"\nmaterial = "steel"\nrecord = true\n'
+    platens = platen + 'name = "bottom"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n'
+    platens += platen + 'name = "top"\npoint = [0, 0, 0.1]\nnormal = [0, 0, -1]\n'
     grains = lambda text: top + contacts + text + end
     made = {
         "quasi_static": top + plastic + base + footing + e("`[solid.initial_stress]`") + e("`[solid.quasi_static]`") + e("`[solid.newton]`") + e("`[output]`") + e("`[[probe]]`"),
@@ -86,7 +89,9 @@ def scenes(page):
         "body": grains(spheres + "[[walls]]\n" + tetrahedron + e("`[[walls]]`", 2) + "[[walls]]\n" + plane),
         "structure": grains(spheres + '[[walls]]\nkind = "cylinder"\nname = "pile"\nmaterial = "steel"\nbase = [25, 25, -3]\nheight = 6\nradius = 2\n' + e("`[[structure]]`")),
         "flow": grains(e("`[[outlet]]` and `inlet`") + "[[walls]]\n" + plane),
-        "bond": grains(spheres + e("`[[bond]]`") + floor),
+        "bond": grains(spheres + e("`[[bond]]`") + floor + e("`[events]`")),
+        "slide": grains(spheres + floor + e("`[runout]`")),
+        "specimen": grains(spheres + platens + e("`[specimen]`")),
         "contact_point": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 1)),
         "direct": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 2)),
         "periodic": grains(spheres + e("`[periodic]`") + floor + e("`[wind]`")),
