@@ -221,7 +221,7 @@ fn loads_on_structures_are_recorded() {
     for (kind, wall) in [("round", round), ("mesh", &mesh)] {
         let text = format!(
             "{before}{wall}[[structure]]\nname = \"tower\"\nparts = [\"pile\"]\naxis = [0, 0]\nfoot = 1\nsectors = 12\n\
-             levels = [0.7, 1.3]\n[periodic]\ny = [-5, 5]\n[time]{after}history_interval = \"2 ms\"\n"
+             levels = [0.7, 1.3]\n[periodic]\ny = [-8, 8]\n[time]{after}history_interval = \"2 ms\"\n"
         );
         let folder = Folder::new(&format!("loads_{kind}"));
         let scene = folder.write("scene.toml", &text);

@@ -111,7 +111,7 @@ impl Scene for Snapshot<'_> {
         Walls { patches: &self.model.patches, walls: &self.walls }
     }
 
-    fn periodic(&self) -> Option<&Periodic> {
+    fn borders(&self) -> Option<&Periodic> {
         self.model.periodic.as_ref()
     }
 }

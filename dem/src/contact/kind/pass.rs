@@ -86,7 +86,7 @@ impl<K: PairKind> Of<K> {
         let first = K::First::view(scene, b, i);
         let mut second = K::Second::view(scene, other as usize, j);
         let mut way = Vec3::zeros();
-        if let Some(periodic) = scene.periodic().filter(|_| K::Second::IMAGES) {
+        if let Some(periodic) = scene.borders().filter(|_| K::Second::IMAGES) {
             way = periodic.nearest(&K::First::middle(&first), &K::Second::middle(&second));
             K::Second::image(&mut second, &way);
         }

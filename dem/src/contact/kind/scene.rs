@@ -119,7 +119,7 @@ pub(crate) trait Scene {
     /// Walls of patches; none where no body can touch them.
     fn walls(&self) -> Walls<'_>;
 
-    fn periodic(&self) -> Option<&Periodic>;
+    fn borders(&self) -> Option<&Periodic>;
 }
 
 /// Bodies as the step has them.
@@ -181,7 +181,7 @@ impl Scene for Now<'_> {
     }
 
     #[inline(always)]
-    fn periodic(&self) -> Option<&Periodic> {
+    fn borders(&self) -> Option<&Periodic> {
         self.periodic
     }
 }
