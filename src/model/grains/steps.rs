@@ -49,15 +49,15 @@ pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
     };
     let rail = scene.track.as_ref().and_then(|t| t.rail.as_ref());
     let dynamic = [
-        ("[water]", scene.water.is_some()),
-        ("[wind]", scene.wind.is_some()),
-        ("[runout]", scene.runout.is_some()),
-        ("an inlet", scene.grains.iter().any(|g| g.inlet.is_some())),
-        ("[[outlet]]", !scene.outlet.is_empty()),
-        ("a rail with mass", rail.is_some_and(|r| r.mass.is_some())),
+        (scene.water.is_some(), "[water]"),
+        (scene.wind.is_some(), "[wind]"),
+        (scene.runout.is_some(), "[runout]"),
+        (scene.grains.iter().any(|g| g.inlet.is_some()), "an inlet"),
+        (!scene.outlet.is_empty(), "[[outlet]]"),
+        (rail.is_some_and(|r| r.mass.is_some()), "a rail with mass"),
     ];
-    match dynamic.into_iter().find(|(_, there)| *there) {
-        Some((what, _)) => {
+    match dynamic.into_iter().find(|(there, _)| *there) {
+        Some((_, what)) => {
             let expected = format!("no such key beside {what}: it is for beds that are pressed slowly");
             Err(time.error("mass_factor", factor.to_string(), expected))
         }
