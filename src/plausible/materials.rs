@@ -7,7 +7,7 @@ use crate::scene::material::{GrainMaterial, PairContact};
 /// From light plastics to lead.
 const DENSITY: Usual = Usual::new(300.0, 12_000.0, "kg/m3");
 /// From soft models of small grains to blocks of rock of tens of metres.
-const STIFFNESS: Usual = Usual::new(10.0, 1e12, "N/m");
+const STIFFNESS: Usual = Usual::new(10.0, 2e10, "N/m");
 /// From soft models to diamond.
 const YOUNG: Usual = Usual::new(1e4, 1.2e12, "Pa");
 const POISSON: Usual = Usual::or_zero(0.01, 0.495, "");
