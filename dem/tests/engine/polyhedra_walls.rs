@@ -113,7 +113,7 @@ fn bounces(throws: u32, least: i32) {
         ("coarse mesh", ball(0, 0.1)),
         ("pile", frustum([0.06, 0.06], 1.0, [false; 2])),
         ("short pile", frustum([0.07, 0.07], 0.1, [true; 2])),
-        ("cone", frustum([0.12, 0.03], 0.2, [false; 2])),
+        ("cone", frustum([0.08, 0.03], 0.2, [false; 2])),
         ("ball", WallShape::Sphere { centre: Vec3::zeros(), radius: 0.08 }),
     ];
     for (name, shape) in walls {
@@ -342,7 +342,7 @@ fn what_cannot_be_periodic_is_named() {
         other => panic!("{:?}", other.map(|_| ())),
     };
     let mut long = column();
-    long.triangles.push(floor(1, 0.3));
+    long.triangles.push(floor(1, 0.4));
     assert!(problem(long).contains("too long for images"));
     let mut spheres = column();
     spheres.shapes.push(Shape::Sphere { radius: 0.01 });
