@@ -107,6 +107,9 @@ pub struct RunArgs {
     /// Go on from the end of the finished run in a folder, with another load, other materials or more time; the model is the same.
     #[arg(long, value_name = "DIR")]
     pub from: Option<PathBuf>,
+    /// With --from: put only the bed of that run into this scene, which has the same [[grains]] and may differ in all else.
+    #[arg(long, requires = "from")]
+    pub bed: bool,
     /// Replace what is in the folder of the results: results, the checkpoint of an interrupted run, files of others.
     #[arg(long)]
     pub force: bool,

@@ -81,6 +81,7 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         memory,
         resume: args.resume,
         from: args.from,
+        bed: args.bed,
         force: args.force,
         strict: args.strict,
         interrupt: run::Interrupt::on_signals("the present step")?,

@@ -3,7 +3,7 @@
 use super::checkpoint_store::CheckpointStore;
 use super::folder;
 use super::origin::quoted;
-use super::run_file::{self, RunFile};
+use super::run_file::{self, RunFile, Source};
 use crate::failure::Failure;
 use crate::message;
 use crate::model::Job;
@@ -34,8 +34,8 @@ pub struct Run<'a> {
     pub continued: bool,
     /// The solid with its meshed sleepers where they were set down.
     pub set_down: &'a OnceCell<fem::Model>,
-    /// Folder of the run from whose end this one goes on.
-    pub from: Option<&'a Path>,
+    /// The run from whose end this one goes on.
+    pub from: Option<Source<'a>>,
     /// Values that are not plausible, until they are remarked on.
     pub findings: Cell<Vec<Finding>>,
 }

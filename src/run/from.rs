@@ -2,11 +2,13 @@
 //!
 //! At its end a run with grains keeps its state in `end.state`: where everything is and how it moves, the memory of all contacts,
 //! broken bonds, the solid with its plastic strains. Another run begins with it in place of packing a bed, with time, accounts
-//! and settlement from zero. It is to be the same model; [`FREE`] lists what may be another.
+//! and settlement from zero. It is to be the same model; [`FREE`] lists what may be another. With `--bed` the grains alone are put into
+//! another scene, which has the same [`BED`].
 
 use super::checkpoint::{self, Loaded, Origin};
 use super::hash::Hash;
-use super::run_file::RunFile;
+use super::run_file::{RunFile, Source};
+use super::stages::Carried;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::scene::Document;
@@ -47,19 +49,48 @@ const WORDS: [&str; 10] =
 const FILES: [&str; 9] =
     ["mesh", "nodes", "elements", "constraints", "library", "packing", "file", "surface", "pairs"];
 
+/// Tables that are to be the same where a bed is put into another scene.
+const BED: [&str; 4] = ["grains", "bond", "periodic", "outlet"];
+
 /// The end of another run.
 pub struct Previous {
     /// Its state.
     pub loaded: Loaded,
     /// Hash of the file.
     pub hash: String,
+    /// Whether its grains were joined with a solid.
+    coupled: bool,
+}
+
+impl Previous {
+    /// Its bed.
+    ///
+    /// # Errors
+    /// Bad input: a state of another program.
+    pub fn bed(mut self) -> Result<Carried, Failure> {
+        Carried::read(&mut self.loaded, self.coupled)
+    }
+}
+
+/// What is carried over and what is not, in words; `bed`: the bed alone.
+pub fn carries(bed: bool) -> &'static str {
+    match bed {
+        true => {
+            "--bed: places and motion of the grains, and the memory of their contacts and bonds with each other are those of the run \
+             before; walls, sleepers, solid, loads and contacts with them begin anew, and nothing settles or is compacted"
+        }
+        false => {
+            "--from: grains, walls, sleepers and solid go on where the run before has left them, with the memory of all contacts; \
+             time, loads, settlement and accounts begin anew"
+        }
+    }
 }
 
 /// Reads the end of the run in `dir` and makes sure that a scene can go on from it.
 ///
 /// # Errors
 /// Bad input: no such state, or the scene is another model.
-pub fn open(dir: &Path, document: &Document, origin: &Origin) -> Result<Previous, Failure> {
+pub fn open(dir: &Path, document: &Document, origin: &Origin, bed: bool) -> Result<Previous, Failure> {
     let file = dir.join(FILE);
     if !file.is_file() {
         let expected = "the folder of a finished run with grains that has kept it (output.state)";
@@ -70,10 +101,15 @@ pub fn open(dir: &Path, document: &Document, origin: &Origin) -> Result<Previous
     }
     let (before, loaded, hash) =
         checkpoint::read_file(&file).map_err(|e| Failure::Input(format!("--from: {e}")))?;
-    if let Some(wrong) = difference(dir, document, origin, &before) {
-        return Err(document.error(&wrong.key, wrong.found, wrong.expected).into());
+    let old = match earlier(dir, document, origin, &before) {
+        Ok(old) => old,
+        Err(wrong) => return Err(wrong.refusal(document)),
+    };
+    if let Some(wrong) = difference(dir, document, origin, &before, &old, bed) {
+        return Err(wrong.refusal(document));
     }
-    Ok(Previous { loaded, hash })
+    let coupled = old.keys().any(|key| key.starts_with("solid."));
+    Ok(Previous { loaded, hash, coupled })
 }
 
 /// The hash of what a run depends on that goes on from a state.
@@ -88,9 +124,16 @@ pub fn hash_after(scene: &str, state: &str) -> String {
 ///
 /// # Errors
 /// Bad input.
-pub fn check(job: &Job, document: &Document) -> Result<(), Failure> {
-    if job.grains.as_ref().is_some_and(|g| g.track.rail.is_some()) {
-        let expected = "sleepers without rails: --from does not carry the bending of rails";
+pub fn check(job: &Job, document: &Document, source: Source<'_>) -> Result<(), Failure> {
+    if source.bed && job.grains.is_none() {
+        let expected = "a scene with grains, as --bed puts some into it";
+        return Err(document.error("grains", "nothing", expected).into());
+    }
+    if !source.bed
+        && job.grains.as_ref().is_some_and(|g| g.track.rail.is_some())
+    {
+        let expected =
+            "sleepers without rails: --from does not carry the bending of rails (with --bed they begin anew)";
         return Err(document.error("track.rail", "a rail", expected).into());
     }
     Ok(())
@@ -103,10 +146,22 @@ struct Difference {
     expected: String,
 }
 
-fn difference(dir: &Path, document: &Document, origin: &Origin, before: &Origin) -> Option<Difference> {
+impl Difference {
+    fn refusal(self, document: &Document) -> Failure {
+        document.error(&self.key, self.found, self.expected).into()
+    }
+}
+
+/// The keys of the scene that was run, if this program can go on with its results.
+fn earlier(
+    dir: &Path,
+    document: &Document,
+    origin: &Origin,
+    before: &Origin,
+) -> Result<BTreeMap<String, String>, Difference> {
     if before.version != origin.version {
         let found = format!("{}, of version {} of the program", dir.display(), before.version);
-        return Some(Difference {
+        return Err(Difference {
             key: "--from".into(),
             found,
             expected: format!("version {}", origin.version),
@@ -119,29 +174,38 @@ fn difference(dir: &Path, document: &Document, origin: &Origin, before: &Origin)
         before.overrides.iter().try_for_each(|o| old.set(o)).ok()?;
         Some(old.keys())
     });
-    let Some(old) = old else {
-        let found = format!("{}, whose scene cannot be read any more", dir.display());
-        return Some(Difference {
-            key: "--from".into(),
-            found,
-            expected: "its scene with its includes".into(),
-        });
-    };
+    old.ok_or_else(|| Difference {
+        key: "--from".into(),
+        found: format!("{}, whose scene cannot be read any more", dir.display()),
+        expected: "its scene with its includes".into(),
+    })
+}
+
+/// What makes a scene another model than that of the keys `old`; or, for `bed`, its grains others.
+fn difference(
+    dir: &Path,
+    document: &Document,
+    origin: &Origin,
+    before: &Origin,
+    old: &BTreeMap<String, String>,
+    bed: bool,
+) -> Option<Difference> {
     let new = document.keys();
     let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
-    let other = keys.into_iter().find(|key| !may_be(key, &old, &new));
+    let fits = |key: &str| if bed { may_be_beside(key, old, &new) } else { may_be(key, old, &new) };
+    let other = keys.into_iter().find(|key| !fits(key));
     if let Some(key) = other {
         let text = |keys: &BTreeMap<String, String>| keys.get(key).map_or("nothing", |v| v).to_string();
         let (found, expected) = (
             text(&new),
-            format!("{}, as in {}: a run goes on with the same model", text(&old), dir.display()),
+            format!("{}, as in {}: {}", text(old), dir.display(), if bed { OWN_GRAINS } else { OWN_MODEL }),
         );
         return Some(Difference { key: key.clone(), found, expected });
     }
     let hashes = |files: &[(PathBuf, String)]| files.iter().map(|f| f.1.clone()).collect::<BTreeSet<_>>();
     let known = hashes(&before.files);
     let included = document.included().map(Path::to_path_buf);
-    let free: Vec<PathBuf> = free_files(&new).chain(included).collect();
+    let free: Vec<PathBuf> = files(&new, |key| may_be_free(key, bed)).chain(included).collect();
     let changed = origin.files.iter().find(|(file, hash)| !known.contains(hash) && !free.contains(file));
     changed.map(|(file, _)| Difference {
         key: "--from".into(),
@@ -150,13 +214,36 @@ fn difference(dir: &Path, document: &Document, origin: &Origin, before: &Origin)
     })
 }
 
+/// What a run goes on with.
+const OWN_MODEL: &str = "a run goes on with the same model (--bed puts its grains into another)";
+/// What a bed goes on with.
+const OWN_GRAINS: &str = "a bed goes on with the same grains";
+
+/// Whether a key may be what it is where only the bed goes on. Bodies know their materials by number.
+fn may_be_beside(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {
+    let (before, now) = (old.get(key), new.get(key));
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let material = key.starts_with("material.") && last == "name" && before.is_some();
+    let file = FILES.contains(&last) && before.is_some() && now.is_some();
+    before == now || file || !(material || BED.iter().any(|table| is_in(key, table)))
+}
+
+/// Whether a key is that of a table, or lies below it.
+fn is_in(key: &str, table: &str) -> bool {
+    key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Whether files that a key names may have another content.
+fn may_be_free(key: &str, bed: bool) -> bool {
+    if bed { !BED.iter().any(|table| is_in(key, table)) } else { FREE.iter().any(|table| is_in(key, table)) }
+}
+
 /// Whether a key may be what it is.
 fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {
     let (before, now) = (old.get(key), new.get(key));
     let last = key.rsplit('.').next().unwrap_or(key);
     let both = before.is_some() && now.is_some();
-    let in_table =
-        |table: &&str| key.strip_prefix(*table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    let in_table = |table: &&str| is_in(key, table);
     // The state holds the masses of the grains.
     let mass = key == "time.mass_factor" || key.starts_with("material.") && last == "density";
     before == now
@@ -166,10 +253,9 @@ fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, Stri
             && (FILES.contains(&last) || CONSTANTS.iter().any(in_table) && !WORDS.contains(&last))
 }
 
-/// Files that a scene names below keys that may be others.
-fn free_files(keys: &BTreeMap<String, String>) -> impl Iterator<Item = PathBuf> {
-    let free = |key: &str| FREE.iter().any(|table| key.starts_with(&format!("{table}.")) || key == *table);
-    let names = keys.iter().filter(move |(key, _)| free(key));
+/// Files that a scene names below some keys.
+fn files(keys: &BTreeMap<String, String>, below: impl Fn(&str) -> bool) -> impl Iterator<Item = PathBuf> {
+    let names = keys.iter().filter(move |(key, _)| below(key));
     // Values are TOML: words in quotes, alone or in lists.
     names.flat_map(|(_, value)| value.split('"').skip(1).step_by(2)).map(PathBuf::from)
 }
@@ -212,6 +298,14 @@ mod tests {
         fewer.remove("grains.0.count");
         assert!(!may_be("grains.0.count", &old, &fewer));
         let named = keys("[track.load]\nfile = \"a.csv\"\n[solid]\nmesh = \"b.cdb\"");
-        assert_eq!(free_files(&named).collect::<Vec<_>>(), [PathBuf::from("a.csv")]);
+        let free = files(&named, |key| may_be_free(key, false));
+        assert_eq!(free.collect::<Vec<_>>(), [PathBuf::from("a.csv")]);
+        for (key, value, free) in
+            [("walls", "[]", true), ("coupling.scheme", "\"predicted\"", true), ("grains.0.count", "4", false), ("material.0.name", "\"rock\"", false)]
+        {
+            let mut new = old.clone();
+            new.insert(key.into(), value.into());
+            assert_eq!(may_be_beside(key, &old, &new), free, "{key} = {value}");
+        }
     }
 }

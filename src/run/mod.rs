@@ -54,6 +54,7 @@ use crate::scene::{Document, Scene};
 use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
 use context::Run;
+use run_file::Source;
 use stages::{RUN, RunState};
 use std::cell::{Cell, OnceCell};
 use std::path::{Path, PathBuf};
@@ -76,6 +77,8 @@ pub struct Options {
     pub resume: bool,
     /// Folder of a finished run from whose end this one goes on.
     pub from: Option<PathBuf>,
+    /// Only the bed of that run is taken, into another model.
+    pub bed: bool,
     /// Replace what is in the folder of the results: a checkpoint, results of another scene, files of others.
     pub force: bool,
     /// Refuse values that are not plausible.
@@ -117,15 +120,16 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             let found = format!("--from: found {}, where the results go", from.display());
             return Err(Failure::Input(format!("{found}, expected another folder than --out")));
         }
-        let before = from::open(from, &document, &origin)?;
+        let before = from::open(from, &document, &origin, options.bed)?;
         origin.scene_hash = from::hash_after(&origin.scene_hash, &before.hash);
-        previous = Some(before.loaded);
+        previous = Some(before);
     }
+    let source = options.from.as_deref().map(|dir| Source { dir, bed: options.bed });
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
     // What a run of the same scene has left before its first checkpoint is no loss.
-    let own = options.resume && RunFile::of(&document, options.from.as_deref()).is_of(&dir);
+    let own = options.resume && RunFile::of(&document, source).is_of(&dir);
     if options.resume {
         if origin::was_done(&dir, &scene_hash)? {
             return Ok(Outcome::WasDone(dir));
@@ -134,8 +138,8 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     }
     pool.install(|| {
         let job = model::resolve(&document, &parsed)?;
-        if options.from.is_some() {
-            from::check(&job, &document)?;
+        if let Some(source) = source {
+            from::check(&job, &document, source)?;
         }
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
@@ -153,7 +157,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             ..RunRecord::default()
         };
         let summary = Summary { run: record, dir: dir.clone(), ..Summary::default() };
-        let command = origin::resume_command(scene, &dir, &options.set, options.from.as_deref());
+        let command = origin::resume_command(scene, &dir, &options.set, source);
         let (interrupt, interval) = (options.interrupt.clone(), job.output.checkpoint);
         let set_down = OnceCell::new();
         let run = Run {
@@ -166,11 +170,20 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),
             set_down: &set_down,
-            from: options.from.as_deref(),
+            from: source,
             findings: Cell::new(findings),
         };
-        let loaded = loaded.or(previous);
-        carry_out(&run, loaded, summary, &lock)
+        let mut state = RunState::new(loaded, summary);
+        if let Some(before) = previous.filter(|_| state.loaded.is_none()) {
+            if options.verbosity > Verbosity::Quiet {
+                message::note(from::carries(options.bed));
+            }
+            match options.bed {
+                true => state.carried = Some(before.bed()?),
+                false => state.loaded = Some(before.loaded),
+            }
+        }
+        carry_out(&run, state, &lock)
     })
 }
 
@@ -207,16 +220,11 @@ fn weigh(
 }
 
 /// Carries out the stages of a run, and writes its summary whatever becomes of them.
-fn carry_out(
-    run: &Run<'_>,
-    loaded: Option<Loaded>,
-    summary: Summary,
-    lock: &Lock,
-) -> Result<Outcome, Failure> {
-    let mut state = RunState::new(loaded, summary);
+fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<Outcome, Failure> {
     let result = guarded(|| {
         // What the main loop would refuse is refused before hours of packing.
-        if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && state.loaded.is_none()) {
+        let begins = state.loaded.is_none() && state.carried.is_none();
+        if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && begins) {
             stages::preview(run.document, run.job, grains)?;
             run.remark();
         }

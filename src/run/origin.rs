@@ -3,7 +3,7 @@
 use super::checkpoint::{self, Origin};
 use super::hash::Hash;
 use super::lock;
-use super::run_file::RunFile;
+use super::run_file::{RunFile, Source};
 use crate::failure::Failure;
 use crate::read::{mesh_files, source};
 use crate::scene::{Document, Scene};
@@ -28,11 +28,18 @@ pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
 }
 
 /// The command that continues a run.
-pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<&Path>) -> String {
+pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<Source<'_>>) -> String {
     let mut command = format!("trackbed run {} --resume --out {}", quoted(scene), quoted(dir));
     set.iter().for_each(|s| command += &format!(" --set {}", quoted(Path::new(s))));
-    from.iter().for_each(|from| command += &format!(" --from {}", quoted(from)));
+    from.iter().for_each(|source| command += &source.words());
     command
+}
+
+impl Source<'_> {
+    /// As it is given on the command line.
+    pub fn words(&self) -> String {
+        format!(" --from {}{}", quoted(self.dir), if self.bed { " --bed" } else { "" })
+    }
 }
 
 /// A path or text as one word of a shell.

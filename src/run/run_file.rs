@@ -10,6 +10,15 @@ use std::path::Path;
 /// Name of the file.
 pub const FILE: &str = "run.json";
 
+/// The run from whose end another goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source<'a> {
+    /// Folder of its results.
+    pub dir: &'a Path,
+    /// Only its bed is taken, into another model.
+    pub bed: bool,
+}
+
 /// The content of `run.json`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunFile {
@@ -22,18 +31,22 @@ pub struct RunFile {
     /// Folder of the run from whose end this one went on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
+    /// Whether only its bed was taken.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub bed: bool,
     /// Text of the scene file, without the overrides.
     pub text: String,
 }
 
 impl RunFile {
     /// Of a scene that is run.
-    pub fn of(document: &Document, from: Option<&Path>) -> RunFile {
+    pub fn of(document: &Document, from: Option<Source<'_>>) -> RunFile {
         RunFile {
             version: env!("CARGO_PKG_VERSION").into(),
             scene: document.file().display().to_string(),
             overrides: document.overrides().iter().map(|(key, value)| format!("{key}={value}")).collect(),
-            from: from.map(|dir| dir.display().to_string()),
+            from: from.map(|source| source.dir.display().to_string()),
+            bed: from.is_some_and(|source| source.bed),
             text: document.text().into(),
         }
     }
@@ -59,8 +72,14 @@ impl RunFile {
     /// Whether the results in a folder are of the same scene, with the same overrides.
     pub fn is_of(&self, dir: &Path) -> bool {
         RunFile::read(dir).is_some_and(|other| {
-            (&other.text, &other.overrides, &other.from) == (&self.text, &self.overrides, &self.from)
+            (&other.text, &other.overrides) == (&self.text, &self.overrides)
+                && (&other.from, other.bed) == (&self.from, self.bed)
         })
+    }
+
+    /// The run that this one went on from.
+    pub fn source(&self) -> Option<Source<'_>> {
+        self.from.as_deref().map(|dir| Source { dir: Path::new(dir), bed: self.bed })
     }
 
     /// The scene with its overrides; none where this program does not understand it.

@@ -1,5 +1,6 @@
 //! Runs that go on from the end of another (`--from`).
 
+use super::scenes::vtk;
 use super::support::{Folder, Table, json, repository, results, run, trackbed};
 use std::path::Path;
 
@@ -116,4 +117,124 @@ fn a_track_goes_on_with_another_load_and_ground() {
     std::fs::write(&state, &bytes).unwrap();
     let damaged = from(&scene, &folder.join("damaged"), &first, &common);
     assert!(damaged.code == 2 && damaged.stderr.contains("end.state: damaged"), "{damaged:?}");
+}
+
+/// Grains of every kind in a shaft without friction at its walls.
+fn kinds() -> [(&'static str, String); 4] {
+    let data = repository().join("inputs/data");
+    let stones = repository().join("inputs/grains/bonded_stone/stones.toml");
+    let file = |name: &str| data.join(name).display().to_string();
+    let fill = "fill = { low = [0.0, 0.0, 0.0], high = [0.3, 0.3] }\nsize = [\"50 mm\", \"70 mm\"]\nmaterial = \"stone\"";
+    let bond = "[[bond]]\nname = \"mineral\"\ndamping = 0.1\n[bond.parallel]\nyoung = \"0.1 GPa\"\nstiffness_ratio = 2.0\n\
+                tensile_strength = \"5 kPa\"\nshear_strength = \"8 kPa\"\nfriction_angle = \"35 deg\"\nmoment_factor = 0.5\n";
+    let group = |keys: &str| format!("[[grains]]\nname = \"stones\"\ncount = 30\nseed = 2\n{fill}\n{keys}\n");
+    [
+        ("spheres", group("shape = \"sphere\"")),
+        ("clumps", group(&format!("shape = \"clump\"\nlibrary = {:?}", file("clumps.toml")))),
+        ("bonded", group(&format!("shape = \"bonded\"\nbond = \"mineral\"\nlibrary = {stones:?}")) + bond),
+        ("polyhedra", group(&format!("shape = \"polyhedron\"\nlibrary = {:?}", file("polyhedra.toml")))),
+    ]
+}
+
+/// A scene with grains between walls; `more`: other tables, which come before the walls.
+fn shaft(grains: &str, more: &str, floor: bool) -> String {
+    let wall = |point: [f64; 3], normal: [f64; 3]| {
+        format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"smooth\"\n")
+    };
+    let mut walls = vec![
+        wall([0.0; 3], [1.0, 0.0, 0.0]),
+        wall([0.3, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        wall([0.0; 3], [0.0, 1.0, 0.0]),
+        wall([0.0, 0.3, 0.0], [0.0, -1.0, 0.0]),
+    ];
+    walls.extend(floor.then(|| wall([0.0; 3], [0.0, 0.0, 1.0])));
+    format!(
+        "title = \"shaft\"\n[[material]]\nname = \"stone\"\ndensity = 2650\nstiffness = \"1 MN/m\"\nfriction = 0.5\nrestitution = 0.3\n\
+         [[material]]\nname = \"smooth\"\nstiffness = \"1 MN/m\"\nfriction = 0.0\nrestitution = 0.3\n{grains}\n{more}\n{}",
+        walls.concat()
+    )
+}
+
+/// Where the grains are in the last frame.
+fn places(out: &Path) -> Vec<f64> {
+    let frame = |name: &str| out.join(format!("frames/{name}_00001.vtp"));
+    let file = [frame("grains"), frame("walls")].into_iter().find(|file| file.exists()).unwrap();
+    vtk(&file).0
+}
+
+/// Grains of every kind go on with the memory of their contacts, in the same scene to the last bit; and in another, with a wall more and others'
+/// materials, as they would have gone on in their own.
+#[test]
+fn every_kind_of_grains_goes_on_and_its_bed_in_another_scene() {
+    for (name, grains) in kinds() {
+        let folder = Folder::new(&format!("from_{name}"));
+        let rest = "[time]\ngrain_step = \"10 us\"\nend = 1\n[output]\nframes = 1\n";
+        let scene = folder.write("scene.toml", &shaft(&grains, rest, true));
+        // A plane that nothing touches, before all others.
+        let far = "[[walls]]\nkind = \"plane\"\npoint = [0.0, 0.0, -40.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"stone\"\n";
+        let next = folder.write("next.toml", &shaft(&grains, &format!("{rest}{far}"), true));
+        let [whole, first, same, bed] = ["whole", "first", "same", "bed"].map(|out| folder.join(out));
+        run(&scene, &whole, &["time.end=0.17"]).good();
+        run(&scene, &first, &["time.end=0.15"]).good();
+        from(&scene, &same, &first, &["time.end=0.02"]).good();
+        let end = places(&whole);
+        assert!(end.len() >= 90 && places(&same) == end, "{name}: the second half ends elsewhere");
+        // Another scene is refused, unless it is only the bed that goes on, and that is said.
+        let refused = from(&next, &bed, &first, &["time.end=0.02"]);
+        assert!(refused.code == 2 && refused.stderr.contains("--bed puts its grains into another"), "{refused:?}");
+        let words = ["run", next.to_str().unwrap(), "--out", bed.to_str().unwrap(), "--bed", "--from"];
+        let words = [&words[..], &[first.to_str().unwrap(), "--set", "time.end=0.02"]].concat();
+        let said = trackbed(words).good();
+        assert!(said.stderr.contains("contacts with them begin anew"), "{said:?}");
+        let apart = places(&bed).iter().zip(&end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("{name}: {} coordinates, apart by {apart:.1e} m in another scene", end.len());
+        assert!(apart < 1e-8, "{name}: {apart:.1e} m");
+        let [broken, before] = [&bed, &first].map(|out| json(&out.join("summary.json"))["bonds"]["broken"].clone());
+        assert!(name != "bonded" || broken.as_u64() >= before.as_u64() && before.as_u64() > Some(0), "{broken} {before}");
+        // Other grains are refused by their key.
+        let other = trackbed([&words_of(&next, &folder.join("other"), &first)[..], &["--set", "grains.0.count=31"]].concat());
+        assert!(other.code == 2 && other.stderr.contains("grains.0.count: found 31, expected 30"), "{other:?}");
+        assert!(!folder.join("other").exists());
+    }
+}
+
+fn words_of<'a>(scene: &'a Path, out: &'a Path, before: &'a Path) -> Vec<&'a str> {
+    let [scene, out, before] = [scene, out, before].map(|path| path.to_str().unwrap());
+    vec!["run", scene, "--out", out, "--bed", "--from", before]
+}
+
+/// A bed that has settled on a plane is put on an elastic block, with a sleeper on it: nothing settles again, the sleeper is set down on the
+/// bed as it lies, and a run that is interrupted goes on.
+#[test]
+fn a_bed_is_put_on_a_solid_under_a_sleeper() {
+    let folder = Folder::new("from_bed");
+    let (_, grains) = kinds().into_iter().nth(1).unwrap();
+    let grains = grains.replace("count = 30", "count = 60");
+    let settle = "[deposition]\nmax_time = \"0.6 s\"\nsettled_speed = \"20 mm/s\"\nlocal_damping = 0.3\n[time]\nend = 0.01\n[output]\nframes = 1\n";
+    let scene = folder.write("scene.toml", &shaft(&grains, settle, true));
+    let track = "[solid]\ngravity = false\n[solid.block]\nx = { lines = [0.0, 0.3], counts = [2] }\ny = { lines = [0.0, 0.3], counts = [2] }\n\
+        z = { lines = [-0.3, 0.0], counts = [2] }\n[[solid.support]]\nside = \"z-\"\ndirections = [\"x\", \"y\", \"z\"]\n\
+        [[solid.material]]\nid = 1\nname = \"soil\"\nyoung = \"50 MPa\"\npoisson = 0.3\ndensity = 1900\n\
+        [coupling]\nsubsteps = \"auto\"\nmaterial = \"stone\"\n\
+        [track.sleeper]\nsize = [0.2, 0.2, 0.1]\nmass = 20\nmaterial = \"stone\"\ncentre = [0.15, 0.15]\n\
+        [track.load]\nkind = \"haversine\"\nminimum = \"100 N\"\nmaximum = \"500 N\"\nfrequency = 50\ncycles = 1\nrest = \"20 ms\"\nramp = \"10 ms\"\n\
+        [output]\nframes = 1\n";
+    let next = folder.write("next.toml", &shaft(&grains, track, false));
+    let (first, bed) = (folder.join("first"), folder.join("bed"));
+    run(&scene, &first, &[]).good();
+    trackbed(words_of(&next, &bed, &first)).good();
+    let summary = json(&bed.join("summary.json"));
+    let stages: Vec<&str> =
+        summary["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert_eq!(stages, ["run"], "nothing settles again");
+    assert!(summary["energy"]["largest_relative_error"].as_f64().unwrap() < 0.01, "{summary:#}");
+    let column = |name: &str| Table::read(&bed.join("history.csv")).column(name);
+    let (z, force) = (column("sleeper_z"), column("contact_force_on_solid_z"));
+    let highest = places(&first).chunks(3).map(|x| x[2]).fold(f64::NEG_INFINITY, f64::max);
+    assert!((z[0] - highest).abs() < 0.06 && z[z.len() - 1] < z[0], "{} {highest}", z[0]);
+    // The ground carries the bed from the first moment: its weight, with that of the sleeper in the end.
+    let weight = summary["model"]["bodies"].as_u64().unwrap();
+    assert!(weight == 61 && force[0].abs() > 0.0, "{weight} {}", force[0]);
+    let text = std::fs::read_to_string(bed.join("run.json")).unwrap();
+    assert!(text.contains("\"bed\": true"), "{text}");
 }

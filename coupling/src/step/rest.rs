@@ -5,17 +5,17 @@ use crate::transfer::{Transfer, TransferAudit};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
-/// What the solid carries when a run begins: the nodal load of grains that lie on its undeformed surface [N], shape
-/// `[3·nodes]`, and the grains' state with its contacts found.
+/// What the solid carries when a run begins with `state`: the nodal load of grains that lie on its undeformed surface [N], shape
+/// `[3·nodes]`, and the state with its contacts found.
 ///
 /// # Errors
 /// The grains cannot make a step.
 pub fn resting_load(
     grains: &dem::Model,
+    mut state: dem::State,
     surface: &mut SolidSurface,
     mesh: &fem::mesh::Mesh,
 ) -> Result<(Vec<f64>, dem::State), dem::StepError> {
-    let mut state = dem::State::new(grains);
     let mut work = dem::Work::new(grains, &state);
     let zero = vec![0.0; 3 * mesh.node_count()];
     surface.begin_window(mesh, &zero, &zero, &zero, grains.dt());

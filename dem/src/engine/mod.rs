@@ -6,6 +6,7 @@ pub mod back_end;
 mod block_work;
 pub(crate) mod bonds;
 pub(crate) mod candidates;
+mod carry;
 mod check;
 mod check_periodic;
 pub(crate) mod collision;

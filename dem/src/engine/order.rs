@@ -70,11 +70,16 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     state.number(model);
     bonds::put(model, state, bonds);
 
-    let names = Names::new(state, model, &old, stays);
+    let names = Names::new(state, |b| model.member_count(b as usize), &old, stays);
     old.pairs(&names, state);
     old.images(&names, state);
-    old.kinds(&names, state);
+    old.kinds(&names, state, false);
     old.walls(&names, state);
+    sort(state);
+}
+
+/// Puts the lists of a state in the order of their names, and has its neighbours searched.
+pub(super) fn sort(state: &mut State) {
     for lists in &mut state.lists {
         lists.pairs.sort();
         lists.planes.sort();
@@ -91,15 +96,15 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     state.stale = true;
 }
 
-/// What the state was before.
-struct Old {
-    blocks: Vec<Block>,
-    lists: Vec<BlockLists>,
-    cross: Vec<Cross>,
+/// What a state was before.
+pub(super) struct Old {
+    pub blocks: Vec<Block>,
+    pub lists: Vec<BlockLists>,
+    pub cross: Vec<Cross>,
 }
 
 /// Where spheres were and are.
-struct Names<'a> {
+pub(super) struct Names<'a> {
     /// Of each old block: body and member of each sphere.
     old: Vec<Vec<[u32; 2]>>,
     stays: &'a [bool],
@@ -109,8 +114,9 @@ struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    fn new(state: &State, model: &Model, old: &Old, stays: &'a [bool]) -> Names<'a> {
-        let members = |b: u32| model.member_count(b as usize);
+    /// Of a state and what it was before; `members`: how many spheres a body has; `stays`: whether its contacts go along with it.
+    pub fn new(state: &State, members: impl Fn(u32) -> u32, old: &Old, stays: &'a [bool]) -> Names<'a> {
+        let members = &members;
         let spheres = |block: &Block| -> Vec<[u32; 2]> {
             block.bodies.iter().flat_map(|&b| (0..members(b)).map(move |m| [b, m])).collect()
         };
@@ -164,7 +170,7 @@ impl Old {
         }
     }
 
-    fn pairs(&self, names: &Names<'_>, state: &mut State) {
+    pub fn pairs(&self, names: &Names<'_>, state: &mut State) {
         let mut file = |a: Option<(u32, u32)>, b: Option<(u32, u32)>, history: History| {
             let (Some(a), Some(b)) = (a, b) else { return };
             // The spring is that of the first against the second.
@@ -188,7 +194,7 @@ impl Old {
         }
     }
 
-    fn images(&self, names: &Names<'_>, state: &mut State) {
+    pub fn images(&self, names: &Names<'_>, state: &mut State) {
         for (b, cross) in self.cross.iter().enumerate() {
             for &ImagePair { name, history } in &cross.images {
                 let (x, y) = (names.sphere(b, name.i), names.sphere(name.block as usize, name.j));
@@ -202,10 +208,12 @@ impl Old {
         }
     }
 
-    fn kinds(&self, names: &Names<'_>, state: &mut State) {
+    /// `bodies`: only those of two bodies, without planes.
+    pub fn kinds(&self, names: &Names<'_>, state: &mut State, bodies: bool) {
         let names = Moved { names, old: &self.blocks };
         for (b, cross) in self.cross.iter().enumerate() {
-            for (k, (kind, list)) in KINDS.iter().zip(&cross.kinds).enumerate() {
+            let kinds = KINDS.iter().zip(&cross.kinds).enumerate();
+            for (k, (kind, list)) in kinds.filter(|(_, (kind, _))| !bodies || kind.of_bodies()) {
                 kind.carry(&names, b, list, &mut |block, name, points| {
                     state.cross[block].kinds[k].push(name, points);
                 });

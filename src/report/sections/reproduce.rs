@@ -30,7 +30,7 @@ fn one(run: &RunData) -> String {
     let Some(file) = &run.file else { return String::new() };
     let mut command = format!("trackbed run {} --out {}", quoted(Path::new(&file.scene)), quoted(&run.dir));
     file.overrides.iter().for_each(|o| command += &format!(" --set {}", quoted(Path::new(o))));
-    file.from.iter().for_each(|dir| command += &format!(" --from {}", quoted(Path::new(dir))));
+    file.source().iter().for_each(|source| command += &source.words());
     let hash = match run.text("scene_hash") {
         Some(hash) => format!(
             "Version {} of the program; hash of the scene, its overrides and its files {hash}. The same scene gives the same bits \

@@ -1,6 +1,7 @@
 //! A column of the bed: some of the grains of a scene, as high as all of them, settle between smooth planes. It shows how long the
 //! bed takes to come to rest, which steps it allows, and what a step costs.
 
+use super::clock::Clock;
 use crate::model::grains::{DepositionPlan, GrainsPart};
 use crate::run::bed::rms_speed;
 use std::error::Error;
@@ -32,15 +33,15 @@ pub struct Column {
     pub rest: f64,
     /// Whether it came to rest.
     pub rested: bool,
-    /// Seconds by the clock that it took, on one thread.
+    /// Seconds that it took, on one thread.
     pub seconds: f64,
-    /// Seconds by the clock of a simulated second at the end of its settling, on one thread.
+    /// Seconds of a simulated second at the end of its settling, on one thread.
     pub late: f64,
-    /// Seconds by the clock of a simulated second of the settled bed with the contacts of the run proper, on one thread.
+    /// Seconds of a simulated second of the settled bed with the contacts of the run proper, on one thread.
     pub pace: f64,
     /// The same from its beginning on, where steps are short.
     pub first: f64,
-    /// Simulated time and seconds by the clock while it settled.
+    /// Simulated time and seconds while it settled.
     course: Vec<[f64; 2]>,
 }
 
@@ -70,7 +71,7 @@ impl Column {
         input.planes.extend(planes.iter().copied());
         smooth(&mut input, planes.len());
         let model = dem::Model::new(input.clone())?;
-        let (mut state, begun) = (dem::State::new(&model), Instant::now());
+        let (mut state, begun, clock) = (dem::State::new(&model), Instant::now(), Clock::start(1));
         let mut work = dem::Work::new(&model, &state);
         let (mut rested, mut course) = (false, vec![[0.0, 0.0]]);
         let mut looked = 0.0;
@@ -79,12 +80,12 @@ impl Column {
             step(&model, &mut state, &mut work, surface)?;
             if state.time >= looked + LOOK {
                 looked = state.time;
-                course.push([looked, begun.elapsed().as_secs_f64()]);
+                course.push([looked, clock.seconds()]);
                 let settled = |plan: &DepositionPlan| plan.settled(rms_speed(&model, &state), &model, &state);
                 rested = state.time > START && plan.is_some_and(settled);
             }
         }
-        let (seconds, rest) = (begun.elapsed().as_secs_f64(), state.time);
+        let (seconds, rest) = (clock.seconds(), state.time);
         rested |= rest >= longest;
         let place = |(b, input): (usize, BodyInput)| BodyInput {
             position: state.position(b),
@@ -118,7 +119,7 @@ impl Column {
         Ok(Column { share, rest, rested, seconds, late, pace, first, course })
     }
 
-    /// Seconds by the clock that it took from one simulated time to another [s], on one thread; none where it did not come so far.
+    /// Seconds that it took from one simulated time to another [s], on one thread; none where it did not come so far.
     pub fn between(&self, [from, to]: [f64; 2]) -> Option<f64> {
         let at = |time: f64| {
             let k = self.course.partition_point(|c| c[0] < time);
@@ -129,7 +130,7 @@ impl Column {
     }
 }
 
-/// Seconds by the clock of a simulated second in the last quarter of a course.
+/// Seconds of a simulated second in the last quarter of a course.
 fn late(course: &[[f64; 2]]) -> Option<f64> {
     let ([t0, s0], [t1, s1]) = (course[3 * course.len() / 4], *course.last()?);
     (t1 > t0).then(|| (s1 - s0) / (t1 - t0))
@@ -227,7 +228,7 @@ fn step(
     }
 }
 
-/// Seconds by the clock of a simulated second of a bed at rest, on one thread: in the end, and on the whole.
+/// Seconds of a simulated second of a bed at rest, on one thread: in the end, and on the whole.
 ///
 /// # Errors
 /// Contacts for which no step can be made.
@@ -237,7 +238,7 @@ fn paces(
     budget: Duration,
 ) -> Result<(f64, f64), Box<dyn Error>> {
     let model = dem::Model::new(input)?;
-    let (mut state, begun) = (dem::State::new(&model), Instant::now());
+    let (mut state, begun, clock) = (dem::State::new(&model), Instant::now(), Clock::start(1));
     let mut work = dem::Work::new(&model, &state);
     let mut looks = vec![(0.0, 0.0)];
     // With other friction and stiffness than the bed had while it settled it moves again, and steps are short at first.
@@ -245,7 +246,7 @@ fn paces(
         for _ in 0..STRIDE {
             step(&model, &mut state, &mut work, surface)?;
         }
-        looks.push((state.time, begun.elapsed().as_secs_f64()));
+        looks.push((state.time, clock.seconds()));
     }
     let (middle, end) = (looks[(looks.len() - 1) / 2], looks[looks.len() - 1]);
     Ok(((end.1 - middle.1) / (end.0 - middle.0), end.1 / end.0))

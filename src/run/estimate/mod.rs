@@ -1,6 +1,7 @@
 //! How long a run will take. Its first seconds are carried out for real; what they do not reach follows from a column of the bed
 //! that settles by itself, and from a few steps of the solid.
 
+mod clock;
 mod column;
 mod rehearsal;
 mod solid;
@@ -19,8 +20,6 @@ use std::time::Duration;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 
-/// Rehearsals of scenes with growth over others.
-const GROWTH: u32 = 4;
 /// Settling of a column over rehearsals.
 const SETTLE: u32 = 3;
 /// Share of the steps that the cores besides the first take over.
@@ -45,7 +44,7 @@ pub enum Known {
 pub struct StageTime {
     /// Name, as in the summary of a run.
     pub name: String,
-    /// Seconds by the clock.
+    /// Seconds, see [`clock`].
     pub seconds: f64,
     /// How it is known.
     pub known: Known,
@@ -77,17 +76,14 @@ impl Estimate {
         if let Some(stages) = solid::statics(job, count) {
             return Ok(Estimate { stages, threads: count });
         }
-        // Growth ends when it is done, and nothing else shows the bed that it leaves.
-        let grows = job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty());
-        let longest = if grows { GROWTH * budget } else { budget };
-        let rehearsed = rehearse(scene, set, job, threads, longest)?;
+        let rehearsed = rehearse(scene, set, job, threads, budget)?;
         let stages = if rehearsed.whole { Vec::new() } else { left(job, &rehearsed, count, budget)? };
         let measured = rehearsed.done.into_iter();
         let measured = measured.map(|(name, seconds)| StageTime { name, seconds, known: Known::Measured });
         Ok(Estimate { stages: measured.chain(stages).collect(), threads: count })
     }
 
-    /// Seconds by the clock of all stages whose time is known.
+    /// Seconds of all stages whose time is known.
     pub fn seconds(&self) -> f64 {
         self.stages.iter().map(|s| s.seconds).sum()
     }

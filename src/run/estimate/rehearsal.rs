@@ -1,5 +1,6 @@
 //! A rehearsal: the first seconds of a run, carried out in a folder of its own that is thrown away.
 
+use super::clock::Clock;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::run::checkpoint::Moment;
@@ -13,6 +14,11 @@ use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
+/// Rehearsals of growth, at most, over others.
+const GROWTH: u32 = 8;
+/// Time between two looks at the stage of a rehearsal.
+const LOOK: Duration = Duration::from_millis(100);
+
 /// How far a rehearsal came.
 #[derive(Debug, Default)]
 pub struct Rehearsal {
@@ -22,16 +28,18 @@ pub struct Rehearsal {
     pub whole: bool,
     /// Seconds in the stage that it was stopped in.
     pub seconds: f64,
-    /// Simulated time that the main loop had reached [s], and seconds by the clock of a simulated second from halfway there on;
+    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on;
     /// none where it had not begun.
     pub reached: Option<(f64, f64)>,
-    /// Seconds by the clock of a simulated second of the compaction that it was stopped in; none where that was not so.
+    /// Seconds of a simulated second of the compaction that it was stopped in; none where that was not so.
     pub compacting: Option<f64>,
-    /// A stretch of the settling: from and to [s], and the seconds by the clock that it took; none where there was none.
+    /// A stretch of the settling: from and to [s], and the seconds that it took; none where there was none.
     pub settling: Option<([f64; 2], f64)>,
 }
 
-/// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun.
+/// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun. Growth is gone through, if that takes
+/// no more than [`GROWTH`] times as long, and followed by another `budget`: it ends when it is done, and nothing else shows the bed
+/// that it leaves.
 ///
 /// # Errors
 /// What the run itself would end with; a folder for temporary files that cannot be written.
@@ -46,14 +54,21 @@ pub fn rehearse(
     let (interrupt, trace) = Interrupt::traced();
     let (ended, over) = mpsc::channel::<()>();
     let (watched, followed) = (interrupt.clone(), trace.clone());
+    let grows = job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty());
+    let begun = Instant::now();
+    let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));
     let timer = thread::spawn(move || {
         let passes = |time| over.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
+        let mut on = true;
+        while on && grows && begun.elapsed() < GROWTH * budget && !is_in_loop(&followed) {
+            on = passes(LOOK);
+        }
         // What a stage does first says little of the rest of it.
-        if passes(budget) && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget))) {
+        if on
+            && passes(budget) && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget))) {
             watched.request();
         }
     });
-    let begun = Instant::now();
     let options = Options {
         out: Some(folder.0.clone()),
         threads,
@@ -63,25 +78,27 @@ pub fn rehearse(
         ..Options::default()
     };
     let outcome = run::run(scene, &options);
-    let elapsed = begun.elapsed().as_secs_f64();
+    // What the clock shows is shared with other programs.
+    let (elapsed, share) = (clock.seconds(), clock.share());
     drop(ended);
     // It holds nothing that could fail.
     let _ = timer.join();
     match outcome {
         Ok(Outcome::Done(summary)) => {
-            let stages = summary.stages.iter().map(|s| (s.name.clone(), s.seconds));
+            let stages = summary.stages.iter().map(|s| (s.name.clone(), share * s.seconds));
             Ok(Rehearsal { done: stages.collect(), whole: true, ..Rehearsal::default() })
         }
         Ok(Outcome::WasDone(_)) | Err(Failure::Interrupted(_)) => {
             let (stages, reached) = stages::reached(&folder.0, job);
             let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
-            let reached = reached.and_then(|time| Some((time, pace(&trace)?)));
-            let done: Vec<_> = stages.into_iter().map(|s| (s.name, s.seconds)).collect();
+            let reached = reached.and_then(|time| Some((time, share * pace(&trace)?)));
+            let done: Vec<_> = stages.into_iter().map(|s| (s.name, share * s.seconds)).collect();
             let before: f64 = done.iter().map(|(_, seconds)| seconds).sum();
             let seconds = (elapsed - before).max(0.0);
             let compacting = trace.last().is_some_and(|(_, moment)| moment.stage == COMPACTED);
-            let compacting = if compacting { compacting_pace(&trace) } else { None };
-            Ok(Rehearsal { done, whole: false, seconds, reached, compacting, settling: settling(&trace) })
+            let compacting = if compacting { compacting_pace(&trace).map(|pace| share * pace) } else { None };
+            let settling = settling(&trace).map(|(stretch, took)| (stretch, share * took));
+            Ok(Rehearsal { done, whole: false, seconds, reached, compacting, settling })
         }
         Err(failure) => Err(failure),
     }
@@ -96,6 +113,12 @@ fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
         time => (middle, time),
     };
     (time > 0.0).then(|| (end.0 - middle.0).as_secs_f64() / time)
+}
+
+/// Whether a run is in its main loop.
+fn is_in_loop(trace: &Trace) -> bool {
+    let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
+    trace.last().is_some_and(|(_, moment)| moment.stage == RUN)
 }
 
 /// How long ago by the clock the stage began that a run is in.

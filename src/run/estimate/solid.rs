@@ -1,5 +1,6 @@
 //! What a step of the solid costs, of which a few are made, and what a static solve will, which is done in one go.
 
+use super::clock::Clock;
 use super::{Known, StageTime};
 use crate::failure::Failure;
 use crate::model::Job;
@@ -19,7 +20,7 @@ const ENOUGH: Duration = Duration::from_millis(500);
 /// Share of its weight by which the load of a plastic solid changes from window to window, so that each takes an iteration.
 const RESTLESS: f64 = 0.01;
 
-/// Seconds by the clock of one step of `dt` [s] of a solid that moves under its weight, its factorization apart where one serves all
+/// Seconds of one step of `dt` [s] of a solid that moves under its weight, its factorization apart where one serves all
 /// steps.
 ///
 /// # Errors
@@ -60,23 +61,23 @@ pub fn statics(job: &Job, threads: usize) -> Option<Vec<StageTime>> {
     let flops = Prediction::of(part).ok()?.flops;
     let matrix = DMatrix::from_fn(ORDER, ORDER, |i, j| 1.0 / (1.0 + i as f64 + j as f64));
     let mut product = matrix.clone();
-    let begun = Instant::now();
+    let clock = Clock::start(1);
     product.gemm(1.0, &matrix, &matrix, 1.0);
-    let seconds = begun.elapsed().as_secs_f64();
+    let seconds = clock.seconds();
     let rate = if product[(0, 0)] > 0.0 { RATE * 2.0 * (ORDER as f64).powi(3) / seconds } else { 1e10 };
     let seconds = flops / (rate * super::cores(threads));
     let stage = StageTime { name: "static".into(), seconds, known: Known::Expected };
     (seconds > LONG).then(|| vec![stage])
 }
 
-/// Seconds by the clock of a step.
+/// Seconds of a step.
 fn time(mut step: impl FnMut() -> Result<(), Failure>) -> Result<f64, Failure> {
     // The first one touches what the others find warm.
     step()?;
-    let (begun, mut steps) = (Instant::now(), 0);
+    let (begun, clock, mut steps) = (Instant::now(), Clock::start(rayon::current_num_threads()), 0);
     while steps < 3 || begun.elapsed() < ENOUGH {
         step()?;
         steps += 1;
     }
-    Ok(begun.elapsed().as_secs_f64() / f64::from(steps))
+    Ok(clock.seconds() / f64::from(steps))
 }

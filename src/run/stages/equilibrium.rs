@@ -53,7 +53,8 @@ impl Stage for Equilibrium {
         let load = run.job.grains.as_ref().and_then(|g| g.track.load.as_ref());
         let (loaded, summary) = (state.loaded.as_mut(), &mut state.summary);
         let body = Body { part, model: solid };
-        let system = couple(run, body, bases, model, plan, substeps, surface, load, loaded, summary)?;
+        let start = grains.start(&model)?;
+        let system = couple(run, body, bases, (model, start), plan, substeps, surface, load, loaded, summary)?;
         state.loaded.take_if(|loaded| loaded.moment.stage == END);
         let substeps = system.model.substeps;
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
@@ -84,7 +85,7 @@ fn couple<'b>(
     run: &Run<'b>,
     body: Body<'b>,
     bases: Vec<f64>,
-    grains: dem::Model,
+    (grains, start): (dem::Model, dem::State),
     plan: &CouplingPart,
     substeps: u32,
     mut surface: SolidSurface,
@@ -98,7 +99,7 @@ fn couple<'b>(
     let (reference, memory, state, seat_work) = match resumed {
         Some(loaded) => kept(loaded)?,
         None => {
-            let (state, resting, contacts) = equilibrium(body, &grains, &mut surface, &dead_load)?;
+            let (state, resting, contacts) = equilibrium(body, (&grains, start), &mut surface, &dead_load)?;
             let reference = state.u.clone();
             let start = coupling::step::State::new(state, resting);
             // Only the lagged scheme goes on with the load of before.
@@ -178,14 +179,14 @@ struct Body<'a> {
 /// the load of these [N].
 fn equilibrium(
     body: Body<'_>,
-    grains: &dem::Model,
+    (grains, start): (&dem::Model, dem::State),
     surface: &mut SolidSurface,
     dead_load: &[f64],
 ) -> Result<(fem::State, dem::State, Vec<f64>), Failure> {
     let Body { part: solid, model, .. } = body;
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
-    let (contacts, resting) = coupling::step::resting_load(grains, surface, model.mesh())
+    let (contacts, resting) = coupling::step::resting_load(grains, start, surface, model.mesh())
         .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;

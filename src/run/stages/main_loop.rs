@@ -67,7 +67,10 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     let mut resumed = state.loaded.take();
     let mut system = match &mut resumed {
         Some(loaded) => GrainsSystem::resume(model, interval, loaded)?,
-        None => GrainsSystem::new(model, interval)?,
+        None => {
+            let start = state.grains.as_ref().expect("a run with grains").start(&model)?;
+            GrainsSystem::new(model, start, interval)?
+        }
     };
     if resumed.take_if(|loaded| loaded.moment.stage == END).is_some() {
         system.begin_anew();

@@ -3,6 +3,7 @@
 
 mod bedding;
 mod cadence;
+mod carried;
 mod compaction;
 mod coupling_remarks;
 mod equilibrium;
@@ -19,6 +20,7 @@ mod statics;
 mod strength_reduction;
 mod time_loop;
 
+pub use carried::Carried;
 pub use compaction::{COMPACTED, longest};
 pub use stage::{GrainTime, RUN, RunState, SETTLING, Stage, reached};
 

@@ -31,7 +31,7 @@ impl Stage for SetDown {
         }
         let input = grains.part.input(grains.bodies.clone());
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
-        let resting = dem::State::new(&model);
+        let resting = grains.start(&model)?;
         let base = |&centre: &[f64; 2]| {
             bed::top_below(&model, &resting, centre, &plan.row.half, grains.ground.as_ref())
         };

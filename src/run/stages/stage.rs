@@ -1,5 +1,6 @@
 //! What a stage is, and what stages hand on to each other.
 
+use super::carried::Carried;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
@@ -156,9 +157,24 @@ pub struct GrainsState {
     pub bodies: Vec<BodyInput>,
     /// Heights of the bases of the sleepers when they were set down [m].
     pub bases: Vec<f64>,
+    /// The bed of another scene that these grains are.
+    pub carried: Option<Carried>,
 }
 
 impl GrainsState {
+    /// The state that a model of these grains, and of bodies after them, begins with.
+    ///
+    /// # Errors
+    /// Bad input: the bed of another scene is of other grains.
+    pub fn start(&self, model: &dem::Model) -> Result<dem::State, Failure> {
+        let mut state = dem::State::new(model);
+        if let Some(carried) = &self.carried {
+            let count = carried.bodies(&self.part).len();
+            carried.put(model, count, &mut state)?;
+        }
+        Ok(state)
+    }
+
     /// Writes the checkpoint between two stages of packing.
     ///
     /// # Errors
@@ -185,6 +201,8 @@ pub struct CoupledRun<'a> {
 pub struct RunState<'a> {
     /// The checkpoint that the run is continued from, until its stage has read it.
     pub loaded: Option<Loaded>,
+    /// The bed of another scene, until the grains have it.
+    pub carried: Option<Carried>,
     /// The grains, if there are any.
     pub grains: Option<GrainsState>,
     /// Grains and solid, once they are joined.
@@ -206,7 +224,7 @@ pub fn planes(grains: &GrainsPart) -> Vec<dem::Vec3> {
 impl RunState<'_> {
     /// Nothing done yet.
     pub fn new<'a>(loaded: Option<Loaded>, summary: Summary) -> RunState<'a> {
-        RunState { loaded, grains: None, coupled: None, summary }
+        RunState { loaded, carried: None, grains: None, coupled: None, summary }
     }
 
     /// Takes up the grains of the scene, or what a checkpoint has of them.
@@ -219,9 +237,22 @@ impl RunState<'_> {
             (Some(plan), Some(solid)) => Some(plan.ground(solid, &part)),
             _ => None,
         };
-        let (bed, bodies) = (Settled::default(), Vec::new());
-        let mut grains = GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases: Vec::new() };
-        if let Some(loaded) = self.loaded.as_mut().filter(|l| l.moment.stage == END) {
+        let (bed, bodies, bases) = (Settled::default(), Vec::new(), Vec::new());
+        let mut grains =
+            GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases, carried: None };
+        if let Some(carried) = self.carried.take().filter(|_| self.loaded.is_none()) {
+            // The bodies are as the bed before began with them: bonds refer to these places. Where they are now follows with their state.
+            let bodies = carried.bodies(&grains.part);
+            match is_packed(job) {
+                true => {
+                    let planes = planes(&grains.part);
+                    grains.bed = Settled { bodies, planes, ..Settled::default() };
+                    grains.done = Packed::Finished;
+                }
+                false => grains.bodies = bodies,
+            }
+            grains.carried = Some(carried);
+        } else if let Some(loaded) = self.loaded.as_mut().filter(|l| l.moment.stage == END) {
             // The bed is the one that the run before began with; where it is now follows with its state.
             match loaded.take::<Option<Settled>>()? {
                 Some(bed) => (grains.bed, grains.done) = (bed, Packed::Finished),

@@ -24,12 +24,11 @@ pub struct GrainsSystem {
 }
 
 impl GrainsSystem {
-    /// The grains at the start of their model; `interval` is that of the history [s].
+    /// The grains in the state that they start from; `interval` is that of the history [s].
     ///
     /// # Errors
     /// They overlap so much that no step can be made.
-    pub fn new(model: dem::Model, interval: f64) -> Result<GrainsSystem, Failure> {
-        let mut state = dem::State::new(&model);
+    pub fn new(model: dem::Model, mut state: dem::State, interval: f64) -> Result<GrainsSystem, Failure> {
         let mut work = dem::Work::new(&model, &state);
         dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;

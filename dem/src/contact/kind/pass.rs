@@ -64,6 +64,9 @@ pub(crate) trait Kind: Sync {
     /// first.
     fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool));
 
+    /// Whether both partners are bodies.
+    fn of_bodies(&self) -> bool;
+
     /// Calls `put` with block, name and points of each pair of an old list after a new order.
     fn carry(
         &self,
@@ -229,6 +232,10 @@ impl<K: PairKind> Kind for Of<K> {
                 share(k, [other, place as u32], false);
             }
         }
+    }
+
+    fn of_bodies(&self) -> bool {
+        K::Second::BODY
     }
 
     fn carry(

@@ -1,0 +1,140 @@
+//! A bed in another model: bodies go on there with their motion and with the memory of the contacts among them.
+
+use super::bonds;
+use super::model::Model;
+use super::order::{Names, Old, Turnover, reorder, sort};
+use super::place::Row;
+use super::state::State;
+use crate::base::Vec3;
+use crate::bodies::block::Rotation;
+use crate::lanes::record::{set_xyz, xyz};
+use std::collections::BTreeMap;
+
+impl State {
+    /// Puts the first `count` bodies where they are in the state `other` of another model, whose first bodies have the same shapes
+    /// and sizes and are joined by the same bonds. Which of them are there, how they move, and what their contacts and bonds with each
+    /// other remember comes with them; motions that the model gives stay. Contacts with walls, a surface and further bodies are forgotten,
+    /// time and accounts are those of this state. Call it before a [`Work`](crate::Work) is made.
+    ///
+    /// # Errors
+    /// The number of a body that is not the same: `other` does not have it, or with another size.
+    pub fn carry(&mut self, model: &Model, mut other: State, count: usize) -> Result<(), usize> {
+        let known = count.min(self.places.len()).min(other.places.len());
+        let same = |k: &usize| *k < known && (!other.present(*k) || other.size(*k) == model.body(*k).radius);
+        if let Some(k) = (0..count).find(|k| !same(k)) {
+            return Err(k);
+        }
+        let come: BTreeMap<u32, Row> = (0..count)
+            .filter(|&k| other.present(k))
+            .map(|k| (k as u32, self.row_of(model, k, &other)))
+            .collect();
+        let carried: Vec<bool> = (0..other.places.len()).map(|k| come.contains_key(&(k as u32))).collect();
+        let stays = (0..self.places.len()).map(|k| k >= count && self.present(k)).collect();
+        let turnover = Turnover { stays, come };
+        let positions = turnover.positions(self);
+        let bonds = bonds::take(&mut other);
+        bonds::take(self);
+        reorder(self, model, &positions, &turnover);
+        bonds::put(model, self, bonds);
+        (self.bonds.broken, self.bonds.fresh) = (other.bonds.broken, other.bonds.fresh);
+        self.bonds.power = other.bonds.power;
+        // Velocities are those of half of the last step ago.
+        self.pace.last = other.pace.last;
+        let old = Old { blocks: other.blocks, lists: other.lists, cross: other.cross };
+        let members = |b: u32| if (b as usize) < count { model.member_count(b as usize) } else { 0 };
+        let names = Names::new(self, members, &old, &carried);
+        old.pairs(&names, self);
+        if model.periodic.is_some() {
+            old.images(&names, self);
+        }
+        if model.solids {
+            old.kinds(&names, self, true);
+        }
+        sort(self);
+        Ok(())
+    }
+
+    /// Radius around a body that is there, all of it [m].
+    fn size(&self, body: usize) -> f64 {
+        let [b, k] = self.places[body];
+        self.blocks[b as usize].centre[k as usize].0[3]
+    }
+
+    /// A body of this state's model as it is in another state.
+    fn row_of(&self, model: &Model, body: usize, other: &State) -> Row {
+        let [b, k] = other.places[body].map(|n| n as usize);
+        let from = &other.blocks[b];
+        let unturned = || Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
+        let rotation = from.rotation.get(k).copied().unwrap_or_else(unturned);
+        let mut row = Row::at_rest(model, body, &xyz(&from.centre[k]), rotation);
+        let given = model.body(body).fixed != 0;
+        let (velocity, spin) = match given && self.present(body) {
+            true => (self.velocity(body), self.spin(body)),
+            false => (xyz(&from.velocity[k]), xyz(&from.spin[k])),
+        };
+        set_xyz(&mut row.velocity, &velocity);
+        set_xyz(&mut row.spin, &spin);
+        // Of another density the same spin is another angular momentum.
+        let ratio = from.velocity[k].0[3] / row.velocity.0[3];
+        if ratio.is_finite() {
+            row.rotation.momentum *= ratio;
+        }
+        row
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::input::BodyInput;
+    use crate::engine::work::Work;
+    use crate::shape::plane::Plane;
+    use crate::spatial::surface::NoSurface;
+    use crate::testing::{SOFT, dumbbells, push, shaft};
+
+    /// In a model with a plane more that nothing touches, and one body more, spheres and clumps go on as they would have; with
+    /// contacts that have forgotten they do not.
+    #[test]
+    fn a_bed_goes_on_in_another_model() {
+        let mut input = dumbbells(SOFT, [0.09, 0.09, 0.01]);
+        input.planes = shaft(0.2, &[Vec3::x(), Vec3::y()]);
+        input.materials.push(crate::Material { friction: 0.0, ..input.materials[0] });
+        input.planes.iter_mut().for_each(|p| p.material = input.materials.len() - 1);
+        for k in 0..600_usize {
+            let cell = Vec3::new((k % 7) as f64 + 0.5, (k / 7 % 7) as f64 + 0.5, (k / 49) as f64 + 0.6);
+            let (position, velocity) = (cell * 0.028, push(k) * 0.5);
+            input.bodies.push(BodyInput { shape: k % 2, position, velocity, ..BodyInput::default() });
+        }
+        let count = input.bodies.len();
+        let model = Model::new(input.clone()).unwrap();
+        let far = Vec3::new(0.0, 0.0, -40.0);
+        input.planes.insert(0, Plane { point: far, normal: Vec3::z(), material: 0, velocity: Vec3::zeros() });
+        input.bodies.push(BodyInput { position: Vec3::new(0.0, 0.0, 30.0), ..BodyInput::default() });
+        let other = Model::new(input).unwrap();
+        let advance = |model: &Model, state: &mut State, steps: u64| {
+            let mut work = Work::new(model, state);
+            for _ in 0..steps {
+                crate::step(model, state, &mut work, &NoSurface, &[]).unwrap();
+            }
+        };
+        let mut state = State::new(&model);
+        advance(&model, &mut state, 12_000);
+        let mut carried = State::new(&other);
+        carried.carry(&other, state.clone(), count).unwrap();
+        let mut forgotten = carried.clone();
+        reorder(&mut forgotten, &other, &(0..=count).map(|k| carried.position(k)).collect::<Vec<_>>(), &Turnover {
+            stays: vec![false; count + 1],
+            come: (0..=count as u32).map(|k| (k, carried.row_of(&other, k as usize, &carried))).collect(),
+        });
+        advance(&model, &mut state, 400);
+        advance(&other, &mut carried, 400);
+        advance(&other, &mut forgotten, 400);
+        let apart = |a: &State| (0..count).map(|k| (a.position(k) - state.position(k)).norm()).fold(0.0, f64::max);
+        let (same, not) = (apart(&carried), apart(&forgotten));
+        println!("carried: apart by {same:.1e} m after 400 steps; without memory by {not:.1e} m");
+        assert!(same < 1e-9 && not > 1e-7, "{same:.1e} {not:.1e}");
+        // Another size is another body.
+        let mut wrong = State::new(&other);
+        assert_eq!(wrong.carry(&other, State::new(&other), count + 2), Err(count + 1));
+    }
+}
