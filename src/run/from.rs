@@ -8,7 +8,6 @@
 use super::checkpoint::{self, Loaded, Origin};
 use super::hash::Hash;
 use super::run_file::{RunFile, Source};
-use super::stages::Carried;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::scene::Document;
@@ -59,17 +58,7 @@ pub struct Previous {
     /// Hash of the file.
     pub hash: String,
     /// Whether its grains were joined with a solid.
-    coupled: bool,
-}
-
-impl Previous {
-    /// Its bed.
-    ///
-    /// # Errors
-    /// Bad input: a state of another program.
-    pub fn bed(mut self) -> Result<Carried, Failure> {
-        Carried::read(&mut self.loaded, self.coupled)
-    }
+    pub coupled: bool,
 }
 
 /// What is carried over and what is not, in words; `bed`: the bed alone.
@@ -129,9 +118,7 @@ pub fn check(job: &Job, document: &Document, source: Source<'_>) -> Result<(), F
         let expected = "a scene with grains, as --bed puts some into it";
         return Err(document.error("grains", "nothing", expected).into());
     }
-    if !source.bed
-        && job.grains.as_ref().is_some_and(|g| g.track.rail.is_some())
-    {
+    if !source.bed && job.grains.as_ref().is_some_and(|g| g.track.rail.is_some()) {
         let expected =
             "sleepers without rails: --from does not carry the bending of rails (with --bed they begin anew)";
         return Err(document.error("track.rail", "a rail", expected).into());
@@ -300,9 +287,12 @@ mod tests {
         let named = keys("[track.load]\nfile = \"a.csv\"\n[solid]\nmesh = \"b.cdb\"");
         let free = files(&named, |key| may_be_free(key, false));
         assert_eq!(free.collect::<Vec<_>>(), [PathBuf::from("a.csv")]);
-        for (key, value, free) in
-            [("walls", "[]", true), ("coupling.scheme", "\"predicted\"", true), ("grains.0.count", "4", false), ("material.0.name", "\"rock\"", false)]
-        {
+        for (key, value, free) in [
+            ("walls", "[]", true),
+            ("coupling.scheme", "\"predicted\"", true),
+            ("grains.0.count", "4", false),
+            ("material.0.name", "\"rock\"", false),
+        ] {
             let mut new = old.clone();
             new.insert(key.into(), value.into());
             assert_eq!(may_be_beside(key, &old, &new), free, "{key} = {value}");

@@ -55,7 +55,7 @@ use checkpoint::{Loaded, Slots};
 use checkpoint_store::CheckpointStore;
 use context::Run;
 use run_file::Source;
-use stages::{RUN, RunState};
+use stages::{Carried, RUN, RunState};
 use std::cell::{Cell, OnceCell};
 use std::path::{Path, PathBuf};
 
@@ -173,16 +173,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             from: source,
             findings: Cell::new(findings),
         };
-        let mut state = RunState::new(loaded, summary);
-        if let Some(before) = previous.filter(|_| state.loaded.is_none()) {
-            if options.verbosity > Verbosity::Quiet {
-                message::note(from::carries(options.bed));
-            }
-            match options.bed {
-                true => state.carried = Some(before.bed()?),
-                false => state.loaded = Some(before.loaded),
-            }
-        }
+        let state = begun(loaded, previous, options, summary)?;
         carry_out(&run, state, &lock)
     })
 }
@@ -202,6 +193,26 @@ fn resumed(slots: &mut Slots, dir: &Path, document: &Document, own: bool) -> Res
     let (checkpoint, remarks) = slots.load(document)?;
     remarks.iter().for_each(|remark| message::note(remark));
     Ok(Some(checkpoint))
+}
+
+/// The state that the stages begin with: a checkpoint of the run, or the end of the run before.
+fn begun<'a>(
+    loaded: Option<Loaded>,
+    previous: Option<from::Previous>,
+    options: &Options,
+    summary: Summary,
+) -> Result<RunState<'a>, Failure> {
+    let mut state = RunState::new(loaded, summary);
+    if let Some(mut before) = previous.filter(|_| state.loaded.is_none()) {
+        if options.verbosity > Verbosity::Quiet {
+            message::note(from::carries(options.bed));
+        }
+        match options.bed {
+            true => state.carried = Some(Carried::read(&mut before.loaded, before.coupled)?),
+            false => state.loaded = Some(before.loaded),
+        }
+    }
+    Ok(state)
 }
 
 /// Remarks on values of a scene that are not plausible; or refuses them.

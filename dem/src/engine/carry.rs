@@ -3,10 +3,11 @@
 use super::bonds;
 use super::model::Model;
 use super::order::{Names, Old, Turnover, reorder, sort};
-use super::place::Row;
+use super::place::{self, Row};
 use super::state::State;
 use crate::base::Vec3;
 use crate::bodies::block::Rotation;
+use crate::contact::kind::KINDS;
 use crate::lanes::record::{set_xyz, xyz};
 use std::collections::BTreeMap;
 
@@ -14,11 +15,12 @@ impl State {
     /// Puts the first `count` bodies where they are in the state `other` of another model, whose first bodies have the same shapes
     /// and sizes and are joined by the same bonds. Which of them are there, how they move, and what their contacts and bonds with each
     /// other remember comes with them; motions that the model gives stay. Contacts with walls, a surface and further bodies are forgotten,
-    /// time and accounts are those of this state. Call it before a [`Work`](crate::Work) is made.
+    /// time and accounts are those of this state. Call it before a [`Work`](crate::Work) is made, and [`State::remember`] once contacts are
+    /// found.
     ///
     /// # Errors
     /// The number of a body that is not the same: `other` does not have it, or with another size.
-    pub fn carry(&mut self, model: &Model, mut other: State, count: usize) -> Result<(), usize> {
+    pub fn carry(&mut self, model: &Model, other: &State, count: usize) -> Result<(), usize> {
         let known = count.min(self.places.len()).min(other.places.len());
         let same = |k: &usize| *k < known && (!other.present(*k) || other.size(*k) == model.body(*k).radius);
         if let Some(k) = (0..count).find(|k| !same(k)) {
@@ -26,23 +28,37 @@ impl State {
         }
         let come: BTreeMap<u32, Row> = (0..count)
             .filter(|&k| other.present(k))
-            .map(|k| (k as u32, self.row_of(model, k, &other)))
+            .map(|k| (k as u32, self.row_of(model, k, other)))
             .collect();
-        let carried: Vec<bool> = (0..other.places.len()).map(|k| come.contains_key(&(k as u32))).collect();
         let stays = (0..self.places.len()).map(|k| k >= count && self.present(k)).collect();
         let turnover = Turnover { stays, come };
         let positions = turnover.positions(self);
-        let bonds = bonds::take(&mut other);
         bonds::take(self);
         reorder(self, model, &positions, &turnover);
-        bonds::put(model, self, bonds);
+        bonds::put(model, self, bonds::take(&mut other.clone()));
         (self.bonds.broken, self.bonds.fresh) = (other.bonds.broken, other.bonds.fresh);
         self.bonds.power = other.bonds.power;
         // Velocities are those of half of the last step ago.
         self.pace.last = other.pace.last;
-        let old = Old { blocks: other.blocks, lists: other.lists, cross: other.cross };
+        self.remember(model, other, count);
+        Ok(())
+    }
+
+    /// Gives the contacts of the first `count` bodies with each other the memory that those of a state have which was carried over: finding
+    /// contacts takes a step.
+    pub fn remember(&mut self, model: &Model, other: &State, count: usize) {
+        for (b, block) in self.blocks.iter().enumerate() {
+            let (fresh, cross) = place::lists(model, block);
+            self.lists[b].pairs = fresh.pairs;
+            let found = std::mem::replace(&mut self.cross[b], cross);
+            let kinds = KINDS.iter().zip(found.kinds).zip(&mut self.cross[b].kinds);
+            kinds.filter(|((kind, _), _)| !kind.of_bodies()).for_each(|((_, found), own)| *own = found);
+        }
+        let carried: Vec<bool> = (0..other.places.len()).map(|k| k < count && other.present(k)).collect();
+        let State { blocks, lists, cross, .. } = other.clone();
+        let old = Old { blocks, lists, cross };
         let members = |b: u32| if (b as usize) < count { model.member_count(b as usize) } else { 0 };
-        let names = Names::new(self, members, &old, &carried);
+        let names = Names::new(self, model, &old, members, &carried);
         old.pairs(&names, self);
         if model.periodic.is_some() {
             old.images(&names, self);
@@ -51,7 +67,6 @@ impl State {
             old.kinds(&names, self, true);
         }
         sort(self);
-        Ok(())
     }
 
     /// Radius around a body that is there, all of it [m].
@@ -120,21 +135,31 @@ mod tests {
         let mut state = State::new(&model);
         advance(&model, &mut state, 12_000);
         let mut carried = State::new(&other);
-        carried.carry(&other, state.clone(), count).unwrap();
+        carried.carry(&other, &state, count).unwrap();
+        // What a probe does to the memory of contacts is undone.
+        let mut work = Work::new(&other, &carried);
+        crate::find_contacts(&other, &mut carried, &mut work, &NoSurface).unwrap();
+        carried.remember(&other, &state, count);
         let mut forgotten = carried.clone();
-        reorder(&mut forgotten, &other, &(0..=count).map(|k| carried.position(k)).collect::<Vec<_>>(), &Turnover {
-            stays: vec![false; count + 1],
-            come: (0..=count as u32).map(|k| (k, carried.row_of(&other, k as usize, &carried))).collect(),
-        });
+        reorder(
+            &mut forgotten,
+            &other,
+            &(0..=count).map(|k| carried.position(k)).collect::<Vec<_>>(),
+            &Turnover {
+                stays: vec![false; count + 1],
+                come: (0..=count as u32).map(|k| (k, carried.row_of(&other, k as usize, &carried))).collect(),
+            },
+        );
         advance(&model, &mut state, 400);
         advance(&other, &mut carried, 400);
         advance(&other, &mut forgotten, 400);
-        let apart = |a: &State| (0..count).map(|k| (a.position(k) - state.position(k)).norm()).fold(0.0, f64::max);
+        let apart =
+            |a: &State| (0..count).map(|k| (a.position(k) - state.position(k)).norm()).fold(0.0, f64::max);
         let (same, not) = (apart(&carried), apart(&forgotten));
         println!("carried: apart by {same:.1e} m after 400 steps; without memory by {not:.1e} m");
         assert!(same < 1e-9 && not > 1e-7, "{same:.1e} {not:.1e}");
         // Another size is another body.
         let mut wrong = State::new(&other);
-        assert_eq!(wrong.carry(&other, State::new(&other), count + 2), Err(count + 1));
+        assert_eq!(wrong.carry(&other, &State::new(&other), count + 2), Err(count + 1));
     }
 }

@@ -70,7 +70,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     state.number(model);
     bonds::put(model, state, bonds);
 
-    let names = Names::new(state, |b| model.member_count(b as usize), &old, stays);
+    let names = Names::new(state, model, &old, |b| model.member_count(b as usize), stays);
     old.pairs(&names, state);
     old.images(&names, state);
     old.kinds(&names, state, false);
@@ -114,18 +114,24 @@ pub(super) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    /// Of a state and what it was before; `members`: how many spheres a body has; `stays`: whether its contacts go along with it.
-    pub fn new(state: &State, members: impl Fn(u32) -> u32, old: &Old, stays: &'a [bool]) -> Names<'a> {
+    /// Of a state and what it was before; `members`: how many spheres a body had; `stays`: whether its contacts go along with it.
+    pub fn new(
+        state: &State,
+        model: &Model,
+        old: &Old,
+        members: impl Fn(u32) -> u32,
+        stays: &'a [bool],
+    ) -> Names<'a> {
         let members = &members;
         let spheres = |block: &Block| -> Vec<[u32; 2]> {
             block.bodies.iter().flat_map(|&b| (0..members(b)).map(move |m| [b, m])).collect()
         };
-        let mut first = vec![0_u32; stays.len()];
+        let mut first = vec![0_u32; state.places.len()];
         for block in &state.blocks {
             let mut next = 0;
             for &b in &block.bodies {
                 first[b as usize] = next;
-                next += members(b);
+                next += model.member_count(b as usize);
             }
         }
         let old = old.blocks.iter().map(spheres).collect();

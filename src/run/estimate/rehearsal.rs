@@ -64,8 +64,8 @@ pub fn rehearse(
             on = passes(LOOK);
         }
         // What a stage does first says little of the rest of it.
-        if on
-            && passes(budget) && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget))) {
+        if on && passes(budget) && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget)))
+        {
             watched.request();
         }
     });

@@ -18,6 +18,8 @@ pub struct Carried {
     begun: Option<Vec<BodyInput>>,
     /// What became of them, and of the bodies after them.
     state: dem::State,
+    /// How many they are.
+    count: usize,
 }
 
 impl Carried {
@@ -34,21 +36,30 @@ impl Carried {
         } else {
             loaded.take()?
         };
-        Ok(Carried { begun: bed.map(|bed| bed.bodies), state })
+        Ok(Carried { begun: bed.map(|bed| bed.bodies), state, count: 0 })
     }
 
     /// The grains as their run began with them; `part`: those of the scene.
-    pub fn bodies(&self, part: &GrainsPart) -> Vec<BodyInput> {
-        self.begun.clone().unwrap_or_else(|| part.groups.bodies.clone())
+    pub fn bodies(&mut self, part: &GrainsPart) -> Vec<BodyInput> {
+        let bodies = self.begun.take().unwrap_or_else(|| part.groups.bodies.clone());
+        self.count = bodies.len();
+        bodies
     }
 
-    /// Puts the bed, of `count` grains, into the state that a model begins with.
+    /// Gives the contacts of the bed their memory back, once those of a state are found.
+    pub fn remember(&self, model: &dem::Model, state: &mut dem::State) {
+        state.remember(model, &self.state, self.count);
+    }
+
+    /// Puts the bed into the state that a model begins with.
     ///
     /// # Errors
     /// Bad input: the grains of the model are others.
-    pub fn put(&self, model: &dem::Model, count: usize, state: &mut dem::State) -> Result<(), Failure> {
-        state.carry(model, self.state.clone(), count).map_err(|body| {
-            Failure::Input(format!("--from: grain {body} is not that of the bed, expected the same [[grains]]"))
+    pub fn put(&self, model: &dem::Model, state: &mut dem::State) -> Result<(), Failure> {
+        state.carry(model, &self.state, self.count).map_err(|body| {
+            Failure::Input(format!(
+                "--from: grain {body} is not that of the bed, expected the same [[grains]]"
+            ))
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Grains and solid are joined, the solid in equilibrium with its weight and the bed.
 
+use super::carried::Carried;
 use super::stage::{CoupledRun, RunState, Stage};
 use crate::failure::Failure;
 use crate::message;
@@ -54,7 +55,8 @@ impl Stage for Equilibrium {
         let (loaded, summary) = (state.loaded.as_mut(), &mut state.summary);
         let body = Body { part, model: solid };
         let start = grains.start(&model)?;
-        let system = couple(run, body, bases, (model, start), plan, substeps, surface, load, loaded, summary)?;
+        let bed = Bed { model, start, carried: grains.carried.as_ref() };
+        let system = couple(run, body, bases, bed, plan, substeps, surface, load, loaded, summary)?;
         state.loaded.take_if(|loaded| loaded.moment.stage == END);
         let substeps = system.model.substeps;
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
@@ -85,7 +87,7 @@ fn couple<'b>(
     run: &Run<'b>,
     body: Body<'b>,
     bases: Vec<f64>,
-    (grains, start): (dem::Model, dem::State),
+    bed: Bed<'_>,
     plan: &CouplingPart,
     substeps: u32,
     mut surface: SolidSurface,
@@ -96,10 +98,15 @@ fn couple<'b>(
     let progress = Progress::start("equilibrium", 1.0, run.verbosity);
     let solid = body.part;
     let dead_load = solid.dead_load(body.model);
+    let Bed { model: grains, start, carried } = bed;
     let (reference, memory, state, seat_work) = match resumed {
         Some(loaded) => kept(loaded)?,
         None => {
-            let (state, resting, contacts) = equilibrium(body, (&grains, start), &mut surface, &dead_load)?;
+            let (state, mut resting, contacts) =
+                equilibrium(body, (&grains, start), &mut surface, &dead_load)?;
+            if let Some(carried) = carried {
+                carried.remember(&grains, &mut resting);
+            }
             let reference = state.u.clone();
             let start = coupling::step::State::new(state, resting);
             // Only the lagged scheme goes on with the load of before.
@@ -166,6 +173,13 @@ fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
     }
     state.begin_anew();
     Ok((reference, None, state, 0.0))
+}
+
+/// The grains of a coupled run, the state that they begin with, and the bed of another scene that they are.
+struct Bed<'a> {
+    model: dem::Model,
+    start: dem::State,
+    carried: Option<&'a Carried>,
 }
 
 /// The solid of a coupled run: its model has the meshed sleepers where they are set down.

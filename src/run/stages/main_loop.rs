@@ -69,7 +69,11 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
         Some(loaded) => GrainsSystem::resume(model, interval, loaded)?,
         None => {
             let start = state.grains.as_ref().expect("a run with grains").start(&model)?;
-            GrainsSystem::new(model, start, interval)?
+            let mut system = GrainsSystem::new(model, start, interval)?;
+            if let Some(carried) = state.grains.as_ref().and_then(|grains| grains.carried.as_ref()) {
+                carried.remember(&system.model, &mut system.state);
+            }
+            system
         }
     };
     if resumed.take_if(|loaded| loaded.moment.stage == END).is_some() {

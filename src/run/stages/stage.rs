@@ -169,8 +169,7 @@ impl GrainsState {
     pub fn start(&self, model: &dem::Model) -> Result<dem::State, Failure> {
         let mut state = dem::State::new(model);
         if let Some(carried) = &self.carried {
-            let count = carried.bodies(&self.part).len();
-            carried.put(model, count, &mut state)?;
+            carried.put(model, &mut state)?;
         }
         Ok(state)
     }
@@ -240,7 +239,7 @@ impl RunState<'_> {
         let (bed, bodies, bases) = (Settled::default(), Vec::new(), Vec::new());
         let mut grains =
             GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases, carried: None };
-        if let Some(carried) = self.carried.take().filter(|_| self.loaded.is_none()) {
+        if let Some(mut carried) = self.carried.take().filter(|_| self.loaded.is_none()) {
             // The bodies are as the bed before began with them: bonds refer to these places. Where they are now follows with their state.
             let bodies = carried.bodies(&grains.part);
             match is_packed(job) {
