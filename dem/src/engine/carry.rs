@@ -124,7 +124,7 @@ mod tests {
         let model = Model::new(input.clone()).unwrap();
         let far = Vec3::new(0.0, 0.0, -40.0);
         input.planes.insert(0, Plane { point: far, normal: Vec3::z(), material: 0, velocity: Vec3::zeros() });
-        input.bodies.push(BodyInput { position: Vec3::new(0.0, 0.0, 30.0), ..BodyInput::default() });
+        input.bodies.push(BodyInput { position: Vec3::new(0.1, 0.1, 30.0), ..BodyInput::default() });
         let other = Model::new(input).unwrap();
         let advance = |model: &Model, state: &mut State, steps: u64| {
             let mut work = Work::new(model, state);
