@@ -1,8 +1,8 @@
 //! What each command does.
 
-mod check;
+pub mod check;
 mod convert;
-mod explain;
+pub mod explain;
 mod mesh;
 mod modal;
 mod output;
@@ -85,6 +85,7 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
         force: args.force,
         strict: args.strict,
         interrupt: run::Interrupt::on_signals("the present step")?,
+        accompanied: run::Accompanied::default(),
         verbosity,
     };
     match run::run(&args.scene, &options)? {

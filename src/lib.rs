@@ -16,6 +16,7 @@ pub mod mesh_tools;
 pub mod message;
 pub mod model;
 pub mod plausible;
+pub mod program;
 mod progress;
 pub mod read;
 pub mod render;

@@ -104,7 +104,7 @@ impl Interrupt {
     }
 
     /// Makes the request.
-    pub(crate) fn request(&self) {
+    pub fn request(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 

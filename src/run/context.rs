@@ -1,6 +1,7 @@
 //! What all stages of a run share and none changes.
 
 use super::checkpoint_store::CheckpointStore;
+use super::companion::Accompanied;
 use super::folder;
 use super::origin::quoted;
 use super::run_file::{self, RunFile, Source};
@@ -36,6 +37,8 @@ pub struct Run<'a> {
     pub set_down: &'a OnceCell<fem::Model>,
     /// The run from whose end this one goes on.
     pub from: Option<Source<'a>>,
+    /// Who accompanies the run.
+    pub accompanied: &'a Accompanied,
     /// Values that are not plausible, until they are remarked on.
     pub findings: Cell<Vec<Finding>>,
 }

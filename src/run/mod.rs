@@ -4,6 +4,7 @@ mod bed;
 mod bond_output;
 mod checkpoint;
 mod checkpoint_store;
+mod companion;
 mod context;
 mod energy_watch;
 pub mod estimate;
@@ -34,6 +35,7 @@ mod track_output;
 mod wall_output;
 
 pub use checkpoint_store::Interrupt;
+pub use companion::{Accompanied, Companion, Shown};
 pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, parse_size, size};
@@ -85,6 +87,8 @@ pub struct Options {
     pub strict: bool,
     /// Request to stop with a checkpoint.
     pub interrupt: Interrupt,
+    /// Who accompanies the run.
+    pub accompanied: Accompanied,
     /// How much is printed.
     pub verbosity: Verbosity,
 }
@@ -172,6 +176,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             set_down: &set_down,
             from: source,
             findings: Cell::new(findings),
+            accompanied: &options.accompanied,
         };
         let state = begun(loaded, previous, options, summary)?;
         carry_out(&run, state, &lock)

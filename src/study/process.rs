@@ -1,6 +1,7 @@
 //! Runs as processes of their own: none ends another, whatever becomes of it.
 
 use crate::message::shown;
+use crate::program;
 use crate::read::source;
 use std::fs::File;
 use std::io;
@@ -31,7 +32,7 @@ pub fn start(
     beginning: Beginning,
     log: &Path,
 ) -> io::Result<Child> {
-    let mut command = Command::new(std::env::current_exe()?);
+    let mut command = program::command()?;
     command.arg("run").arg(scene).arg("--out").arg(out);
     command.args(["--quiet", "--threads", &threads.to_string()]);
     command.arg(if beginning == Beginning::Anew { "--force" } else { "--resume" });

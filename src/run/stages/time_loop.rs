@@ -7,6 +7,7 @@ use crate::model::grains::GrainsPart;
 use crate::progress::Progress;
 use crate::run::bond_output;
 use crate::run::checkpoint::{Loaded, Moment};
+use crate::run::companion::Shown;
 use crate::run::context::Run;
 use crate::run::events;
 use crate::run::flow::Flow;
@@ -115,6 +116,7 @@ pub fn advance<S: System>(
     summary: &mut Summary,
 ) -> Result<(), Failure> {
     let mut looped = TimeLoop::begin(run, system, grains, resumed, settled)?;
+    looped.show(system)?;
     run.checkpoints.begin();
     let mut outcome = Ok(());
     while outcome.is_ok() && looped.place.done < looped.place.windows {
@@ -171,7 +173,12 @@ impl<'a> TimeLoop<'a> {
         let (k, track) = (self.place.done + 1, &mut self.track);
         let time = k as f64 * self.cadence.window;
         track.begin_window();
-        match system.advance(&mut |t, model, state, out| track.apply(t, model, state, out)) {
+        let companion = self.run.accompanied.0.as_deref();
+        let mut apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            track.apply(t, model, state, out);
+            companion.iter().for_each(|c| c.push(model, state, out));
+        };
+        match system.advance(&mut apply) {
             // A step that was given up leaves the system as it was before.
             Err(Failure::Interrupted(_)) => {
                 return self.keep(self.place.done as f64 * self.cadence.window, system);
@@ -198,7 +205,23 @@ impl<'a> TimeLoop<'a> {
             self.progress.message(text);
         }
         self.progress.at(reached as f64, || details(system, time, k));
+        self.show(system)?;
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
+    }
+
+    /// Shows the state to who accompanies the run.
+    fn show<S: System>(&self, system: &S) -> Result<(), Failure> {
+        let Some(companion) = &self.run.accompanied.0 else { return Ok(()) };
+        let Place { done, windows, .. } = self.place;
+        companion.follow(&Shown {
+            time: done as f64 * self.cadence.window,
+            done,
+            windows,
+            grains: system.grains(),
+            solid: system.solid(),
+            stored: system.stored(),
+            spent: system.spent(),
+        })
     }
 
     /// After a load cycle that ended with window `k`.

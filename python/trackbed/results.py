@@ -1,0 +1,122 @@
+"""Results of a run, as they lie in its folder."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Union
+from xml.etree import ElementTree
+
+import numpy as np
+
+
+class Result:
+    """Results of a run: `Result("results/box")`.
+
+    Tables are pandas data frames where pandas is installed, else dictionaries of numpy arrays; columns are named with their units, as in the
+    files.
+    """
+
+    def __init__(self, folder: Union[str, "os.PathLike[str]"]) -> None:
+        self.folder = Path(folder)
+        if not self.folder.is_dir():
+            raise ValueError(f"{self.folder}: found no such folder, expected the folder of the results of a run")
+
+    def __repr__(self) -> str:
+        return f"<trackbed.Result {str(self.folder)!r}: {self.summary.get('status')}>"
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """`summary.json`: status, verdict, stages, model, energy, settlement, …"""
+        file = self.folder / "summary.json"
+        if not file.exists():
+            raise ValueError(f"{file}: found no such file, expected the results of a run that has ended")
+        return json.loads(file.read_text(encoding="utf-8"))
+
+    @cached_property
+    def log(self) -> str:
+        """`log.txt`: what the program printed at the end."""
+        return (self.folder / "log.txt").read_text(encoding="utf-8")
+
+    @property
+    def history(self) -> Any:
+        """`history.csv`: quantities in time."""
+        return self.table("history.csv")
+
+    @property
+    def cycles(self) -> Any:
+        """`cycles.csv`: a row for each load cycle."""
+        return self.table("cycles.csv")
+
+    def table(self, name: str) -> Any:
+        """A table of the folder by the name of its file, such as "history.csv" or "packing.csv"."""
+        file = self.folder / name
+        if not file.exists():
+            there = ", ".join(sorted(path.name for path in self.folder.glob("*.csv"))) or "none"
+            raise ValueError(f"{file}: found no such table, expected one of those of the run: {there}")
+        try:
+            import pandas
+        except ModuleNotFoundError:
+            return columns(file)
+        return pandas.read_csv(file)
+
+    @cached_property
+    def frames(self) -> list[dict[str, Any]]:
+        """Frames in the order of time: `time` [s] and `files` by part ("grains", "walls", "solid", "chains", …)."""
+        index = self.folder / "results.pvd"
+        if not index.exists():
+            return []
+        by_time: dict[float, dict[str, Path]] = {}
+        for entry in ElementTree.parse(index).getroot().iter("DataSet"):
+            file = self.folder / entry.attrib["file"]
+            part = file.stem.rsplit("_", 1)[0]
+            by_time.setdefault(float(entry.attrib["timestep"]), {})[part] = file
+        return [{"time": time, "files": files} for time, files in sorted(by_time.items())]
+
+    def mesh(self, part: str, frame: int = -1) -> Any:
+        """A part of a frame as a mesh of pyvista, which must be installed: `result.mesh("grains").plot()`."""
+        import pyvista
+
+        files = self.frames[frame]["files"]
+        if part not in files:
+            raise ValueError(f"part: found {part!r}, expected one of {', '.join(sorted(files))}")
+        return pyvista.read(files[part])
+
+    def plot(self, frame: int = -1, **options: Any) -> Any:
+        """A picture of a frame by pyvista: grains as spheres, the solid by its displacement. `options` are those of `Plotter.show`, such as
+        `screenshot="bed.png"`."""
+        import pyvista
+
+        plotter = pyvista.Plotter(off_screen=options.pop("off_screen", "screenshot" in options))
+        files = self.frames[frame]["files"]
+        if "grains" in files:
+            grains = self.mesh("grains", frame)
+            ball = pyvista.Sphere(radius=1.0, theta_resolution=16, phi_resolution=12)
+            plotter.add_mesh(grains.glyph(geom=ball, scale="radius", orient=False, factor=1.0), color="#b7a98f", smooth_shading=True)
+        for part in ("walls", "solid"):
+            if part in files:
+                mesh = self.mesh(part, frame)
+                if part == "solid":
+                    plotter.add_mesh(mesh.warp_by_vector("displacement"), scalars="displacement", show_edges=True)
+                else:
+                    plotter.add_mesh(mesh, color="#8899aa", opacity=0.3)
+        return plotter.show(**options)
+
+
+def columns(file: Path) -> dict[str, np.ndarray]:
+    """Columns of a table with a heading."""
+    with open(file, newline="", encoding="utf-8") as rows:
+        heading, *body = csv.reader(rows)
+    values = list(zip(*body)) if body else [()] * len(heading)
+    return {name: numbers(column) for name, column in zip(heading, values)}
+
+
+def numbers(column: tuple[str, ...]) -> np.ndarray:
+    """A column as numbers, empty places as not-a-number; as texts where it holds others."""
+    try:
+        return np.array([float(value) if value else np.nan for value in column])
+    except ValueError:
+        return np.array(column)

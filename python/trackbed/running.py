@@ -1,0 +1,104 @@
+"""Whole runs, checks, estimates and studies."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Union
+
+from . import _trackbed
+from .overrides import Overrides, assignments
+from .results import Result
+from .simulation import Simulation
+
+Folder = Union[str, "os.PathLike[str]"]
+
+
+def run(
+    scene: Folder,
+    out: Folder | None = None,
+    *,
+    set: Overrides = None,
+    threads: int | None = None,
+    memory: str | None = None,
+    resume: bool = False,
+    from_run: Folder | None = None,
+    bed: bool = False,
+    force: bool = False,
+    strict: bool = False,
+    progress: bool = False,
+    callback: Callable[[Simulation], Any] | None = None,
+    every: int = 1,
+) -> Result:
+    """Runs a scene and returns its results.
+
+    scene: the scene file.
+    out: folder of the results; default `results/<name>`, as of the program.
+    set: overrides of keys: `{"track.load.cycles": 10}`, or `["track.load.cycles=10"]`; `None` as a value takes a key away.
+    threads: default all cores. The results have the same bits for any number.
+    memory: most that a solid may need, such as "8GB".
+    resume: go on from the last checkpoint in `out`.
+    from_run, bed: start from the end of a finished run in that folder, or with its bed only.
+    force: replace what is in `out`.
+    strict: refuse values that are not plausible.
+    progress: show the program's progress on standard error.
+    callback: called with the paused `Simulation` before the first window and after each `every` windows, the last included. An exception
+        in it ends the run with a checkpoint.
+
+    Raises `ValueError` (bad input; nothing is written), `NumericalError` (the last checkpoint is kept), `OSError` (the disk), and
+    `KeyboardInterrupt` after Ctrl-C, with how to go on.
+    """
+    options = dict(
+        out=out, threads=threads, memory=memory, resume=resume, from_run=from_run, bed=bed, force=force, strict=strict, progress=progress
+    )
+    if callback is None:
+        return Result(_trackbed.run(os.fspath(scene), set=assignments(set), **paths(options)))
+    with Simulation(scene, set=set, **options) as simulation:
+        callback(simulation)
+        while not simulation.finished:
+            simulation.step(every)
+            callback(simulation)
+        return simulation.finish()
+
+
+def paths(options: dict[str, Any]) -> dict[str, Any]:
+    """Options with their paths as texts."""
+    return {name: os.fspath(value) if isinstance(value, os.PathLike) else value for name, value in options.items()}
+
+
+def check(scene: Folder, *, set: Overrides = None, strict: bool = False) -> dict[str, Any]:
+    """Reads and resolves a scene without running it, and reports what would happen, by name: `title`, `findings` (values that are not
+    plausible), `solid`, `grains`, `coupling` and the `lines` that `trackbed check` prints. Raises `ValueError` for what a run would refuse."""
+    return json.loads(_trackbed.check(os.fspath(scene), assignments(set), strict))
+
+
+def explain(scene: Folder, *, set: Overrides = None, threads: int | None = None, rehearse: float = 10.0) -> dict[str, Any]:
+    """The report of `check` with the stages of a run, its memory, and `time`: seconds by stage, measured by `rehearse` seconds of it."""
+    return json.loads(_trackbed.explain(os.fspath(scene), assignments(set), threads, rehearse))
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of scenes."""
+    return json.loads(_trackbed.schema())
+
+
+def study(
+    file: Folder, out: Folder | None = None, *, jobs: int | None = None, threads: int | None = None, resume: bool = False, force: bool = False
+) -> list[dict[str, str]]:
+    """Carries out a study as `trackbed study` does, every run a process of its own; the rows of its table (`table.csv`) by column."""
+    import csv
+
+    folder = Path(out) if out is not None else Path("results") / Path(file).stem
+    words = [sys.executable, "-m", "trackbed", "study", os.fspath(file), "--out", os.fspath(folder), "--quiet"]
+    words += [word for name, value in (("--jobs", jobs), ("--threads", threads)) if value is not None for word in (name, str(value))]
+    words += [name for name, value in (("--resume", resume), ("--force", force)) if value]
+    done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode != 0:
+        kind = {2: ValueError, 3: _trackbed.NumericalError}.get(done.returncode, OSError)
+        raise kind(done.stderr.strip().removeprefix("error: "))
+    with open(folder / "table.csv", newline="", encoding="utf-8") as rows:
+        return list(csv.DictReader(rows))
