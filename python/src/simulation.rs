@@ -77,8 +77,8 @@ impl Simulation {
     }
 
     /// Windows done: steps in which forces and motions of grains and solid are exchanged, and rows may be written.
-    #[getter]
-    fn windows(&self) -> u64 {
+    #[getter(windows)]
+    fn windows_done(&self) -> u64 {
         self.place.done
     }
 

@@ -89,7 +89,7 @@ def schema() -> dict[str, Any]:
 def study(
     file: Folder, out: Folder | None = None, *, jobs: int | None = None, threads: int | None = None, resume: bool = False, force: bool = False
 ) -> list[dict[str, str]]:
-    """Carries out a study as `trackbed study` does, every run a process of its own; the rows of its table (`table.csv`) by column."""
+    """Carries out a study as `trackbed study` does, every run a process of its own; the rows of its table (`study.csv`) by column."""
     import csv
 
     folder = Path(out) if out is not None else Path("results") / Path(file).stem
@@ -100,5 +100,5 @@ def study(
     if done.returncode != 0:
         kind = {2: ValueError, 3: _trackbed.NumericalError}.get(done.returncode, OSError)
         raise kind(done.stderr.strip().removeprefix("error: "))
-    with open(folder / "table.csv", newline="", encoding="utf-8") as rows:
+    with open(folder / "study.csv", newline="", encoding="utf-8") as rows:
         return list(csv.DictReader(rows))
