@@ -464,6 +464,6 @@ fn table<'py, T: Element + Copy, const N: usize>(
 
 fn closed() -> PyErr {
     PyRuntimeError::new_err(
-        "the run has ended: its results are in the folder, its last state is not in memory",
+        "the run has ended, and its last state is not in memory: a run that was stopped goes on with resume=True",
     )
 }

@@ -137,6 +137,8 @@ def test_free_fall_and_a_force_that_holds(falling, tmp_path):
         assert rise == pytest.approx((20 - 9.81) * (sim.time - begun) ** 2 / 2, rel=0.02)
         assert sim.energy()["applied_work"] - before == pytest.approx(20 * mass[2] * rise, rel=0.01)
         sim.clear_forces()
+        sim.run_until(1.0)
+        assert sim.finished and sim.time < 0.21
     assert sim.result.summary["energy"]["relative_error"] < 1e-3
 
 
