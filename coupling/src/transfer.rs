@@ -9,6 +9,7 @@
 use crate::face::{self, cross};
 use crate::surface::SolidSurface;
 use std::ops::Range;
+use trackbed_dem::sheet::couple_at_corners;
 use trackbed_dem::surface::SurfaceContact;
 use trackbed_fem::mesh::Face;
 
@@ -93,10 +94,13 @@ impl Transfer {
                     drag[d] += n * contact.dashpot[d] * dt;
                 }
             }
+            if contact.couple != [0.0; 3] {
+                self.add_couple(surface, contact);
+            }
             let arm = cross(contact.point, contact.force);
             for d in 0..3 {
                 force[d] += contact.force[d];
-                moment[d] += arm[d];
+                moment[d] += arm[d] + contact.couple[d];
                 self.face_impulse[contact.patch as usize][d] += contact.force[d] * dt;
             }
             force_scale += norm(contact.force);
@@ -121,6 +125,19 @@ impl Transfer {
         if force_scale > 0.0 {
             audit.force = audit.force.max(norm(force) / force_scale);
             audit.moment = audit.moment.max(norm(moment) / moment_scale.max(f64::MIN_POSITIVE));
+        }
+    }
+
+    /// Adds the moment of a contact with a triangle as forces at its corners, whose sum is zero.
+    fn add_couple(&mut self, surface: &SolidSurface, contact: &SurfaceContact) {
+        let nodes = surface.face_nodes(contact.patch);
+        let corners = [0, 1, 2].map(|k| surface.position(nodes[k]));
+        for (&node, force) in nodes.iter().zip(couple_at_corners(corners, contact.couple)) {
+            let load = &mut self.load[node as usize];
+            if *load == [0.0; 3] {
+                self.loaded.push(node);
+            }
+            (0..3).for_each(|d| load[d] += force[d]);
         }
     }
 

@@ -35,7 +35,7 @@ pub use engine::{input, model, state, step, timestep, work};
 pub use insert::flow;
 pub use law::material;
 pub use shape::plane::{Plane, PlaneMotion};
-pub use spatial::{bvh, detect, distance, surface};
+pub use spatial::{bvh, detect, distance, sheet, surface};
 
 pub use body_force::{BodyForce, DragArea, Measured, Orbit, Water, Wave, WaveError, Wind};
 pub use error::{ModelError, Partner, StepError};

@@ -18,6 +18,7 @@ use crate::failure::Failure;
 use crate::message::shown;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError, Table};
+use std::sync::Arc;
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
 
@@ -73,7 +74,7 @@ impl Job {
             refuse_tables_of_grains(scene)?;
         }
         let coupling = match (scene.optional("coupling", &scene.coupling), &solid, &grains) {
-            (Some(c), Some(s), Some(_)) => Some(exchange::build(&c, s)?),
+            (Some(c), Some(s), Some(g)) => Some(exchange::build(&c, s, g.groups.polyhedra())?),
             (Some(c), _, _) => return Err(c.here("only one side", "both [solid] and [[grains]]").into()),
             (None, Some(_), Some(_)) => {
                 let expected = "[coupling], since the scene has [solid] and [[grains]]";
@@ -83,6 +84,9 @@ impl Job {
         };
         if let (Some(c), Some(g)) = (&coupling, &mut grains) {
             g.set_sleeper_faces(c.ground_faces as u32);
+            if let Some(s) = solid.as_ref().filter(|_| g.groups.polyhedra()) {
+                g.surface.mesh = c.surface_mesh(s).map(Arc::new);
+            }
         }
         let jumps = grains.as_ref().and_then(|g| g.track.after.jump).is_some_and(|j| j.grains);
         if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {

@@ -129,6 +129,9 @@ pub fn top_below(
 ) -> f64 {
     let mut top = f64::NEG_INFINITY;
     for body in (0..model.body_count()).filter(|&b| state.present(b)) {
+        if let Some(z) = dem::measure::highest_over(model, state, body, centre, [half[0], half[1]]) {
+            top = top.max(z);
+        }
         for (x, r) in state.spheres(model, body) {
             let over = [0, 1].map(|d| ((x[d] - centre[d]).abs() - half[d]).max(0.0));
             let reach = r * r - over[0] * over[0] - over[1] * over[1];

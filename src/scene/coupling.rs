@@ -35,17 +35,15 @@ pub struct Coupling {
     /// Largest angle between a face's normal and `direction` [rad]; default 75 degrees.
     #[serde(default = "steep")]
     pub max_angle: Quantity<Angle>,
-    /// What grains touch of the faces of the ground; default `curved`.
-    #[serde(default)]
-    pub faces: FacesName,
+    /// What grains touch of the faces of the ground; default `curved`, with polyhedra `flat`.
+    pub faces: Option<FacesName>,
 }
 
 /// What grains touch of the faces of the ground.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum FacesName {
     /// The faces themselves, with the curvature that their mid-side nodes and the deformation give them.
-    #[default]
     Curved,
     /// Flat triangles between the nodes of the faces.
     Flat,

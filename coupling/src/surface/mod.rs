@@ -12,7 +12,9 @@ use crate::face::{self, Form, Location};
 use crate::spread::Spread;
 pub use facets::facets;
 use sides::Sides;
+use trackbed_dem::Vec3;
 use trackbed_dem::bvh::Bvh;
+use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
 use trackbed_fem::FaceShape;
 use trackbed_fem::mesh::{Face, Mesh};
@@ -166,6 +168,28 @@ impl SolidSurface {
     pub fn place(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
         let x = self.face_nodes[patch as usize].map(|n| self.position(n));
         face::interpolate(self.shape(patch), &x, natural)
+    }
+
+    /// The surface in the mesh's own shape as triangles between its nodes, which bodies with faces touch; `None` where not all of its
+    /// faces are flat triangles ([`facets`]).
+    pub fn triangles(&self) -> Option<SurfaceMesh> {
+        let flat = self.shapes.iter().all(|s| *s == FaceShape::Tri3);
+        flat.then(|| SurfaceMesh {
+            vertices: self.shape.iter().map(|x| Vec3::from(*x)).collect(),
+            triangles: self.face_nodes.iter().map(|n| [n[0], n[1], n[2]]).collect(),
+        })
+    }
+
+    /// Velocity of surface node `node` that damping and friction see [m/s].
+    fn node_velocity(&self, node: u32) -> [f64; 3] {
+        let n = node as usize;
+        match &self.velocity {
+            None => self.rate[n],
+            Some([first, change]) => {
+                let share = self.tau / self.duration;
+                [0, 1, 2].map(|d| first[n][d] + share * change[n][d])
+            }
+        }
     }
 
     /// Present position of surface node `node` [m].
@@ -360,9 +384,8 @@ impl Surface for SolidSurface {
         let velocity = match &self.velocity {
             None if self.moving => self.forms[patch as usize][1].at(closest.natural),
             None => [0.0; 3],
-            Some([first, change]) => {
-                let share = self.tau / self.duration;
-                let at = |n: u32| [0, 1, 2].map(|d| first[n as usize][d] + share * change[n as usize][d]);
+            Some(_) => {
+                let at = |n: u32| self.node_velocity(n);
                 face::interpolate(shape, &nodes.map(at), closest.natural)
             }
         };
@@ -373,6 +396,10 @@ impl Surface for SolidSurface {
             Location::Corner(c) => Feature::Vertex(nodes[c as usize]),
         };
         PatchPoint { point: closest.point, normal: closest.normal, velocity, local: closest.natural, feature }
+    }
+
+    fn vertex(&self, vertex: u32) -> Option<[Vec3; 2]> {
+        Some([self.position(vertex).into(), self.node_velocity(vertex).into()])
     }
 
     fn max_speed(&self) -> f64 {

@@ -130,6 +130,7 @@ fn loads_on_every_kind_keep_force_moment_and_power() {
                 point: found.point,
                 force,
                 dashpot: [0.0; 3],
+                couple: [0.0; 3],
                 overlap: 0.0,
             };
             let mut transfer = Transfer::new(&surface);
@@ -190,6 +191,7 @@ fn stones_under_a_uniform_pressure_load_the_nodes_as_the_pressure_does() {
                     point: surface.place(k as u32, local),
                     force: [0.0, 0.0, -1e4 * area * weight / natural],
                     dashpot: [0.0; 3],
+                    couple: [0.0; 3],
                     overlap: 0.0,
                 })
                 .collect();

@@ -13,6 +13,7 @@ mod impact;
 mod kinds;
 mod mapping;
 mod plate;
+mod polyhedra;
 mod pressure;
 mod reduction;
 mod rest;

@@ -127,6 +127,7 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
             point,
             force,
             dashpot: [0.0; 3],
+            couple: [0.0; 3],
             overlap: 0.0,
         };
         let (load, audit) = spread_load(&solid, &surface, &c);

@@ -101,6 +101,7 @@ pub fn contact(surface: &SolidSurface, centre: [f64; 3], force: [f64; 3]) -> Sur
         point: nearest.1.point,
         force,
         dashpot: [0.0; 3],
+        couple: [0.0; 3],
         overlap: 0.0,
     }
 }

@@ -24,7 +24,17 @@ fn rough_block() -> trackbed_fem::Model {
 
 fn at(surface: &SolidSurface, patch: u32, local: [f64; 2], force: [f64; 3]) -> SurfaceContact {
     let point = surface.place(patch, local);
-    SurfaceContact { sphere: 0, body: 0, patch, local, point, force, dashpot: [0.0; 3], overlap: 0.0 }
+    SurfaceContact {
+        sphere: 0,
+        body: 0,
+        patch,
+        local,
+        point,
+        force,
+        couple: [0.0; 3],
+        dashpot: [0.0; 3],
+        overlap: 0.0,
+    }
 }
 
 /// V0.6: Σ Fᵢ = F and Σ xᵢ × Fᵢ = p × F to 1e-13, and only nodes of the face are loaded.

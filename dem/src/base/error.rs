@@ -259,6 +259,11 @@ pub enum StepError {
     /// A surface is given, but the model has no material for it.
     #[error("a surface is given, but the model names no material for it (surface_material)")]
     SurfaceMaterial,
+    /// The surface is not made of the triangles that the model has of it.
+    #[error(
+        "a surface is given that is not made of the triangles that the model names for it (surface_mesh)"
+    )]
+    SurfaceMesh,
     /// State or work belongs to another model.
     #[error("the state holds {found} bodies, the model {expected}")]
     Mismatch {

@@ -378,6 +378,7 @@ fn apply<S: Surface>(
                 local: result.local,
                 point: contact.point.into(),
                 force: (-force).into(),
+                couple: [0.0; 3],
                 overlap: contact.overlap,
             });
         } else {

@@ -35,6 +35,7 @@ impl Work {
             simd: Simd::best(),
             planes: Vec::new(),
             walls: Vec::new(),
+            sheet: Vec::new(),
             material: None,
             plane_material: common(model.planes.iter().map(|p| p.material as u32)),
             parallel: model.sphere_count() >= PARALLEL,
@@ -73,8 +74,8 @@ impl Work {
 /// Gives each contact between blocks its slot and each body the list of slots it gathers, in one fixed order.
 pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
     let mut counts = vec![0; state.blocks.len()];
-    let Work { members, blocks: works, cross: forces, walls, .. } = work;
-    let now = candidates::now(model, state, members, walls);
+    let Work { members, blocks: works, cross: forces, walls, sheet, .. } = work;
+    let now = candidates::now(model, state, members, (walls, sheet));
     for (b, cross) in state.cross.iter().enumerate() {
         counts[b] += cross.spheres.len();
         (0..cross.spheres.len()).for_each(|k| counts[cross.spheres.name(k)[1] as usize] += 1);

@@ -17,15 +17,16 @@ use crate::shape::cuboid;
 use crate::spatial::cells::Cells;
 use crate::spatial::patchwork::{WallNow, Walls};
 use crate::spatial::periodic::Space;
+use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
     super::bonds::hold(model, state, &mut work.held);
-    let Work { members, blocks: works, parallel, held, walls: standing, .. } = &mut *work;
+    let Work { members, blocks: works, parallel, held, walls: standing, sheet, .. } = &mut *work;
     let all = All::new(model, state, members, held);
-    let kinds = model.solids.then(|| Search::new(now(model, state, members, standing)));
+    let kinds = model.solids.then(|| Search::new(now(model, state, members, (standing, sheet))));
     let walls = model.walls.placed(&state.walls);
     let one = |(b, w): (usize, &mut BlockWork)| {
         let c = &mut w.candidates;
@@ -255,7 +256,7 @@ pub(crate) fn now<'a>(
     model: &'a Model,
     state: &'a State,
     members: &'a [Members],
-    walls: &'a [WallNow],
+    (walls, sheet): (&'a [WallNow], &'a [SheetFacet]),
 ) -> Now<'a> {
     Now {
         blocks: Part { first: 0, list: &state.blocks },
@@ -264,6 +265,7 @@ pub(crate) fn now<'a>(
         cores: &model.cores,
         planes: (&model.planes, &state.planes),
         walls: Walls { patches: &model.patches, walls },
+        sheet: model.sheet_at(sheet),
         periodic: model.periodic.as_ref(),
     }
 }

@@ -143,8 +143,8 @@ fn bodies(input: &ModelInput) -> Result<(), ModelError> {
                 return Err(error(quantity, value, "be finite"));
             }
         }
-        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. } | Shape::Polyhedron(_)) {
-            return Err(ModelError::Absent { body: index, problem: "it is not made of spheres" });
+        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. }) {
+            return Err(ModelError::Absent { body: index, problem: "it is a box" });
         }
         if (b.orientation.norm() - 1.0).abs() > 1e-6 || b.orientation.norm().is_nan() {
             return Err(error("norm of the orientation", b.orientation.norm(), "be 1"));
@@ -182,6 +182,18 @@ fn walls(input: &ModelInput) -> Result<(), ModelError> {
         }
     }
     crate::wall::check::walls(&input.walls, count)?;
+    if let Some(mesh) = &input.surface_mesh {
+        let problem = if mesh.triangles.iter().flatten().any(|&v| v as usize >= mesh.vertices.len()) {
+            "one of its triangles names a vertex that does not exist"
+        } else if input.surface_material.is_none() {
+            "it has no material"
+        } else {
+            ""
+        };
+        if !problem.is_empty() {
+            return Err(ModelError::Wall { wall: "the external surface".into(), problem });
+        }
+    }
     for m in surfaces(input) {
         in_range("surface", 0, "material", m, count)?;
     }
@@ -247,7 +259,8 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
         if let Some(p) = input.planes.iter().position(|p| endless(a.material, p.material)) {
             return error(format!("plane {p}"));
         }
-        if a.kind != Kind::Solid {
+        // Boxes touch neither.
+        if a.kind != Kind::Solid || input.shapes[a.shape].dilated() {
             if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
                 return error(format!("triangle surface {t}"));
             }
@@ -278,7 +291,10 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     let error = |problem: String| Err(ModelError::Shape { shape: first.shape, problem });
     for (what, there) in [
         ("a rigid body of triangles", input.walls.iter().any(|w| w.body.is_some())),
-        ("an external surface", surfaces(input).next().is_some()),
+        (
+            "an external surface that is not given as triangles",
+            surfaces(input).next().is_some() && input.surface_mesh.is_none(),
+        ),
         ("bonds", !input.bonds.is_empty()),
     ] {
         if there {

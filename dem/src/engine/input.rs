@@ -7,8 +7,10 @@ use crate::bond::{Bond, BondInput};
 use crate::law::material::{Material, PairOverride};
 use crate::shape::Shape;
 use crate::shape::plane::Plane;
+use crate::spatial::sheet::SurfaceMesh;
 use crate::wall::{TriangleSurface, WallInput};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,6 +100,8 @@ pub struct ModelInput {
     /// Part of the external surface that is of another material: its first patch, from which on all others follow, and
     /// the material (index).
     pub other_surface: Option<(u32, usize)>,
+    /// The external surface as triangles, which dilated polyhedra need beside one.
+    pub surface_mesh: Option<Arc<SurfaceMesh>>,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
     /// Body forces beside gravity.
@@ -132,6 +136,7 @@ impl Default for ModelInput {
             walls: Vec::new(),
             surface_material: None,
             other_surface: None,
+            surface_mesh: None,
             gravity: Vec3::new(0.0, 0.0, -9.81),
             body_forces: Vec::new(),
             time_step: TimeStep::Auto { fraction: 0.1 },

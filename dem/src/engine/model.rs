@@ -9,12 +9,14 @@ use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
 use crate::body_force::{self, BodyForce, Skin};
+use crate::contact::kind::SheetView;
 use crate::law::Laws;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::Plane;
 use crate::spatial::patchwork::Patch;
 use crate::spatial::periodic::Periodic;
+use crate::spatial::sheet::{Sheet, SheetFacet};
 use crate::wall::{WallInput, set::Walls};
 
 /// Spheres that a block of bodies holds, about. Part of a scene's numbers (it orders sums), so a constant.
@@ -55,6 +57,8 @@ pub struct Model {
     pub(crate) bonds: Vec<crate::bond::Constants>,
     /// Patches of the walls, where bodies with faces may touch them.
     pub(crate) patches: Vec<Patch>,
+    /// The external surface, where bodies with faces may touch it.
+    pub(crate) sheet: Sheet,
     pub(crate) periodic: Option<Periodic>,
     steps: Steps,
     limit: DtLimit,
@@ -159,6 +163,7 @@ impl Model {
             shapes: input.shapes,
             skin,
             patches,
+            sheet: Sheet::new(input.surface_mesh.as_deref().filter(|_| faces)),
             periodic,
             bonds,
             radii,
@@ -337,6 +342,11 @@ impl Model {
             Some((first, material)) if patch >= first => material as usize,
             _ => self.surface_material.unwrap_or(0) as usize,
         }
+    }
+
+    /// The external surface where its triangles are.
+    pub(crate) fn sheet_at<'a>(&self, facets: &'a [SheetFacet]) -> SheetView<'a> {
+        SheetView { facets, materials: (self.surface_material.unwrap_or(0), self.other_surface) }
     }
 
     /// Material of a body.

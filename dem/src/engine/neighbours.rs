@@ -79,7 +79,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     let State { blocks, lists, cross, planes, walls, near, .. } = &mut *state;
     let (blocks, near, planes) = (&*blocks, *near, &*planes);
     let walls = model.walls.placed(walls);
-    let Work { members, blocks: works, merging: pool, parallel, walls: standing, .. } = &mut *work;
+    let Work { members, blocks: works, merging: pool, parallel, walls: standing, sheet, .. } = &mut *work;
     let (members, pool) = (&*members, &*pool);
     let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
     let now = Now {
@@ -89,6 +89,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         cores: &model.cores,
         planes: (&model.planes, planes),
         walls: Walls { patches: &model.patches, walls: standing },
+        sheet: model.sheet_at(sheet),
         periodic: model.periodic.as_ref(),
     };
 

@@ -25,6 +25,7 @@ pub fn find_contacts<S: Surface>(
         *lists = BlockLists { bonds: std::mem::take(&mut lists.bonds), ..seen };
     }
     state.cross = probe.cross;
+    state.sheet = probe.sheet;
     for (wall, seen) in state.walls.iter_mut().zip(probe.walls) {
         (wall.force, wall.moment, wall.feet) = (seen.force, seen.moment, seen.feet);
     }

@@ -39,6 +39,7 @@ impl State {
             bonds: BondState::default(),
             planes: model.planes.iter().map(plane).collect(),
             walls: model.walls.start(&model.gravity, model.dt()),
+            sheet: model.sheet.rest.clone(),
             near: 0.1 * model.skin,
             drift: 0.0,
             wall_drift: 0.0,

@@ -57,6 +57,8 @@ pub struct State {
     pub(crate) bonds: BondState,
     pub(crate) planes: Vec<PlaneMotion>,
     pub(crate) walls: Vec<WallState>,
+    /// Place and velocity of each corner of the external surface in the last step, where bodies with faces may touch it.
+    pub(crate) sheet: Vec<[Vec3; 2]>,
     /// Reach of the near list beyond touch [m], how much of it motion has used up, and the steps it has lasted.
     pub(crate) near: f64,
     pub(crate) drift: f64,

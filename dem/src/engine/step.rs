@@ -64,6 +64,9 @@ pub fn step<S: Surface>(
     if !model.patches.is_empty() {
         model.walls.now(&state.walls, 0.0, &mut work.walls);
     }
+    if !model.sheet.is_empty() {
+        sheet(model, state, work, surface)?;
+    }
     neighbours::update(model, state, work, surface);
     if !model.bonds.is_empty() {
         let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
@@ -75,6 +78,26 @@ pub fn step<S: Surface>(
     collect(model, state, work, surface.max_speed())
 }
 
+/// Puts the triangles of the external surface where they are.
+fn sheet<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+) -> Result<(), StepError> {
+    // The lists name triangles that are there, or none.
+    state.stale |= surface.is_empty() != work.sheet.is_empty();
+    if surface.is_empty() {
+        work.sheet.clear();
+        return Ok(());
+    }
+    for (k, corner) in state.sheet.iter_mut().enumerate() {
+        *corner = surface.vertex(k as u32).ok_or(StepError::SurfaceMesh)?;
+    }
+    model.sheet.now(&state.sheet, 0.0, &mut work.sheet);
+    Ok(())
+}
+
 /// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
 fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let (pace, parallel) = (state.pace, work.parallel);
@@ -84,6 +107,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, .. } = state;
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
+    let triangles = model.sheet_at(&work.sheet);
     let patchwork = patchwork::Walls { patches: &model.patches, walls: &work.walls };
     // Contacts between blocks: they read their own block and later ones, and write slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
@@ -99,6 +123,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
                 cores,
                 planes,
                 walls: patchwork,
+                sheet: triangles,
                 periodic: model.periodic.as_ref(),
             };
             kind::forces(&setting, &now, b, pairs, out);
@@ -241,9 +266,12 @@ fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64
         sum.work_walls += cross.work_walls;
         sum.walls += &cross.walls;
         sum.periodic.angular += cross.couple;
+        sum.work_surface += cross.surface.work;
+        sum.surface += &cross.surface.impulse;
         fastest = fastest.max(tally.fastest);
         failure = failure.or(cross.failure).or(tally.failure);
         work.surface_contacts.extend_from_slice(&w.patches.contacts);
+        work.surface_contacts.extend_from_slice(&cross.surface.contacts);
     }
     let (wall_speed, wall_failure) = walls::advance(model, state, work, &mut sum);
     failure = failure.or(wall_failure);

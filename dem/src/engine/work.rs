@@ -15,6 +15,7 @@ use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::CrossForces;
 use crate::pairs::merge::Merging;
 use crate::spatial::patchwork::WallNow;
+use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::SurfaceContact;
 use nalgebra::UnitQuaternion;
 
@@ -52,6 +53,8 @@ pub struct Work {
     pub(crate) planes: Vec<PlaneNow>,
     /// Walls of patches where they are, where bodies with faces may touch them.
     pub(crate) walls: Vec<WallNow>,
+    /// The external surface where it is, likewise.
+    pub(crate) sheet: Vec<SheetFacet>,
     /// The material of all bodies and of all planes, where there is only one.
     pub(crate) material: Option<u32>,
     pub(crate) plane_material: Option<u32>,

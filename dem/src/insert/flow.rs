@@ -71,7 +71,7 @@ pub fn exchange(
             None => "there is no such body",
             Some(false) if what == "taken out" => "it is not there",
             Some(true) if what == "put in" => "it is there already",
-            _ if model.bodies.kind(body) == Kind::Solid => "it is not made of spheres",
+            _ if model.bodies.kind(body) == Kind::Solid && !model.shape(body).dilated() => "it is a box",
             _ if bonded.get(body).is_some_and(|b| *b) => "a bond holds it",
             _ => return Ok(()),
         };

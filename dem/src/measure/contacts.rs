@@ -3,7 +3,7 @@
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::Block;
-use crate::contact::kind::{KINDS, Placed, PlaneView, Scene, Visited};
+use crate::contact::kind::{KINDS, Placed, PlaneView, Scene, SheetView, Visited};
 use crate::contact::single;
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -15,6 +15,7 @@ use crate::shape::plane::PlaneMotion;
 use crate::spatial::detect;
 use crate::spatial::patchwork::{WallNow, Walls};
 use crate::spatial::periodic::Periodic;
+use crate::spatial::sheet::SheetFacet;
 use std::borrow::Cow;
 
 /// One contact.
@@ -46,6 +47,7 @@ struct Snapshot<'a> {
     model: &'a Model,
     planes: &'a [PlaneMotion],
     walls: Vec<WallNow>,
+    sheet: Vec<SheetFacet>,
     blocks: Cow<'a, [Block]>,
     /// Spheres of each block, and the places of their bodies; of blocks of single spheres, none.
     spheres: Vec<Vec<Record>>,
@@ -66,7 +68,12 @@ impl<'a> Snapshot<'a> {
         if !model.patches.is_empty() {
             model.walls.now(&state.walls, back, &mut walls);
         }
-        Snapshot { model, planes: &state.planes, walls, blocks, spheres, owners, back, last: state.pace.last }
+        let mut sheet = Vec::new();
+        if !model.sheet.is_empty() {
+            model.sheet.now(&state.sheet, back, &mut sheet);
+        }
+        let (planes, last) = (&state.planes[..], state.pace.last);
+        Snapshot { model, planes, walls, sheet, blocks, spheres, owners, back, last }
     }
 }
 
@@ -109,6 +116,10 @@ impl Scene for Snapshot<'_> {
 
     fn walls(&self) -> Walls<'_> {
         Walls { patches: &self.model.patches, walls: &self.walls }
+    }
+
+    fn sheet(&self) -> SheetView<'_> {
+        self.model.sheet_at(&self.sheet)
     }
 
     fn borders(&self) -> Option<&Periodic> {

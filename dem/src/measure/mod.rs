@@ -11,6 +11,7 @@ mod clip;
 mod contacts;
 mod coordination;
 mod energy;
+mod extent;
 mod footprint;
 mod force_on;
 mod fragments;
@@ -30,6 +31,7 @@ pub use coordination::{
 };
 pub use energy::{Energies, energies, momentum};
 pub(crate) use energy::{energies_of, momentum_of};
+pub use extent::{highest_over, lowest};
 pub use footprint::{bytes, kernels};
 pub use force_on::{force_on, loads_on};
 pub use fragments::{Fragments, fragments};

@@ -10,6 +10,7 @@ use crate::bodies::part::Part;
 use crate::bodies::sums::WallSum;
 use crate::lanes::record::Record;
 use crate::law::History;
+use crate::spatial::surface::SurfaceContact;
 use serde::{Deserialize, Serialize};
 
 /// Contacts of a block's spheres with bodies of other blocks.
@@ -81,7 +82,17 @@ pub(crate) struct CrossForces {
     pub wall_sums: Vec<WallSum>,
     /// Angular impulse about the origin that contacts across periodic borders give in this step.
     pub couple: Vec3,
+    /// Contacts of those bodies with the external surface.
+    pub surface: SurfaceBook,
     pub failure: Option<Failure>,
+}
+
+/// Contacts with the external surface, the work that it does [J], and the impulse that it gives.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SurfaceBook {
+    pub contacts: Vec<SurfaceContact>,
+    pub work: f64,
+    pub impulse: Impulse,
 }
 
 impl CrossForces {
@@ -89,6 +100,8 @@ impl CrossForces {
     pub fn clear_books(&mut self) {
         (self.dashpot, self.friction, self.work_walls) = (0.0, 0.0, 0.0);
         self.wall_sums.clear();
+        self.surface.contacts.clear();
+        (self.surface.work, self.surface.impulse) = (0.0, Impulse::default());
         (self.walls, self.couple, self.failure) = (Impulse::default(), Vec3::zeros(), None);
     }
 

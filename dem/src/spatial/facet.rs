@@ -64,6 +64,13 @@ impl Facet {
         Facet { corners, normal, edges, tips: [Share::default(); 3] }
     }
 
+    /// The same triangle, with the same shares, elsewhere.
+    pub fn at(&self, corners: [Vec3; 3]) -> Facet {
+        let mut moved = Facet::new(corners);
+        (0..3).for_each(|k| moved.edges[k].share = self.edges[k].share);
+        Facet { tips: self.tips, ..moved }
+    }
+
     /// Angle at a corner [rad].
     fn angle(&self, k: usize) -> f64 {
         let (out, back) = (self.edges[k].direction, -self.edges[(k + 2) % 3].direction);

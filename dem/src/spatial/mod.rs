@@ -9,4 +9,5 @@ pub(crate) mod patchwork;
 pub(crate) mod periodic;
 pub(crate) mod round;
 pub(crate) mod separation;
+pub mod sheet;
 pub mod surface;

@@ -33,7 +33,7 @@ pub struct PatchPoint {
 /// A contact with the external surface in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceContact {
-    /// Sphere of the body, from 0.
+    /// Sphere of the body, from 0; of a body with faces what of it and of the patch touch.
     pub sphere: u32,
     /// Body.
     pub body: u32,
@@ -45,6 +45,8 @@ pub struct SurfaceContact {
     pub point: [f64; 3],
     /// Force on the surface [N].
     pub force: [f64; 3],
+    /// Moment on the surface about the point [N m]: none of spheres; of bodies with faces, whose force acts a little beside it.
+    pub couple: [f64; 3],
     /// The part of it that the contact's dashpots make [N]; in the first step of a sticky contact also what its adhesion
     /// lacks yet.
     pub dashpot: [f64; 3],
@@ -127,6 +129,12 @@ pub trait Surface: Sync {
     /// One over the mass of the patch's wall [1/kg]; zero where its motion is prescribed.
     fn inverse_mass(&self, _patch: u32) -> f64 {
         0.0
+    }
+
+    /// Place [m] and velocity [m/s] of a vertex, as the model numbers them ([`SurfaceMesh`](super::sheet::SurfaceMesh)); `None` where the
+    /// surface is not made of triangles.
+    fn vertex(&self, _vertex: u32) -> Option<[Vec3; 2]> {
+        None
     }
 
     /// Whether there is nothing to touch.

@@ -15,6 +15,7 @@ use trackbed_coupling::stability::{
 };
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
+use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Face;
 
@@ -67,6 +68,11 @@ impl CouplingPart {
     pub fn ground(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
         let faces = self.faces[..self.ground_faces].to_vec();
         self.spread(SolidSurface::new(solid.model.mesh(), faces), grains)
+    }
+
+    /// The ground's surface as triangles between its nodes, which polyhedra touch.
+    pub fn surface_mesh(&self, solid: &SolidPart) -> Option<SurfaceMesh> {
+        SolidSurface::new(solid.model.mesh(), self.faces[..self.ground_faces].to_vec()).triangles()
     }
 
     /// The whole surface that grains touch, of `model`, where the sleepers are set down.

@@ -14,11 +14,14 @@ const PASSES: u32 = 20;
 /// Tolerance of the iterated scheme, unless the scene says otherwise.
 const TOLERANCE: f64 = 1e-4;
 
-/// Resolves `[coupling]`.
+/// Resolves `[coupling]`. `polyhedra`: there are some among the grains.
 ///
 /// # Errors
 /// Bad input.
-pub fn build(c: &Table<Coupling>, solid: &SolidPart) -> Result<CouplingPart, SceneError> {
+pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<CouplingPart, SceneError> {
+    if polyhedra {
+        beside_polyhedra(c, solid)?;
+    }
     let window = window(c)?;
     let theta = c.theta.unwrap_or(if solid.sleepers.is_some() { WITH_SLEEPERS } else { 0.5 });
     if !(0.5..=1.0).contains(&theta) {
@@ -39,7 +42,7 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart) -> Result<CouplingPart, Sce
     if faces.is_empty() {
         return Err(c.error("direction", "no boundary face that looks this way", "at least one"));
     }
-    if c.faces == FacesName::Flat {
+    if polyhedra || c.faces == Some(FacesName::Flat) {
         faces = faces.iter().flat_map(facets).collect();
     }
     let ground_faces = faces.len();
@@ -48,6 +51,22 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart) -> Result<CouplingPart, Sce
         faces.extend(mesh.boundary_faces().into_iter().filter(|f| f.element as usize >= ground));
     }
     Ok(CouplingPart { window, scheme, transfer, theta, faces, ground_faces })
+}
+
+/// Refuses what polyhedra cannot be combined with.
+fn beside_polyhedra(c: &Table<Coupling>, solid: &SolidPart) -> Result<(), SceneError> {
+    if c.faces == Some(FacesName::Curved) {
+        let expected = "\"flat\", or no such key: polyhedra touch flat triangles between the nodes";
+        return Err(c.error("faces", "\"curved\"", expected));
+    }
+    if c.scheme == SchemeName::Stiffened {
+        let expected = "another scheme beside polyhedra: this one knows contacts of spheres only";
+        return Err(c.error("scheme", "\"stiffened\"", expected));
+    }
+    if solid.sleepers.is_some() {
+        return Err(c.here("polyhedra beside meshed sleepers", "rigid sleepers, or other shapes of grains"));
+    }
+    Ok(())
 }
 
 /// How long a step of the solid is.

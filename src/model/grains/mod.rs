@@ -36,7 +36,7 @@ pub use deposition::DepositionPlan;
 pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
 pub use groups::{GradedGroup, GroupsPart};
 pub use measure::{MeasurePlan, RadialPlan};
-pub use part::{GrainsPart, PackingPlan, SurfaceMaterials};
+pub use part::{GrainsPart, PackingPlan, SurfacePlan};
 pub use preview::{Preview, check_steps, preview, with_sleepers};
 pub use refused::refused;
 pub use runout::{MOST_CELLS, RunoutPlan};
@@ -84,7 +84,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
         groups,
         bonds,
         walls,
-        surface: SurfaceMaterials { ground, sleepers: None },
+        surface: SurfacePlan { ground, sleepers: None, mesh: None },
         gravity,
         wind,
         water,

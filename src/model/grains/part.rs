@@ -14,6 +14,8 @@ use super::steps::{StepPlan, add_inertia};
 use super::structures::StructurePlan;
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
+use std::sync::Arc;
+use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
 
 /// The grains, ready to build models of.
@@ -27,8 +29,8 @@ pub struct GrainsPart {
     pub bonds: BondPart,
     /// Walls.
     pub walls: WallsPart,
-    /// Materials of the solid's surface.
-    pub surface: SurfaceMaterials,
+    /// The solid's surface.
+    pub surface: SurfacePlan,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
     /// Wind of the run proper.
@@ -57,13 +59,15 @@ pub struct GrainsPart {
     pub flow: Option<FlowPlan>,
 }
 
-/// Materials of the surface of a solid that grains touch.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfaceMaterials {
+/// The surface of a solid that grains touch.
+#[derive(Clone, Debug)]
+pub struct SurfacePlan {
     /// That of the ground; none without a solid.
     pub ground: Option<usize>,
     /// First face of meshed sleepers in the surface, and their material.
     pub sleepers: Option<(u32, usize)>,
+    /// The ground's surface as triangles, where there are polyhedra.
+    pub mesh: Option<Arc<SurfaceMesh>>,
 }
 
 /// What is done with grains before the run proper.
@@ -161,6 +165,7 @@ impl GrainsPart {
             walls: self.walls.others.clone(),
             surface_material: self.surface.ground,
             other_surface: self.surface.sleepers,
+            surface_mesh: self.surface.mesh.clone(),
             gravity: self.gravity,
             body_forces: self.body_forces().collect(),
             time_step: self.time_step(),

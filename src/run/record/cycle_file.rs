@@ -5,6 +5,7 @@ use crate::run::system::System;
 use crate::write::csv::{Column, Row};
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
+use trackbed_dem as dem;
 
 /// What follows the cycles of a load.
 pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {
@@ -12,10 +13,10 @@ pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRec
     let between = part.and_then(|g| g.track.after.between).unwrap_or(load.range());
     let column = match (part.and_then(|g| g.track.sleeper.as_ref()), system.grains()) {
         (Some(sleeper), Some(g)) => {
-            let spheres = (0..g.model.body_count())
-                .filter(|&b| g.state.present(b))
-                .flat_map(|b| g.state.spheres(g.model, b));
-            let bottom = spheres.map(|(x, r)| x.z - r).fold(f64::INFINITY, f64::min);
+            let there = || (0..g.model.body_count()).filter(|&b| g.state.present(b));
+            let spheres = there().flat_map(|b| g.state.spheres(g.model, b)).map(|(x, r)| x.z - r);
+            let stones = there().filter_map(|b| dem::measure::lowest(g.model, g.state, b));
+            let bottom = spheres.chain(stones).fold(f64::INFINITY, f64::min);
             let area = 4.0 * sleeper.row.half[0] * sleeper.row.half[1];
             let below = -sleeper.row.half[2] - bottom;
             if bottom.is_finite() { BedColumn { area, below } } else { BedColumn::default() }

@@ -15,13 +15,14 @@ mod pass;
 mod patch;
 mod round;
 mod scene;
+mod sheet;
 mod side;
 mod sphere_box;
 
 pub(crate) use dilated::LENGTH;
 pub(crate) use pair::Visited;
 pub(crate) use pass::Kind;
-pub(crate) use scene::{Now, Placed, PlaneView, Scene, Search};
+pub(crate) use scene::{Now, Placed, PlaneView, Scene, Search, SheetView};
 pub(crate) use side::Renamed;
 
 use crate::contact::single::Setting;
@@ -29,7 +30,7 @@ use crate::pairs::cross::{Cross, CrossForces};
 use pass::{Books, Of};
 
 /// All kinds. The order is that of their forces in sums, hence part of a scene's numbers.
-pub(crate) const KINDS: [&dyn Kind; 7] = [
+pub(crate) const KINDS: [&dyn Kind; 8] = [
     &Of(sphere_box::SphereBox),
     &Of(corner_plane::CornerPlane),
     &Of(box_box::BoxBox),
@@ -37,6 +38,7 @@ pub(crate) const KINDS: [&dyn Kind; 7] = [
     &Of(dilated::DilatedPlane),
     &Of(dilated::DilatedDilated),
     &Of(patch::DilatedPatch),
+    &Of(sheet::DilatedSheet),
 ];
 
 /// Forces of all pairs of kinds of block `b`; their slots follow those of the spheres.
@@ -59,6 +61,7 @@ pub(crate) fn forces(
             walls: &mut out.walls,
             wall_sums: &mut out.wall_sums,
             couple: &mut out.couple,
+            surface: &mut out.surface,
             failure: &mut out.failure,
         };
         kind.forces(setting, now, b, list, &mut books);

@@ -2,6 +2,7 @@
 
 use super::pair::{PairKind, Touch, Touches, View, Visited};
 use super::scene::{Now, Scene, Search};
+use super::sheet::{self, Met};
 use super::side::{First, Renamed, Second, Side, grown};
 use crate::base::Vec3;
 use crate::base::failure::Failure;
@@ -10,6 +11,7 @@ use crate::bodies::sums::WallSum;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
 use crate::law::ContactGeometry;
+use crate::pairs::cross::SurfaceBook;
 use crate::pairs::list::{PairList, PairName, PointMemory};
 
 /// Least number of contacts that carry the mass of a pair: so small where only ends of edges touch.
@@ -29,6 +31,8 @@ pub(crate) struct Books<'a> {
     pub wall_sums: &'a mut Vec<WallSum>,
     /// Angular impulse about the origin that contacts across periodic borders give.
     pub couple: &'a mut Vec3,
+    /// Contacts with the external surface.
+    pub surface: &'a mut SurfaceBook,
     pub failure: &'a mut Option<Failure>,
 }
 
@@ -339,7 +343,11 @@ impl<K: PairKind> Of<K> {
         if K::Second::IMAGES {
             *books.couple += way.cross(&force) * setting.dt;
         }
-        if let Some(wall) = K::Second::wall(now, j) {
+        if K::Second::EXTERNAL {
+            let body = now.block(b).bodies[K::First::body(now, b, i).unwrap_or_default()];
+            let (facet, history) = (&now.sheet.facets[j as usize], &memory.history);
+            sheet::book(setting, &Met { body, patch: j, facet, materials, touch, history }, &f, books);
+        } else if let Some(wall) = K::Second::wall(now, j) {
             let sum = &mut books.wall_sums[wall];
             sum.force += force;
             sum.moment += its.arm.cross(&force) + couple + f.moment * weight;

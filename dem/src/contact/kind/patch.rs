@@ -30,8 +30,8 @@ const PRESSING: u32 = 8;
 pub(crate) struct DilatedPatch;
 
 /// A body over a facet, both in the frame of the wall.
-fn two<'a>(body: &Placed<'a>, patch: &PatchView<'_>, facet: &'a Facet) -> Two<'a> {
-    let frame = Frame::new(&body.pose(), &patch.pose());
+pub(super) fn two<'a>(body: &Placed<'a>, pose: &Pose, facet: &'a Facet) -> Two<'a> {
+    let frame = Frame::new(&body.pose(), pose);
     Two { frame, first: &body.core.corners, second: &facet.corners }
 }
 
@@ -47,7 +47,7 @@ impl PairKind for DilatedPatch {
         }
         match &patch.patch.form {
             Form::Facet(facet) => {
-                let two = two(body, patch, facet);
+                let two = two(body, &patch.pose(), facet);
                 let most = body.radius + reach;
                 two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
             }
@@ -64,7 +64,7 @@ impl PairKind for DilatedPatch {
             return;
         }
         match &patch.patch.form {
-            Form::Facet(facet) => on_facet(body, patch, facet, hint, found),
+            Form::Facet(facet) => on_facet(body, &patch.pose(), facet, hint, found),
             Form::Round(form) => round::touches(body, patch, form, found),
         }
     }
@@ -90,8 +90,9 @@ impl Whole<'_> {
     }
 }
 
-fn on_facet(body: &Placed<'_>, patch: &PatchView<'_>, facet: &Facet, hint: &mut Hint, found: &mut Touches) {
-    let (two, reach) = (two(body, patch, facet), body.radius);
+/// What a body does to a facet in a frame, and the facet to it.
+pub(super) fn on_facet(body: &Placed<'_>, pose: &Pose, facet: &Facet, hint: &mut Hint, found: &mut Touches) {
+    let (two, reach) = (two(body, pose, facet), body.radius);
     let mut heights = Heights::new();
     match two.heights(hint, reach, &mut heights) {
         Ok(()) => {}
@@ -103,8 +104,7 @@ fn on_facet(body: &Placed<'_>, patch: &PatchView<'_>, facet: &Facet, hint: &mut 
     let near = set(heights.first.iter().copied(), |h| h < level);
     let view = View::new(n, floor, reach, heights.low - heights.high);
     let of_body = (near, &view.turned(-level));
-    let pose = patch.pose();
-    let whole = Whole { body, frame: &two.frame, of: of_body, pose: &pose };
+    let whole = Whole { body, frame: &two.frame, of: of_body, pose };
     whole.press(&Closed(facet), (FACE, 1.0), found);
     for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
         whole.press(&Rim(&facet.corners[k], edge), (EDGE + k as u32, edge.share.count), found);
@@ -116,7 +116,7 @@ fn on_facet(body: &Placed<'_>, patch: &PatchView<'_>, facet: &Facet, hint: &mut 
     if !facet.edges.iter().map(|e| e.share).chain(facet.tips).any(|s| s.press > 0.0) {
         return;
     }
-    let back = Frame::new(&pose, &body.pose());
+    let back = Frame::new(pose, &body.pose());
     let level = (level - n.dot(&two.frame.way)) / two.frame.scale;
     let floor = (floor - n.dot(&two.frame.way)) / two.frame.scale;
     let view = view.moved(&back.turn, back.scale, floor);

@@ -11,6 +11,7 @@ use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::bvh::{Aabb, Bvh};
 use crate::spatial::patchwork::{Patch, WallNow, Walls};
 use crate::spatial::periodic::Periodic;
+use crate::spatial::sheet::SheetFacet;
 use nalgebra::UnitQuaternion;
 
 /// A body that is not made of spheres, where it is.
@@ -119,7 +120,29 @@ pub(crate) trait Scene {
     /// Walls of patches; none where no body can touch them.
     fn walls(&self) -> Walls<'_>;
 
+    /// The external surface; nothing where no body can touch it.
+    fn sheet(&self) -> SheetView<'_>;
+
     fn borders(&self) -> Option<&Periodic>;
+}
+
+/// Triangles of the external surface, and what they are of.
+#[derive(Clone, Copy)]
+pub(crate) struct SheetView<'a> {
+    pub facets: &'a [SheetFacet],
+    /// Material of all, or of those before the first of another material, and that.
+    pub materials: (u32, Option<(u32, u32)>),
+}
+
+impl SheetView<'_> {
+    /// Material of a triangle.
+    #[inline(always)]
+    pub fn material(&self, number: u32) -> u32 {
+        match self.materials {
+            (_, Some((first, other))) if number >= first => other,
+            (own, _) => own,
+        }
+    }
 }
 
 /// Bodies as the step has them.
@@ -131,6 +154,7 @@ pub(crate) struct Now<'a> {
     pub cores: &'a [Core],
     pub planes: (&'a [Plane], &'a [PlaneMotion]),
     pub walls: Walls<'a>,
+    pub sheet: SheetView<'a>,
     pub periodic: Option<&'a Periodic>,
 }
 
@@ -181,6 +205,11 @@ impl Scene for Now<'_> {
     }
 
     #[inline(always)]
+    fn sheet(&self) -> SheetView<'_> {
+        self.sheet
+    }
+
+    #[inline(always)]
     fn borders(&self) -> Option<&Periodic> {
         self.periodic
     }
@@ -194,6 +223,7 @@ pub(crate) struct Search<'a> {
     pub solids: Vec<[u32; 2]>,
     tree: Bvh,
     patches: Bvh,
+    facets: Bvh,
     /// Where images of what is looked for may be, from the bodies [m]; no way at all without borders.
     images: Vec<Vec3>,
 }
@@ -211,8 +241,9 @@ impl<'a> Search<'a> {
         let Walls { patches, walls } = now.walls;
         let of_patch = |p: &Patch| walls[p.wall as usize].bounds(p);
         let patches = Bvh::new(&patches.iter().map(of_patch).collect::<Vec<_>>());
+        let facets = Bvh::new(&now.sheet.facets.iter().map(SheetFacet::bounds).collect::<Vec<_>>());
         let images = now.periodic.map_or_else(Vec::new, Periodic::around);
-        Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds), patches, images }
+        Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds), patches, facets, images }
     }
 
     /// What of a tree may come within bounds, itself or an image; ascending.
@@ -232,6 +263,12 @@ impl<'a> Search<'a> {
     /// Calls `f` with each patch of a wall that may come within bounds; ascending.
     pub fn patches_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
         self.near(&self.patches, bounds, row);
+        row.iter().copied().for_each(f);
+    }
+
+    /// Calls `f` with each triangle of the external surface that may come within bounds; ascending.
+    pub fn facets_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
+        self.near(&self.facets, bounds, row);
         row.iter().copied().for_each(f);
     }
 

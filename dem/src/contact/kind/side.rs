@@ -28,6 +28,9 @@ pub(crate) trait Side {
     /// Whether it has images across periodic borders.
     const IMAGES: bool = true;
 
+    /// Whether it belongs to another program part, which is given the contacts.
+    const EXTERNAL: bool = false;
+
     /// The body, by its place in the block; `None` where it is none.
     fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize>;
 

@@ -68,7 +68,7 @@ fn add(
 ) -> Result<(), Failure> {
     for (shape, found, expected) in [
         (GrainShape::Bonded, "\"bonded\"", "no inlet for bonded stones"),
-        (GrainShape::Polyhedron, "\"polyhedron\"", "no inlet and no pouring for polyhedra"),
+        (GrainShape::Polyhedron, "\"polyhedron\"", "no inlet for polyhedra"),
     ] {
         let waits = group.inlet.is_some() || (shape == GrainShape::Polyhedron && waits(group));
         if waits && group.shape == shape {

@@ -42,6 +42,11 @@ impl GroupsPart {
         self.bodies.iter().map(|b| self.reach(b)).sum::<f64>() / self.bodies.len().max(1) as f64
     }
 
+    /// Whether any shape is a polyhedron.
+    pub fn polyhedra(&self) -> bool {
+        self.shapes.iter().any(|s| matches!(s, Shape::Polyhedron(_)))
+    }
+
     /// Adds a shape; returns its number.
     pub fn add_shape(&mut self, shape: Shape) -> usize {
         self.shapes.push(shape);

@@ -1,0 +1,165 @@
+//! Dilated polyhedra on the faces of the solid, cut into triangles.
+
+use crate::support::*;
+use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::step;
+use trackbed_coupling::surface::{SolidSurface, facets};
+use trackbed_dem as dem;
+use trackbed_dem::shape::dilated::Dilated;
+use trackbed_dem::surface::NoSurface;
+use trackbed_dem::{Shape, Vec3};
+use trackbed_fem as fem;
+
+/// The top of a model cut into triangles.
+fn triangles(solid: &fem::Model) -> SolidSurface {
+    let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
+    SolidSurface::new(solid.mesh(), faces.iter().flat_map(facets).collect())
+}
+
+fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
+    Shape::Polyhedron(Box::new(Dilated::new(corners, radius).expect("a convex body").0))
+}
+
+/// A stone of 14 corners on an ellipsoid, 0.2 m long, with edges rounded by 6 mm.
+fn stone(seed: u64) -> Shape {
+    let mut random = Scatter::new(seed);
+    let mut corner = || {
+        let way = Vec3::from_fn(|_, _| random.symmetric()).normalize();
+        way.component_mul(&Vec3::new(0.1, 0.08, 0.06))
+    };
+    polyhedron(&(0..14).map(|_| corner()).collect::<Vec<_>>(), 0.006)
+}
+
+fn on_surface(surface: &SolidSurface, material: dem::Material, shapes: Vec<Shape>) -> dem::ModelInput {
+    dem::ModelInput {
+        materials: vec![material],
+        shapes,
+        surface_material: Some(0),
+        surface_mesh: surface.triangles().map(Into::into),
+        time_step: dem::TimeStep::Auto { fraction: 0.5 },
+        ..Default::default()
+    }
+}
+
+fn coupled<'a>(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) -> Coupled<'a> {
+    Coupled::with_surface(solid, grains, substeps, triangles(solid))
+}
+
+/// A stone in any pose, let go just above block B over the middle of a face, over seams and over the border, comes to rest on it.
+/// Contact force = weight within 1e-5, base reaction = weight within 1e-5, nodal loads = contact forces, moments included, within 1e-12
+/// in every step; the account of energy closes within 1e-3 of what was turned over.
+#[test]
+fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
+    for (k, place) in [[0.45, 0.55], [0.25, 0.5], [0.37, 0.61]].into_iter().enumerate() {
+        let solid = block_b(4, Held::Base, fem::Rayleigh { alpha_m: 400.0, beta_k: 1e-3 });
+        let surface = triangles(&solid);
+        let rock = dem::Material { tangential_damping_ratio: 1.0, ..material(2650.0, 2e5, 0.6, 0.2) };
+        let mut input = on_surface(&surface, rock, vec![stone(k as u64)]);
+        input.bodies =
+            vec![dem::BodyInput { position: Vec3::new(place[0], place[1], 0.11), ..Default::default() }];
+        let mut c = coupled(&solid, input, 2);
+        let mass = c.model.grains.mass(0);
+        let start = (step::stored(&c.model, &c.state), step::spent(&c.state));
+        while c.state.grains.time < 1.2 {
+            c.step(&[]);
+        }
+        let contacts = c.work.grains.surface_contacts();
+        let force: f64 = contacts.iter().map(|c| -c.force[2]).sum();
+        let (load, _) = nodal_load(&solid, &c.work.surface, contacts);
+        let reaction: f64 =
+            fem::energy::reactions(&solid, &c.state.solid, &load).iter().skip(2).step_by(3).sum();
+        let audit = c.state.audit;
+        let balance =
+            Balance { start: start.0, now: step::stored(&c.model, &c.state), spent: step::spent(&c.state) };
+        let weight = 9.81 * mass;
+        println!(
+            "{place:?}: {} points; contact/weight - 1 = {:.1e}, base/weight - 1 = {:.1e}, force and moment errors {:.1e}, {:.1e}, \
+             energy {:.1e}, speed {:.1e} m/s",
+            contacts.len(),
+            force / weight - 1.0,
+            reaction / weight - 1.0,
+            audit.force,
+            audit.moment,
+            balance.error() / balance.turnover(),
+            c.state.grains.velocity(0).norm(),
+        );
+        assert!((force / weight - 1.0).abs() < 1e-5);
+        assert!((reaction / weight - 1.0).abs() < 1e-5);
+        assert!(audit.exchanges > 1000 && audit.force < 1e-12 && audit.moment < 1e-12, "{audit:?}");
+        assert!(balance.error().abs() < 1e-3 * balance.turnover(), "{balance:?}");
+    }
+}
+
+/// On a block so stiff that it does not give way a stone that falls, turning and moving aside, goes where it goes on a rigid plane: without
+/// friction within 1e-6 of its size over 0.25 s, with friction and dashpots, whose springs belong to triangles, within 1 %.
+#[test]
+fn a_rigid_block_is_a_plane() {
+    for (friction, restitution, bound) in [(0.0, 1.0, 1e-6), (0.0, 0.4, 1e-6), (0.5, 0.4, 1e-2)] {
+        let rayleigh = fem::Rayleigh::default();
+        let solid = block([4, 4, 2], [1.0, 1.0, 0.5], 1e16, 0.3, 2000.0, Held::Base, rayleigh);
+        let surface = triangles(&solid);
+        let rock = material(2650.0, 1e6, friction, restitution);
+        let mut input = on_surface(&surface, rock, vec![stone(5)]);
+        input.bodies = vec![dem::BodyInput {
+            position: Vec3::new(0.4, 0.45, 0.13),
+            velocity: Vec3::new(0.4, 0.1, -0.5),
+            spin: Vec3::new(1.0, -2.0, 0.5),
+            ..Default::default()
+        }];
+        let mut c = coupled(&solid, input.clone(), 1);
+        let plane =
+            dem::Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0, velocity: Vec3::zeros() };
+        let alone =
+            dem::ModelInput { planes: vec![plane], surface_material: None, surface_mesh: None, ..input };
+        let model = dem::Model::new(alone).expect("a valid model");
+        let mut state = dem::State::new(&model);
+        let mut work = dem::Work::new(&model, &state);
+        let mut apart = 0.0_f64;
+        while state.time < 0.25 {
+            c.step(&[]);
+            dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a step");
+            apart = apart.max((c.state.grains.position(0) - state.position(0)).norm());
+        }
+        println!("friction {friction}, e = {restitution}: apart by {:.1e} of the size", apart / 0.2);
+        assert!((c.state.grains.time / state.time - 1.0).abs() < 1e-9);
+        assert!(apart < bound * 0.2, "{apart}");
+        let moved = (state.position(0) - Vec3::new(0.4, 0.45, 0.13)).norm();
+        assert!(moved > 0.05, "{moved}");
+    }
+}
+
+/// Elastic stones without friction jump on a soft block of solid without damping: the account of energy of both sides closes within
+/// 1e-3 of what the stones brought, and what the surface does to the grains is what the grains do to the solid.
+#[test]
+fn jumping_stones_keep_the_account_of_energy() {
+    let solid = block_b(4, Held::BaseAndSides, fem::Rayleigh::default());
+    let surface = triangles(&solid);
+    let shapes: Vec<Shape> = (0..4).map(stone).collect();
+    let mut input = on_surface(&surface, material(2650.0, 5e5, 0.0, 1.0), shapes);
+    input.bodies = (0..4)
+        .map(|k| dem::BodyInput {
+            shape: k,
+            position: Vec3::new(0.25 + 0.5 * (k % 2) as f64, 0.25 + 0.5 * (k / 2) as f64, 0.2),
+            spin: Vec3::new(3.0, 1.0 - k as f64, 0.0),
+            ..Default::default()
+        })
+        .collect();
+    let mut c = coupled(&solid, input, 2);
+    let start = step::stored(&c.model, &c.state);
+    let mut worst = 0.0_f64;
+    while c.state.grains.time < 0.6 {
+        c.step(&[]);
+        let (now, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
+        let fall = start.total() - now.grains_gravity;
+        worst = worst.max(Balance { start, now, spent }.error().abs() / fall.max(0.05 * start.total().abs()));
+    }
+    let shaken = step::stored(&c.model, &c.state);
+    println!(
+        "account within {worst:.1e}; solid {:.2e} J of {:.2e} J",
+        shaken.solid_kinetic + shaken.solid_strain,
+        start.total()
+    );
+    assert!(worst < 1e-3, "{worst}");
+    assert!(shaken.solid_kinetic + shaken.solid_strain > 1e-3 * start.total());
+    assert!(c.state.audit.force < 1e-12 && c.state.audit.moment < 1e-12, "{:?}", c.state.audit);
+}

@@ -1,0 +1,158 @@
+//! Dilated polyhedra with the external surface, where that is made of triangles: the faces of a solid (`spatial/sheet.rs`). They press
+//! as the triangles of walls do (`patch.rs`), whose corners the solid moves; the points of all triangles that a body touches share its mass.
+//!
+//! What a body feels goes back to the triangle in full: force, and the moment about where it acts.
+//!
+//! Limits: as for triangles of walls. The solid's faces have no mass here, as for spheres.
+
+use super::dilated::Two;
+use super::pair::{PairKind, Touch, Touches};
+use super::pass::Books;
+use super::patch;
+use super::scene::{Placed, Pose, Scene, Search};
+use super::side::{Second, Side, Solids};
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::bodies::block::PointMotion;
+use crate::contact::kind::Renamed;
+use crate::contact::single::{self, PairForce, Setting};
+use crate::law::History;
+use crate::pairs::list::Hint;
+use crate::spatial::bvh::Aabb;
+use crate::spatial::sheet::SheetFacet;
+use crate::spatial::surface::SurfaceContact;
+
+/// A dilated polyhedron and a triangle of the external surface.
+pub(crate) struct DilatedSheet;
+
+/// Triangles of the external surface. They count with the block of their partner.
+pub(crate) struct SheetFacets;
+
+/// Triangles lie in the frame of the world.
+const WORLD: Pose = Pose {
+    centre: Vec3::new(0.0, 0.0, 0.0),
+    orientation: nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0)),
+    scale: 1.0,
+};
+
+impl PairKind for DilatedSheet {
+    type First = Solids;
+    type Second = SheetFacets;
+    const SHARED: bool = true;
+    const JOINED: bool = true;
+
+    fn near(&self, body: &Placed<'_>, it: &&SheetFacet, reach: f64) -> bool {
+        if !body.dilated() {
+            return false;
+        }
+        let two: Two<'_> = patch::two(body, &WORLD, &it.facet);
+        let most = body.radius + reach;
+        two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
+    }
+
+    fn touches(&self, body: &Placed<'_>, it: &&SheetFacet, found: &mut Touches) {
+        self.touches_again(body, it, &mut None, found);
+    }
+
+    fn touches_again(&self, body: &Placed<'_>, it: &&SheetFacet, hint: &mut Hint, found: &mut Touches) {
+        patch::on_facet(body, &WORLD, &it.facet, hint, found);
+    }
+}
+
+impl Side for SheetFacets {
+    type View<'a> = &'a SheetFacet;
+    const BODY: bool = false;
+    const IMAGES: bool = false;
+    const EXTERNAL: bool = true;
+
+    #[inline(always)]
+    fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
+        None
+    }
+
+    #[inline(always)]
+    fn view<'a>(scene: &'a (impl Scene + ?Sized), _: usize, number: u32) -> &'a SheetFacet {
+        &scene.sheet().facets[number as usize]
+    }
+
+    fn middle(view: &&SheetFacet) -> Vec3 {
+        view.facet.corners[0]
+    }
+
+    fn image(_: &mut &SheetFacet, _: &Vec3) {}
+
+    fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+        Some([block as u32, number])
+    }
+
+    #[inline(always)]
+    fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
+        let facet = Self::view(scene, block, number);
+        let (velocity, spin) = facet.motion(&facet.foot(point));
+        PointMotion::of_whole(&velocity, &spin, Vec3::zeros(), 0.0)
+    }
+
+    #[inline(always)]
+    fn material(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> u32 {
+        scene.sheet().material(number)
+    }
+
+    fn partner(_: &(impl Scene + ?Sized), _: usize, number: u32) -> Partner {
+        Partner::Patch(number)
+    }
+
+    fn still(_: &(impl Scene + ?Sized), _: usize, _: u32) -> bool {
+        true
+    }
+}
+
+impl Second for SheetFacets {
+    fn around(
+        search: &Search<'_>,
+        block: usize,
+        bounds: Aabb,
+        row: &mut Vec<u32>,
+        mut f: impl FnMut(u32, u32),
+    ) {
+        search.facets_near(bounds, row, |facet| f(block as u32, facet));
+    }
+}
+
+/// A contact with the surface: the body, what it touches, where and with which memory.
+pub(super) struct Met<'a> {
+    pub body: u32,
+    pub patch: u32,
+    pub facet: &'a SheetFacet,
+    pub materials: [u32; 2],
+    pub touch: &'a Touch,
+    pub history: &'a History,
+}
+
+/// Writes a contact down for the owner of the surface, and in the books of the grains.
+pub(super) fn book(setting: &Setting<'_>, met: &Met<'_>, f: &PairForce, books: &mut Books<'_>) {
+    let Touch { geometry: g, weight, .. } = met.touch;
+    let force = f.force * *weight;
+    let foot = met.facet.foot(&g.point);
+    let couple = met.touch.couple * force.dot(&g.normal) + f.moment * *weight + foot.aside.cross(&force);
+    let (velocity, spin) = met.facet.motion(&foot);
+    // The foot moves without the turn's part beside it, which the moment has.
+    let at_foot = velocity - spin.cross(&foot.aside);
+    let surface = &mut *books.surface;
+    surface.work += (force.dot(&at_foot) + couple.dot(&spin)) * setting.dt;
+    surface.impulse.add(&foot.point, &(force * setting.dt));
+    surface.impulse.angular += couple * setting.dt;
+    // What springs do not explain; a spring that slides holds what the limit has left to it.
+    let (normal, tangential) = single::springs(setting.laws, met.materials, g.overlap, g.radius, met.history);
+    let sprung = (g.normal * normal - met.history.spring * tangential) * *weight;
+    surface.contacts.push(SurfaceContact {
+        sphere: met.touch.feature,
+        body: met.body,
+        patch: met.patch,
+        local: foot.local,
+        point: foot.point.into(),
+        force: (-force).into(),
+        couple: (-couple).into(),
+        dashpot: (sprung - force).into(),
+        overlap: g.overlap,
+    });
+}

@@ -1,0 +1,151 @@
+//! Triangles whose corners a host moves: the faces of a solid, as bodies with faces and edges touch them (`facet.rs`).
+//!
+//! Between its corners a triangle moves as linear shape functions say; a point beside it, at a height h along the normal, moves along
+//! with the turn Ω of the triangle that is nearest to the motion of its corners, Ω = A⁻¹ Σ rᵢ × vᵢ with A = Σ (rᵢ² − rᵢ rᵢᵀ), r from the
+//! middle of the corners. A force beside it, or a moment, goes to the corners the same way: the moment M as fᵢ = (A⁻¹ M) × rᵢ, whose
+//! sum is zero and whose moment is M. So force, moment and power are the same on both sides.
+
+use super::bvh::Aabb;
+use super::facet::{self, Facet};
+use crate::base::Vec3;
+use nalgebra::Matrix3;
+
+/// An external surface made of triangles, in its shape at rest: patch k is triangle k.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceMesh {
+    /// Corners, each once [m].
+    pub vertices: Vec<Vec3>,
+    /// Corners of each triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What of it does not change: each triangle with what it answers for, and the numbers of its corners.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sheet {
+    facets: Vec<Facet>,
+    triangles: Vec<[u32; 3]>,
+    /// Place and velocity of each corner at rest.
+    pub rest: Vec<[Vec3; 2]>,
+}
+
+/// A triangle where it is.
+#[derive(Clone, Debug)]
+pub(crate) struct SheetFacet {
+    pub facet: Facet,
+    /// Velocities of its corners [m/s].
+    pub velocity: [Vec3; 3],
+}
+
+/// Where a force acts on a triangle: natural coordinates, the point of the triangle there [m], and the way from it to the force [m].
+pub(crate) struct Foot {
+    pub local: [f64; 2],
+    pub point: Vec3,
+    pub aside: Vec3,
+}
+
+impl Sheet {
+    /// Of a mesh; nothing of none.
+    pub fn new(mesh: Option<&SurfaceMesh>) -> Sheet {
+        let Some(mesh) = mesh else { return Sheet::default() };
+        let own: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+        Sheet {
+            facets: facet::facets(&mesh.vertices, &mesh.triangles, &own),
+            triangles: mesh.triangles.clone(),
+            rest: mesh.vertices.iter().map(|x| [*x, Vec3::zeros()]).collect(),
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.facets.is_empty()
+    }
+
+    /// The triangles where corners with these places and velocities put them, `back` seconds ago.
+    pub fn now(&self, corners: &[[Vec3; 2]], back: f64, out: &mut Vec<SheetFacet>) {
+        out.clear();
+        out.extend(self.facets.iter().zip(&self.triangles).map(|(rest, t)| {
+            let now = t.map(|v| corners[v as usize]);
+            SheetFacet { facet: rest.at(now.map(|[x, v]| x - v * back)), velocity: now.map(|[_, v]| v) }
+        }));
+    }
+}
+
+impl SheetFacet {
+    /// Bounds [m].
+    pub fn bounds(&self) -> Aabb {
+        self.facet.bounds()
+    }
+
+    /// Where a force at `p` acts.
+    pub fn foot(&self, p: &Vec3) -> Foot {
+        let [a, b, c] = self.facet.corners;
+        let (u, v, w) = (b - a, c - a, p - a);
+        let (uu, uv, vv) = (u.norm_squared(), u.dot(&v), v.norm_squared());
+        let (wu, wv) = (w.dot(&u), w.dot(&v));
+        let inverse = 1.0 / (uu * vv - uv * uv);
+        let local = [(vv * wu - uv * wv) * inverse, (uu * wv - uv * wu) * inverse];
+        let point = a + u * local[0] + v * local[1];
+        Foot { local, point, aside: p - point }
+    }
+
+    /// Velocity at a foot, and the turn [rad/s].
+    pub fn motion(&self, foot: &Foot) -> (Vec3, Vec3) {
+        let [a, b, c] = self.velocity;
+        if a == Vec3::zeros() && b == a && c == a {
+            return (a, a);
+        }
+        let [s, t] = foot.local;
+        let spin = turn(&self.facet.corners, &self.velocity);
+        (a * (1.0 - s - t) + b * s + c * t + spin.cross(&foot.aside), spin)
+    }
+}
+
+/// Corners of a triangle from their middle, and A⁻¹.
+fn levers(corners: &[Vec3; 3]) -> ([Vec3; 3], Matrix3<f64>) {
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let r = corners.map(|x| x - middle);
+    let a = r.iter().fold(Matrix3::zeros(), |a: Matrix3<f64>, r| {
+        a + Matrix3::from_diagonal_element(r.norm_squared()) - r * r.transpose()
+    });
+    // No triangle is so thin that its three moments of inertia are not positive.
+    (r, a.try_inverse().unwrap_or_else(Matrix3::zeros))
+}
+
+/// The turn that is nearest to velocities of the corners [rad/s].
+fn turn(corners: &[Vec3; 3], velocity: &[Vec3; 3]) -> Vec3 {
+    let (r, inverse) = levers(corners);
+    inverse * r.iter().zip(velocity).fold(Vec3::zeros(), |sum, (r, v)| sum + r.cross(v))
+}
+
+/// Forces at the corners of a triangle [m] whose sum is zero and whose moment is `moment` [N m].
+pub fn couple_at_corners(corners: [[f64; 3]; 3], moment: [f64; 3]) -> [[f64; 3]; 3] {
+    let (r, inverse) = levers(&corners.map(Vec3::from));
+    let turn = inverse * Vec3::from(moment);
+    r.map(|r| turn.cross(&r).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::Random;
+
+    /// Forces at the corners have the moment and no sum, and the power of a moment on moving corners is that on the turn.
+    #[test]
+    fn moments_go_to_corners_with_their_power() {
+        let mut random = Random::new(3, 0);
+        let mut vector = || Vec3::from_fn(|_, _| 2.0 * random.uniform() - 1.0);
+        for _ in 0..200 {
+            let corners = [vector(), vector(), vector()];
+            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm();
+            if area < 0.2 {
+                continue;
+            }
+            let (moment, velocity) = (vector(), [vector(), vector(), vector()]);
+            let forces = couple_at_corners(corners.map(Into::into), moment.into()).map(Vec3::from);
+            let sum: Vec3 = forces.iter().sum();
+            let found = forces.iter().zip(&corners).fold(Vec3::zeros(), |m, (f, x)| m + x.cross(f));
+            assert!(sum.norm() < 1e-12 && (found - moment).norm() < 1e-12, "{sum} {found} {moment}");
+            let power: f64 = forces.iter().zip(&velocity).map(|(f, v)| f.dot(v)).sum();
+            assert!((power - moment.dot(&turn(&corners, &velocity))).abs() < 1e-12);
+        }
+    }
+}
