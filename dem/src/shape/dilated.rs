@@ -48,8 +48,6 @@ pub struct Face {
     pub offset: f64,
     /// Its corners, counter-clockwise from outside.
     pub corners: Vec<u8>,
-    /// The same as a set, a bit each.
-    pub mask: u64,
     /// Outward unit normals of its sides in its plane, and where the sides lie along them [m]; the k-th begins at the k-th corner.
     pub sides: Vec<(Vec3, f64)>,
 }
@@ -82,8 +80,22 @@ pub struct Core {
     pub edges: Vec<Edge>,
     /// Edges of each corner, and which of their ends it is.
     pub spokes: Vec<Vec<(u8, u8)>>,
+    /// Edges and faces of each corner, a bit each.
+    pub at: Vec<([u64; 3], [u64; 2])>,
     /// Radius of the smallest sphere about the origin that holds it [m].
     pub reach: f64,
+}
+
+/// Numbers of the bits of a set, ascending.
+fn bits<const N: usize>(words: [u64; N]) -> impl Iterator<Item = usize> {
+    (0..N).flat_map(move |n| {
+        let mut rest = words[n];
+        std::iter::from_fn(move || {
+            let bit = (rest != 0).then(|| rest.trailing_zeros() as usize)?;
+            rest &= rest - 1;
+            Some(64 * n + bit)
+        })
+    })
 }
 
 /// A dilated polyhedron in its own frame: origin in the centre of mass, axes along the principal axes of inertia.
@@ -137,18 +149,33 @@ impl Core {
 
     /// Corners of a set, a bit each.
     pub fn corners_of(&self, set: u64) -> impl Iterator<Item = usize> {
-        (0..self.corners.len()).filter(move |k| set >> k & 1 == 1)
+        bits([self.there(set)])
+    }
+
+    /// Those of a set that there are.
+    fn there(&self, set: u64) -> u64 {
+        set & u64::MAX.checked_shr(64 - self.corners.len() as u32).unwrap_or(0)
+    }
+
+    /// Edges and faces with a corner of a set, a bit each.
+    fn meeting(&self, set: u64) -> ([u64; 3], [u64; 2]) {
+        let mut all = ([0; 3], [0; 2]);
+        for corner in self.corners_of(set) {
+            let (edges, faces) = &self.at[corner];
+            (0..3).for_each(|n| all.0[n] |= edges[n]);
+            (0..2).for_each(|n| all.1[n] |= faces[n]);
+        }
+        all
     }
 
     /// Edges with a corner of a set, a bit each.
     pub fn edges_of(&self, set: u64) -> impl Iterator<Item = usize> {
-        let near = move |edge: &Edge| (set >> edge.ends[0] | set >> edge.ends[1]) & 1 == 1;
-        (0..self.edges.len()).filter(move |&k| near(&self.edges[k]))
+        bits(self.meeting(set).0)
     }
 
     /// Faces with a corner of a set, a bit each.
     pub fn faces_of(&self, set: u64) -> impl Iterator<Item = usize> {
-        (0..self.faces.len()).filter(move |&k| self.faces[k].mask & set != 0)
+        bits(self.meeting(set).1)
     }
 
     /// The longest circumference of a face [m].

@@ -205,13 +205,14 @@ pub(super) fn skeleton(
             put(k as u32 + 1, &pressed, 1.0);
         }
     }
+    let sight = view.all(&core.corners, (&frame.turn, frame.scale, &frame.way));
     for k in core.edges_of(near) {
         let edge = &core.edges[k];
-        let [from, to] = edge.ends.map(|e| frame.point(&core.corners[e as usize]));
-        let around = Bounds::near([&from, &to], view);
+        let around = Bounds::around(edge.ends.map(|e| &sight[e as usize]), view);
         if !target.meets(&around) {
             continue;
         }
+        let from = frame.point(&core.corners[edge.ends[0] as usize]);
         let (direction, range) = (frame.turn * edge.direction, [0.0, edge.length * frame.scale]);
         if let Some(pressed) = press::edge(target, &Segment { from, direction, range, around }, reach) {
             let weight = length(&pressed, reach);

@@ -294,15 +294,18 @@ impl<K: PairKind> Of<K> {
             return;
         }
         let materials = [K::First::material(now, b, i), K::Second::material(now, other as usize, j)];
-        for p in points {
+        // Mostly the same features as before, in the same order.
+        let same =
+            found.len() == points.len() && found.iter().zip(points).all(|(t, p)| t.feature == p.feature);
+        for p in points.iter().filter(|_| !same) {
             if !found.iter().any(|t| t.feature == p.feature) {
                 *books.friction += p.weight * single::end(setting.laws, materials, &mut { p.history });
             }
         }
         let mut sums = [Vec3::zeros(); 3];
         memory.clear();
-        for touch in found {
-            let known = points.iter().find(|p| p.feature == touch.feature);
+        for (n, touch) in found.iter().enumerate() {
+            let known = if same { points.get(n) } else { points.iter().find(|p| p.feature == touch.feature) };
             let mut point = PointMemory { feature: touch.feature, ..*known.unwrap_or(&PointMemory::FRESH) };
             self.force(setting, now, (b, name), materials, (touch, share, way), &mut point, &mut sums, books);
             memory.push(point);

@@ -91,11 +91,17 @@ fn merged(points: &[Vec3], triangles: &[[u32; 3]], slack: f64) -> Vec<Vec<[u32; 
 /// A core of these corners and faces, with the edges that faces have in common.
 pub(super) fn joined(corners: Vec<Vec3>, faces: Vec<Face>) -> Core {
     let reach = corners.iter().map(|c| c.norm()).fold(0.0, f64::max);
-    let mut core = Core { spokes: vec![Vec::new(); corners.len()], corners, faces, edges: Vec::new(), reach };
+    let n = corners.len();
+    let (spokes, at) = (vec![Vec::new(); n], vec![([0; 3], [0; 2]); n]);
+    let mut core = Core { spokes, at, corners, faces, edges: Vec::new(), reach };
     edges(&mut core);
     for (k, e) in core.edges.iter().enumerate() {
         core.spokes[e.ends[0] as usize].push((k as u8, 0));
         core.spokes[e.ends[1] as usize].push((k as u8, 1));
+        e.ends.iter().for_each(|end| core.at[*end as usize].0[k / 64] |= 1 << (k % 64));
+    }
+    for (k, f) in core.faces.iter().enumerate() {
+        f.corners.iter().for_each(|c| core.at[*c as usize].1[k / 64] |= 1 << (k % 64));
     }
     core
 }
@@ -127,7 +133,7 @@ fn face(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Face, DilatedError> {
         (side, side.dot(&(at(k) + middle)))
     };
     let sides = (0..corners.len()).map(side).collect();
-    Ok(Face { normal, offset, corners, mask, sides })
+    Ok(Face { normal, offset, corners, sides })
 }
 
 /// Finds the edges: each belongs to two faces.

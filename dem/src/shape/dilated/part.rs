@@ -49,10 +49,26 @@ impl View {
         View { up, floor, axes: [first, second], aside: self.aside * scale }
     }
 
-    fn at(&self, p: &Vec3) -> [f64; 2] {
-        [self.axes[0].dot(p), self.axes[1].dot(p)]
+    /// A point as it is seen: its height over the floor, and where it is across.
+    fn see(&self, p: &Vec3) -> Seen {
+        [self.up.dot(p) - self.floor, self.axes[0].dot(p), self.axes[1].dot(p)]
+    }
+
+    /// Points of another frame, which `turn`, `scale` and `way` take to this one, as they are seen.
+    pub fn all(&self, points: &[Vec3], (turn, scale, way): (&Rotation3<f64>, f64, &Vec3)) -> Sight {
+        let axes = [self.up, self.axes[0], self.axes[1]];
+        let own = axes.map(|x| turn.inverse_transform_vector(&x) * scale);
+        let [over, x, y] = axes.map(|axis| axis.dot(way));
+        let from = [over - self.floor, x, y];
+        points.iter().map(|p| std::array::from_fn(|k| own[k].dot(p) + from[k])).collect()
     }
 }
+
+/// A point in a view: its height over the floor, and where it is across.
+pub(crate) type Seen = [f64; 3];
+
+/// The corners of a core in a view.
+pub(crate) type Sight = ArrayVec<Seen, CORNERS>;
 
 /// A rectangle across a view.
 #[derive(Clone, Copy, Debug)]
@@ -65,21 +81,36 @@ impl Bounds {
     /// Around nothing.
     const NONE: Bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
 
-    /// Around what of a segment is in the view.
-    fn of([a, b]: [&Vec3; 2], view: &View) -> Bounds {
-        let (over, under) = (view.up.dot(a) - view.floor, view.up.dot(b) - view.floor);
+    /// Around what of a segment, whose ends are seen, is in the view.
+    #[inline(always)]
+    fn of([a, b]: [&Seen; 2]) -> Bounds {
+        let ([over, ax, ay], [under, bx, by]) = (*a, *b);
         if over < 0.0 && under < 0.0 {
             return Bounds::NONE;
         }
-        let cut = || a + (b - a) * (over / (over - under));
-        let ends = [if over < 0.0 { cut() } else { *a }, if under < 0.0 { cut() } else { *b }];
-        let [[ax, ay], [bx, by]] = ends.map(|p| view.at(&p));
+        let ([mut ax, mut ay], [mut bx, mut by]) = ([ax, ay], [bx, by]);
+        if over < 0.0 || under < 0.0 {
+            let share = over / (over - under);
+            let cut = [ax + (bx - ax) * share, ay + (by - ay) * share];
+            if over < 0.0 {
+                [ax, ay] = cut;
+            } else {
+                [bx, by] = cut;
+            }
+        }
         Bounds { low: [least(ax, bx), least(ay, by)], high: [most(ax, bx), most(ay, by)] }
     }
 
     /// Around what may be near something of a segment that is in the view.
     pub fn near(ends: [&Vec3; 2], view: &View) -> Bounds {
-        let Bounds { low, high } = Bounds::of(ends, view);
+        let ends = ends.map(|p| view.see(p));
+        Bounds::around([&ends[0], &ends[1]], view)
+    }
+
+    /// The same of a segment whose ends are seen.
+    #[inline(always)]
+    pub fn around(ends: [&Seen; 2], view: &View) -> Bounds {
+        let Bounds { low, high } = Bounds::of(ends);
         let by = view.aside;
         Bounds { low: [low[0] - by, low[1] - by], high: [high[0] + by, high[1] + by] }
     }
@@ -91,8 +122,8 @@ impl Bounds {
         }
     }
 
-    fn holds(&self, [x, y]: [f64; 2]) -> bool {
-        (self.low[0] <= x) & (x <= self.high[0]) & (self.low[1] <= y) & (y <= self.high[1])
+    fn holds(&self, [_, x, y]: &Seen) -> bool {
+        (self.low[0] <= *x) & (*x <= self.high[0]) & (self.low[1] <= *y) & (*y <= self.high[1])
     }
 
     fn meets(&self, other: &Bounds) -> bool {
@@ -115,6 +146,8 @@ fn most(a: f64, b: f64) -> f64 {
 pub(crate) struct Part<'a> {
     core: &'a Core,
     view: View,
+    /// Its corners as they are seen.
+    sight: Sight,
     /// The set of the corners, a bit each.
     corners: u64,
     edges: ArrayVec<(u8, Bounds), EDGES>,
@@ -128,7 +161,7 @@ impl<'a> Part<'a> {
     #[inline]
     pub fn none(core: &'a Core, view: View) -> Part<'a> {
         let (edges, faces) = (ArrayVec::new(), ArrayVec::new());
-        Part { core, view, corners: 0, edges, faces, bounds: Bounds::NONE }
+        Part { core, view, sight: Sight::new(), corners: 0, edges, faces, bounds: Bounds::NONE }
     }
 
     /// What of it is in the view: features with a corner of the set `corners`, a bit each. It is filled where it is kept: to hand
@@ -136,6 +169,7 @@ impl<'a> Part<'a> {
     pub fn take(&mut self, corners: u64) -> &Part<'a> {
         let (core, part) = (self.core, &mut *self);
         part.corners = corners;
+        part.sight.extend(core.corners.iter().map(|p| part.view.see(p)));
         let mut places = [0; FACES];
         for k in core.faces_of(corners) {
             places[k] = part.faces.len() as u8;
@@ -143,7 +177,7 @@ impl<'a> Part<'a> {
         }
         for k in core.edges_of(corners) {
             let edge = &core.edges[k];
-            let bounds = Bounds::of(edge.ends.map(|e| &core.corners[e as usize]), &part.view);
+            let bounds = Bounds::of(edge.ends.map(|e| &part.sight[e as usize]));
             part.edges.push((k as u8, bounds));
             part.bounds.join(&bounds);
             // Where a plane cuts a face it cuts its edges.
@@ -158,7 +192,7 @@ impl<'a> Part<'a> {
     }
 
     fn corners_at(&self, around: &Bounds) -> impl Iterator<Item = usize> {
-        self.core.corners_of(self.corners).filter(|k| around.holds(self.view.at(&self.core.corners[*k])))
+        self.core.corners_of(self.corners).filter(|k| around.holds(&self.sight[*k]))
     }
 
     fn edges_at(&self, around: &Bounds) -> impl Iterator<Item = &Edge> {

@@ -134,11 +134,20 @@ impl Sum {
                 (d, way * (1.0 / d))
             });
         }
-        let (root, h) = (a.sqrt(), h2.sqrt().max(1e-150));
+        let (root, h2) = (a.sqrt(), h2.max(1e-300));
         let [du, dv] = [u, v].map(|u| (a * u * u + h2).sqrt());
         // ∫ 1, u and u² du, and ∫ 1/d, u/d and u²/d du, with d² = a u² + h².
         let (one, first, second) = (v - u, 0.5 * (v * v - u * u), (v * v * v - u * u * u) / 3.0);
-        let inverse = (libm::asinh(root * v / h) - libm::asinh(root * u / h)) / root;
+        // asinh(√a v/h) − asinh(√a u/h) as one logarithm, without differences of like numbers.
+        let (ru, rv) = (root * u, root * v);
+        let ratio = if u >= 0.0 {
+            (rv + dv) / (ru + du)
+        } else if v <= 0.0 {
+            (du - ru) / (dv - rv)
+        } else {
+            (rv + dv) * ((du - ru) / h2)
+        };
+        let inverse = libm::log(ratio) / root;
         let by_first = (v - u) * (v + u) / (du + dv);
         let by_second = 0.5 * (v * dv - u * du - h2 * inverse) / a;
         let length = 0.5 * (v * dv - u * du + h2 * inverse);
@@ -216,13 +225,19 @@ impl Stretch {
 
     /// Leaves what has `at` + s `slope` ≤ 0.
     pub fn cut(&mut self, at: f64, slope: f64) {
-        if slope > 0.0 {
-            self.0[1] = self.0[1].min(-at / slope);
+        // Without branches, whose ways cannot be predicted: which end is cut, if any, and nothing of what lies beyond all along.
+        let end = -at / slope;
+        let none = if at > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY };
+        let high = if slope > 0.0 {
+            end
         } else if slope < 0.0 {
-            self.0[0] = self.0[0].max(-at / slope);
-        } else if at > 0.0 {
-            self.0[1] = self.0[0];
-        }
+            f64::INFINITY
+        } else {
+            none
+        };
+        let low = if slope < 0.0 { end } else { f64::NEG_INFINITY };
+        let [from, to] = self.0;
+        self.0 = [if low > from { low } else { from }, if high < to { high } else { to }];
     }
 
     /// The same beyond a border that another feature's region shares, from the same numbers: what lies in the border all along is the
