@@ -31,6 +31,7 @@ mod suite {
     mod observe;
     mod packings;
     mod plausible;
+    mod polyhedra;
     mod rail;
     mod random_runs;
     mod render;
