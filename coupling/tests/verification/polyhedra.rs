@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::step;
 use trackbed_coupling::surface::{SolidSurface, facets};
 use trackbed_dem as dem;
@@ -46,7 +47,7 @@ fn coupled<'a>(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) ->
 }
 
 /// A stone in any pose, let go just above block B over the middle of a face, over seams and over the border, comes to rest on it.
-/// Contact force = weight within 1e-5, base reaction = weight within 1e-5, nodal loads = contact forces, moments included, within 1e-12
+/// Contact force = weight and base reaction = weight within 1e-8, nodal loads = contact forces, moments included, within 1e-12
 /// in every step; the account of energy closes within 1e-3 of what was turned over.
 #[test]
 fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
@@ -83,18 +84,19 @@ fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
             balance.error() / balance.turnover(),
             c.state.grains.velocity(0).norm(),
         );
-        assert!((force / weight - 1.0).abs() < 1e-5);
-        assert!((reaction / weight - 1.0).abs() < 1e-5);
+        assert!((force / weight - 1.0).abs() < 1e-8);
+        assert!((reaction / weight - 1.0).abs() < 1e-8);
         assert!(audit.exchanges > 1000 && audit.force < 1e-12 && audit.moment < 1e-12, "{audit:?}");
         assert!(balance.error().abs() < 1e-3 * balance.turnover(), "{balance:?}");
     }
 }
 
-/// On a block so stiff that it does not give way a stone that falls, turning and moving aside, goes where it goes on a rigid plane: without
-/// friction within 1e-6 of its size over 0.25 s, with friction and dashpots, whose springs belong to triangles, within 1 %.
+/// On a block so stiff that it does not give way a stone that falls, turning and moving aside, goes where it goes on a rigid plane: elastic and
+/// without friction within 1e-8 of its size over 0.25 s; with dashpots and springs of friction, which each triangle under an edge has
+/// for itself, within 1 %.
 #[test]
 fn a_rigid_block_is_a_plane() {
-    for (friction, restitution, bound) in [(0.0, 1.0, 1e-6), (0.0, 0.4, 1e-6), (0.5, 0.4, 1e-2)] {
+    for (friction, restitution, bound) in [(0.0, 1.0, 1e-8), (0.0, 0.4, 1e-2), (0.5, 0.4, 1e-2)] {
         let rayleigh = fem::Rayleigh::default();
         let solid = block([4, 4, 2], [1.0, 1.0, 0.5], 1e16, 0.3, 2000.0, Held::Base, rayleigh);
         let surface = triangles(&solid);
@@ -128,8 +130,8 @@ fn a_rigid_block_is_a_plane() {
     }
 }
 
-/// Elastic stones without friction jump on a soft block of solid without damping: the account of energy of both sides closes within
-/// 1e-3 of what the stones brought, and what the surface does to the grains is what the grains do to the solid.
+/// Elastic stones without friction jump on a soft block of solid without damping, which takes up a good part of their energy, with windows
+/// repeated until both sides agree: the account of energy of both closes within 1e-3 of what the stones brought.
 #[test]
 fn jumping_stones_keep_the_account_of_energy() {
     let solid = block_b(4, Held::BaseAndSides, fem::Rayleigh::default());
@@ -145,9 +147,10 @@ fn jumping_stones_keep_the_account_of_energy() {
         })
         .collect();
     let mut c = coupled(&solid, input, 2);
+    c.model.scheme = Scheme::Iterated { tolerance: 1e-9, passes: 40 };
     let start = step::stored(&c.model, &c.state);
     let mut worst = 0.0_f64;
-    while c.state.grains.time < 0.6 {
+    while c.state.grains.time < 0.25 {
         c.step(&[]);
         let (now, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
         let fall = start.total() - now.grains_gravity;
