@@ -131,17 +131,19 @@ fn a_rigid_block_is_a_plane() {
 }
 
 /// Elastic stones without friction jump on a soft block of solid without damping, which takes up a good part of their energy, with windows
-/// repeated until both sides agree: the account of energy of both closes within 1e-3 of what the stones brought.
+/// repeated until both sides agree: the account of energy of both closes within 1e-3 of what the stones brought, the work across the interface within 1e-9.
 #[test]
 fn jumping_stones_keep_the_account_of_energy() {
-    let solid = block_b(4, Held::BaseAndSides, fem::Rayleigh::default());
+    let rayleigh = fem::Rayleigh::default();
+    let solid = block([2, 2, 1], [1.0, 1.0, 0.5], 20e6, 0.3, 2000.0, Held::BaseAndSides, rayleigh);
     let surface = triangles(&solid);
-    let shapes: Vec<Shape> = (0..4).map(stone).collect();
+    let shapes: Vec<Shape> = (0..2).map(stone).collect();
     let mut input = on_surface(&surface, material(2650.0, 5e5, 0.0, 1.0), shapes);
-    input.bodies = (0..4)
+    input.time_step = dem::TimeStep::Auto { fraction: 0.03 };
+    input.bodies = (0..2)
         .map(|k| dem::BodyInput {
             shape: k,
-            position: Vec3::new(0.25 + 0.5 * (k % 2) as f64, 0.25 + 0.5 * (k / 2) as f64, 0.2),
+            position: Vec3::new(0.25 + 0.5 * k as f64, 0.4, 0.2),
             spin: Vec3::new(3.0, 1.0 - k as f64, 0.0),
             ..Default::default()
         })
@@ -157,12 +159,13 @@ fn jumping_stones_keep_the_account_of_energy() {
         worst = worst.max(Balance { start, now, spent }.error().abs() / fall.max(0.05 * start.total().abs()));
     }
     let shaken = step::stored(&c.model, &c.state);
+    let interface = step::spent(&c.state).interface() / start.total();
     println!(
-        "account within {worst:.1e}; solid {:.2e} J of {:.2e} J",
+        "account within {worst:.1e}, interface {interface:.1e}; solid {:.2e} J of {:.2e} J",
         shaken.solid_kinetic + shaken.solid_strain,
         start.total()
     );
-    assert!(worst < 1e-3, "{worst}");
+    assert!(worst < 1e-3 && interface.abs() < 1e-9, "{worst} {interface}");
     assert!(shaken.solid_kinetic + shaken.solid_strain > 1e-3 * start.total());
     assert!(c.state.audit.force < 1e-12 && c.state.audit.moment < 1e-12, "{:?}", c.state.audit);
 }
