@@ -71,7 +71,7 @@ impl Side for SheetFacets {
     }
 
     #[inline(always)]
-    fn view<'a>(scene: &'a (impl Scene + ?Sized), _: usize, number: u32) -> &'a SheetFacet {
+    fn view(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> &SheetFacet {
         &scene.sheet().facets[number as usize]
     }
 
