@@ -1,6 +1,7 @@
 //! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
 //! key of the scene was set.
 
+mod duration;
 pub mod exchange;
 mod faults;
 pub mod grains;
@@ -19,7 +20,6 @@ use crate::message::shown;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError, Table};
 use std::sync::Arc;
-use trackbed_coupling::track::CyclicLoad;
 use trackbed_fem as fem;
 
 /// Longest title [characters].
@@ -93,8 +93,8 @@ impl Job {
             let expected = "\"account\": the state of a plastic solid is not extrapolated";
             return Err(scene.error("track.jump.method", "\"grains\"", expected).into());
         }
-        let end = end_time(scene, grains.as_ref())?;
-        let solid_step = solid_step(scene, end)?;
+        let end = duration::end_time(scene, grains.as_ref())?;
+        let solid_step = duration::solid_step(scene, end)?;
         let probes = scene
             .rows("probe", &scene.probe)
             .map(|p| probe::probe(&p, solid.as_ref(), grains.as_ref()))
@@ -162,66 +162,5 @@ fn refuse_tables_of_grains(scene: &Table<Scene>) -> Result<(), SceneError> {
             Err(scene.error(key, "a table for grains", "[[grains]] beside it, or no such table"))
         }
         None => Ok(()),
-    }
-}
-
-fn end_time(scene: &Table<Scene>, grains: Option<&grains::GrainsPart>) -> Result<f64, SceneError> {
-    let counted = grains.and_then(|g| g.track.load.as_ref()).map(CyclicLoad::end);
-    // A push comes after the cycles, or stands for itself.
-    let push = grains.and_then(|g| g.track.after.push).map(|p| p.duration());
-    let counted = match (counted, push) {
-        (Some(cycles), Some(push)) => Some(cycles + push),
-        (counted, push) => counted.or(push),
-    };
-    let steps = |s: &crate::scene::solid::Solid| s.dynamics.is_some() || s.quasi_static.is_some();
-    let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
-    let time = scene.below("time", &scene.time);
-    match (time.end, counted, dynamic) {
-        (Some(end), _, _) if end.si <= 0.0 => Err(time.error("end", end.si.to_string(), "a time above 0")),
-        (Some(end), Some(counted), _) if end.si < counted => Err(time.error(
-            "end",
-            format!("{} s", end.si),
-            format!(
-                "at least {counted} s, when the {} ends",
-                if push.is_some() { "push" } else { "last load cycle" }
-            ),
-        )),
-        (Some(_), None, false) => Err(time.error(
-            "end",
-            "a time",
-            "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]",
-        )),
-        (Some(end), _, true) => Ok(end.si),
-        (None, Some(counted), _) => Ok(counted),
-        (None, None, true) => Err(time.missing("end", "the time to simulate")),
-        (_, _, false) => Ok(0.0),
-    }
-}
-
-/// Most steps of a solid that runs alone: at a thousand steps a second they take twelve days.
-const MOST_STEPS: f64 = 1e9;
-
-fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneError> {
-    let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
-    let time = scene.below("time", &scene.time);
-    match (time.solid_step, alone_and_dynamic) {
-        (Some(step), true) if step.si > 0.0 && step.si <= end && end / step.si <= MOST_STEPS => {
-            Ok(Some(step.si))
-        }
-        (Some(step), true) if step.si > 0.0 && step.si <= end => {
-            let found = format!("{} s, of which the run has {:.1e}", step.si, end / step.si);
-            Err(time.error("solid_step", found, format!("at most {MOST_STEPS:.0e} steps")))
-        }
-        (Some(step), true) => {
-            Err(time.error("solid_step", format!("{} s", step.si), format!("above 0, at most {end} s")))
-        }
-        (Some(_), false) if !scene.grains.is_empty() => Err(time.error(
-            "solid_step",
-            "a time",
-            "no such key: the solid's step is coupling.substeps grain steps",
-        )),
-        (Some(_), false) => Err(time.error("solid_step", "a time", "no such key for a static solid")),
-        (None, true) => Err(time.missing("solid_step", "the step of the solid")),
-        (None, false) => Ok(None),
     }
 }

@@ -1,5 +1,6 @@
 //! What a run writes, resolved.
 
+use super::duration::counted_step;
 use crate::scene::{Chains, Output, Scene, SceneError, Table};
 use crate::write::{CHOSEN, EXTRA, FORMATS, Format, Part, SOLID_EXTRA};
 use std::collections::BTreeSet;
@@ -45,11 +46,12 @@ impl OutputPlan {
     pub fn new(scene: &Table<Scene>, end: f64) -> Result<OutputPlan, SceneError> {
         let o = scene.below("output", &scene.output);
         refuse_idle_keys(scene, &o, end)?;
-        let frames = o.frames.unwrap_or(20);
-        if frames > 100_000 {
-            return Err(o.error("frames", frames.to_string(), "at most 100000"));
-        }
-        let history_interval = o.history_interval.map_or(end / 1000.0, |i| i.si);
+        let frames = frames(scene, &o, end)?;
+        let history_interval =
+            match steps(scene, &o, "history", o.history_steps, o.history_interval.is_some())? {
+                Some(interval) => interval,
+                None => o.history_interval.map_or(end / 1000.0, |i| i.si),
+            };
         if o.history_interval.is_some() && (history_interval <= 0.0 || !history_interval.is_finite()) {
             let found = history_interval.to_string();
             return Err(o.error("history_interval", found, "a time above 0"));
@@ -80,6 +82,34 @@ impl OutputPlan {
             strong_chains: o.chains == Some(Chains::Strong),
         })
     }
+}
+
+/// Time that a number of steps takes, by which the scene counts frames or rows in place of the key for a time [s].
+fn steps(
+    scene: &Table<Scene>,
+    o: &Table<Output>,
+    what: &str,
+    steps: Option<u64>,
+    other: bool,
+) -> Result<Option<f64>, SceneError> {
+    let Some(steps) = steps else { return Ok(None) };
+    let key = format!("{what}_steps");
+    if other {
+        return Err(o.error(&key, "steps beside the key for times or numbers", "one of the two"));
+    }
+    let step = counted_step(scene, &format!("output.{key}"))?;
+    o.check(&key, steps as f64, |n| n >= 1.0, "1 or more").map(|n| Some(n * step))
+}
+
+/// Frames over the run proper.
+fn frames(scene: &Table<Scene>, o: &Table<Output>, end: f64) -> Result<u32, SceneError> {
+    const MOST: f64 = 100_000.0;
+    let (key, frames) = match steps(scene, o, "frame", o.frame_steps, o.frames.is_some())? {
+        // The end may lie just below a whole number of steps.
+        Some(interval) => ("frame_steps", (end / interval * (1.0 + 1e-9)).floor()),
+        None => ("frames", f64::from(o.frames.unwrap_or(20))),
+    };
+    o.check(key, frames, |n| n <= MOST, "at most 100000 frames").map(|n| n as u32)
 }
 
 /// Fields that frames hold.
@@ -166,6 +196,8 @@ fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), Sc
     let of_time = [
         ("frames", o.frames.is_some(), "time: a static solid has one frame"),
         ("history_interval", o.history_interval.is_some(), "time: a static solid has no history"),
+        ("frame_steps", o.frame_steps.is_some(), "time: a static solid has one frame"),
+        ("history_steps", o.history_steps.is_some(), "time: a static solid has no history"),
         ("checkpoint", o.checkpoint.is_some(), "time: a static solid is solved in one go"),
     ];
     let of_solid = of_solid.into_iter().map(|(key, given)| (key, given && scene.solid.is_none(), "[solid]"));

@@ -121,6 +121,8 @@ pub struct TimeControl {
     /// Physical time of the run proper [s], deposition not counted. Not needed for a static solid, nor with a
     /// counted cyclic load, which sets it.
     pub end: Option<Quantity<Time>>,
+    /// Number of steps of the run proper, in place of `end`: of the solid that runs alone, else of the grains, with a `grain_step`.
+    pub steps: Option<u64>,
     /// Step of a solid that runs alone [s]. In a coupled run the solid's step is `coupling.substeps` grain steps.
     pub solid_step: Option<Quantity<Time>>,
     /// Step of the grains [s]; default: `grain_step_fraction` of the limit.

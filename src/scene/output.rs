@@ -18,6 +18,10 @@ pub struct Output {
     /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
     /// solid (coupled and solid runs) or of the grains.
     pub history_interval: Option<Quantity<Time>>,
+    /// Steps between two frames, in place of `frames`: as `time.steps` counts them.
+    pub frame_steps: Option<u64>,
+    /// Steps between two rows of `history.csv`, in place of `history_interval`.
+    pub history_steps: Option<u64>,
     /// Time by the clock after which the state of the run is kept anew for `--resume` [s]; default 10 minutes. The state is
     /// kept too when settling ends and when the run is interrupted.
     pub checkpoint: Option<Quantity<Time>>,
@@ -64,6 +68,8 @@ static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let own = [
         "frames",
         "history_interval",
+        "frame_steps",
+        "history_steps",
         "checkpoint",
         "tables",
         "packing",
@@ -109,6 +115,8 @@ impl<'de> Deserialize<'de> for Output {
                     match key {
                         "frames" => output.frames = Some(map.next_value()?),
                         "history_interval" => output.history_interval = Some(map.next_value()?),
+                        "frame_steps" => output.frame_steps = Some(map.next_value()?),
+                        "history_steps" => output.history_steps = Some(map.next_value()?),
                         "checkpoint" => output.checkpoint = Some(map.next_value()?),
                         "tables" => output.tables = Some(map.next_value()?),
                         "packing" => output.packing = Some(map.next_value()?),

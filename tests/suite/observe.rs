@@ -154,3 +154,43 @@ fn strains_of_a_bar_that_yields() {
     assert_eq!(solid["yielded_share"], 1.0);
     assert!((solid["largest_plastic_strain"].as_f64().unwrap() - expected).abs() < 1e-7, "{solid}");
 }
+
+/// A run of so many steps, with frames and rows after so many: of grains, and of a solid alone.
+#[test]
+fn steps_are_counted() {
+    let folder = Folder::new("steps");
+    let grains = folder.write("grains.toml", &FALL.replace("last = { time = 0.05, frames = 5 }\n", ""));
+    let step = ["time.end=", "time.steps=1000", "time.grain_step=\"30 us\""];
+    let every = ["output.frames=", "output.frame_steps=250", "output.history_steps=125"];
+    run(&grains, &folder.join("g"), &[&step[..], &every].concat()).good();
+    let summary = json(&folder.join("g/summary.json"));
+    assert_eq!(summary["stages"][0]["grain_steps"], 1000, "{}", summary["stages"]);
+    let rows = Table::read(&folder.join("g/history.csv")).column("time");
+    assert_eq!(rows.len(), 9);
+    for (k, t) in rows.iter().enumerate() {
+        assert!((t - k as f64 * 125.0 * 30e-6).abs() < 1e-12, "{rows:?}");
+    }
+    let frames = |out: &str| fs::read_dir(folder.join(out).join("frames")).unwrap().count();
+    assert!(frames("g") == 5 || frames("g") == 10, "{}", frames("g"));
+    // Steps of no fixed length are no time, and two keys for one thing are one too many.
+    let refused = |set: &[&str], sentence: &str| {
+        let outcome = run(&grains, &folder.join("bad"), set);
+        assert!(outcome.code == 2 && outcome.stderr.contains(sentence), "{outcome:?}");
+    };
+    refused(
+        &step[..2],
+        "time.grain_step: found nothing, expected a step that stays the same, since time.steps counts steps",
+    );
+    refused(&step[1..], "time.steps: found steps beside `end`, expected one of the two");
+    refused(&["output.frame_steps=3"], "output.frame_steps: found steps beside");
+    refused(&["time.steps=0", step[0], step[2]], "time.steps: found 0, expected 1 to");
+    let block = "[solid]\ngravity = false\n[solid.block]\nx = { lines = [0.0, 1.0], counts = [1] }\ny = { lines = [0.0, 1.0], counts = [1] }\n\
+        z = { lines = [0.0, 1.0], counts = [2] }\n[solid.dynamics]\n[[solid.support]]\nside = \"z-\"\ndirections = [\"x\", \"y\", \"z\"]\n\
+        [[solid.material]]\nid = 1\nname = \"soil\"\nyoung = \"50 MPa\"\npoisson = 0.3\ndensity = 1900\n[time]\nsolid_step = \"0.7 ms\"\nsteps = 49\n\
+        [output]\nframe_steps = 7\nhistory_steps = 7\n";
+    let solid = folder.write("solid.toml", block);
+    run(&solid, &folder.join("s"), &[]).good();
+    let summary = json(&folder.join("s/summary.json"));
+    assert_eq!(summary["stages"][0]["solid_steps"], 49, "{}", summary["stages"]);
+    assert_eq!((frames("s"), Table::read(&folder.join("s/history.csv")).column("time").len()), (8, 8));
+}

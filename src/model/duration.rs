@@ -1,0 +1,112 @@
+//! How long a run is, and in which steps a solid that runs alone goes.
+
+use super::grains::GrainsPart;
+use crate::scene::{Scene, SceneError, Table};
+use trackbed_coupling::track::CyclicLoad;
+
+/// Most steps that a run may be given: a run of so many would take years.
+const MOST: u64 = 1_000_000_000_000;
+
+/// Length of the steps that are counted where a scene counts steps [s]: of the solid that runs alone, else of the grains, which then
+/// have a step that stays the same.
+///
+/// # Errors
+/// The step follows the contacts, so that a number of steps is no time.
+pub fn counted_step(scene: &Table<Scene>, asks: &str) -> Result<f64, SceneError> {
+    let time = scene.below("time", &scene.time);
+    let (key, step) = match scene.grains.is_empty() {
+        true => ("solid_step", time.solid_step),
+        false => ("grain_step", time.grain_step),
+    };
+    match step {
+        Some(step) if step.si > 0.0 => Ok(step.si),
+        Some(step) => Err(time.error(key, step.si.to_string(), "a time above 0")),
+        None => Err(time.missing(key, format!("a step that stays the same, since {asks} counts steps"))),
+    }
+}
+
+/// Time of `steps` steps [s].
+fn after(scene: &Table<Scene>, steps: u64) -> Result<f64, SceneError> {
+    let step = counted_step(scene, "time.steps")?;
+    if !(1..=MOST).contains(&steps) {
+        let found = steps.to_string();
+        return Err(scene.below("time", &scene.time).error("steps", found, format!("1 to {MOST}")));
+    }
+    // Just below, so that the rounding of the product makes no further step.
+    Ok(steps as f64 * step * (1.0 - 1e-13))
+}
+
+/// Time of the run proper [s]; 0 of a static solid.
+///
+/// # Errors
+/// No time, two of them, or one that is too short for the load cycles.
+pub fn end_time(scene: &Table<Scene>, grains: Option<&GrainsPart>) -> Result<f64, SceneError> {
+    let counted = grains.and_then(|g| g.track.load.as_ref()).map(CyclicLoad::end);
+    // A push comes after the cycles, or stands for itself.
+    let push = grains.and_then(|g| g.track.after.push).map(|p| p.duration());
+    let counted = match (counted, push) {
+        (Some(cycles), Some(push)) => Some(cycles + push),
+        (counted, push) => counted.or(push),
+    };
+    let steps = |s: &crate::scene::solid::Solid| s.dynamics.is_some() || s.quasi_static.is_some();
+    let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
+    let time = scene.below("time", &scene.time);
+    let given = match (time.steps, time.end) {
+        (Some(_), Some(_)) => return Err(time.error("steps", "steps beside `end`", "one of the two")),
+        (Some(steps), None) => Some(after(scene, steps)?),
+        (None, end) => end.map(|end| end.si),
+    };
+    let key = if time.steps.is_some() { "steps" } else { "end" };
+    match (given, counted, dynamic) {
+        (Some(end), _, _) if end <= 0.0 => Err(time.error(key, end.to_string(), "a time above 0")),
+        (Some(end), Some(counted), _) if end < counted => Err(time.error(
+            key,
+            format!("{end} s"),
+            format!(
+                "at least {counted} s, when the {} ends",
+                if push.is_some() { "push" } else { "last load cycle" }
+            ),
+        )),
+        (Some(_), None, false) => Err(time.error(
+            key,
+            "a time",
+            "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]",
+        )),
+        (Some(end), _, true) => Ok(end),
+        (None, Some(counted), _) => Ok(counted),
+        (None, None, true) => Err(time.missing("end", "the time to simulate")),
+        (_, _, false) => Ok(0.0),
+    }
+}
+
+/// Most steps of a solid that runs alone: at a thousand steps a second they take twelve days.
+const MOST_STEPS: f64 = 1e9;
+
+/// Step of a solid that runs alone through time [s].
+///
+/// # Errors
+/// None where it is needed, or one where it has no effect.
+pub fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneError> {
+    let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
+    let time = scene.below("time", &scene.time);
+    match (time.solid_step, alone_and_dynamic) {
+        (Some(step), true) if step.si > 0.0 && step.si <= end && end / step.si <= MOST_STEPS => {
+            Ok(Some(step.si))
+        }
+        (Some(step), true) if step.si > 0.0 && step.si <= end => {
+            let found = format!("{} s, of which the run has {:.1e}", step.si, end / step.si);
+            Err(time.error("solid_step", found, format!("at most {MOST_STEPS:.0e} steps")))
+        }
+        (Some(step), true) => {
+            Err(time.error("solid_step", format!("{} s", step.si), format!("above 0, at most {end} s")))
+        }
+        (Some(_), false) if !scene.grains.is_empty() => Err(time.error(
+            "solid_step",
+            "a time",
+            "no such key: the solid's step is coupling.substeps grain steps",
+        )),
+        (Some(_), false) => Err(time.error("solid_step", "a time", "no such key for a static solid")),
+        (None, true) => Err(time.missing("solid_step", "the step of the solid")),
+        (None, false) => Ok(None),
+    }
+}
