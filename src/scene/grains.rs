@@ -31,6 +31,8 @@ pub struct Grains {
     pub region: Option<Region>,
     /// Share of the container's volume that scattered grains fill, in place of `count`.
     pub concentration: Option<f64>,
+    /// Thickness of `disk` grains over their diameter, above 0 and below 1.
+    pub aspect: Option<f64>,
     /// Growth of the grains in a `region` to a porosity.
     pub growth: Option<GrowthSource>,
     /// Number of grains to fill in.
@@ -79,6 +81,8 @@ pub enum GrainShape {
     Bonded,
     /// Dilated polyhedra: of a stone library, ice floes, or a frustum.
     Polyhedron,
+    /// Dilated disks: flat and round, with a rounded rim.
+    Disk,
 }
 
 /// A row set of a gradation table.
@@ -126,7 +130,7 @@ pub struct LatticeFill {
     pub counts: Option<[usize; 3]>,
 }
 
-/// A field of ice floes: prisms from the Voronoi cells of random sites in a box, each made smaller about its centroid.
+/// A field of ice floes: prisms from the Voronoi cells of random sites in a box, each made smaller about its centroid; or round ones.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Floes {
@@ -134,14 +138,15 @@ pub struct Floes {
     pub low: [Quantity<Length>; 2],
     /// Upper corner [m].
     pub high: [Quantity<Length>; 2],
-    /// Number of cells, 1 to 100000.
-    pub count: usize,
-    /// Area of the floes, before their corners are rounded, over that of the box; above 0 and below 1.
+    /// Of polyhedra: number of cells, 1 to 100000.
+    pub count: Option<usize>,
+    /// Area of the floes, before their corners are rounded, over that of the box; above 0 and below 1. Of disks: over that of the box less the
+    /// circles that are clear.
     pub concentration: f64,
-    /// Thickness [m], above twice the radius.
+    /// Thickness [m]: of polyhedra above twice the radius, of disks below their diameter.
     pub thickness: Quantity<Length>,
-    /// Radius that edges and corners are rounded with [m].
-    pub radius: Quantity<Length>,
+    /// Of polyhedra: radius that edges and corners are rounded with [m]. Disks are rounded with half of their thickness.
+    pub radius: Option<Quantity<Length>>,
     /// Height of the mid-plane [m]; default 0.
     pub elevation: Option<Quantity<Length>>,
     /// Circles that floes must not reach: `[[x, y, r], …]` [m].

@@ -267,3 +267,121 @@ fn loads_on_structures_are_recorded() {
         }
     }
 }
+
+const PANCAKES: &str = r#"gravity = [0, 0, -9.81]
+
+[[material]]
+name = "ice"
+density = 915
+stiffness = "2 MN/m"
+friction = 0.3
+restitution = 0.3
+
+[[grains]]
+name = "pancakes"
+shape = "disk"
+material = "ice"
+seed = 3
+size = [0.5, 1]
+floes = { low = [-5, -5], high = [5, 5], concentration = 0.6, thickness = 0.2, elevation = 0.1, clear = [[0, 0, 0.8]] }
+
+[[walls]]
+kind = "plane"
+material = "ice"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[time]
+end = "0.2 s"
+
+[output]
+frames = 1
+packing = true
+"#;
+
+/// Round floes cover what was asked for to half a floe, clear of the circle, and lie flat on a floor; the frames show their rounded rims.
+#[test]
+fn round_floes_lie_on_a_floor() {
+    let folder = Folder::new("pancakes");
+    let out = folder.join("out");
+    run(&folder.write("scene.toml", PANCAKES), &out, &[]).good();
+    let summary = json(&out.join("summary.json"));
+    let floes = rows(&out.join("packing.csv"));
+    assert_eq!(summary["model"]["bodies"].as_u64(), Some(floes.len() as u64));
+    let covered = floes.len() as f64 / (0.6 * (100.0 - PI * 0.64));
+    // Diameters are uniform from 0.5 to 1 m: a mean square of 7/12 m².
+    assert!((covered * 0.25 * PI * 7.0 / 12.0 - 1.0).abs() < 0.02, "{covered}");
+    for floe in &floes {
+        assert!(floe[0].hypot(floe[1]) > 1.05 && (floe[2] - 0.1).abs() < 1e-3, "{floe:?}");
+        assert!(floe[3].abs() > 1.0 - 1e-6, "{floe:?}");
+    }
+    let warnings = summary["warnings"].to_string();
+    assert!(warnings.contains("round floes cover 0."), "{warnings}");
+}
+
+/// Disks that are filled into a box with an aspect, at rest after a while, and their packing read back.
+#[test]
+fn disks_fill_a_box() {
+    let folder = Folder::new("disks");
+    let walls: String = [("1, 0, 0", -0.5), ("-1, 0, 0", 0.5), ("0, 1, 0", -0.5), ("0, -1, 0", 0.5)]
+        .map(|(n, x)| {
+            let point = if n.contains("1, 0, 0") { format!("{x}, 0, 0") } else { format!("0, {x}, 0") };
+            format!("[[walls]]\nkind = \"plane\"\nmaterial = \"ice\"\npoint = [{point}]\nnormal = [{n}]\n\n")
+        })
+        .concat();
+    let filled = PANCAKES
+        .replace("size = [0.5, 1]\n", "size = [0.3, 0.4]\ncount = 12\naspect = 0.25\n")
+        .replace("[time]", &format!("{walls}[time]"));
+    let at = filled.find("floes = ").unwrap();
+    let end = at + filled[at..].find('\n').unwrap();
+    let filled =
+        format!("{}fill = {{ low = [-0.5, -0.5, 0], high = [0.5, 0.5] }}{}", &filled[..at], &filled[end..])
+            .replace("0.2 s", "1 s");
+    let out = folder.join("out");
+    run(&folder.write("scene.toml", &filled), &out, &[]).good();
+    let floes = rows(&out.join("packing.csv"));
+    assert_eq!(floes.len(), 12);
+    assert!(floes.iter().all(|f| f[2] > 0.03 && (0.3..=0.4).contains(&f[7]) && f[8] == 0.0), "{floes:?}");
+    let again = filled
+        .replace("size = [0.3, 0.4]\ncount = 12\n", "")
+        .replace("fill = { low = [-0.5, -0.5, 0], high = [0.5, 0.5] }", "packing = \"out/packing.csv\"")
+        .replace("1 s", "1 us");
+    run(&folder.write("again.toml", &again), &folder.join("again"), &[]).good();
+    let back = rows(&folder.join("again/packing.csv"));
+    for (a, b) in floes.iter().zip(&back) {
+        assert!((0..3).all(|d| (a[d] - b[d]).abs() < 1e-4) && a[7] == b[7], "{a:?} {b:?}");
+    }
+}
+
+/// What cannot be is named.
+#[test]
+fn bad_disks_are_refused() {
+    for (old, new, expected) in [
+        (
+            "thickness = 0.2",
+            "thickness = 0.6",
+            "floes.thickness: found 0.6 m, expected less than the diameter",
+        ),
+        (
+            "thickness = 0.2",
+            "thickness = 0.2, count = 5",
+            "floes.count: found a value, expected no such key for disks",
+        ),
+        (
+            "thickness = 0.2",
+            "thickness = 0.2, radius = 0.1",
+            "floes.radius: found a value, expected no such key for disks",
+        ),
+        ("concentration = 0.6", "concentration = 0.93", "floes.concentration: found 0.93, at which floes"),
+        (
+            "size = [0.5, 1]",
+            "aspect = 0.2\nsize = [0.5, 1]",
+            "grains.0.aspect: found a value, expected no such key",
+        ),
+        ("size = [0.5, 1]\n", "", "found none of `gradation`, `size` and `sizes`"),
+        ("shape = \"disk\"", "shape = \"sphere\"", "grains.0.size: found a value"),
+    ] {
+        assert_eq!(PANCAKES.matches(old).count(), 1, "{old}");
+        refused(&PANCAKES.replace(old, new), expected);
+    }
+}

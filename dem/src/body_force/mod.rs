@@ -11,6 +11,7 @@
 //! velocity that it takes in a step. Its work is booked exactly for translation, and with the spins before and after the step
 //! for rotation.
 
+mod disk;
 mod four;
 mod skin;
 mod water;

@@ -2,8 +2,10 @@
 //!
 //! Faces of a dilated polyhedron are as they are; an edge is divided into strips of at most 30°, whose corners are moved out so
 //! that the volume of the edge is right, and each corner into a fan whose middle is moved out until its volume is right. What is
-//! under water of it is cut exactly; faces, edges and corners that are wholly above or below are not looked into.
+//! under water of it is cut exactly; faces, edges and corners that are wholly above or below are not looked into. Dilated disks have no
+//! triangles: slices of them are cut in closed form (`disk.rs`).
 
+use super::disk;
 use crate::base::Vec3;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
@@ -55,6 +57,8 @@ pub(crate) struct Skin {
     whole: (f64, Vec3),
     /// Mean distance of the corners from the centre [m].
     pub reach: f64,
+    /// Radii of a dilated disk, which has no triangles [m].
+    disk: Option<[f64; 2]>,
 }
 
 /// What of a body is under water.
@@ -82,6 +86,9 @@ impl Skin {
 
     /// The surface of a core dilated by a radius [m].
     pub fn new(core: &Core, radius: f64) -> Skin {
+        if let Some(rim) = core.rim {
+            return Skin { disk: Some([rim, radius]), reach: rim + radius, ..Skin::default() };
+        }
         let mut skin = Skin { core: core.corners.clone(), margin: radius, ..Skin::default() };
         // Corners of the faces, moved out.
         let mut places = HashMap::new();
@@ -204,6 +211,9 @@ impl Skin {
     /// What lies below the plane that is normal to the unit vector `up` at `level` [m] along it, all in the frame of the shape; its
     /// areas as seen along the unit vector `along`. `heights` is scratch.
     pub fn below(&self, up: &Vec3, level: f64, along: &Vec3, heights: &mut Vec<f64>) -> Wet {
+        if let Some(radii) = self.disk {
+            return disk::below(radii, up, level, along);
+        }
         heights.clear();
         heights.extend(self.core.iter().map(|p| up.dot(p) - level));
         let (mut sum, foot) = (Part::default(), up * level);

@@ -105,7 +105,7 @@ fn shapes(input: &ModelInput) -> Result<(), ModelError> {
                 format!("half sides are {half:?}; each must {POSITIVE}")
             }
             Shape::Polyhedron(it) if !positive(it.radius) || !positive(it.volume) => {
-                "radius and volume of a dilated polyhedron must be positive".to_string()
+                "radius and volume of a dilated polyhedron or disk must be positive".to_string()
             }
             Shape::Clump(c) if c.spheres.is_empty() => "a clump without spheres".to_string(),
             Shape::Clump(c) if c.spheres.len() > 65_535 => {
@@ -298,7 +298,7 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
         ("bonds", !input.bonds.is_empty()),
     ] {
         if there {
-            return error(format!("a dilated polyhedron; {what} cannot be combined with it"));
+            return error(format!("a dilated polyhedron or disk; {what} cannot be combined with it"));
         }
     }
     let partners = timestep::partners(bodies, input);
@@ -309,7 +309,7 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
         };
         if let Some(b) = partners.iter().find(grows) {
             return error(format!(
-                "a dilated polyhedron; the stiffness of its material {} with material {b} grows with the overlap, and only linear \
+                "a dilated polyhedron or disk; the stiffness of its material {} with material {b} grows with the overlap, and only linear \
                  springs can be spread along its edges",
                 body.material
             ));

@@ -13,7 +13,8 @@ pub fn kernels(model: &Model) -> String {
     let has = |what: fn(&Shape) -> bool| (0..model.body_count()).any(|b| what(model.shape(b)));
     let round = has(|s| matches!(s, Shape::Sphere { .. } | Shape::Clump(_)));
     let names = [
-        (has(|s| matches!(s, Shape::Polyhedron(_))), "polyhedra"),
+        (has(|s| matches!(s, Shape::Polyhedron(it) if it.core.rim.is_none())), "polyhedra"),
+        (has(|s| matches!(s, Shape::Polyhedron(it) if it.core.rim.is_some())), "disks"),
         (has(|s| matches!(s, Shape::Box { .. })), "boxes"),
         (round && model.clumps, "spheres of rigid bodies"),
         (round && !model.clumps, "single spheres"),

@@ -141,7 +141,7 @@ fn column_of_solid(model: &Model, state: &State, body: usize, x: f64, y: f64) ->
 fn chord(core: &Core, radius: f64, origin: &Vec3, along: &Vec3) -> Option<[f64; 2]> {
     let reach = origin.norm() + core.reach + radius;
     // Through the core itself, and near it: together one stretch, for the body is convex.
-    let mut inner = [-reach, reach];
+    let mut inner = if core.rim.is_some() { [0.0; 2] } else { [-reach, reach] };
     for face in &core.faces {
         let (at, slope) = (face.normal.dot(origin) - face.offset, face.normal.dot(along));
         if slope > 0.0 {

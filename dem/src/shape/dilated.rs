@@ -1,10 +1,14 @@
 //! A dilated polyhedron: a convex polyhedron, the core, rolled over by a sphere. Its faces lie one radius outside those of the
-//! core, its edges are parts of cylinders and its corners parts of spheres.
+//! core, its edges are parts of cylinders and its corners parts of spheres. So is a dilated disk, whose core is flat and round
+//! (`disk.rs`).
 
+pub(crate) mod disk;
 mod hull;
 mod moments;
 pub(crate) mod part;
 pub(crate) mod press;
+pub(crate) mod rim;
+pub(crate) mod scan;
 
 use crate::base::Vec3;
 use nalgebra::{Matrix3, UnitQuaternion};
@@ -84,6 +88,8 @@ pub struct Core {
     pub at: Vec<([u64; 3], [u64; 2])>,
     /// Radius of the smallest sphere about the origin that holds it [m].
     pub reach: f64,
+    /// Radius of a flat disk across the third axis, which has no corners, faces and edges of the above [m]; of no polyhedron.
+    pub rim: Option<f64>,
 }
 
 /// Numbers of the bits of a set, ascending.
@@ -124,6 +130,19 @@ pub struct DilatedMoments {
     pub centre: Vec3,
     /// Tensor of inertia about the centre per unit density [m⁵].
     pub inertia: Matrix3<f64>,
+}
+
+/// The point farthest along a direction.
+#[inline]
+pub(crate) fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
+    let mut best = (0, f64::NEG_INFINITY);
+    for (k, p) in points.iter().enumerate() {
+        let h = p.dot(n);
+        if h > best.1 {
+            best = (k, h);
+        }
+    }
+    &points[best.0]
 }
 
 impl Core {
@@ -178,8 +197,26 @@ impl Core {
         bits(self.meeting(set).1)
     }
 
+    /// Its point that is farthest along a direction [m].
+    #[inline]
+    pub fn farthest(&self, n: &Vec3) -> Vec3 {
+        match self.rim {
+            Some(radius) => disk::farthest(radius, n),
+            None => *farthest(&self.corners, n),
+        }
+    }
+
+    /// Half sides of the box about the origin, along the axes, that holds it [m].
+    pub fn half_extents(&self) -> Vec3 {
+        let round = self.rim.map_or(Vec3::zeros(), |r| Vec3::new(r, r, 0.0));
+        self.corners.iter().fold(round, |most, c| most.sup(&c.abs()))
+    }
+
     /// The longest circumference of a face [m].
     pub fn circumference(&self) -> f64 {
+        if let Some(radius) = self.rim {
+            return std::f64::consts::TAU * radius;
+        }
         let around = |f: &Face| -> f64 {
             let ends = f.corners.iter().zip(f.corners.iter().cycle().skip(1));
             ends.map(|(a, b)| (self.corners[*a as usize] - self.corners[*b as usize]).norm()).sum()
@@ -216,12 +253,14 @@ impl Dilated {
 
     /// Half sides of the box about the origin, along the axes, that holds the body [m].
     pub fn half_extents(&self) -> Vec3 {
-        let most = self.core.corners.iter().fold(Vec3::zeros(), |most, c| most.sup(&c.abs()));
-        most.add_scalar(self.radius)
+        self.core.half_extents().add_scalar(self.radius)
     }
 
     /// Extents of the body along its axes [m].
     pub fn extents(&self) -> [f64; 3] {
+        if self.core.rim.is_some() {
+            return (self.half_extents() * 2.0).into();
+        }
         std::array::from_fn(|d| {
             let x = self.core.corners.iter().map(|c| c[d]);
             let [low, high] = x.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
@@ -233,6 +272,9 @@ impl Dilated {
     /// outside. Every point lies on the surface of the body.
     pub fn outline(&self) -> (Vec<Vec3>, Vec<Vec<u32>>) {
         let core = &self.core;
+        if let Some(big) = core.rim {
+            return disk::outline(big, self.radius);
+        }
         let (mut points, mut polygons) = (Vec::new(), Vec::new());
         // Each corner once for each of its faces.
         let mut first = Vec::new();

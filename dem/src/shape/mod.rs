@@ -28,7 +28,7 @@ pub enum Shape {
         /// Half of each side [m].
         half: [f64; 3],
     },
-    /// A dilated polyhedron. It touches spheres (of clumps too), planes, boxes and its like.
+    /// A dilated polyhedron or disk. It touches spheres (of clumps too), planes, walls, boxes and its like.
     Polyhedron(Box<Dilated>),
 }
 
@@ -47,7 +47,7 @@ impl Shape {
         if let Shape::Polyhedron(it) = self { it.radius * scale } else { 0.0 }
     }
 
-    /// Whether it is a dilated polyhedron.
+    /// Whether it is a dilated polyhedron or disk.
     pub(crate) fn dilated(&self) -> bool {
         matches!(self, Shape::Polyhedron(_))
     }

@@ -31,7 +31,8 @@ pub(crate) fn separation(between: impl Fn(&Vec3) -> Vec3, guess: Vec3, enough: f
             break;
         }
         simplex.push(w);
-        let closest = simplex.closest()?;
+        // The origin within: they overlap, or the simplex is too flat to say.
+        let Some(closest) = simplex.closest() else { break };
         // Rounding: no nearer than before.
         if closest.norm_squared() >= v.norm_squared() {
             break;

@@ -8,6 +8,7 @@ mod bonds_block;
 mod bonds_many;
 mod boxes;
 mod determinism;
+mod disks;
 mod extremes;
 mod friction;
 mod hertz;

@@ -19,7 +19,8 @@ use crate::law::ContactGeometry;
 use crate::pairs::list::Hint;
 use crate::shape::dilated::part::{Bounds, Part, View};
 use crate::shape::dilated::press::{self, HalfSpace, Pressed, Segment, Target};
-use crate::shape::dilated::{CORNERS, Core};
+use crate::shape::dilated::rim::{self, Circle};
+use crate::shape::dilated::{CORNERS, Core, disk, farthest};
 use crate::spatial::separation::separation;
 use arrayvec::ArrayVec;
 use nalgebra::{Rotation3, UnitQuaternion};
@@ -36,13 +37,13 @@ const STALE: f64 = 0.05;
 /// Share of the reach that is added to it where features are left out, so that rounding leaves out none that touches.
 pub(super) const ROUNDING: f64 = 1e-6;
 
-/// Two dilated polyhedra, or one and a box.
+/// Two dilated polyhedra or disks, or one and a box.
 pub(crate) struct DilatedDilated;
 
-/// A dilated polyhedron and a plane.
+/// A dilated polyhedron or disk and a plane.
 pub(crate) struct DilatedPlane;
 
-/// A sphere and a dilated polyhedron.
+/// A sphere and a dilated polyhedron or disk.
 pub(crate) struct SphereDilated;
 
 /// Takes points of one body's frame to another's: both frames have unscaled lengths.
@@ -95,36 +96,62 @@ impl Heights {
         let aside = n.dot(&two.frame.way);
         (self.n, self.low, self.high) = (n, f64::INFINITY, f64::NEG_INFINITY);
         self.first.clear();
-        for x in two.first {
+        for x in two.first.corners {
             let h = own.dot(x) + aside;
             self.low = if h < self.low { h } else { self.low };
             self.first.push(h);
         }
         self.second.clear();
-        for x in two.second {
+        for x in two.second.corners {
             let h = n.dot(x);
             self.high = if h > self.high { h } else { self.high };
             self.second.push(h);
         }
+        if let Some(radius) = two.first.rim {
+            self.low = aside - radius * libm::hypot(own.x, own.y);
+        }
+        if let Some(radius) = two.second.rim {
+            self.high = radius * libm::hypot(n.x, n.y);
+        }
     }
 }
 
-/// The corners of two cores, in the frame of the second.
+/// What the hull of a partner is of: corners, or a flat disk.
+#[derive(Clone, Copy)]
+pub(super) struct Hull<'a> {
+    pub corners: &'a [Vec3],
+    pub rim: Option<f64>,
+}
+
+impl<'a> Hull<'a> {
+    pub fn of(core: &'a Core) -> Hull<'a> {
+        Hull { corners: &core.corners, rim: core.rim }
+    }
+
+    fn farthest(&self, n: &Vec3) -> Vec3 {
+        match self.rim {
+            None => *farthest(self.corners, n),
+            Some(radius) => disk::farthest(radius, n),
+        }
+    }
+}
+
+/// Two hulls, in the frame of the second.
 pub(super) struct Two<'a> {
     pub frame: Frame,
-    pub first: &'a [Vec3],
-    pub second: &'a [Vec3],
+    pub first: Hull<'a>,
+    pub second: Hull<'a>,
 }
 
 impl<'a> Two<'a> {
     fn new(a: &Placed<'a>, b: &Placed<'a>) -> Two<'a> {
-        Two { frame: Frame::new(&a.pose(), &b.pose()), first: &a.core.corners, second: &b.core.corners }
+        Two { frame: Frame::new(&a.pose(), &b.pose()), first: Hull::of(a.core), second: Hull::of(b.core) }
     }
 
     /// From the farthest point of the second to the first's that is farthest the other way, along a direction.
     fn between(&self, n: &Vec3) -> Vec3 {
-        let first = farthest(self.first, &-self.frame.turn.inverse_transform_vector(n));
-        self.frame.point(first) - farthest(self.second, n)
+        let first = self.first.farthest(&-self.frame.turn.inverse_transform_vector(n));
+        self.frame.point(&first) - self.second.farthest(n)
     }
 
     /// A unit vector along which the first lies beyond the second, and how far at least, from a guess; any, as soon as that is
@@ -167,18 +194,6 @@ impl<'a> Two<'a> {
     }
 }
 
-/// The point farthest along a direction.
-pub(super) fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
-    let mut best = (0, f64::NEG_INFINITY);
-    for (k, p) in points.iter().enumerate() {
-        let h = p.dot(n);
-        if h > best.1 {
-            best = (k, h);
-        }
-    }
-    &points[best.0]
-}
-
 /// The set of those heights for which `near` holds.
 pub(super) fn set(heights: impl IntoIterator<Item = f64>, near: impl Fn(f64) -> bool) -> u64 {
     heights.into_iter().enumerate().map(|(k, h)| u64::from(near(h)) << k).sum()
@@ -190,7 +205,7 @@ fn around(a: &Placed<'_>, b: &Placed<'_>, reach: f64) -> bool {
     (a.centre - b.centre).norm_squared() < most * most
 }
 
-/// What the corners and edges of a body do to a target, in the target's frame: calls `put` with the feature, from 1 on, what it does, and its
+/// What the corners and edges of a body, or its rim, do to a target, in the target's frame: calls `put` with the feature, from 1 on, what it does, and its
 /// weight. Only features with a corner of the set `near` can be within reach, and what of them is in the view.
 pub(super) fn skeleton(
     core: &Core,
@@ -218,6 +233,13 @@ pub(super) fn skeleton(
             let weight = length(&pressed, reach);
             put((CORNERS + k) as u32 + 1, &pressed, weight);
         }
+    }
+    if let Some(radius) = core.rim {
+        let [x, y] = [Vec3::x(), Vec3::y()].map(|axis| frame.turn * (axis * (radius * frame.scale)));
+        let circle = Circle { centre: frame.way, x, y };
+        rim::rim(target, &circle, view.floor_of(&circle), reach, |arc, pressed| {
+            put(arc + 1, pressed, length(pressed, reach));
+        });
     }
 }
 
@@ -348,6 +370,14 @@ impl PairKind for DilatedPlane {
     }
 }
 
+/// How far a point lies outside of a core, at least.
+fn outside(core: &Core, p: &Vec3) -> f64 {
+    match core.rim {
+        Some(radius) => disk::way(radius, p).norm(),
+        None => core.faces.iter().map(|f| f.normal.dot(p) - f.offset).fold(f64::NEG_INFINITY, f64::max),
+    }
+}
+
 impl PairKind for SphereDilated {
     type First = Spheres;
     type Second = Solids;
@@ -358,8 +388,7 @@ impl PairKind for SphereDilated {
         }
         let (p, most) = (xyz(sphere), sphere[3] + body.radius + reach);
         let local = body.orientation.inverse() * (p - body.centre) / body.scale;
-        let outside = body.core.faces.iter().map(|f| f.normal.dot(&local) - f.offset);
-        outside.fold(f64::NEG_INFINITY, f64::max) * body.scale < most
+        outside(body.core, &local) * body.scale < most
     }
 
     fn touches(&self, sphere: &&Record, body: &Placed<'_>, found: &mut Touches) {
@@ -368,8 +397,7 @@ impl PairKind for SphereDilated {
         }
         let (p, sum) = (xyz(sphere), sphere[3] + body.radius);
         let local = body.orientation.inverse() * (p - body.centre) / body.scale;
-        let highest =
-            body.core.faces.iter().map(|f| f.normal.dot(&local) - f.offset).fold(f64::NEG_INFINITY, f64::max);
+        let highest = outside(body.core, &local);
         let reach = sum / body.scale;
         if highest >= reach {
             return;
@@ -384,11 +412,16 @@ impl PairKind for SphereDilated {
         };
         let own = sphere[3] / body.scale;
         let radius = effective(sphere[3], body.radius);
-        // A sphere may sink into a face as deep as into another sphere.
-        found.push(Touch { bound: sum, ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0) });
+        // A sphere may sink into a face as deep as into another sphere, but not through a disk.
+        let bound = if body.core.rim.is_some() { DEEPEST * sum } else { sum };
+        found.push(Touch { bound, ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0) });
     }
 }
 
 #[cfg(test)]
 #[path = "dilated_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "disk_tests.rs"]
+mod disk_tests;

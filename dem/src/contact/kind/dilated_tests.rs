@@ -5,7 +5,7 @@ use crate::shape::cuboid;
 use crate::shape::dilated::Dilated;
 use crate::shape::dilated::tests::{corners, rows};
 
-fn placed<'a>(
+pub(super) fn placed<'a>(
     shape: &'a Shape,
     core: &'a Core,
     centre: Vec3,
@@ -16,12 +16,12 @@ fn placed<'a>(
 }
 
 /// Energy of the springs of a pair, stiffness 1 N/m.
-fn energy(found: &Touches) -> f64 {
+pub(super) fn energy(found: &Touches) -> f64 {
     found.iter().map(|t| 0.5 * t.weight * t.geometry.overlap.powi(2)).sum()
 }
 
 /// Force on the first and torque on it about a point.
-fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
+pub(super) fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
     let mut sums = [Vec3::zeros(); 2];
     for t in found {
         let force = t.geometry.normal * (t.weight * t.geometry.overlap);
@@ -31,7 +31,7 @@ fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
     sums
 }
 
-fn stones(random: &mut Random, count: usize, radius: f64) -> Shape {
+pub(super) fn stones(random: &mut Random, count: usize, radius: f64) -> Shape {
     let points: Vec<Vec3> = (0..count)
         .map(|_| random.orientation() * Vec3::x())
         .map(|p| Vec3::new(0.5 * p.x, 0.4 * p.y, 0.3 * p.z))

@@ -2,7 +2,9 @@
 
 use crate::base::Vec3;
 use crate::shape::dilated::part::Bounds;
+use crate::shape::dilated::part::direction;
 use crate::shape::dilated::press::{Nearest, Segment, Stretch, Target};
+use crate::shape::dilated::rim::{Circle, Turns};
 use crate::spatial::facet::{Facet, FacetEdge};
 
 /// A point.
@@ -57,6 +59,25 @@ fn of_rim(
     }
 }
 
+/// Called with a part of a circle, and with what gives distance and direction of its points.
+type Put<'a> = &'a mut dyn FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3));
+
+/// What of a circle's parts is near a point.
+fn turns_of_tip(circle: &Circle, mut turns: Turns, tip: &Vec3, reach: f64, f: Put<'_>) {
+    turns.cut(circle.around(tip, reach));
+    let at = |p: &Vec3| direction(p - tip);
+    turns.0.iter().for_each(|part| f(*part, &at));
+}
+
+/// What of a circle's parts, which lie between the ends of an edge, is near the edge.
+fn turns_of_rim(circle: &Circle, turns: &Turns, (end, edge): (&Vec3, &FacetEdge), reach: f64, f: Put<'_>) {
+    let at = |p: &Vec3| {
+        let way = p - end;
+        direction(way - edge.direction * way.dot(&edge.direction))
+    };
+    turns.0.iter().for_each(|range| circle.near(*range, reach, &at, |part| f(part, &at)));
+}
+
 impl Target for Tip<'_> {
     fn meets(&self, _: &Bounds) -> bool {
         true
@@ -68,6 +89,16 @@ impl Target for Tip<'_> {
 
     fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
         of_tip(Stretch(segment.range), segment, self.0, reach, &mut f);
+    }
+
+    fn turns(
+        &self,
+        circle: &Circle,
+        turns: &Turns,
+        reach: f64,
+        mut f: impl FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3)),
+    ) {
+        turns_of_tip(circle, turns.clone(), self.0, reach, &mut f);
     }
 }
 
@@ -103,6 +134,28 @@ impl Target for Rim<'_> {
         if behind.some() {
             of_tip(behind, segment, &(end + edge.direction * edge.length), reach, &mut f);
         }
+    }
+
+    fn turns(
+        &self,
+        circle: &Circle,
+        turns: &Turns,
+        reach: f64,
+        mut f: impl FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3)),
+    ) {
+        let Rim(end, edge) = *self;
+        let along = circle.along(&edge.direction, edge.direction.dot(end));
+        let beyond = [along[0] - edge.length, along[1], along[2]];
+        let mut beside = turns.clone();
+        beside.cut(along.map(|x| -x));
+        beside.cut_beyond(beyond);
+        turns_of_rim(circle, &beside, (end, edge), reach, &mut f);
+        let mut before = turns.clone();
+        before.cut_beyond(along);
+        turns_of_tip(circle, before, end, reach, &mut f);
+        let mut behind = turns.clone();
+        behind.cut(beyond.map(|x| -x));
+        turns_of_tip(circle, behind, &(end + edge.direction * edge.length), reach, &mut f);
     }
 }
 
@@ -187,6 +240,45 @@ impl Target for Closed<'_> {
             if stretch.some() {
                 of_tip(stretch, segment, &corners[k], reach, &mut f);
             }
+        }
+    }
+    fn turns(
+        &self,
+        circle: &Circle,
+        turns: &Turns,
+        reach: f64,
+        mut f: impl FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3)),
+    ) {
+        let Facet { corners, edges, normal, .. } = self.0;
+        for sign in [1.0, -1.0] {
+            let normal = normal * sign;
+            let height = circle.along(&normal, normal.dot(&corners[0]));
+            let mut over = turns.clone();
+            over.cut([height[0] - reach, height[1], height[2]]);
+            if sign > 0.0 {
+                over.cut(height.map(|x| -x));
+            } else {
+                over.cut_beyond(height.map(|x| -x));
+            }
+            for (corner, edge) in corners.iter().zip(edges) {
+                over.cut(circle.along(&edge.side, edge.side.dot(corner)));
+            }
+            let at = |p: &Vec3| ((p - corners[0]).dot(&normal), normal);
+            over.0.iter().for_each(|part| f(*part, &at));
+        }
+        for k in 0..3 {
+            let (corner, edge, before) = (&corners[k], &edges[k], &edges[(k + 2) % 3]);
+            let along = circle.along(&edge.direction, edge.direction.dot(corner));
+            let mut beside = turns.clone();
+            beside.cut_beyond(circle.along(&edge.side, edge.side.dot(corner)).map(|x| -x));
+            beside.cut(along.map(|x| -x));
+            beside.cut([along[0] - edge.length, along[1], along[2]]);
+            turns_of_rim(circle, &beside, (corner, edge), reach, &mut f);
+            // Beyond the beginning of this side and the end of the one before.
+            let mut beyond = turns.clone();
+            beyond.cut_beyond(along);
+            beyond.cut_beyond(circle.along(&before.direction, before.direction.dot(corner)).map(|x| -x));
+            turns_of_tip(circle, beyond, corner, reach, &mut f);
         }
     }
 }

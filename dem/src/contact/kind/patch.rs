@@ -7,7 +7,7 @@
 //!
 //! Limits: as between bodies; a core that meets a triangle ends the run. Triangles have two sides.
 
-use super::dilated::{self, DEEPEST, Frame, Heights, ROUNDING, Two, effective, set, skeleton, touch};
+use super::dilated::{self, DEEPEST, Frame, Heights, Hull, ROUNDING, Two, effective, set, skeleton, touch};
 use super::facet::{Closed, Rim, Tip};
 use super::pair::{PairKind, Touch, Touches};
 use super::round;
@@ -26,13 +26,13 @@ const EDGE: u32 = 1;
 const TIP: u32 = 4;
 const PRESSING: u32 = 8;
 
-/// A dilated polyhedron and a patch of a wall.
+/// A dilated polyhedron or disk and a patch of a wall.
 pub(crate) struct DilatedPatch;
 
 /// A body over a facet, both in the frame of the wall.
 pub(super) fn two<'a>(body: &Placed<'a>, pose: &Pose, facet: &'a Facet) -> Two<'a> {
     let frame = Frame::new(&body.pose(), pose);
-    Two { frame, first: &body.core.corners, second: &facet.corners }
+    Two { frame, first: Hull::of(body.core), second: Hull { corners: &facet.corners, rim: None } }
 }
 
 impl PairKind for DilatedPatch {

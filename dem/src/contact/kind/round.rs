@@ -189,7 +189,6 @@ impl Side {
     fn meets_core(&self, frame: &Frame, body: &Placed<'_>) -> bool {
         let (point, normal, _) = self.near.closest(&frame.way);
         let outside = (frame.way - point).dot(&normal) > 0.0;
-        let core = &body.core.corners;
         let farthest = |n: &Vec3| {
             let across = n - self.axis * n.dot(&self.axis);
             let unit = across.try_normalize(0.0).unwrap_or_default();
@@ -201,8 +200,7 @@ impl Side {
         };
         let between = |n: &Vec3| {
             let own = frame.turn.inverse_transform_vector(n);
-            let lowest = core.iter().min_by(|a, b| a.dot(&own).total_cmp(&b.dot(&own)));
-            frame.point(lowest.unwrap_or(&Vec3::zeros())) - farthest(n)
+            frame.point(&body.core.farthest(&-own)) - farthest(n)
         };
         outside && separation(between, normal, 0.0).is_none()
     }

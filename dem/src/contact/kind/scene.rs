@@ -45,7 +45,7 @@ impl Placed<'_> {
         }
     }
 
-    /// Whether it is a dilated polyhedron.
+    /// Whether it is a dilated polyhedron or disk.
     #[inline(always)]
     pub fn dilated(&self) -> bool {
         self.radius > 0.0

@@ -93,7 +93,7 @@ pub(super) fn joined(corners: Vec<Vec3>, faces: Vec<Face>) -> Core {
     let reach = corners.iter().map(|c| c.norm()).fold(0.0, f64::max);
     let n = corners.len();
     let (spokes, at) = (vec![Vec::new(); n], vec![([0; 3], [0; 2]); n]);
-    let mut core = Core { spokes, at, corners, faces, edges: Vec::new(), reach };
+    let mut core = Core { spokes, at, corners, faces, edges: Vec::new(), reach, rim: None };
     edges(&mut core);
     for (k, e) in core.edges.iter().enumerate() {
         core.spokes[e.ends[0] as usize].push((k as u8, 0));

@@ -1,6 +1,8 @@
 //! Those features of a core that may be near something: each with a box around what of it can be.
 
+use super::disk::Flat;
 use super::press::{Nearest, Segment, Stretch, Target};
+use super::rim::{Circle, Turns};
 use super::{CORNERS, Core, Edge, Face};
 use crate::base::Vec3;
 use arrayvec::ArrayVec;
@@ -47,6 +49,11 @@ impl View {
     pub fn moved(&self, turn: &Rotation3<f64>, scale: f64, floor: f64) -> View {
         let [up, first, second] = [self.up, self.axes[0], self.axes[1]].map(|x| turn * x);
         View { up, floor, axes: [first, second], aside: self.aside * scale }
+    }
+
+    /// What of a circle is in it: coefficients of what is zero or less there.
+    pub fn floor_of(&self, circle: &Circle) -> [f64; 3] {
+        circle.along(&-self.up, -self.floor)
     }
 
     /// A point as it is seen: its height over the floor, and where it is across.
@@ -206,10 +213,13 @@ impl<'a> Part<'a> {
 
 impl Target for Part<'_> {
     fn meets(&self, around: &Bounds) -> bool {
-        self.bounds.meets(around)
+        self.core.rim.is_some() || self.bounds.meets(around)
     }
 
     fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        if let Some(radius) = self.core.rim {
+            return Flat(radius).distance(p, reach);
+        }
         let around = &Bounds::near([p, p], &self.view);
         let mut best = (reach, Vec3::zeros());
         for face in self.faces_at(around) {
@@ -234,6 +244,9 @@ impl Target for Part<'_> {
     }
 
     fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
+        if let Some(radius) = self.core.rim {
+            return Flat(radius).stretches(segment, reach, f);
+        }
         let whole = Stretch(segment.range);
         let around = &segment.around;
         for face in self.faces_at(around) {
@@ -295,4 +308,68 @@ impl Target for Part<'_> {
             }
         }
     }
+
+    fn turns(
+        &self,
+        circle: &Circle,
+        turns: &Turns,
+        reach: f64,
+        mut f: impl FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3)),
+    ) {
+        if let Some(radius) = self.core.rim {
+            return Flat(radius).turns(circle, turns, reach, f);
+        }
+        for face in self.faces.iter().map(|(k, _)| &self.core.faces[*k as usize]) {
+            let mut over = turns.clone();
+            let height = circle.along(&face.normal, face.offset);
+            over.cut([height[0] - reach, height[1], height[2]]);
+            over.cut(height.map(|x| -x));
+            for (side, level) in &face.sides {
+                if !over.some() {
+                    break;
+                }
+                over.cut(circle.along(side, *level));
+            }
+            let at = |p: &Vec3| (face.normal.dot(p) - face.offset, face.normal);
+            over.0.iter().for_each(|part| f(*part, &at));
+        }
+        for edge in self.edges.iter().map(|(k, _)| &self.core.edges[*k as usize]) {
+            let mut beside = turns.clone();
+            let along = circle.along(&edge.direction, 0.0);
+            beside.cut([edge.levels[0] - along[0], -along[1], -along[2]]);
+            beside.cut([along[0] - edge.levels[1], along[1], along[2]]);
+            for (side, level) in &edge.sides {
+                if !beside.some() {
+                    break;
+                }
+                beside.cut_beyond(circle.along(side, *level).map(|x| -x));
+            }
+            let end = &self.core.corners[edge.ends[0] as usize];
+            let at = |p: &Vec3| {
+                let way = p - end;
+                direction(way - edge.direction * way.dot(&edge.direction))
+            };
+            beside.0.iter().for_each(|range| circle.near(*range, reach, &at, |part| f(part, &at)));
+        }
+        for (k, corner) in self.core.corners.iter().enumerate().filter(|(k, _)| self.corners >> k & 1 == 1) {
+            let mut beyond = turns.clone();
+            beyond.cut(circle.around(corner, reach));
+            for &(edge, end) in &self.core.spokes[k] {
+                if !beyond.some() {
+                    break;
+                }
+                let edge = &self.core.edges[edge as usize];
+                let along = circle.along(&edge.direction, edge.levels[end as usize]);
+                beyond.cut_beyond(if end == 0 { along } else { along.map(|x| -x) });
+            }
+            let at = |p: &Vec3| direction(p - corner);
+            beyond.0.iter().for_each(|part| f(*part, &at));
+        }
+    }
+}
+
+/// Length and direction of a way.
+pub(crate) fn direction(way: Vec3) -> (f64, Vec3) {
+    let d = way.norm();
+    if d > 0.0 { (d, way / d) } else { (0.0, Vec3::z()) }
 }

@@ -6,8 +6,9 @@
 //! outside of it, so the sums are smooth whatever turns into what, corners on edges into faces on faces, and forces that grow with
 //! them have a potential.
 
+use super::part::Bounds;
+use super::rim::{self, Circle, Turns};
 use crate::base::Vec3;
-use crate::shape::dilated::part::Bounds;
 
 /// Points and weights of Gauss's rule on [−1, 1]: for the flat pieces, where two are exact, and for others.
 const FLAT: [[f64; 2]; 2] = [[-0.577_350_269_189_625_8, 1.0], [0.577_350_269_189_625_8, 1.0]];
@@ -19,7 +20,7 @@ const ROUND: [[f64; 2]; 4] = [
 ];
 
 /// Points and weights for curved surfaces.
-const CURVED: [[f64; 2]; 8] = [
+pub(crate) const CURVED: [[f64; 2]; 8] = [
     [-0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
     [-0.796_666_477_413_626_7, 0.222_381_034_453_374_47],
     [-0.525_532_409_916_329, 0.313_706_645_877_887_3],
@@ -43,6 +44,25 @@ pub(crate) trait Target {
 
     /// Calls `f` with each stretch of a segment that is nearer than `reach` and has one nearest feature.
     fn stretches(&self, segment: &Segment, reach: f64, f: impl FnMut([f64; 2], &Nearest));
+
+    /// Calls `f` with parts of a circle, among those given, that are nearer than `reach`, and what gives distance and direction of their
+    /// points. Smooth but for the curvature within each part.
+    fn turns(
+        &self,
+        circle: &Circle,
+        turns: &Turns,
+        reach: f64,
+        mut f: impl FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3)),
+    ) {
+        let at = |p: &Vec3| self.distance(p, f64::INFINITY).unwrap_or((0.0, Vec3::z()));
+        for &range in &turns.0 {
+            let mut from = range[0];
+            for to in rim::ends(range).skip(1) {
+                circle.near([from, to], reach, &at, |part| f(part, &at));
+                from = to;
+            }
+        }
+    }
 }
 
 /// A segment: points `from` + s `direction` with s in `range`.
@@ -211,6 +231,19 @@ impl Target for HalfSpace {
         if stretch.some() {
             f(stretch.0, &Nearest::Plane { normal: self.normal, at, slope });
         }
+    }
+
+    fn turns(
+        &self,
+        circle: &Circle,
+        turns: &Turns,
+        reach: f64,
+        mut f: impl FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3)),
+    ) {
+        let mut turns = turns.clone();
+        turns.cut(circle.along(&self.normal, self.normal.dot(&self.point) + reach));
+        let at = |p: &Vec3| ((p - self.point).dot(&self.normal), self.normal);
+        turns.0.iter().for_each(|part| f(*part, &at));
     }
 }
 

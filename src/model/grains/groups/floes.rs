@@ -25,10 +25,14 @@ pub(super) fn floes(
     model: &BodyInput,
     part: &mut GroupsPart,
 ) -> Result<(), SceneError> {
-    check(field)?;
     let ends = [&field.low, &field.high].map(|corner| corner.map(|x| x.si));
-    let (radius, half) = (field.radius.si, 0.5 * field.thickness.si);
-    let cells = cells(&sites(ends, field.count, group.seed), ends);
+    let count = field.need("count", field.count, "the number of cells")?;
+    field.check("count", count, |n| (1.0..=MOST).contains(&n), "1 to 100000")?;
+    let radius = field.need("radius", field.radius, "the radius that edges are rounded with")?.si;
+    field.check("radius", field.radius, |r| r > 0.0, "above 0")?;
+    field.check("thickness", field.thickness, |t| t > 2.0 * radius, "above twice the radius")?;
+    let half = 0.5 * field.thickness.si;
+    let cells = cells(&sites(ends, count, group.seed), ends);
     let outlines: Vec<_> = cells.iter().map(|cell| outline(cell, field.concentration)).collect();
     let cores: Vec<_> = outlines.iter().filter_map(|outline| core(outline, radius)).collect();
     let lost = outlines.len() - cores.len();
@@ -56,21 +60,19 @@ pub(super) fn floes(
     if lost > 0 {
         part.remarks.push(format!(
             "grains \"{}\": {lost} of {} floes are left out, for they are too small to be rounded with {radius} m",
-            group.name, field.count
+            group.name, count
         ));
     }
     Ok(())
 }
 
-fn check(field: &Table<Floes>) -> Result<(), SceneError> {
+/// Checks what floes of all shapes have.
+pub(super) fn check(field: &Table<Floes>) -> Result<(), SceneError> {
     for d in 0..2 {
         let low = field.check("low", field.low[d], |_| true, "a length")?.si;
         field.check("high", field.high[d], |x| x > low, "above `low`")?;
     }
-    field.check("count", field.count, |n| (1.0..=MOST).contains(&n), "1 to 100000")?;
     field.check("concentration", field.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
-    let radius = field.check("radius", field.radius, |r| r > 0.0, "above 0")?.si;
-    field.check("thickness", field.thickness, |t| t > 2.0 * radius, "above twice the radius")?;
     field.check("elevation", field.elevation, |_| true, "a length")?;
     for [x, y, r] in &field.clear {
         field.check("clear", *x, |_| true, "a place")?;

@@ -19,6 +19,7 @@ pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsP
         GrainShape::Polyhedron => {
             ("\"polyhedron\"", "`fill`, `region`, `packing`, `floes` or `frustum`, which polyhedra need")
         }
+        GrainShape::Disk => ("\"disk\"", "`fill`, `region`, `packing` or `floes`, which disks need"),
         GrainShape::Sphere => return spheres(group, model, part),
     };
     match &group.packing {

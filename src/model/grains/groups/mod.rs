@@ -8,6 +8,7 @@ mod floes;
 mod frustum;
 mod given;
 mod lattice;
+mod pancakes;
 mod part;
 mod polygon;
 mod scattered;
@@ -69,8 +70,9 @@ fn add(
     for (shape, found, expected) in [
         (GrainShape::Bonded, "\"bonded\"", "no inlet for bonded stones"),
         (GrainShape::Polyhedron, "\"polyhedron\"", "no inlet for polyhedra"),
+        (GrainShape::Disk, "\"disk\"", "no inlet for disks"),
     ] {
-        let waits = group.inlet.is_some() || (shape == GrainShape::Polyhedron && waits(group));
+        let waits = group.inlet.is_some() || (shape != GrainShape::Bonded && waits(group));
         if waits && group.shape == shape {
             return Err(group.error("shape", found, expected).into());
         }
@@ -113,22 +115,27 @@ fn add(
         return scattered::scattered(group, &region, &model, part);
     }
     if let Some(field) = group.optional("floes", &group.floes) {
-        polyhedra_only(group)?;
+        floes::check(&field)?;
+        if group.shape == GrainShape::Disk {
+            return Ok(pancakes::pancakes(group, &field, &model, part)?);
+        }
+        let expected = "\"polyhedron\" or \"disk\", which floes are";
+        only(group, expected)?;
         return Ok(floes::floes(group, &field, &model, part)?);
     }
     if let Some(frustum) = group.optional("frustum", &group.frustum) {
-        polyhedra_only(group)?;
+        only(group, "\"polyhedron\", which a frustum is")?;
         return Ok(frustum::frustum(&frustum, &model, part)?);
     }
     given::given(group, &model, part)
 }
 
-/// Whether a group is of the one shape that floes and frusta have.
-fn polyhedra_only(group: &Table<Grains>) -> Result<(), SceneError> {
+/// Refuses a group that is not of polyhedra.
+fn only(group: &Table<Grains>, expected: &str) -> Result<(), SceneError> {
     if group.shape == GrainShape::Polyhedron {
         return Ok(());
     }
-    Err(group.error("shape", "another shape", "\"polyhedron\", which floes and frusta are"))
+    Err(group.error("shape", "another shape", expected))
 }
 
 /// Grips and groups that are recorded.
@@ -149,11 +156,19 @@ fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneE
 fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
     let random = group.fill.is_some() || group.region.is_some() || waits(group);
     let shapes = random || (group.packing.is_some() && group.shape != GrainShape::Sphere);
+    let disks = group.shape == GrainShape::Disk;
+    let sized = random || (disks && group.floes.is_some());
     for (k, present, used, needs) in [
         ("count", group.count.is_some(), random, "`fill` or `region`"),
-        ("gradation", group.gradation.is_some(), random, "`fill` or `region`"),
-        ("size", group.size.is_some(), random, "`fill` or `region`"),
-        ("sizes", group.sizes.is_some(), random, "`fill` or `region`"),
+        ("gradation", group.gradation.is_some(), sized, "`fill` or `region`"),
+        ("size", group.size.is_some(), sized, "`fill` or `region`"),
+        ("sizes", group.sizes.is_some(), sized, "`fill` or `region`"),
+        (
+            "aspect",
+            group.aspect.is_some(),
+            disks && shapes,
+            "`shape = \"disk\"` and `fill`, `region` or `packing`",
+        ),
         ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of stones"),
         ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
         ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),

@@ -8,6 +8,7 @@ use crate::model::tables;
 use crate::scene::grains::{GrainShape, Grains};
 use crate::scene::{SceneError, Table};
 use trackbed_dem::shape::Shape;
+use trackbed_dem::shape::dilated::Dilated;
 
 /// Most grains of a group.
 pub(super) const MOST: f64 = 1e7;
@@ -63,6 +64,16 @@ pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec
             Ok(scales)
         }
         (GrainShape::Polyhedron, None) => Err(group.missing("library", "the stone library of the polyhedra")),
+        (GrainShape::Disk, None) => {
+            let expected = "the thickness of the disks over their diameter";
+            let aspect = group.need("aspect", group.aspect, expected)?;
+            group.check("aspect", aspect, |a| a > 0.0 && a < 1.0, "above 0, below 1")?;
+            let disk = Dilated::disk(0.5 - 0.5 * aspect, 0.5 * aspect)
+                .map_err(|e| group.error("aspect", e.to_string(), "above 0, below 1"))?;
+            part.shapes.push(Shape::Polyhedron(Box::new(disk)));
+            Ok(vec![1.0])
+        }
+        (GrainShape::Disk, Some(_)) => Err(group.error("library", "a file", "no such key for disks")),
         (GrainShape::Bonded, _) => bonded::stand_ins(group, part),
         (GrainShape::Sphere, Some(_)) => Err(group.error("library", "a file", "no such key for spheres")),
         (GrainShape::Sphere, None) => {
