@@ -2,7 +2,9 @@
 //! core, its edges are parts of cylinders and its corners parts of spheres. So is a dilated disk, whose core is flat and round
 //! (`disk.rs`).
 
+pub(crate) mod circle;
 pub(crate) mod disk;
+mod flat;
 mod hull;
 mod moments;
 pub(crate) mod part;
@@ -154,6 +156,11 @@ impl Core {
         hull::core(corners)
     }
 
+    /// A flat disk about the third axis, of a radius [m].
+    pub fn disk(radius: f64) -> Core {
+        Core { rim: Some(radius), reach: radius, ..Core::default() }
+    }
+
     /// The same, turned and moved: every point x is taken to `turn` (x − `from`).
     pub fn moved(&self, turn: &UnitQuaternion<f64>, from: &Vec3) -> Core {
         let face = |f: &Face| Face {
@@ -244,6 +251,27 @@ impl Dilated {
         let turn = UnitQuaternion::from_matrix(&axes);
         let core = core.moved(&turn.inverse(), &m.centre);
         Ok((Dilated { core, radius, volume: m.volume, area: m.area, inertia }, m.centre, turn))
+    }
+
+    /// A disk of a radius [m], rolled over by a sphere of another: its diameter is twice the sum of both, its thickness twice the latter.
+    ///
+    /// # Errors
+    /// [`DilatedError`] for radii that are not positive and finite.
+    pub fn disk(radius: f64, rounding: f64) -> Result<Dilated, DilatedError> {
+        if !(radius.is_finite() && rounding.is_finite()) {
+            return Err(DilatedError::NotFinite);
+        }
+        if let Some(x) = [radius, rounding].into_iter().find(|x| *x <= 0.0) {
+            return Err(DilatedError::Radius(x));
+        }
+        let [volume, area, other, axial] = disk::moments(radius, rounding);
+        Ok(Dilated {
+            core: Core::disk(radius),
+            radius: rounding,
+            volume,
+            area,
+            inertia: [other, other, axial],
+        })
     }
 
     /// Moments in the frame of the core as it is given.

@@ -325,29 +325,37 @@ fn a_heap_of_disks() {
     }
 }
 
-/// A pancake floe floats as deep as its volume says, and heaves and rolls in the time that its waterplane gives.
-#[test]
-fn pancakes_float_heave_and_roll() {
-    let (big, r, ratio, added) = (1.0, 0.2, 0.8927, 0.5);
-    let own = Dilated::disk(big, r).expect("a disk");
-    // By slices from below, in closed form up to a height.
-    let rho = |z: f64| big + (r * r - z * z).max(0.0).sqrt();
+/// A round floe of radii 1 m and 0.2 m, of a share of the water's density.
+const BIG: f64 = 1.0;
+const SMALL: f64 = 0.2;
+const RATIO: f64 = 0.8927;
+
+/// Radius of its slice at a height.
+fn slice(z: f64) -> f64 {
+    BIG + (SMALL * SMALL - z * z).max(0.0).sqrt()
+}
+
+/// Height at which it floats, up to which its volume is that of the water of its mass: by slices in equal angles.
+fn waterline(volume: f64) -> f64 {
     let below = |z: f64| -> f64 {
         let n = 20_000;
-        let angle = (z / r).asin() + FRAC_PI_2;
-        let slice = |k: i32| {
+        let angle = (z / SMALL).asin() + FRAC_PI_2;
+        let thin = |k: i32| {
             let at = -FRAC_PI_2 + angle * (f64::from(k) + 0.5) / f64::from(n);
-            PI * rho(r * at.sin()).powi(2) * r * at.cos()
+            PI * slice(SMALL * at.sin()).powi(2) * SMALL * at.cos()
         };
-        (0..n).map(slice).sum::<f64>() * angle / f64::from(n)
+        (0..n).map(thin).sum::<f64>() * angle / f64::from(n)
     };
-    let (mut low, mut high) = (-r, r);
+    let (mut low, mut high) = (-SMALL, SMALL);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if below(middle) < ratio * own.volume { low = middle } else { high = middle }
+        if below(middle) < RATIO * volume { low = middle } else { high = middle }
     }
-    let level = low;
-    let plane_area = PI * rho(level).powi(2);
+    low
+}
+
+/// It afloat, with steps of `dt`.
+fn afloat(added: f64, position: Vec3, orientation: UnitQuaternion<f64>, dt: f64) -> Run {
     let water = Water {
         level: 0.0,
         density: 1025.0,
@@ -359,69 +367,64 @@ fn pancakes_float_heave_and_roll() {
         drag_moment: 0.0,
         added_mass: added,
     };
-    let dt = 1e-3;
-    let float = |water: Water, position: Vec3, orientation: UnitQuaternion<f64>| {
-        let mut material = stone();
-        material.density = ratio * 1025.0;
-        Run::new(ModelInput {
-            materials: vec![material],
-            shapes: vec![disk(big, r)],
-            bodies: vec![BodyInput {
-                position,
-                orientation,
-                velocity: Vec3::z() * (-0.5 * G * dt),
-                ..BodyInput::default()
-            }],
-            gravity: DOWN,
-            body_forces: vec![BodyForce::Water(water)],
-            time_step: TimeStep::FixedAboveLimit(dt),
-            ..ModelInput::default()
-        })
-    };
-    let draft = level + r;
-    // Heave: mean place and period.
-    let place = Vec3::z() * -level;
-    let mut run = float(water, place + Vec3::z() * (0.01 * draft), UnitQuaternion::identity());
-    let (mut sum, mut zeros, mut before) = (0.0, Vec::new(), 0.01 * draft);
-    for step in 0..40_000 {
+    let mut material = stone();
+    material.density = RATIO * 1025.0;
+    Run::new(ModelInput {
+        materials: vec![material],
+        shapes: vec![disk(BIG, SMALL)],
+        bodies: vec![BodyInput {
+            position,
+            orientation,
+            velocity: Vec3::z() * (-0.5 * G * dt),
+            ..BodyInput::default()
+        }],
+        gravity: DOWN,
+        body_forces: vec![BodyForce::Water(water)],
+        time_step: TimeStep::FixedAboveLimit(dt),
+        ..ModelInput::default()
+    })
+}
+
+/// Mean of a signal over some steps, and its period by its zeros.
+fn swing(run: &mut Run, steps: u32, dt: f64, signal: impl Fn(&Run) -> f64) -> (f64, f64) {
+    let (mut sum, mut zeros, mut before) = (0.0, Vec::new(), signal(run));
+    for step in 0..steps {
         run.step();
-        let now = run.state.position(0).z - place.z;
+        let now = signal(run);
         if before * now < 0.0 {
             zeros.push(f64::from(step) - now / (now - before));
         }
         (before, sum) = (now, sum + now);
     }
-    let mean = sum / 40_000.0;
+    let period = 2.0 * dt * (zeros[zeros.len() - 1] - zeros[0]) / (zeros.len() - 1) as f64;
+    (sum / f64::from(steps), period)
+}
+
+/// A pancake floe floats as deep as its volume says, and heaves and rolls in the time that its waterplane gives.
+#[test]
+fn pancakes_float_heave_and_roll() {
+    let (added, dt) = (0.5, 1e-3);
+    let own = Dilated::disk(BIG, SMALL).expect("a disk");
+    let level = waterline(own.volume);
+    let draft = level + SMALL;
+    let place = Vec3::z() * -level;
+    let displaced = RATIO * own.volume * 1025.0;
+    let start = place + Vec3::z() * (0.01 * draft);
+    let mut run = afloat(added, start, UnitQuaternion::identity(), dt);
+    let (mean, found) = swing(&mut run, 40_000, dt, |run| run.state.position(0).z - place.z);
     assert!(mean.abs() < 1e-3 * draft, "{mean}");
-    let displaced = ratio * own.volume * 1025.0;
-    let period = TAU * ((1.0 + added) * displaced / (1025.0 * G * plane_area)).sqrt();
-    let found = 2.0 * dt * (zeros[zeros.len() - 1] - zeros[0]) / (zeros.len() - 1) as f64;
+    let stiffness = 1025.0 * G * PI * slice(level).powi(2);
+    let period = TAU * ((1.0 + added) * displaced / stiffness).sqrt();
     println!("draft {:.5} m, heave {found:.4} s for {period:.4} s", draft - mean);
     assert!((found / period - 1.0).abs() < 0.01, "{found} for {period}");
     // Roll without added mass: metacentric height from the waterplane and the depth of the centre of buoyancy.
-    let inertia = own.inertia[0] * ratio * 1025.0;
     let n = 20_000;
-    let moment: f64 = (0..n)
-        .map(|k| -r + draft * (f64::from(k) + 0.5) / f64::from(n))
-        .map(|z| z * PI * rho(z).powi(2))
-        .sum::<f64>()
-        * draft
-        / f64::from(n);
-    let height = 0.25 * PI * rho(level).powi(4) / (ratio * own.volume) + moment / (ratio * own.volume);
-    let period = TAU * (inertia / (displaced * G * height)).sqrt();
-    let tilt = 0.002;
-    let still = Water { added_mass: 0.0, ..water };
-    let mut run = float(still, place, UnitQuaternion::from_axis_angle(&Vec3::x_axis(), tilt));
-    let (mut zeros, mut before) = (Vec::new(), tilt);
-    for step in 0..20_000 {
-        run.step();
-        let now = 2.0 * run.state.orientation(&run.model, 0).imag().x;
-        if before * now < 0.0 {
-            zeros.push(f64::from(step) - now / (now - before));
-        }
-        before = now;
-    }
-    let found = 2.0 * dt * (zeros[zeros.len() - 1] - zeros[0]) / (zeros.len() - 1) as f64;
+    let at = |k: i32| -SMALL + draft * (f64::from(k) + 0.5) / f64::from(n);
+    let moment: f64 = (0..n).map(at).map(|z| z * PI * slice(z).powi(2)).sum::<f64>() * draft / f64::from(n);
+    let height = (0.25 * PI * slice(level).powi(4) + moment) / (RATIO * own.volume);
+    let period = TAU * (own.inertia[0] * RATIO * 1025.0 / (displaced * G * height)).sqrt();
+    let mut run = afloat(0.0, place, UnitQuaternion::from_axis_angle(&Vec3::x_axis(), 0.002), dt);
+    let (_, found) = swing(&mut run, 20_000, dt, |run| run.state.orientation(&run.model, 0).imag().x);
     println!("roll {found:.4} s for {period:.4} s");
     assert!((found / period - 1.0).abs() < 0.01, "{found} for {period}");
 }

@@ -12,6 +12,11 @@ fn disk(radius: f64, rounding: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::disk(radius, rounding).unwrap()))
 }
 
+/// The plane z = 0.
+fn floor() -> PlaneView {
+    PlaneView { origin: Vec3::zeros(), normal: Vec3::z(), velocity: Vec3::zeros(), material: 0, open: false }
+}
+
 /// What a point of a body is away from something, and the direction to it.
 type Distance<'a> = &'a dyn Fn(&Vec3) -> Vec3;
 
@@ -91,13 +96,7 @@ fn disks_of_the_table() {
         let mut found = Touches::new();
         let way = match words[1] {
             "plane" => {
-                let plane = PlaneView {
-                    origin: Vec3::zeros(),
-                    normal: Vec3::z(),
-                    velocity: Vec3::zeros(),
-                    material: 0,
-                    open: false,
-                };
+                let plane = floor();
                 DilatedPlane.touches(&body, &plane, &mut found);
                 Vec3::z() * shortest([0.0, TAU], &|t| Vec3::z() * rim_point(&body, t).z).z
             }
@@ -153,6 +152,46 @@ fn disks_of_the_table() {
     assert_eq!(compared, [25; 3]);
 }
 
+/// The same of a disk and a stone, both ways.
+fn with_stone(body: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
+    let own = other.core;
+    let mut part = Part::none(own, View::everywhere(Vec3::z(), 20.0));
+    let part = part.all();
+    let mut exact = pressing(body, reach, &|p| {
+        let local = other.orientation.inverse() * (p - other.centre) / other.scale;
+        let (d, n) = part.distance(&local, 20.0).unwrap();
+        n * d * other.scale
+    });
+    // What the stone's edges do to the disk is another sum, by the same points.
+    for edge in &own.edges {
+        let [p, q] =
+            edge.ends.map(|e| other.centre + other.orientation * own.corners[e as usize] * other.scale);
+        let n = 4096;
+        let step = (q - p).norm() / f64::from(n);
+        let sum: f64 = (0..n)
+            .map(|m| p + (q - p) * ((f64::from(m) + 0.5) / f64::from(n)))
+            .map(|x| (reach - from_disk(body, &x).norm()).max(0.0))
+            .map(|x| 0.5 * x * x * step)
+            .sum();
+        exact += sum / (LENGTH * reach);
+    }
+    for corner in &own.corners {
+        let x = other.centre + other.orientation * corner * other.scale;
+        exact += 0.5 * (reach - from_disk(body, &x).norm()).max(0.0).powi(2);
+    }
+    exact
+}
+
+/// How far along a line bodies are apart by a distance.
+fn close(apart: &dyn Fn(f64) -> Option<f64>, distance: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 8.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if apart(middle).is_some_and(|d| d > distance) { high = middle } else { low = middle }
+    }
+    high
+}
+
 /// Energies of random pairs against many points of the rims: they differ by what sums over points are off. Rims that overlap flat, that cross, that
 /// only just touch: on planes, disks, and stones; both ways round the same to rounding.
 fn energies(count: usize) {
@@ -181,15 +220,6 @@ fn energies(count: usize) {
         } else {
             random.orientation() * Vec3::z()
         };
-        // Brought together along a direction until they nearly touch or do, by a little.
-        let close = |apart: &dyn Fn(f64) -> Option<f64>, reach: f64, share: f64| -> Option<f64> {
-            let (mut low, mut high) = (0.0, 8.0);
-            for _ in 0..40 {
-                let middle = 0.5 * (low + high);
-                if apart(middle).is_some_and(|d| d > reach * share) { high = middle } else { low = middle }
-            }
-            Some(high)
-        };
         let share = 0.3 + 0.69 * random.uniform();
         let scale = [1.0, 0.7][tried % 2];
         let kind = tried % 3;
@@ -208,13 +238,7 @@ fn energies(count: usize) {
             reach = body.radius;
             let low = rim_lowest(&body);
             let body = Placed { centre: body.centre - Vec3::z() * (low - share * reach), ..body };
-            let plane = PlaneView {
-                origin: Vec3::zeros(),
-                normal: Vec3::z(),
-                velocity: Vec3::zeros(),
-                material: 0,
-                open: false,
-            };
+            let plane = floor();
             DilatedPlane.touches(&body, &plane, &mut found);
             exact = pressing(&body, reach, &|p| Vec3::z() * p.z);
         } else {
@@ -223,39 +247,14 @@ fn energies(count: usize) {
                 Two::new(&body, &other).separation(Vec3::z(), f64::INFINITY).map(|(_, d)| d * other.scale)
             };
             reach = at(0.0).radius + other.radius;
-            let Some(s) = close(&apart, reach, share) else { continue };
+            let s = close(&apart, reach * share);
             let body = at(s);
             DilatedDilated.touches(&body, &other, &mut found);
             if kind == 0 {
                 exact = pressing(&body, reach, &|p| from_disk(&other, p));
                 exact += pressing(&other, reach, &|p| from_disk(&body, p));
             } else {
-                let mut part = Part::none(&own, View::everywhere(Vec3::z(), 20.0));
-                let part = part.all();
-                exact = pressing(&body, reach, &|p| {
-                    let local = other.orientation.inverse() * (p - other.centre) / other.scale;
-                    let (d, n) = part.distance(&local, 20.0).unwrap();
-                    n * d * other.scale
-                });
-                // What the stone's edges do to the disk is another sum, by the same points.
-                for (k, edge) in own.edges.iter().enumerate() {
-                    let [p, q] = edge
-                        .ends
-                        .map(|e| other.centre + other.orientation * own.corners[e as usize] * other.scale);
-                    let n = 4096;
-                    let step = (q - p).norm() / f64::from(n);
-                    let sum: f64 = (0..n)
-                        .map(|m| p + (q - p) * ((f64::from(m) + 0.5) / f64::from(n)))
-                        .map(|x| (reach - from_disk(&body, &x).norm()).max(0.0))
-                        .map(|x| 0.5 * x * x * step)
-                        .sum();
-                    exact += sum / (LENGTH * reach);
-                    let _ = k;
-                }
-                for corner in &own.corners {
-                    let x = other.centre + other.orientation * corner * other.scale;
-                    exact += 0.5 * (reach - from_disk(&body, &x).norm()).max(0.0).powi(2);
-                }
+                exact = with_stone(&body, &other, reach);
             }
             let mut back = Touches::new();
             DilatedDilated.touches(&other, &body, &mut back);
@@ -394,13 +393,7 @@ fn disks_are_the_same_from_both_sides_and_with_hints() {
 fn a_disk_flat_on_a_plane() {
     let shape = disk(0.5, 0.1);
     let core = shape.core();
-    let plane = PlaneView {
-        origin: Vec3::zeros(),
-        normal: Vec3::z(),
-        velocity: Vec3::zeros(),
-        material: 0,
-        open: false,
-    };
+    let plane = floor();
     let touches = |tilt: f64| {
         let mut found = Touches::new();
         let turn = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), tilt);

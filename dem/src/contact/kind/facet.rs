@@ -1,10 +1,10 @@
 //! A closed triangle, an edge of it or a corner as what a body's corners and edges press into (`spatial/facet.rs`).
 
 use crate::base::Vec3;
+use crate::shape::dilated::circle::{Circle, Turns};
 use crate::shape::dilated::part::Bounds;
 use crate::shape::dilated::part::direction;
 use crate::shape::dilated::press::{Nearest, Segment, Stretch, Target};
-use crate::shape::dilated::rim::{Circle, Turns};
 use crate::spatial::facet::{Facet, FacetEdge};
 
 /// A point.

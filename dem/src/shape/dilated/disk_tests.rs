@@ -1,5 +1,6 @@
 use super::*;
 use crate::shape::dilated::tests::rows;
+use crate::shape::dilated::{Dilated, DilatedError};
 
 /// Volume, surface and moments against a table that slices agree with to 4e-16; a sphere without a disk is refused.
 #[test]

@@ -1,8 +1,8 @@
 //! Those features of a core that may be near something: each with a box around what of it can be.
 
-use super::disk::Flat;
+use super::circle::{Circle, Turns};
+use super::flat::Flat;
 use super::press::{Nearest, Segment, Stretch, Target};
-use super::rim::{Circle, Turns};
 use super::{CORNERS, Core, Edge, Face};
 use crate::base::Vec3;
 use arrayvec::ArrayVec;

@@ -6,8 +6,8 @@
 //! outside of it, so the sums are smooth whatever turns into what, corners on edges into faces on faces, and forces that grow with
 //! them have a potential.
 
+use super::circle::{self, Circle, Turns};
 use super::part::Bounds;
-use super::rim::{self, Circle, Turns};
 use crate::base::Vec3;
 
 /// Points and weights of Gauss's rule on [−1, 1]: for the flat pieces, where two are exact, and for others.
@@ -57,7 +57,7 @@ pub(crate) trait Target {
         let at = |p: &Vec3| self.distance(p, f64::INFINITY).unwrap_or((0.0, Vec3::z()));
         for &range in &turns.0 {
             let mut from = range[0];
-            for to in rim::ends(range).skip(1) {
+            for to in circle::ends(range).skip(1) {
                 circle.near([from, to], reach, &at, |part| f(part, &at));
                 from = to;
             }
