@@ -44,7 +44,7 @@ pub enum Known {
 pub struct StageTime {
     /// Name, as in the summary of a run.
     pub name: String,
-    /// Seconds, see [`clock`].
+    /// Seconds: those of the processor on one thread, else by the clock.
     pub seconds: f64,
     /// How it is known.
     pub known: Known,
