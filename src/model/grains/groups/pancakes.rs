@@ -143,8 +143,15 @@ impl Field {
                     }
                 });
             }
+            // The last pushes may have moved one out of the box or into a circle.
             if left < 0.5 * gap {
-                return Ok(at);
+                cells.sort(&at);
+                (0..at.len()).for_each(|i| {
+                    self.inside(&mut at[i], radii[i], gap);
+                });
+                if (0..at.len()).all(|i| cells.is_free(i, &at, radii)) {
+                    return Ok(at);
+                }
             }
         }
         Err(left - gap)
@@ -201,6 +208,15 @@ impl Cells {
             self.members[next[*c as usize] as usize] = i as u32;
             next[*c as usize] += 1;
         }
+    }
+
+    /// True where no circle after `i` touches it.
+    fn is_free(&self, i: usize, at: &[Point], radii: &[f64]) -> bool {
+        let mut free = true;
+        self.around(i, |j| {
+            free &= libm::hypot(at[j][0] - at[i][0], at[j][1] - at[i][1]) > radii[i] + radii[j];
+        });
+        free
     }
 
     /// Calls `f` with those after circle `i` in its cell and the eight around it.
