@@ -46,9 +46,9 @@ impl Simulation {
     ) -> PyResult<Simulation> {
         let mut options = options(out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
         let interrupt = options.interrupt.clone();
-        let (orders, taken) = mpsc::channel();
+        let (orders, received) = mpsc::channel();
         let (send, reports) = mpsc::channel();
-        let link = Arc::new(Link::new(taken, send.clone()));
+        let link = Arc::new(Link::new(received, send.clone()));
         options.accompanied = Accompanied(Some(link.clone()));
         let worker = thread::spawn(move || {
             let outcome = trackbed::guard::guarded(|| running::run(&scene, &options));

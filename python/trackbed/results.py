@@ -34,7 +34,8 @@ class Result:
         file = self.folder / "summary.json"
         if not file.exists():
             raise ValueError(f"{file}: found no such file, expected the results of a run that has ended")
-        return json.loads(file.read_text(encoding="utf-8"))
+        summary: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        return summary
 
     @cached_property
     def log(self) -> str:

@@ -52,7 +52,7 @@ def run(
     Raises `ValueError` (bad input; nothing is written), `NumericalError` (the last checkpoint is kept), `OSError` (the disk), and
     `KeyboardInterrupt` after Ctrl-C, with how to go on.
     """
-    options = dict(
+    options: dict[str, Any] = dict(
         out=out, threads=threads, memory=memory, resume=resume, from_run=from_run, bed=bed, force=force, strict=strict, progress=progress
     )
     if callback is None:
@@ -73,17 +73,20 @@ def paths(options: dict[str, Any]) -> dict[str, Any]:
 def check(scene: Folder, *, set: Overrides = None, strict: bool = False) -> dict[str, Any]:
     """Reads and resolves a scene without running it, and reports what would happen, by name: `title`, `findings` (values that are not
     plausible), `solid`, `grains`, `coupling` and the `lines` that `trackbed check` prints. Raises `ValueError` for what a run would refuse."""
-    return json.loads(_trackbed.check(os.fspath(scene), assignments(set), strict))
+    report: dict[str, Any] = json.loads(_trackbed.check(os.fspath(scene), assignments(set), strict))
+    return report
 
 
 def explain(scene: Folder, *, set: Overrides = None, threads: int | None = None, rehearse: float = 10.0) -> dict[str, Any]:
     """The report of `check` with the stages of a run, its memory, and `time`: seconds by stage, measured by `rehearse` seconds of it."""
-    return json.loads(_trackbed.explain(os.fspath(scene), assignments(set), threads, rehearse))
+    report: dict[str, Any] = json.loads(_trackbed.explain(os.fspath(scene), assignments(set), threads, rehearse))
+    return report
 
 
 def schema() -> dict[str, Any]:
     """JSON schema of scenes."""
-    return json.loads(_trackbed.schema())
+    keys: dict[str, Any] = json.loads(_trackbed.schema())
+    return keys
 
 
 def study(

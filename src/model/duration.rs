@@ -12,7 +12,7 @@ const MOST: u64 = 1_000_000_000_000;
 ///
 /// # Errors
 /// The step follows the contacts, so that a number of steps is no time.
-pub fn counted_step(scene: &Table<Scene>, asks: &str) -> Result<f64, SceneError> {
+pub fn counted_step(scene: &Table<Scene>, needed_by: &str) -> Result<f64, SceneError> {
     let time = scene.below("time", &scene.time);
     let (key, step) = match scene.grains.is_empty() {
         true => ("solid_step", time.solid_step),
@@ -21,7 +21,7 @@ pub fn counted_step(scene: &Table<Scene>, asks: &str) -> Result<f64, SceneError>
     match step {
         Some(step) if step.si > 0.0 => Ok(step.si),
         Some(step) => Err(time.error(key, step.si.to_string(), "a time above 0")),
-        None => Err(time.missing(key, format!("a step that stays the same, since {asks} counts steps"))),
+        None => Err(time.missing(key, format!("a step that stays the same, since {needed_by} counts steps"))),
     }
 }
 
