@@ -61,7 +61,7 @@ fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
         let mut c = coupled(&solid, input, 2);
         let mass = c.model.grains.mass(0);
         let start = (step::stored(&c.model, &c.state), step::spent(&c.state));
-        while c.state.grains.time < 1.2 {
+        while c.state.grains.time < 1.6 {
             c.step(&[]);
         }
         let contacts = c.work.grains.surface_contacts();
