@@ -281,7 +281,7 @@ fn what_cannot_leave_or_come_is_named() {
         (vec![4], vec![], "body 4 cannot be taken out: it is not there"),
         (vec![3, 3], vec![], "body 3 cannot be taken out: it is not there"),
         (vec![999], vec![], "body 999 cannot be taken out: there is no such body"),
-        (vec![160], vec![], "body 160 cannot be taken out: it is not made of spheres"),
+        (vec![160], vec![], "body 160 cannot be taken out: it is a box"),
         (vec![], vec![arrival(3)], "body 3 cannot be put in: it is there already"),
         (vec![], vec![arrival(4), arrival(4)], "body 4 cannot be put in: it is there already"),
         (vec![], vec![astray], "body 4 cannot be put in: its place or motion is not finite"),
@@ -296,5 +296,5 @@ fn what_cannot_leave_or_come_is_named() {
     let mut waiting = input.clone();
     waiting.bodies[160].absent = true;
     let error = Model::new(waiting).unwrap_err();
-    assert_eq!(error, ModelError::Absent { body: 160, problem: "it is not made of spheres" });
+    assert_eq!(error, ModelError::Absent { body: 160, problem: "it is a box" });
 }
