@@ -23,6 +23,8 @@ pub struct BondTable {
     pub contact_point: Option<ContactPoint>,
     /// Stiffnesses and strengths of the bond itself.
     pub direct: Option<Direct>,
+    /// What fills the faces between the floes of a sheet: force and moment.
+    pub face: Option<FaceTable>,
     /// Fraction of critical damping; default 0.
     pub damping: Option<f64>,
     /// Instead: coefficients of tension and shear [N s/m], bending and twisting [N m s].
@@ -88,6 +90,25 @@ pub struct Direct {
     pub stiffness: [f64; 4],
     /// Largest tension and shear [N], bending and twisting moment [N m]; default unbreakable.
     pub strength: Option<[f64; 4]>,
+    /// When it breaks; default `stress`.
+    #[serde(default)]
+    pub criterion: CriterionName,
+}
+
+/// A bond that fills a face; its contact acts beside it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FaceTable {
+    /// Young's modulus [Pa].
+    pub young: Quantity<Stress>,
+    /// Normal over shear stiffness; default 2.5.
+    pub stiffness_ratio: Option<f64>,
+    /// Strength in tension and bending [Pa], 0: the first load breaks it; default unbreakable.
+    pub tensile_strength: Option<Quantity<Stress>>,
+    /// Shear strength [Pa], with `friction_angle` the cohesion; default unbreakable.
+    pub shear_strength: Option<Quantity<Stress>>,
+    /// Friction angle, by which pressure adds to the shear strength; default 0.
+    pub friction_angle: Option<Quantity<Angle>>,
     /// When it breaks; default `stress`.
     #[serde(default)]
     pub criterion: CriterionName,

@@ -48,7 +48,7 @@ pub struct Grains {
     /// Seed of the random sizes, places and orientations; default 1.
     #[serde(default = "one")]
     pub seed: u64,
-    /// Name of the `[[bond]]` that holds `bonded` stones together.
+    /// Name of the `[[bond]]` that holds `bonded` stones, or the floes of a sheet, together.
     pub bond: Option<String>,
     /// Velocity that the grains keep whatever the forces, without turning: a grip [m/s]. They stand while others settle.
     pub motion: Option<[Quantity<Velocity>; 3]>,
@@ -142,7 +142,11 @@ pub struct Floes {
     pub count: Option<usize>,
     /// Area of the floes, before their corners are rounded, over that of the box; above 0 and below 1. Of disks: over that of the box less the
     /// circles that are clear.
-    pub concentration: f64,
+    pub concentration: Option<f64>,
+    /// Of polyhedra, instead: distance between neighbouring floes [m].
+    pub gap: Option<Quantity<Length>>,
+    /// Of polyhedra: how often sites are moved to the centroids of their cells, which makes floes alike; 0 to 10000, default 0.
+    pub relax: Option<usize>,
     /// Thickness [m]: of polyhedra above twice the radius, of disks below their diameter.
     pub thickness: Quantity<Length>,
     /// Of polyhedra: radius that edges and corners are rounded with [m]. Disks are rounded with half of their thickness.

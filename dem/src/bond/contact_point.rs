@@ -3,7 +3,7 @@
 //!
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond, a glue of no size).
 
-use super::springs::{BondDamping, Problem, Springs, not_negative, positive, strength};
+use super::springs::{BondDamping, Joint, Problem, Springs, not_negative, positive, strength};
 
 /// A contact-point bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,11 +31,11 @@ impl ContactPoint {
             .or(self.damping.problem())
     }
 
-    pub(super) fn springs(&self) -> Springs {
+    pub(super) fn springs(&self, joint: &Joint) -> Springs {
         Springs {
             stiffness: [self.normal, self.shear, 0.0, 0.0],
             limit: [1.0 / self.tension_limit, 0.0, 1.0 / self.shear_limit, 0.0, 0.0],
-            middle: false,
+            offset: joint.radii[0] - joint.radii[1],
         }
     }
 }

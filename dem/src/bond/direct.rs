@@ -34,6 +34,6 @@ impl DirectBond {
 
     pub(super) fn springs(&self) -> Springs {
         let [tension, shear, bending, twisting] = self.strength.map(|s| 1.0 / s);
-        Springs { stiffness: self.stiffness, limit: [tension, bending, shear, twisting, 0.0], middle: true }
+        Springs { stiffness: self.stiffness, limit: [tension, bending, shear, twisting, 0.0], offset: 0.0 }
     }
 }

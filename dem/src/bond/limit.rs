@@ -25,7 +25,7 @@ pub(crate) fn stiffest(bonds: &[Constants], bodies: &Bodies, places: &[BodyInput
         let u = n.cross(&t);
         for (body, sign) in [(a, 1.0), (b, -1.0)] {
             let constants = bodies.get(body);
-            let (m, i) = (constants.mass.sqrt(), constants.inertia.x.sqrt());
+            let (m, i) = (constants.mass.sqrt(), constants.inertia.min().sqrt());
             let arm = 0.5 * (k[kernel::LENGTH] + sign * k[kernel::OFFSET]);
             let mode = |translation: Vec3, rotation: Vec3| {
                 let (x, w) = (translation / m, rotation / i);

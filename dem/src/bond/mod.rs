@@ -1,8 +1,8 @@
-//! Bonds between spheres: elastic bars that carry force (and moment) until they break.
+//! Bonds between bodies: elastic bars that carry force (and moment) until they break.
 //!
 //! A [`Bond`] is a kind of bond, one file each: [`ParallelBond`] (a cemented disk between two spheres), [`ContactPoint`]
-//! (force only), [`DirectBond`] (stiffnesses and strengths of the bond itself). A [`BondInput`] puts one between two
-//! spheres. All of them end up as the same sixteen constants, and one kernel (`kernel.rs`) computes the forces:
+//! (force only), [`DirectBond`] (stiffnesses and strengths of the bond itself), [`FaceBond`] (the face between two bodies of any
+//! shape). A [`BondInput`] puts one between two bodies. All of them end up as the same sixteen constants, and one kernel (`kernel.rs`) computes the forces:
 //!
 //! * tension from the present length, kₙ (L − L₀): no drift;
 //! * shear, bending and twisting by increments in a frame that turns with the line of centres and with the mean spin
@@ -13,12 +13,13 @@
 //! ledger and, as the energy of an acoustic event, to the list of breaks. The pair then stays with this module as a
 //! `DebondedPair` (`debonded.rs`) until the two have separated.
 //!
-//! Limits: bonds join single spheres only, not clumps or boxes; rotations between bonded spheres are small (linear
+//! Limits: all but face bonds join single spheres only, not clumps or boxes; rotations between bonded spheres are small (linear
 //! springs); the stored vectors turn with an error of the sixth power of the angle per step.
 
 mod contact_point;
 pub(crate) mod debonded;
 mod direct;
+mod face;
 pub(crate) mod kernel;
 mod limit;
 mod loops;
@@ -32,6 +33,7 @@ mod strength;
 
 pub use contact_point::ContactPoint;
 pub use direct::DirectBond;
+pub use face::{Face, FaceBond};
 pub use pairs::within_gap;
 pub use parallel::{ParallelBond, ParallelStiffness, ShearStrength};
 pub use springs::{BondDamping, Criterion};
@@ -56,9 +58,11 @@ pub enum Bond {
     ContactPoint(ContactPoint),
     /// Stiffnesses and strengths of the bond itself, the same for every length and radius.
     Direct(DirectBond),
+    /// What fills the face between two bodies of any shape: force and moment.
+    Face(FaceBond),
 }
 
-/// A bond between two bodies, both single spheres. Its length at rest is their distance at the start of the model.
+/// A bond between two bodies: single spheres, or, by their face, bodies of any shape. Its length at rest is their distance at the start of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BondInput {
     /// First body (index).
@@ -73,12 +77,14 @@ pub struct BondInput {
     pub shear: f64,
     /// Factor on all stiffnesses [-].
     pub stiffness: f64,
+    /// Face between the bodies, of a [`FaceBond`].
+    pub face: Option<Face>,
 }
 
 impl BondInput {
     /// A bond with the strengths and stiffnesses of its kind.
     pub fn new(a: usize, b: usize, kind: usize) -> BondInput {
-        BondInput { a, b, kind, tension: 1.0, shear: 1.0, stiffness: 1.0 }
+        BondInput { a, b, kind, tension: 1.0, shear: 1.0, stiffness: 1.0, face: None }
     }
 }
 
@@ -131,6 +137,7 @@ pub(crate) fn resolve(
             Bond::Parallel(p) => p.problem(),
             Bond::ContactPoint(p) => p.problem(),
             Bond::Direct(d) => d.problem(),
+            Bond::Face(f) => f.problem(),
         };
         if let Some((quantity, value, requirement)) = problem {
             return Err(ModelError::BondKind { kind, quantity, value, requirement });
@@ -142,11 +149,12 @@ pub(crate) fn resolve(
         .enumerate()
         .map(|(index, b)| {
             let error = |problem: String| ModelError::Bond { index, problem };
+            let by_face = matches!(kinds.get(b.kind), Some(Bond::Face(_)));
             for body in [b.a, b.b] {
                 if body >= bodies.len() {
                     return Err(error(format!("there is no body {body}")));
                 }
-                if bodies.kind(body) != Kind::Sphere {
+                if bodies.kind(body) != Kind::Sphere && !by_face {
                     return Err(error(format!("body {body} is not a single sphere")));
                 }
             }
@@ -168,7 +176,18 @@ pub(crate) fn resolve(
             let (p, q) = (&bodies.get(b.a), &bodies.get(b.b));
             let length = (places[b.a].position - places[b.b].position).norm();
             if length.is_nan() || length <= 0.0 {
-                return Err(error("its spheres have the same centre".into()));
+                return Err(error("its bodies have the same centre".into()));
+            }
+            match (by_face, b.face) {
+                (true, Some(f))
+                    if f.size.iter().all(|x| *x > 0.0 && x.is_finite()) && f.offset.abs() < length => {}
+                (false, None) => {}
+                (true, _) => {
+                    return Err(error(
+                        "its face must have a size above 0 and lie between the centres".into(),
+                    ));
+                }
+                (false, Some(_)) => return Err(error("its kind has no face".into())),
             }
             Ok(constants(kind, b, p, q, length))
         })
@@ -176,7 +195,8 @@ pub(crate) fn resolve(
 }
 
 fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Constants {
-    let inertia = |body: &Body| if body.fixed >> 3 == 7 { 0.0 } else { 1.0 / body.inertia.x };
+    // Of the principal moments the least is the one that a spring swings fastest.
+    let inertia = |body: &Body| if body.fixed >> 3 == 7 { 0.0 } else { 1.0 / body.inertia.min() };
     let reduced = |sum: f64| if sum > 0.0 { 1.0 / sum } else { 0.0 };
     let joint = Joint {
         radii: [p.radius, q.radius],
@@ -186,8 +206,12 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
     };
     let (springs, damping, criterion, contact) = match kind {
         Bond::Parallel(k) => (k.springs(&joint), k.damping, k.criterion, k.contact),
-        Bond::ContactPoint(k) => (k.springs(), k.damping, Criterion::Stress, k.contact),
+        Bond::ContactPoint(k) => (k.springs(&joint), k.damping, Criterion::Stress, k.contact),
         Bond::Direct(k) => (k.springs(), k.damping, k.criterion, k.contact),
+        Bond::Face(k) => {
+            let face = b.face.expect("checked");
+            (k.springs(&joint, &face), k.damping, k.criterion, true)
+        }
     };
     let stiffness = springs.stiffness.map(|k| k * b.stiffness);
     let dashpots = match damping {
@@ -200,7 +224,7 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
     let [tension, bending, shear, twisting, confined] = springs.limit;
     let mut values = [0.0; kernel::COUNT];
     values[kernel::LENGTH] = length;
-    values[kernel::OFFSET] = if springs.middle { 0.0 } else { joint.radii[0] - joint.radii[1] };
+    values[kernel::OFFSET] = springs.offset;
     values[kernel::STIFFNESS..kernel::STIFFNESS + 4].copy_from_slice(&stiffness);
     values[kernel::DAMPING..kernel::DAMPING + 4].copy_from_slice(&dashpots);
     // Per unit of tension, bending angle, shear displacement, twist; the last per unit of tension.
@@ -230,6 +254,11 @@ impl Bond {
                 Bond::ContactPoint(ContactPoint { tension_limit: endless, shear_limit: endless, ..*p })
             }
             Bond::Direct(d) => Bond::Direct(DirectBond { strength: [endless; 4], ..*d }),
+            Bond::Face(f) => Bond::Face(FaceBond {
+                tensile_strength: endless,
+                shear_strength: ShearStrength::Constant(endless),
+                ..*f
+            }),
         }
     }
 }

@@ -47,6 +47,25 @@ pub enum ShearStrength {
     },
 }
 
+impl ShearStrength {
+    pub(super) fn problem(&self) -> Problem {
+        match *self {
+            ShearStrength::Constant(tau) => strength("shear strength", tau),
+            ShearStrength::MohrCoulomb { cohesion, friction } => {
+                strength("cohesion", cohesion).or(not_negative("tangent of the friction angle", friction))
+            }
+        }
+    }
+
+    /// 1/strength without pressure [1/Pa], and tan φ over it.
+    pub(super) fn inverse(&self) -> (f64, f64) {
+        match *self {
+            ShearStrength::Constant(tau) => (1.0 / tau, 0.0),
+            ShearStrength::MohrCoulomb { cohesion, friction } => (1.0 / cohesion, friction / cohesion),
+        }
+    }
+}
+
 /// A parallel bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelBond {
@@ -77,18 +96,12 @@ impl ParallelBond {
             ParallelStiffness::PerArea { normal, shear } => positive("normal stiffness per area", normal)
                 .or(not_negative("shear stiffness per area", shear)),
         };
-        let shear = match self.shear_strength {
-            ShearStrength::Constant(tau) => strength("shear strength", tau),
-            ShearStrength::MohrCoulomb { cohesion, friction } => {
-                strength("cohesion", cohesion).or(not_negative("tangent of the friction angle", friction))
-            }
-        };
         let factor = self.moment_factor;
         let in_range = (0.0..=1.0).contains(&factor);
         positive("radius factor", self.radius_factor)
             .or(stiffness)
             .or(strength("tensile strength", self.tensile_strength))
-            .or(shear)
+            .or(self.shear_strength.problem())
             .or((!in_range).then_some(("moment factor", factor, "lie in [0, 1]")))
             .or(self.damping.problem())
     }
@@ -105,10 +118,7 @@ impl ParallelBond {
             ParallelStiffness::PerArea { normal, shear } => (normal, shear),
         };
         let tensile = 1.0 / self.tensile_strength;
-        let (shear, confined) = match self.shear_strength {
-            ShearStrength::Constant(tau) => (1.0 / tau, 0.0),
-            ShearStrength::MohrCoulomb { cohesion, friction } => (1.0 / cohesion, friction / cohesion),
-        };
+        let (shear, confined) = self.shear_strength.inverse();
         Springs {
             stiffness: [kn * area, ks * area, kn * second, ks * polar],
             limit: [
@@ -118,7 +128,7 @@ impl ParallelBond {
                 r / polar * shear,
                 confined / area,
             ],
-            middle: false,
+            offset: joint.radii[0] - joint.radii[1],
         }
     }
 }

@@ -21,10 +21,10 @@ pub enum Criterion {
     Sum,
 }
 
-/// Two spheres about to be joined.
+/// Two bodies about to be joined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Joint {
-    /// Radii [m].
+    /// Radii of the spheres, or around the bodies [m].
     pub radii: [f64; 2],
     /// Distance of the centres [m].
     pub length: f64,
@@ -41,8 +41,8 @@ pub(crate) struct Springs {
     /// 1/strength in tension [1/N], bending [1/(N m)], shear [1/N], twisting [1/(N m)]; and the share of tension in the
     /// shear criterion [1/N].
     pub limit: [f64; 5],
-    /// Whether forces act in the middle of the line of centres instead of the middle of the gap.
-    pub middle: bool,
+    /// Difference of the lever arms of the two bodies [m]: where between the centres forces act; 0 in the middle.
+    pub offset: f64,
 }
 
 /// A quantity out of range: its name, value and what it must be.

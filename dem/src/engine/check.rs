@@ -295,7 +295,6 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
             "an external surface that is not given as triangles",
             surfaces(input).next().is_some() && input.surface_mesh.is_none(),
         ),
-        ("bonds", !input.bonds.is_empty()),
     ] {
         if there {
             return error(format!("a dilated polyhedron or disk; {what} cannot be combined with it"));

@@ -62,7 +62,7 @@ fn drive(
     panic!("the bond holds");
 }
 
-fn near(found: f64, expected: f64, relative: f64) {
+pub fn near(found: f64, expected: f64, relative: f64) {
     assert!((found / expected - 1.0).abs() < relative, "found {found}, expected {expected}");
 }
 

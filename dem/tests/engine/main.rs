@@ -5,6 +5,7 @@ mod balance;
 mod body_forces;
 mod bonds;
 mod bonds_block;
+mod bonds_faces;
 mod bonds_many;
 mod boxes;
 mod determinism;

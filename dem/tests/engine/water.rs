@@ -7,7 +7,7 @@ use trackbed_dem::{
     BodyForce, BodyInput, DragArea, Measured, ModelInput, Shape, TimeStep, Vec3, Water, Wave, measure,
 };
 
-fn still(density: f64) -> Water {
+pub fn still(density: f64) -> Water {
     Water {
         level: 0.0,
         density,

@@ -1,9 +1,11 @@
 //! Kinds of bonds: stiffness, strength, damping.
 
-use crate::scene::bonds::{BondTable, CriterionName, Parallel};
+use crate::scene::bonds::{BondTable, CriterionName, FaceTable, Parallel};
+use crate::scene::units::{Angle, Quantity, Stress};
 use crate::scene::{SceneError, Table};
 use trackbed_dem::bond::{
-    Bond, BondDamping, ContactPoint, Criterion, DirectBond, ParallelBond, ParallelStiffness, ShearStrength,
+    Bond, BondDamping, ContactPoint, Criterion, DirectBond, FaceBond, ParallelBond, ParallelStiffness,
+    ShearStrength,
 };
 
 /// The kind of bond that a table describes.
@@ -30,12 +32,12 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
         CriterionName::Stress => Criterion::Stress,
         CriterionName::Sum => Criterion::Sum,
     };
-    match (&table.parallel, &table.contact_point, &table.direct) {
-        (Some(p), None, None) => {
+    match (&table.parallel, &table.contact_point, &table.direct, &table.face) {
+        (Some(p), None, None, None) => {
             let bond = parallel(&table.below("parallel", p))?;
             Ok(Bond::Parallel(ParallelBond { criterion: criterion(p.criterion), damping, contact, ..bond }))
         }
-        (None, Some(p), None) => {
+        (None, Some(p), None, None) => {
             let p = table.below("contact_point", p);
             p.check("normal_stiffness", p.normal_stiffness, above_zero, "above 0")?;
             p.check("shear_stiffness", p.shear_stiffness, |k| k >= 0.0, "0 or more")?;
@@ -50,7 +52,7 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
                 contact,
             }))
         }
-        (None, None, Some(d)) => {
+        (None, None, Some(d), None) => {
             let d = table.below("direct", d);
             d.check("stiffness", d.stiffness[0], above_zero, "a first number above 0")?;
             for k in d.stiffness {
@@ -67,9 +69,13 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
                 contact,
             }))
         }
+        (None, None, None, Some(f)) => {
+            let bond = face(&table.below("face", f))?;
+            Ok(Bond::Face(FaceBond { criterion: criterion(f.criterion), damping, ..bond }))
+        }
         _ => {
-            Err(table
-                .here("another number of kinds", "exactly one of `parallel`, `contact_point` and `direct`"))
+            let expected = "exactly one of `parallel`, `contact_point`, `direct` and `face`";
+            Err(table.here("another number of kinds", expected))
         }
     }
 }
@@ -88,14 +94,6 @@ fn parallel(p: &Table<Parallel>) -> Result<ParallelBond, SceneError> {
     p.check("normal_stiffness", p.normal_stiffness, above_zero, "above 0")?;
     p.check("shear_stiffness", p.shear_stiffness, |k| k >= 0.0, "0 or more")?;
     p.check("tensile_strength", p.tensile_strength, |s| s >= 0.0, "0 or more")?;
-    p.check("shear_strength", p.shear_strength, |s| s >= 0.0, "0 or more")?;
-    let angle = p.friction_angle.map(|a| a.si);
-    p.check(
-        "friction_angle",
-        angle,
-        |a| (0.0..std::f64::consts::FRAC_PI_2).contains(&a),
-        "0 or more, below 90 deg",
-    )?;
     p.check("moment_factor", p.moment_factor, |b| (0.0..=1.0).contains(&b), "0 to 1")?;
     let stiffness = match (p.young, p.stiffness_ratio, p.normal_stiffness, p.shear_stiffness) {
         (Some(young), ratio, None, None) => {
@@ -107,24 +105,54 @@ fn parallel(p: &Table<Parallel>) -> Result<ParallelBond, SceneError> {
             return Err(p.error("young", "another set of stiffnesses", expected));
         }
     };
-    let shear = p.shear_strength.map_or(f64::INFINITY, |s| s.si.max(NO_STRENGTH));
-    let shear_strength = match angle {
-        Some(a) if p.shear_strength.is_some() => {
-            ShearStrength::MohrCoulomb { cohesion: shear, friction: libm::tan(a) }
-        }
-        Some(_) => {
-            return Err(p.error("friction_angle", "a value", "a `shear_strength` beside it"));
-        }
-        None => ShearStrength::Constant(shear),
-    };
+    let shear_strength = shear_strength(p, p.shear_strength, p.friction_angle)?;
     Ok(ParallelBond {
         radius_factor: p.radius_factor.unwrap_or(1.0),
         stiffness,
-        tensile_strength: p.tensile_strength.map_or(f64::INFINITY, |s| s.si.max(NO_STRENGTH)),
+        tensile_strength: strength(p.tensile_strength),
         shear_strength,
         moment_factor: p.moment_factor.unwrap_or(1.0),
         criterion: Criterion::Stress,
         damping: BondDamping::None,
         contact: false,
     })
+}
+
+fn face(f: &Table<FaceTable>) -> Result<FaceBond, SceneError> {
+    f.check("young", f.young, above_zero, "above 0")?;
+    f.check("stiffness_ratio", f.stiffness_ratio, above_zero, "above 0")?;
+    f.check("tensile_strength", f.tensile_strength, |s| s >= 0.0, "0 or more")?;
+    Ok(FaceBond {
+        young: f.young.si,
+        ratio: f.stiffness_ratio.unwrap_or(2.5),
+        tensile_strength: strength(f.tensile_strength),
+        shear_strength: shear_strength(f, f.shear_strength, f.friction_angle)?,
+        criterion: Criterion::Stress,
+        damping: BondDamping::None,
+    })
+}
+
+/// A strength, infinite where none is given [Pa].
+fn strength(given: Option<Quantity<Stress>>) -> f64 {
+    given.map_or(f64::INFINITY, |s| s.si.max(NO_STRENGTH))
+}
+
+/// The shear strength of a table with these keys.
+fn shear_strength<T>(
+    table: &Table<T>,
+    given: Option<Quantity<Stress>>,
+    friction_angle: Option<Quantity<Angle>>,
+) -> Result<ShearStrength, SceneError> {
+    table.check("shear_strength", given, |s| s >= 0.0, "0 or more")?;
+    let angle = friction_angle.map(|a| a.si);
+    let usual = |a| (0.0..std::f64::consts::FRAC_PI_2).contains(&a);
+    table.check("friction_angle", angle, usual, "0 or more, below 90 deg")?;
+    let shear = strength(given);
+    match angle {
+        Some(a) if given.is_some() => {
+            Ok(ShearStrength::MohrCoulomb { cohesion: shear, friction: libm::tan(a) })
+        }
+        Some(_) => Err(table.error("friction_angle", "a value", "a `shear_strength` beside it")),
+        None => Ok(ShearStrength::Constant(shear)),
+    }
 }

@@ -33,12 +33,12 @@ pub(super) fn rules(
     settling: Option<&DepositionPlan>,
     bonds: &mut BondPart,
 ) -> Result<(), Failure> {
-    if bonds.has_stones() {
+    if bonds.has_made() {
         let idle = [
             ("deposition.level", settling.is_some_and(|d| d.level.is_some())),
             ("deposition.layers", settling.is_some_and(|d| d.layers > 1)),
         ];
-        scene.refuse(idle, "no such key beside bonded stones")?;
+        scene.refuse(idle, "no such key beside bonded stones and sheets")?;
     }
     let levelled = settling.is_some_and(|d| d.level.is_some());
     for (kind, table) in scene.rows("bond", &scene.bond).enumerate() {

@@ -1,7 +1,9 @@
 //! Bonds of a scene, and the pairs that they join.
 
+use crate::scene::grains::Grains;
+use crate::scene::{SceneError, Table};
 use std::collections::HashSet;
-use trackbed_dem::bond::{Bond, BondInput, Spread, factors, within_gap};
+use trackbed_dem::bond::{Bond, BondInput, Face, Spread, factors, within_gap};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, ModelInput, Vec3};
 
@@ -12,8 +14,16 @@ pub struct BondPart {
     pub names: Vec<String>,
     kinds: Vec<Bond>,
     rules: Vec<Rule>,
-    /// Bonds that stones are made with: bodies and kind.
-    stones: Vec<([usize; 2], usize)>,
+    /// Bonds that stones and sheets are made with.
+    made: Vec<Made>,
+}
+
+/// A bond that a stone or a sheet is made with.
+#[derive(Clone, Copy, Debug)]
+struct Made {
+    bodies: [usize; 2],
+    kind: usize,
+    face: Option<Face>,
 }
 
 /// Which bodies a table joins, and how strongly.
@@ -42,8 +52,8 @@ pub enum PairSource {
     Gap(f64),
     /// Given pairs.
     Pairs(Vec<[usize; 2]>),
-    /// The stones that name the table.
-    Stones,
+    /// The stones or sheets that name the table.
+    Made,
 }
 
 /// A box in which bonds are weaker or stronger.
@@ -59,15 +69,22 @@ pub struct BondRegion {
     pub stiffness: f64,
 }
 
+impl Made {
+    fn bond(&self) -> BondInput {
+        let [a, b] = self.bodies;
+        BondInput { face: self.face, ..BondInput::new(a, b, self.kind) }
+    }
+}
+
 impl BondPart {
     /// Whether the scene has bonds.
     pub fn is_empty(&self) -> bool {
         self.kinds.is_empty()
     }
 
-    /// Whether stones are made with bonds.
-    pub fn has_stones(&self) -> bool {
-        !self.stones.is_empty()
+    /// Whether stones or sheets are made with bonds.
+    pub fn has_made(&self) -> bool {
+        !self.made.is_empty()
     }
 
     /// Adds a kind of bond.
@@ -81,14 +98,35 @@ impl BondPart {
         self.rules.push(rule);
     }
 
-    /// Whether stones are made with bonds of a kind.
-    pub(super) fn in_stones(&self, kind: usize) -> bool {
-        self.stones.iter().any(|(_, k)| *k == kind)
+    /// Whether stones or sheets are made with bonds of a kind.
+    pub(super) fn makes(&self, kind: usize) -> bool {
+        self.made.iter().any(|m| m.kind == kind)
+    }
+
+    /// Whether bonds of a kind fill faces.
+    pub(super) fn fills_faces(&self, kind: usize) -> bool {
+        matches!(self.kinds[kind], Bond::Face(_))
     }
 
     /// Adds a bond within a stone.
     pub fn join_stone(&mut self, bodies: [usize; 2], kind: usize) {
-        self.stones.push((bodies, kind));
+        self.made.push(Made { bodies, kind, face: None });
+    }
+
+    /// Adds a bond that fills a face.
+    pub fn join_face(&mut self, bodies: [usize; 2], kind: usize, face: Face) {
+        self.made.push(Made { bodies, kind, face: Some(face) });
+    }
+
+    /// Number of the `[[bond]]` that a group names, of those that fill faces or not.
+    pub fn of_group(&self, group: &Table<Grains>, name: &str, faces: bool) -> Result<usize, SceneError> {
+        let of_kind = |kind: &usize| self.fills_faces(*kind) == faces;
+        let known = || {
+            let names: Vec<_> = (0..self.names.len()).filter(of_kind).map(|k| &*self.names[k]).collect();
+            let kind = if faces { "with" } else { "without" };
+            format!("the name of a [[bond]] {kind} `face`: {}", names.join(", "))
+        };
+        self.find(name).filter(of_kind).ok_or_else(|| group.error("bond", format!("\"{name}\""), known()))
     }
 
     /// Number of the `[[bond]]` with a name.
@@ -105,7 +143,7 @@ impl BondPart {
     /// Adds the bonds within stones to an input; they do not break.
     pub fn add_stones_to(&self, input: &mut ModelInput) {
         input.bond_kinds = self.kinds.iter().map(Bond::unbreakable).collect();
-        input.bonds = self.stones.iter().map(|&([a, b], kind)| BondInput::new(a, b, kind)).collect();
+        input.bonds = self.made.iter().map(Made::bond).collect();
     }
 
     /// Whether the rule of a kind can join any two of these bodies, wherever they come to lie: only single spheres are joined.
@@ -120,7 +158,7 @@ impl BondPart {
             (PairSource::Gap(_), Some([a, b])) if a == b => spheres(Some(a)) > 1,
             (PairSource::Gap(_), Some([a, b])) => spheres(Some(a)) > 0 && spheres(Some(b)) > 0,
             (PairSource::Pairs(pairs), _) => !pairs.is_empty(),
-            (PairSource::Stones, _) => self.in_stones(kind),
+            (PairSource::Made, _) => self.makes(kind),
         }
     }
 
@@ -139,31 +177,26 @@ impl BondPart {
                 let match_groups = rule.between.is_none_or(|[p, q]| parts == [p, q] || parts == [q, p]);
                 sphere(a) && sphere(b) && match_groups
             };
-            let pairs: Vec<[usize; 2]> = match &rule.source {
+            let plain = |[a, b]: [usize; 2]| BondInput::new(a, b, kind);
+            let found: Vec<BondInput> = match &rule.source {
                 PairSource::Gap(gap) => {
                     let spheres: Vec<_> =
                         bodies.iter().map(|b| (b.position, radius(b).max(f64::MIN_POSITIVE))).collect();
-                    within_gap(&spheres, *gap, accept)
+                    within_gap(&spheres, *gap, accept).into_iter().map(plain).collect()
                 }
-                PairSource::Pairs(pairs) => pairs.clone(),
-                PairSource::Stones => {
-                    self.stones.iter().filter(|(_, k)| *k == kind).map(|(pair, _)| *pair).collect()
-                }
+                PairSource::Pairs(pairs) => pairs.iter().copied().map(plain).collect(),
+                PairSource::Made => self.made.iter().filter(|m| m.kind == kind).map(Made::bond).collect(),
             };
             let pairs: Vec<_> =
-                pairs.into_iter().filter(|[a, b]| seen.insert((*a.min(b), *a.max(b)))).collect();
+                found.into_iter().filter(|p| seen.insert((p.a.min(p.b), p.a.max(p.b)))).collect();
             let tension = factors(rule.spread, rule.seed, 0, pairs.len());
             let shear = factors(rule.spread, rule.seed, u64::from(!rule.together), pairs.len());
             // 0 and 1 are the strengths' random numbers.
             let stiffness = factors(rule.stiffness.0, rule.stiffness.1, 2, pairs.len());
-            for (k, &[a, b]) in pairs.iter().enumerate() {
-                let middle = (bodies[a].position + bodies[b].position) * 0.5;
-                let mut bond = BondInput {
-                    tension: tension[k],
-                    shear: shear[k],
-                    stiffness: stiffness[k],
-                    ..BondInput::new(a, b, kind)
-                };
+            for (k, pair) in pairs.into_iter().enumerate() {
+                let middle = (bodies[pair.a].position + bodies[pair.b].position) * 0.5;
+                let mut bond =
+                    BondInput { tension: tension[k], shear: shear[k], stiffness: stiffness[k], ..pair };
                 for region in &rule.regions {
                     if (0..3).all(|d| middle[d] >= region.low[d] && middle[d] <= region.high[d]) {
                         bond.tension *= region.strength;

@@ -46,7 +46,7 @@ pub(super) fn rule(table: &Table<BondTable>, bodies: &Joinable<'_>) -> Result<Ru
 
 /// Which pairs a table joins; `between` is whether it names two groups.
 fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Result<PairSource, Failure> {
-    let named = bodies.bonds.in_stones(bodies.kind);
+    let named = bodies.bonds.makes(bodies.kind);
     let source = match (&table.gap, &table.pairs) {
         (Some(gap), None) => {
             table.check("gap", *gap, |g| g >= 0.0, "0 or more")?;
@@ -64,18 +64,26 @@ fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Res
         }
         (None, None) if named => {
             if between {
-                let expected = "a `gap` beside it, or no such key for the bonds of stones";
+                let expected = "a `gap` beside it, or no such key for the bonds of stones and sheets";
                 return Err(table.error("between", "two groups", expected).into());
             }
-            PairSource::Stones
+            PairSource::Made
+        }
+        (None, None) if bodies.bonds.fills_faces(bodies.kind) => {
+            let expected = "a [[grains]] of `floes` that names this bond";
+            return Err(table.error("face", "a bond that fills the faces of nothing", expected).into());
         }
         _ => {
             let expected = "one of `gap` and `pairs`, or a [[grains]] that names this bond";
             return Err(table.error("gap", "both or none of `gap` and `pairs`", expected).into());
         }
     };
-    if named && !matches!(source, PairSource::Stones) {
-        let expected = "no such key for a bond that stones are made with";
+    if bodies.bonds.fills_faces(bodies.kind) && !matches!(source, PairSource::Made) {
+        let expected = "no such key for a bond that fills faces, which floes of a sheet have";
+        return Err(table.error("face", "`gap` or `pairs` beside it", expected).into());
+    }
+    if named && !matches!(source, PairSource::Made) {
+        let expected = "no such key for a bond that stones or sheets are made with";
         return Err(table.error("gap", "a rule", expected).into());
     }
     Ok(source)

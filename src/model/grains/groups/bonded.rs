@@ -24,10 +24,7 @@ pub(super) fn expand(
     let clusters = clusters(group)?;
     let expected = "the name of the [[bond]] that holds the stones together";
     let name = group.need("bond", group.bond.as_ref(), expected)?;
-    let kind = bonds.find(name).ok_or_else(|| {
-        let known = format!("the name of a [[bond]]: {}", bonds.names.join(", "));
-        group.error("bond", format!("\"{name}\""), known)
-    })?;
+    let kind = bonds.of_group(group, name, false)?;
     let stones = part.bodies.split_off(first);
     // One unit sphere serves all; the stones' own shapes go.
     part.shapes.truncate(first_shape);

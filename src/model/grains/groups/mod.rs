@@ -13,6 +13,7 @@ mod part;
 mod polygon;
 mod scattered;
 mod shapes;
+mod sheet;
 mod sizes;
 mod sources;
 mod voronoi;
@@ -121,7 +122,7 @@ fn add(
         }
         let expected = "\"polyhedron\" or \"disk\", which floes are";
         only(group, expected)?;
-        return Ok(floes::floes(group, &field, &model, part)?);
+        return Ok(floes::floes(group, &field, &model, part, bonds)?);
     }
     if let Some(frustum) = group.optional("frustum", &group.frustum) {
         only(group, "\"polyhedron\", which a frustum is")?;
@@ -172,7 +173,12 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
         ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of stones"),
         ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
         ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),
-        ("bond", group.bond.is_some(), group.shape == GrainShape::Bonded, "`shape = \"bonded\"`"),
+        (
+            "bond",
+            group.bond.is_some(),
+            group.shape == GrainShape::Bonded || (group.floes.is_some() && !disks),
+            "`shape = \"bonded\"`, or `floes` that are polyhedra",
+        ),
     ] {
         group.refuse([(k, present && !used)], &format!("no such key without {needs}"))?;
     }

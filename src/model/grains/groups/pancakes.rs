@@ -37,14 +37,21 @@ pub(super) fn pancakes(
     model: &BodyInput,
     part: &mut GroupsPart,
 ) -> Result<(), SceneError> {
-    let idle = [("count", field.count.is_some()), ("radius", field.radius.is_some())];
+    let idle = [
+        ("count", field.count.is_some()),
+        ("radius", field.radius.is_some()),
+        ("gap", field.gap.is_some()),
+        ("relax", field.relax.is_some()),
+    ];
     field.refuse(idle, "no such key for disks: sizes, `concentration` and `thickness` give it")?;
     let thickness = field.check("thickness", field.thickness, |t| t > 0.0, "above 0")?.si;
     let sizes = SizeSource::of(group)?;
     let [low, high] = [&field.low, &field.high].map(|corner| corner.map(|x| x.si));
     let place = Field { low, high, clear: field.clear.iter().map(|c| c.map(|q| q.si)).collect() };
-    let diameters = enough(&sizes, field.concentration * place.area(), group.seed).ok_or_else(|| {
-        field.error("concentration", field.concentration.to_string(), "1 to 100000 floes, with room for each")
+    let expected = "the area of the floes over that of the box less the circles that are clear";
+    let concentration = field.need("concentration", field.concentration, expected)?;
+    let diameters = enough(&sizes, concentration * place.area(), group.seed).ok_or_else(|| {
+        field.error("concentration", concentration.to_string(), "1 to 100000 floes, with room for each")
     })?;
     if let Some(d) = diameters.iter().find(|d| **d <= thickness) {
         let expected = format!("less than the diameter of each floe; one has {d} m");
@@ -59,8 +66,7 @@ pub(super) fn pancakes(
         order.into_iter().map(|k| 0.5 * diameters[k]).collect()
     };
     let places = place.spread(&radii, &mut random).map_err(|left| {
-        let found =
-            format!("{}, at which floes of these sizes still overlap by {left:.2e} m", field.concentration);
+        let found = format!("{concentration}, at which floes of these sizes still overlap by {left:.2e} m");
         field.error("concentration", found, "one at which random floes find room, 0.75 or less")
     })?;
     let z = field.elevation.map_or(0.0, |z| z.si);

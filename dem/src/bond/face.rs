@@ -1,0 +1,98 @@
+//! Face bond: a rectangle of ice or cement that fills the face between two bodies of any shape, such as neighbouring floes of a sheet.
+//!
+//! The bond is a beam from centre to centre, L long, with the section of the face: width w, thickness t, w along the sheet. With Young's
+//! modulus E and the ratio kₙ/kₛ, tension E wt/L, shear E wt/(L kₙ/kₛ), bending E wt³/12L, twisting E J/(L kₙ/kₛ), and Saint-Venant's
+//! J = ab³ (1/3 − 0.21 b/a (1 − b⁴/12a⁴)), a the longer, b the shorter side (Roark's formulas, 8th ed., table 10.7). Largest stresses
+//!
+//! σ = T/wt + 6|M_b|/wt²,  τ = |F_s|/wt + |M_t| b/J,
+//!
+//! T tension positive. The bond breaks where σ reaches the tensile (in a sheet the flexural) or τ the shear strength; the latter is constant
+//! or grows with pressure, c + (−T/wt) tan φ. Forces act in the face, wherever it lies between the centres.
+//!
+//! Bodies are in contact beside the bond as if it were not there.
+//!
+//! Limit: bending is as stiff and as strong about the axis across the sheet as about that along it, by the thickness. In a sheet that is no
+//! row, turning about the vertical is held by the shear of the faces around.
+
+use super::parallel::ShearStrength;
+use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, positive, strength};
+
+/// A face bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceBond {
+    /// Young's modulus E [Pa].
+    pub young: f64,
+    /// kₙ/kₛ [-].
+    pub ratio: f64,
+    /// Strength in tension and bending [Pa]; infinite for none.
+    pub tensile_strength: f64,
+    /// Shear strength.
+    pub shear_strength: ShearStrength,
+    /// When it breaks.
+    pub criterion: Criterion,
+    /// Dashpots.
+    pub damping: BondDamping,
+}
+
+/// The face that a bond fills.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Width and thickness [m].
+    pub size: [f64; 2],
+    /// Distance of the first body's centre from the face less that of the second [m].
+    pub offset: f64,
+}
+
+/// Saint-Venant's constant of torsion of a rectangle [m⁴], and its shorter side [m].
+fn torsion([w, t]: [f64; 2]) -> (f64, f64) {
+    let (a, b) = (w.max(t), w.min(t));
+    let slender = b / a;
+    (a * b.powi(3) * (1.0 / 3.0 - 0.21 * slender * (1.0 - slender.powi(4) / 12.0)), b)
+}
+
+impl FaceBond {
+    pub(super) fn problem(&self) -> Problem {
+        positive("Young's modulus", self.young)
+            .or(positive("stiffness ratio", self.ratio))
+            .or(strength("tensile strength", self.tensile_strength))
+            .or(self.shear_strength.problem())
+            .or(self.damping.problem())
+    }
+
+    pub(super) fn springs(&self, joint: &Joint, face: &Face) -> Springs {
+        let [w, t] = face.size;
+        let (area, second) = (w * t, w * t.powi(3) / 12.0);
+        let (polar, shorter) = torsion(face.size);
+        let kn = self.young / joint.length;
+        let ks = kn / self.ratio;
+        let tensile = 1.0 / self.tensile_strength;
+        let (shear, confined) = self.shear_strength.inverse();
+        Springs {
+            stiffness: [kn * area, ks * area, kn * second, ks * polar],
+            limit: [
+                tensile / area,
+                0.5 * t / second * tensile,
+                shear / area,
+                shorter / polar * shear,
+                confined / area,
+            ],
+            offset: face.offset,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Constants of torsion by the series of Timoshenko & Goodier (Theory of Elasticity, 3rd ed., table of section 109): of a square 0.1406,
+    /// of 2 × 1 0.229, of 10 × 1 0.312, times ab³.
+    #[test]
+    fn torsion_of_rectangles() {
+        for (w, t, exact) in [(1.0, 1.0, 0.1406), (2.0, 1.0, 2.0 * 0.229), (0.1, 1.0, 0.312e-3)] {
+            let (j, shorter) = torsion([w, t]);
+            assert!((j / exact - 1.0).abs() < 3e-3, "{w} × {t}: {j}");
+            assert_eq!(shorter, f64::min(w, t));
+        }
+    }
+}

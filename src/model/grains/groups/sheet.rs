@@ -1,0 +1,91 @@
+//! Sheets of floes that are bonded by the faces between them.
+
+use super::polygon::{Point, sides};
+use crate::model::grains::bonds::BondPart;
+use trackbed_dem::bond::Face;
+
+/// Sides shorter than this share of the size of a cell, the root of its area, join nothing.
+const SHORT: f64 = 1e-3;
+
+/// A floe of a field.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Floe {
+    /// Number of its body.
+    pub body: usize,
+    /// Its centre of mass in plan [m].
+    pub centre: Point,
+}
+
+/// Joins those floes whose cells share a side. Shapes: `cells` and `floes` as `sites`; a site whose floe is left out has none.
+pub(super) fn join(
+    sites: &[Point],
+    cells: &[Vec<Point>],
+    floes: &[Option<Floe>],
+    thickness: f64,
+    kind: usize,
+    bonds: &mut BondPart,
+) {
+    for ([i, j], [p, q]) in shared(sites, cells) {
+        let (Some(a), Some(b)) = (floes[i], floes[j]) else { continue };
+        let way = [0, 1].map(|d| a.centre[d] - b.centre[d]);
+        let length = libm::hypot(way[0], way[1]);
+        // Along the line of centres, from the face to both of them.
+        let middle = [0, 1].map(|d| 0.5 * (p[d] + q[d]));
+        let from = |floe: Floe| (0..2).map(|d| (floe.centre[d] - middle[d]) * way[d] / length).sum::<f64>();
+        let offset = from(a) + from(b);
+        let size = [libm::hypot(q[0] - p[0], q[1] - p[1]), thickness];
+        bonds.join_face([a.body, b.body], kind, Face { size, offset });
+    }
+}
+
+/// Pairs of sites whose cells share a side, the smaller number first, and that side.
+fn shared(sites: &[Point], cells: &[Vec<Point>]) -> Vec<([usize; 2], [Point; 2])> {
+    let mut order: Vec<usize> = (0..sites.len()).collect();
+    order.sort_by(|&a, &b| sites[a][0].total_cmp(&sites[b][0]));
+    let mut found = Vec::new();
+    for (i, cell) in cells.iter().enumerate() {
+        let size = super::polygon::area(cell).0.sqrt();
+        for [p, q] in sides(cell) {
+            let way = [q[0] - p[0], q[1] - p[1]];
+            let length = libm::hypot(way[0], way[1]);
+            if length < SHORT * size {
+                continue;
+            }
+            // The neighbour is the mirror image of the site.
+            let normal = [way[1] / length, -way[0] / length];
+            let off = (p[0] - sites[i][0]) * normal[0] + (p[1] - sites[i][1]) * normal[1];
+            let image = [0, 1].map(|d| sites[i][d] + 2.0 * off * normal[d]);
+            let near = 1e-4 * size;
+            let first = order.partition_point(|&k| sites[k][0] < image[0] - near);
+            let candidates = order[first..].iter().take_while(|&&k| sites[k][0] <= image[0] + near);
+            let neighbour = candidates.copied().find(|&k| (sites[k][1] - image[1]).abs() <= near);
+            if let Some(j) = neighbour.filter(|j| *j > i) {
+                found.push(([i, j], [p, q]));
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::voronoi::cells;
+    use super::*;
+    use trackbed_dem::random::Random;
+
+    /// Every side of a cell within the box is shared: the lengths of all sides are twice those of the shared ones and once the box.
+    #[test]
+    fn sides_are_shared() {
+        let mut random = Random::new(4, 0);
+        let sites: Vec<Point> =
+            (0..500).map(|_| [random.uniform() * 40.0, random.uniform() * 25.0]).collect();
+        let cells = cells(&sites, [[0.0, 0.0], [40.0, 25.0]]);
+        let length = |[p, q]: [Point; 2]| libm::hypot(q[0] - p[0], q[1] - p[1]);
+        let all: f64 = cells.iter().flat_map(|c| sides(c)).map(length).sum();
+        let shared = shared(&sites, &cells);
+        let inner: f64 = shared.iter().map(|(_, side)| length(*side)).sum();
+        assert!((all - 2.0 * inner - 130.0).abs() < 1e-2, "{all} {inner}");
+        // Some three for each cell (Euler).
+        assert!((1350..1500).contains(&shared.len()), "{}", shared.len());
+    }
+}
