@@ -38,6 +38,7 @@ mod suite {
     mod report;
     mod runout;
     mod scenes;
+    mod sheets;
     mod solid_edges;
     mod solid_keys;
     mod solid_runs;

@@ -21,7 +21,7 @@ fn bonds_that_join_nothing() {
 #[test]
 fn two_kinds_of_bond() {
     bonded().scene("[bond.parallel]", "[bond.direct]\nstiffness = [1, 1, 1, 1]\n[bond.parallel]").refused(
-        "scene.toml:16: bond.0: found another number of kinds, expected exactly one of `parallel`, `contact_point` and `direct`",
+        "scene.toml:16: bond.0: found another number of kinds, expected exactly one of `parallel`, `contact_point`, `direct` and `face`",
     );
 }
 
