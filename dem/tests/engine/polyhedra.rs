@@ -392,6 +392,8 @@ fn refusals() {
 fn stones_come_and_go() {
     let mut input = scene(elastic(), vec![block([0.05; 3], 0.01)]);
     input.gravity = DOWN;
+    // Short ones: a bounce keeps its energy to the square of the step, 0.3 % with half of the limit.
+    input.time_step = TimeStep::Auto { fraction: 0.1 };
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(body(0, Vec3::new(0.0, 0.0, 0.0501)));
     input.bodies.push(BodyInput { absent: true, ..body(0, Vec3::zeros()) });
