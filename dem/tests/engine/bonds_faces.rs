@@ -118,7 +118,7 @@ fn a_floating_strip_is_a_beam_on_an_elastic_foundation() {
         let face = Some(Face { size: [W, T], offset: 0.0 });
         input.bonds = (1..count).map(|k| BondInput { face, ..BondInput::new(k - 1, k, 0) }).collect();
         input.bond_kinds.push(Bond::Face(FaceBond { young, tensile_strength: strength, ..ice() }));
-        input.body_forces = vec![BodyForce::Water(water.clone())];
+        input.body_forces = vec![BodyForce::Water(water)];
         input.time_step = TimeStep::Auto { fraction: 0.8 };
         input.damping = Some(LocalDamping { factor: 0.3 });
         let mut run = Run::new(input);
@@ -265,7 +265,7 @@ fn what_makes_no_face_is_refused() {
     let refused = |change: &dyn Fn(&mut ModelInput), expected: &str| {
         let (mut input, ..) = row(ice());
         change(&mut input);
-        let error = Model::new(input).err().expect("refused").to_string();
+        let error = Model::new(input).expect_err("refused").to_string();
         assert!(error.contains(expected), "{error}");
     };
     refused(&|i| i.bonds[1].face = None, "bond 1: its face must have a size above 0");
