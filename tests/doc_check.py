@@ -78,7 +78,7 @@ def scenes(page):
     grains = lambda text: top + contacts + text + end
     made = {
         "quasi_static": top + plastic + base + footing + e("`[solid.initial_stress]`") + e("`[solid.quasi_static]`") + e("`[solid.newton]`") + e("`[output]`") + e("`[[probe]]`"),
-        "dynamics": top + elastic + base + e("`[[solid.absorbing]]`") + e("`solid.rayleigh`") + e("`[solid.dynamics]`") + e("`[[solid.load]]`"),
+        "dynamics": top + elastic + base + e("`[[solid.absorbing]]`") + e("`solid.rayleigh`") + e("`[solid.dynamics]`") + e("`[solid.equations]`") + e("`[[solid.load]]`"),
         "history": top + elastic + base + e("`[solid.dynamics]`") + history,
         "strength_reduction": top + plastic + base + e("`[solid.strength_reduction]`"),
         "mesh": e("`[solid]`") + "[[solid.material]]\nid = 1\n" + solid + base,

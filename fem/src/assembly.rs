@@ -203,6 +203,11 @@ impl Matrices {
         self.row_start[p]..self.row_start[p + 1]
     }
 
+    /// Row of a slot.
+    pub(crate) fn row_of(&self, slot: usize) -> usize {
+        self.row_start.partition_point(|&s| s <= slot) - 1
+    }
+
     /// Stiffness blocks by slots [N/m].
     pub(crate) fn stiffness_blocks(&self) -> &[[f64; 9]] {
         &self.stiffness

@@ -2,6 +2,7 @@
 
 use crate::material::Region;
 use crate::solver::AnalysisError;
+use crate::solver::conjugate::Stopped;
 use thiserror::Error;
 
 /// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
@@ -133,6 +134,11 @@ pub enum SolveError {
         "the mass matrix could not be solved: {residual:.3e} of the load left after {iterations} iterations"
     )]
     MassNotSolved { residual: f64, iterations: usize },
+    #[error(
+        "conjugate gradients did not solve the equations of the solid: {stopped}, expected {tolerance:.1e}; a larger \
+         `solid.equations.tolerance` or `method = \"direct\"` may help"
+    )]
+    NotConverged { stopped: Stopped, tolerance: f64 },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
 }

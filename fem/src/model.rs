@@ -8,7 +8,8 @@ use crate::boundary::{self, BoundaryLayer};
 use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
 use crate::element::stiffness_points;
-use crate::equations;
+use crate::equations::iteration::block_jacobi_memory;
+use crate::equations::{self, method::Methods};
 pub use crate::error::ModelError;
 use crate::error::SolveError;
 use crate::mass::Mass;
@@ -41,6 +42,8 @@ pub struct ModelInput {
     pub mass: Mass,
     /// Springs and dashpots on faces of the body.
     pub boundaries: Vec<BoundaryLayer>,
+    /// How the elastic equations are solved.
+    pub methods: Methods,
 }
 
 /// Memory and operations of a factorization.
@@ -66,6 +69,7 @@ pub struct Model {
     rayleigh: Rayleigh,
     mass: Mass,
     boundaries: Vec<BoundaryLayer>,
+    methods: Methods,
     supports: Supports,
     /// Shared by all copies: they depend on shapes, not on places.
     matrices: Arc<Matrices>,
@@ -93,6 +97,7 @@ impl Model {
             rayleigh,
             mass,
             boundaries,
+            methods,
         } = input;
         checks::check_mesh(&mesh)?;
         checks::check_materials(&mesh, &materials)?;
@@ -125,6 +130,7 @@ impl Model {
             rayleigh,
             mass,
             boundaries,
+            methods,
             supports,
             matrices,
             analysis: OnceLock::new(),
@@ -303,6 +309,11 @@ impl Model {
         &self.boundaries
     }
 
+    /// How the elastic equations are solved. What yields, natural modes and reductions take a factor whatever they say.
+    pub fn methods(&self) -> Methods {
+        self.methods
+    }
+
     /// The acceleration of gravity [m/s²].
     pub fn gravity(&self) -> [f64; 3] {
         self.gravity
@@ -321,6 +332,11 @@ impl Model {
     /// The assembled matrices.
     pub fn matrices(&self) -> &Matrices {
         &self.matrices
+    }
+
+    /// The assembled matrices, to be shared.
+    pub(crate) fn shared_matrices(&self) -> Arc<Matrices> {
+        self.matrices.clone()
     }
 
     /// `y = K x` over all dofs, boundary springs included. Shapes `[3 * nodes]`.
@@ -370,6 +386,11 @@ impl Model {
             flops: analysis.flops() * if symmetric { 1.0 } else { 2.0 },
             factor_len: analysis.factor_len(),
         })
+    }
+
+    /// Memory of conjugate gradients for steps in time, known before they are set up [bytes].
+    pub fn window_iteration_memory(&self) -> usize {
+        block_jacobi_memory(self.matrices.clone(), &self.supports)
     }
 
     /// The ordering and symbolic factorization, made once and shared by all solvers of this model.

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Only the impulse `F_mean dt` of the window enters, so the impulse that the other side felt is handed over exactly.
-//! One solve with `M/(theta dt) + C + theta dt K` for `w = vt - v0`, so rounding stays relative to the change.
+//! One solve with `M/(theta dt) + C + theta dt K` for `w = vt - v0`, so rounding, and the tolerance of an iteration, stay relative
+//! to the change.
 //!
 //! Energy: multiplying by `du = dt vt` gives, without approximation,
 //! `work = change of (kinetic + strain) + dt vt·C vt + (theta - 1/2)(|dv|²_M + |du|²_K)`, C = alpha_m M + beta_k K + D with
@@ -19,22 +20,24 @@
 //! Limits: second order for theta = 1/2 only; a moved support has the velocity `vt = du/dt` inside the window and
 //! `v1 = v0 + (vt - v0)/theta` at its end.
 
+mod predict;
+
 use crate::assembly::Combination;
 use crate::energy::inner_force;
-use crate::equations::cholesky::Cholesky;
+use crate::equations::iteration::Counts;
+use crate::equations::system::Equations;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
-use crate::newmark::{check_dynamics, check_theta, factor};
-use crate::solver::LinearSolver;
+use crate::newmark::{check_dynamics, check_theta, equations};
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 
-/// Holds the factor for one window length, and scratch.
+/// Holds the factor for one window length, or what an iteration needs, and scratch.
 pub struct WindowSolver {
     theta: f64,
     dt: f64,
-    factor: Cholesky,
+    system: Equations,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
@@ -59,12 +62,12 @@ impl WindowSolver {
             mass: 1.0 + theta * dt * c.alpha_m,
             dashpots: theta * dt,
         };
-        let factor = factor(model, combination)?;
+        let system = equations(model, combination)?;
         let n = model.dof_count();
         Ok(WindowSolver {
             theta,
             dt,
-            factor,
+            system,
             next: State::new(model),
             work: vec![0.0; n],
             product: vec![0.0; n],
@@ -76,6 +79,11 @@ impl WindowSolver {
     /// The length of the window [s].
     pub fn dt(&self) -> f64 {
         self.dt
+    }
+
+    /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
+    pub fn counts(&self) -> Option<Counts> {
+        self.system.counts()
     }
 
     /// The parameter theta [-].
@@ -149,8 +157,8 @@ impl WindowSolver {
                 *slot -= theta * dt * self.product[d as usize];
             }
         }
-        // 2. Solve for w = vt - v0 = theta (v1 - v0), and advance.
-        self.factor.solve_in_place(&mut self.equations);
+        // 2. Solve for w = vt - v0 = theta (v1 - v0), which the last window's is a guess of, and advance.
+        self.system.solve(supports, &mut self.equations, |d| theta * dt * state.a[d])?;
         supports.scatter(&self.equations, &mut next.a);
         for d in 0..n {
             let change = next.a[d] / theta;
@@ -170,91 +178,6 @@ impl WindowSolver {
         let audit = self.audit(model, state, mean_load);
         std::mem::swap(state, &mut self.next);
         Ok(audit)
-    }
-
-    /// The mean velocity vt [m/s] that a step would have if the load fell by `contacts(w)` as the velocity vt exceeds the
-    /// present one by w: a linearized contact on the body. `contacts` adds a symmetric, not negative product to its second
-    /// argument, shapes `[3 * nodes]`. The state stays as it is. Returns the iterations.
-    ///
-    /// Conjugate gradients with the factor of the window as preconditioner: they need no product with the matrix, since
-    /// A z = r where z is the preconditioned residual r, and as many iterations as contacts are stiff against it.
-    ///
-    /// # Errors
-    /// A load or a result that is not finite.
-    pub fn predict(
-        &mut self,
-        model: &Model,
-        state: &State,
-        mean_load: &[f64],
-        mut contacts: impl FnMut(&[f64], &mut [f64]),
-        rate: &mut [f64],
-    ) -> Result<u32, SolveError> {
-        const TOLERANCE: f64 = 1e-8;
-        const ITERATIONS: u32 = 100;
-        check_load(model, mean_load, state.time + self.dt)?;
-        let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
-        let (n, supports) = (state.u.len(), model.supports());
-        let gather = |from: &[f64], to: &mut [f64]| {
-            to.iter_mut().zip(supports.free()).for_each(|(t, &d)| *t = from[d as usize]);
-        };
-        for d in 0..n {
-            self.work[d] = state.u[d] + (theta * dt + c.beta_k) * state.v[d];
-        }
-        model.stiffness_times(&self.work, &mut self.product);
-        let mut force: Vec<f64> = (0..n).map(|d| mean_load[d] - self.product[d]).collect();
-        if c.alpha_m > 0.0 {
-            model.mass_times(&state.v, &mut self.product);
-            (0..n).for_each(|d| force[d] -= c.alpha_m * self.product[d]);
-        }
-        if !model.matrices().dashpots().is_empty() {
-            self.product.fill(0.0);
-            model.dashpot_times(&state.v, &mut self.product);
-            (0..n).for_each(|d| force[d] -= self.product[d]);
-        }
-        let size = self.equations.len();
-        let mut r = vec![0.0; size];
-        gather(&force, &mut r);
-        r.iter_mut().for_each(|r| *r *= theta * dt);
-        let (mut x, mut p, mut ap, mut q) =
-            (vec![0.0; size], vec![0.0; size], vec![0.0; size], vec![0.0; size]);
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let (mut last, mut first, mut iterations) = (0.0, 0.0, 0);
-        while iterations < ITERATIONS {
-            let z = &mut self.equations;
-            z.copy_from_slice(&r);
-            self.factor.solve_in_place(z);
-            let rz = dot(&r, z);
-            if iterations == 0 {
-                first = rz;
-            }
-            if rz <= TOLERANCE * TOLERANCE * first {
-                break;
-            }
-            let beta = if iterations == 0 { 0.0 } else { rz / last };
-            for i in 0..size {
-                p[i] = z[i] + beta * p[i];
-                ap[i] = r[i] + beta * ap[i];
-            }
-            self.work.fill(0.0);
-            supports.scatter(&p, &mut self.work);
-            self.product.fill(0.0);
-            contacts(&self.work, &mut self.product);
-            gather(&self.product, &mut q);
-            (0..size).for_each(|i| q[i] = ap[i] + theta * dt * q[i]);
-            let alpha = rz / dot(&p, &q);
-            for i in 0..size {
-                x[i] += alpha * p[i];
-                r[i] -= alpha * q[i];
-            }
-            last = rz;
-            iterations += 1;
-        }
-        rate.copy_from_slice(&state.v);
-        for (x, &d) in x.iter().zip(supports.free()) {
-            rate[d as usize] += x;
-        }
-        check_finite(model, "the velocity", rate, state.time + dt)?;
-        Ok(iterations)
     }
 
     /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` under the mean load,

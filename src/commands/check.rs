@@ -123,12 +123,14 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, V
         let elements = (mesh.element_count() - s.ground_elements()) / s.count();
         lines.push(format!("  sleepers: {} of {elements} elements, {:.3e} kg each", s.count(), s.mass()));
     }
-    lines.push(format!(
-        "  memory: {} in all, {} of it for the equations; one factorization {:.2} Gflop",
-        run::size(prediction.total()),
-        run::size(prediction.solver),
-        1e-9 * prediction.flops
-    ));
+    let (all, solver) = (run::size(prediction.total()), run::size(prediction.solver));
+    let factorization = match prediction.flops {
+        0.0 => String::new(),
+        flops => format!("; one factorization {:.2} Gflop", 1e-9 * flops),
+    };
+    lines.push(format!("  memory: {all} in all, {solver} of it for the equations{factorization}"));
+    let (methods, equations): (Vec<_>, Vec<_>) = run::methods(solid)?.into_iter().unzip();
+    lines.extend(methods.iter().map(|line| format!("  {line}")));
     lines.extend(solid.warnings.iter().map(|warning| format!("  note: {warning}")));
     let numbers = json!({
         "nodes": mesh.node_count(),
@@ -138,6 +140,7 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, V
         "memory_bytes": prediction.total(),
         "solver_bytes": prediction.solver,
         "factorization_flops": prediction.flops,
+        "equations": equations,
         "notes": solid.warnings,
     });
     Ok((lines, numbers))

@@ -5,7 +5,9 @@
 
 use crate::failure::Failure;
 use crate::machine::{available, resident};
-use crate::model::solid::{Analysis, SolidPart};
+use crate::model::solid::{Analysis, EquationPlan, SolidPart};
+use serde_json::{Value, json};
+use trackbed_fem::Method;
 
 /// Bytes of a nodal vector's worth of results for each node: state, stresses, and the text of a frame.
 const RESULT_BYTES_PER_NODE: u64 = 1200;
@@ -19,7 +21,7 @@ pub struct Prediction {
     pub solver: u64,
     /// State and results.
     pub results: u64,
-    /// Floating-point operations of one factorization.
+    /// Floating-point operations of one factorization; 0 without one.
     pub flops: f64,
 }
 
@@ -29,14 +31,19 @@ impl Prediction {
     /// # Errors
     /// The equations cannot be analysed.
     pub fn of(part: &SolidPart) -> Result<Prediction, Failure> {
-        let symmetric = part.model.symmetric_tangent() || matches!(part.analysis, Analysis::Static);
-        let demand = part.model.solver_demand(symmetric).map_err(|e| part.failure(&e))?;
-        Ok(Prediction {
-            model: resident().unwrap_or(0),
-            solver: demand.bytes as u64,
-            results: RESULT_BYTES_PER_NODE * part.model.mesh().node_count() as u64,
-            flops: demand.flops,
-        })
+        let (model, plan) = (resident().unwrap_or(0), &part.equations);
+        let (mut solver, mut flops) = (0, 0.0);
+        if takes_factor(part) {
+            let symmetric = part.model.symmetric_tangent() || matches!(part.analysis, Analysis::Static);
+            let demand = part.model.solver_demand(symmetric).map_err(|e| part.failure(&e))?;
+            (solver, flops) = (demand.bytes as u64, demand.flops);
+        }
+        // A factor of the static solve is gone when the steps begin.
+        if plan.dynamics && plan.methods.dynamics != Method::Direct {
+            solver = solver.max(part.model.window_iteration_memory() as u64);
+        }
+        let results = RESULT_BYTES_PER_NODE * part.model.mesh().node_count() as u64;
+        Ok(Prediction { model, solver, results, flops })
     }
 
     /// All of it [bytes].
@@ -62,6 +69,53 @@ impl Prediction {
             _ => Ok(()),
         }
     }
+}
+
+/// Whether any equations of a solid are factored.
+fn takes_factor(part: &SolidPart) -> bool {
+    let EquationPlan { methods, statics, dynamics, .. } = &part.equations;
+    // Neither: plastic steps, which always are.
+    let neither = !*statics && !*dynamics;
+    neither
+        || *statics && methods.statics == Method::Direct
+        || *dynamics && methods.dynamics == Method::Direct
+}
+
+/// How the equations of an elastic solid are solved, why, and with how much memory, beside that of the method not taken.
+///
+/// # Errors
+/// As [`Prediction::of`].
+pub fn methods(part: &SolidPart) -> Result<Vec<(String, Value)>, Failure> {
+    let (plan, model) = (&part.equations, &part.model);
+    let factor = || model.solver_demand(true).map(|d| d.bytes as u64).map_err(|e| part.failure(&e));
+    let mut lines = Vec::new();
+    if plan.dynamics {
+        let (factor, iteration) = (factor()?, model.window_iteration_memory() as u64);
+        lines.push(line("steps", plan.methods.dynamics, &plan.dynamics_reason, factor, iteration));
+    }
+    Ok(lines)
+}
+
+fn line(what: &str, method: Method, reason: &str, factor: u64, iteration: u64) -> (String, Value) {
+    let (text, key) = match method {
+        Method::Direct => {
+            let other = format!("{}; conjugate gradients would take {}", size(factor), size(iteration));
+            (format!("equations of {what}: by a factor ({reason}), {other}"), "direct")
+        }
+        Method::Iterative { tolerance } => {
+            let other = format!("{}; a factor would take {}", size(iteration), size(factor));
+            let by = format!("by conjugate gradients to {tolerance:e}");
+            (format!("equations of {what}: {by} ({reason}), {other}"), "iterative")
+        }
+    };
+    let value = json!({
+        "of": what,
+        "method": key,
+        "reason": reason,
+        "factor_bytes": factor,
+        "iteration_bytes": iteration,
+    });
+    (text, value)
 }
 
 fn refused(total: u64, expected: &str) -> Failure {

@@ -38,7 +38,7 @@ pub use checkpoint_store::Interrupt;
 pub use companion::{Accompanied, Companion, Shown};
 pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
-pub use memory::{Prediction, parse_size, size};
+pub use memory::{Prediction, methods, parse_size, size};
 pub(crate) use origin::{default_folder, quoted, scene_hash};
 pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};

@@ -27,11 +27,13 @@ mod start;
 use crate::assembly::Combination;
 use crate::energy::inner_force;
 use crate::equations::cholesky::Cholesky;
+use crate::equations::iteration::{Counts, Iteration};
+use crate::equations::method::Method;
+use crate::equations::system::Equations;
 pub use crate::error::NewmarkError;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
-use crate::solver::LinearSolver;
 use crate::state::State;
 pub use crate::state::StepAudit;
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
@@ -58,7 +60,7 @@ pub struct NewmarkSolver {
     /// HHT's α; 0 for Newmark's method.
     hht: f64,
     dt: f64,
-    factor: Cholesky,
+    system: Equations,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
@@ -113,13 +115,18 @@ impl NewmarkSolver {
             method,
             hht,
             dt,
-            factor: factor(model, combination)?,
+            system: equations(model, combination)?,
             next: State::new(model),
             work: vec![0.0; n],
             product: vec![0.0; n],
             inner: Vec::new(),
             equations: vec![0.0; model.free_dof_count()],
         })
+    }
+
+    /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
+    pub fn counts(&self) -> Option<Counts> {
+        self.system.counts()
     }
 
     /// The step [s].
@@ -218,7 +225,7 @@ impl NewmarkSolver {
             subtract(&mut self.equations, &self.product, free);
         }
         // 4. Solve for a1 and correct.
-        self.factor.solve_in_place(&mut self.equations);
+        self.system.solve(supports, &mut self.equations, |d| state.a[d])?;
         for (&a, &d) in self.equations.iter().zip(free) {
             let d = d as usize;
             next.a[d] = a;
@@ -343,6 +350,19 @@ fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
 
 pub(crate) fn factor(model: &Model, combination: Combination) -> Result<Cholesky, SolveError> {
     Cholesky::factor(model.analysis()?, model.mesh(), model.matrices(), model.supports(), combination)
+}
+
+/// The equations of a step in time, by the method of the model.
+pub(crate) fn equations(model: &Model, combination: Combination) -> Result<Equations, SolveError> {
+    let (mesh, supports) = (model.mesh(), model.supports());
+    Ok(match model.methods().dynamics {
+        Method::Direct => Equations::Direct(Box::new(factor(model, combination)?)),
+        Method::Iterative { tolerance } => {
+            let matrices = model.shared_matrices();
+            let iteration = Iteration::block_jacobi(mesh, matrices, supports, combination, tolerance)?;
+            Equations::BlockJacobi(Box::new(iteration))
+        }
+    })
 }
 
 /// Refuses a weight of the end of a window that is not from 1/2 to 1.

@@ -2,8 +2,9 @@
 //! made in [`crate::equations`].
 //!
 //! [`analysis`] finds the structure of the factor, [`multifrontal`] factors and solves, symmetric or not, and [`gmres`]
-//! solves with a matrix near a factored one.
+//! solves with a matrix near a factored one; [`conjugate`] needs products alone.
 pub mod analysis;
+pub mod conjugate;
 mod dense;
 mod front;
 pub mod gmres;

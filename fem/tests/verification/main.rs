@@ -19,6 +19,7 @@ mod element;
 mod examples;
 mod hht;
 mod integrators;
+mod iterative;
 mod locking;
 mod mixed;
 mod modal;

@@ -4,6 +4,7 @@ mod analysis;
 mod boundary;
 mod common;
 mod conditioning;
+mod equations;
 mod geometry;
 mod initial_stress;
 mod load;
@@ -14,6 +15,7 @@ mod selection;
 mod sleepers;
 
 pub use analysis::{Analysis, NewtonPlan, QuasiStaticPlan, StrengthReductionPlan, TimeMethod};
+pub use equations::EquationPlan;
 pub use geometry::{Geometry, geometry};
 pub use initial_stress::{InitialStressKind, InitialStressPlan};
 pub use load::NodalLoad;
@@ -46,6 +48,8 @@ pub struct SolidPart {
     pub initial_stress: Option<InitialStressPlan>,
     /// How equilibrium of a plastic solid is found.
     pub newton: NewtonPlan,
+    /// How its equations are solved where they are linear.
+    pub equations: EquationPlan,
     /// What it is reduced to under grains.
     pub reduction: Option<fem::reduction::Reduction>,
     /// Names of the materials by number, for reports.
@@ -125,6 +129,7 @@ impl SolidPart {
             rayleigh: self.model.rayleigh(),
             mass: self.model.mass(),
             boundaries: self.model.boundaries().to_vec(),
+            methods: self.model.methods(),
         })?;
         Ok(Some(model))
     }
@@ -201,7 +206,9 @@ pub fn build(
     if let Some(s) = &sleepers {
         materials.names.insert(s.material, "sleeper".into());
     }
+    let equations = equations::plan(solid, &plans.analysis, linear, coupled, mesh.node_count())?;
     let model = fem::model::Model::new(fem::model::ModelInput {
+        methods: equations.methods,
         mesh,
         materials: materials.constants,
         quadrature,
@@ -229,6 +236,7 @@ pub fn build(
         analysis: plans.analysis,
         initial_stress: plans.initial_stress,
         newton: plans.newton,
+        equations,
         reduction: motion::reduction(solid, linear, coupled)?,
         material_names: materials.names,
         warnings,

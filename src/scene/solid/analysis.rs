@@ -125,6 +125,30 @@ pub struct Newton {
     pub solver: Option<LinearSolver>,
 }
 
+/// `[solid.equations]`: how the equations of an elastic solid are solved.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Equations {
+    /// Method; default `auto`.
+    #[serde(default)]
+    pub method: EquationMethod,
+    /// Residual at which an iteration ends, over the right-hand side; default 1e-8.
+    pub tolerance: Option<f64>,
+}
+
+/// How the equations of an elastic solid are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EquationMethod {
+    /// What is faster by the number of nodes and the kind of mass.
+    #[default]
+    Auto,
+    /// Cholesky factor.
+    Direct,
+    /// Conjugate gradients.
+    Iterative,
+}
+
 /// Which matrix the iteration takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

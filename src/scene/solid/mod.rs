@@ -6,8 +6,8 @@ mod material;
 mod mesh;
 
 pub use analysis::{
-    Dynamics, InitialStress, InitialStressMethod, LinearSolver, Newton, NewtonVariant, QuasiStatic, Rayleigh,
-    Reduction, ReductionKind, StrengthReduction,
+    Dynamics, EquationMethod, Equations, InitialStress, InitialStressMethod, LinearSolver, Newton,
+    NewtonVariant, QuasiStatic, Rayleigh, Reduction, ReductionKind, StrengthReduction,
 };
 pub use boundary::{Absorbing, Side, Support};
 pub use material::{Cone, MaterialFault, MaterialModel, SolidMaterial};
@@ -74,6 +74,8 @@ pub struct Solid {
     pub strength_reduction: Option<StrengthReduction>,
     /// How equilibrium is found in a plastic solid.
     pub newton: Option<Newton>,
+    /// How the equations of an elastic solid are solved; default by their size.
+    pub equations: Option<Equations>,
     /// Rayleigh damping C = α M + β K; default none.
     pub rayleigh: Option<Rayleigh>,
     /// Reduction of an elastic solid under grains; default none.

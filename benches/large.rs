@@ -1,0 +1,132 @@
+//! Large elastic solids: a factor against conjugate gradients, in time and memory.
+//!
+//! An embankment on its subgrade as that of `inputs/solid/large.toml`, 20-node bricks of 0.41 (0.14 on the crest) x 0.5 x 0.7 m, lumped
+//! mass, grown in all directions at the same size of elements; windows of 0.1 ms under noise on the crest, as stones make it: the last window is no guess of the next.
+//!
+//! * `cargo bench --bench large -- windows` (1 thread), sizes up to 100,000 nodes; `-- windows 0.4` one of them, as a share of the
+//!   largest; `-- windows 1 gradients` without the factor, which takes 7.3 GB there.
+
+#[path = "common/watch.rs"]
+mod watch;
+
+use std::error::Error;
+use trackbed_fem::window::WindowSolver;
+use trackbed_fem::{
+    Constraint, Elastic, Mass, Mesh, Method, Methods, Model, ModelInput, Quadrature, Rayleigh, State,
+};
+use watch::{Watch, pool};
+
+const WINDOW: f64 = 1e-4;
+const THETA: f64 = 0.55;
+/// Shares of the largest counts of elements.
+const SHARES: [f64; 6] = [0.2, 0.3, 0.4, 0.6, 0.8, 1.0];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (what, share, direct) = match words[..] {
+        [what, share] => (what, Some(share.parse()?), true),
+        [what, share, "gradients"] => (what, Some(share.parse()?), false),
+        [what] => (what, None, true),
+        _ => ("windows", None, true),
+    };
+    let shares: Vec<f64> = share.map_or(SHARES.to_vec(), |s| vec![s]);
+    if what != "windows" {
+        return Err(format!("{what}: expected windows").into());
+    }
+    println!(
+        "nodes, equations: factor MB, s, ms a window; gradients MB, s, iterations, ms a window (processor time)"
+    );
+    for &share in &shares {
+        pool(1).install(|| windows(share, direct).map_err(|e| e.to_string()))?;
+    }
+    Ok(())
+}
+
+/// A trapezoid of two soils, its base held.
+fn embankment(share: f64, methods: Methods) -> Result<Model, Box<dyn Error>> {
+    let count = |n: f64| (n * share).round().max(1.0) as usize;
+    let counts = [count(58.0), count(40.0), 2 * count(5.0)];
+    let step = [24.0 / 58.0, 0.5, 0.7];
+    let size: [f64; 3] = std::array::from_fn(|k| step[k] * counts[k] as f64);
+    let mut mesh = Mesh::block(counts, size);
+    for x in &mut mesh.coordinates {
+        // The upper half narrows to a third.
+        let above = (2.0 * x[2] / size[2] - 1.0).max(0.0);
+        x[0] = (x[0] - 0.5 * size[0]) * (1.0 - above * 2.0 / 3.0);
+    }
+    for e in 0..mesh.element_count() {
+        mesh.materials[e] = if mesh.element_centre(e)[2] > 0.5 * size[2] { 2 } else { 1 };
+    }
+    let base = (0..mesh.node_count() as u32).filter(|&n| mesh.coordinates[n as usize][2] == 0.0);
+    let constraints =
+        base.flat_map(|node| (0..3).map(move |direction| Constraint { node, direction, value: 0.0 }));
+    let soil = |young, poisson, density| Elastic { young, poisson, density }.into();
+    Ok(Model::new(ModelInput {
+        constraints: constraints.collect(),
+        materials: [(1, soil(60e6, 0.35, 1900.0)), (2, soil(120e6, 0.3, 2000.0))].into(),
+        quadrature: Quadrature::Gauss2,
+        gravity: [0.0, 0.0, -9.81],
+        rayleigh: Rayleigh { alpha_m: 2.0, beta_k: 2e-4 },
+        mass: Mass::Lumped,
+        methods,
+        mesh,
+        ..ModelInput::default()
+    })?)
+}
+
+/// Reproducible noise, uniform in [-1, 1) (Knuth's linear congruential generator).
+fn noise(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Processor seconds of a window, the state after some, and the iterations of one.
+fn run(model: &Model) -> Result<(f64, f64, State, f64), Box<dyn Error>> {
+    let mut set_up = Watch::default();
+    let mut solver = set_up.time(|| WindowSolver::new(model, THETA, WINDOW))?;
+    let top = model.mesh().coordinates.iter().map(|x| x[2]).fold(0.0, f64::max);
+    let crest: Vec<usize> =
+        (0..model.mesh().node_count()).filter(|&n| model.mesh().coordinates[n][2] > top - 1e-9).collect();
+    let (mut state, mut seed, mut load) = (State::new(model), 1, vec![0.0; model.dof_count()]);
+    let mut watch = Watch::default();
+    const COUNT: u32 = 12;
+    for k in 0..=COUNT {
+        for &n in &crest {
+            (0..3).for_each(|k| load[3 * n + k] = 100.0 * noise(&mut seed));
+        }
+        // The first one touches what the others find warm.
+        if k == 1 {
+            watch = Watch::default();
+        }
+        watch.time(|| solver.step(model, &mut state, &load))?;
+    }
+    let mean = solver.counts().map_or(0.0, |c| c.iterations as f64 / c.solves as f64);
+    Ok((set_up.cpu, watch.cpu / f64::from(COUNT), state, mean))
+}
+
+fn windows(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {
+    let tolerance = Method::WINDOW_TOLERANCE;
+    let methods = Methods { dynamics: Method::Iterative { tolerance }, ..Methods::default() };
+    let model = embankment(share, methods)?;
+    let (set_up, seconds, state, iterations) = run(&model)?;
+    let memory = model.window_iteration_memory();
+    let (nodes, equations) = (model.mesh().node_count(), model.free_dof_count());
+    let factor = if direct {
+        let model = embankment(share, Methods::default())?;
+        let demand = model.solver_demand(true)?;
+        let (factor, seconds, other, _) = run(&model)?;
+        let miss = state.u.iter().zip(&other.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let size = other.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let (mb, ms) = (1e-6 * demand.bytes as f64, 1e3 * seconds);
+        format!("{mb:.0} MB, {factor:.2} s, {ms:.1} ms (differs by {:.0e})", miss / size)
+    } else {
+        "not made".into()
+    };
+    println!(
+        "{nodes}, {equations}: {factor}; {:.0} MB, {set_up:.2} s, {iterations:.1} iterations, {:.1} ms",
+        1e-6 * memory as f64,
+        1e3 * seconds
+    );
+    Ok(())
+}

@@ -1,0 +1,92 @@
+//! How the equations of an elastic solid are solved: as the scene says, or by what is faster.
+
+use super::analysis::Analysis;
+use crate::scene::solid::{EquationMethod, Mass, Solid};
+use crate::scene::{SceneError, Table};
+use trackbed_fem::{Method, Methods};
+
+/// Nodes from which conjugate gradients are faster than a kept factor in steps with a lumped mass (`benches/README.md`,
+/// section "Large solids").
+const WINDOW_NODES: usize = 80_000;
+
+/// The methods of a solid, and why these.
+#[derive(Clone, Debug)]
+pub struct EquationPlan {
+    /// The methods, direct where none is used.
+    pub methods: Methods,
+    /// Whether there is a static solve with a linear solver.
+    pub statics: bool,
+    /// Whether there are steps in time with a linear solver.
+    pub dynamics: bool,
+    /// Why the static solve has its method.
+    pub statics_reason: String,
+    /// Why steps have theirs.
+    pub dynamics_reason: String,
+}
+
+/// Resolves `[solid.equations]` for a solid of so many nodes.
+///
+/// # Errors
+/// An iteration where none is possible, a tolerance without one.
+pub(super) fn plan(
+    solid: &Table<Solid>,
+    analysis: &Analysis,
+    linear: bool,
+    coupled: bool,
+    nodes: usize,
+) -> Result<EquationPlan, SceneError> {
+    let table = solid.optional("equations", &solid.equations);
+    let (method, tolerance) =
+        table.as_ref().map_or((EquationMethod::Auto, None), |t| (t.method, t.tolerance));
+    if let Some(t) = &table {
+        t.check("tolerance", t.tolerance, |t| (1e-13..=1e-4).contains(&t), "1e-13 to 1e-4")?;
+        let idle = method == EquationMethod::Direct && tolerance.is_some();
+        t.refuse([("tolerance", idle)], "no such key beside method = \"direct\"")?;
+    }
+    let hindrance = hindrance(solid, analysis, linear, coupled);
+    if let (Some(t), EquationMethod::Iterative, Some(hindrance)) = (&table, method, hindrance) {
+        let found = format!("\"iterative\" beside {hindrance}");
+        return Err(t.error("method", found, "\"auto\" or \"direct\""));
+    }
+    let tolerance = tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
+    let choose = |used: bool, wins: bool, why: String| match method {
+        _ if !used => (Method::Direct, String::new()),
+        EquationMethod::Direct => (Method::Direct, "as the scene says".into()),
+        EquationMethod::Iterative => (Method::Iterative { tolerance }, "as the scene says".into()),
+        EquationMethod::Auto if wins => (Method::Iterative { tolerance }, why),
+        EquationMethod::Auto => (Method::Direct, why),
+    };
+    let possible = hindrance.is_none();
+    let statics = possible && (coupled || matches!(analysis, Analysis::Static));
+    let dynamics = possible && (coupled || matches!(analysis, Analysis::Dynamic(_)));
+    let lumped = solid.mass == Mass::Lumped;
+    let why = if lumped {
+        let compare = if nodes >= WINDOW_NODES { "at least" } else { "fewer than" };
+        format!("lumped mass, {compare} {WINDOW_NODES} nodes")
+    } else {
+        "consistent mass".into()
+    };
+    let (of_steps, dynamics_reason) = choose(dynamics, lumped && nodes >= WINDOW_NODES, why);
+    let (of_statics, statics_reason) = (Method::Direct, "the only method".into());
+    let methods = Methods { statics: of_statics, dynamics: of_steps };
+    Ok(EquationPlan { methods, statics, dynamics, statics_reason, dynamics_reason })
+}
+
+/// What keeps an iteration from being used.
+fn hindrance(solid: &Solid, analysis: &Analysis, linear: bool, coupled: bool) -> Option<&'static str> {
+    if !linear {
+        Some("a material that yields")
+    } else if solid.initial_stress.is_some() {
+        Some("[solid.initial_stress]")
+    } else if solid.reduction.is_some() {
+        Some("[solid.reduction]")
+    } else if coupled {
+        None
+    } else {
+        match analysis {
+            Analysis::Static | Analysis::Dynamic(_) => None,
+            Analysis::QuasiStatic(_) => Some("[solid.quasi_static]"),
+            Analysis::StrengthReduction(_) => Some("[solid.strength_reduction]"),
+        }
+    }
+}
