@@ -197,7 +197,15 @@ def test_a_run_that_is_closed_goes_on(falling, tmp_path):
     assert (whole.folder / "history.csv").read_bytes() == (rest.folder / "history.csv").read_bytes()
 
 
-def test_ctrl_c_pauses_a_step_and_keeps_a_run(falling, tmp_path):
+@pytest.fixture
+def interrupts():
+    """Ctrl-C as at a terminal, also where the tests run in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_pauses_a_step_and_keeps_a_run(falling, tmp_path, interrupts):
     long = {"time.end": 1000.0, "output.history_interval": 0.01}
 
     def press():
