@@ -6,7 +6,9 @@ from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
-from typing_extensions import Self
+from typing_extensions import Self, disjoint_base
+
+__all__ = ["NumericalError", "Simulation", "__version__", "check", "command", "explain", "run", "schema"]
 
 __version__: str
 
@@ -16,6 +18,7 @@ _Array = NDArray[np.float64]
 class NumericalError(RuntimeError):
     """The computation failed: what, where and when. The last checkpoint is kept."""
 
+@disjoint_base
 class Simulation:
     """A run that pauses between windows."""
 
