@@ -15,6 +15,8 @@ use trackbed_dem::{BackEnd, BodyInput, ModelInput, Plane, Shape, Vec3};
 const SPHERES: usize = 2000;
 /// Spheres up to which it is all of the bed: beds of few grains are of large and small ones.
 const WHOLE: usize = 6000;
+/// Spheres that a polyhedron stands for. One costs some hundred; a column of a few tens still is a bed.
+const POLYHEDRON: usize = 50;
 /// Time between two looks at the speed [s].
 const LOOK: f64 = 1e-3;
 /// Simulated time before slowness counts as rest [s].
@@ -136,9 +138,13 @@ fn late(course: &[[f64; 2]]) -> Option<f64> {
     (t1 > t0).then(|| (s1 - s0) / (t1 - t0))
 }
 
-/// Spheres of a shape.
+/// Spheres of a shape, or as many as cost what it costs.
 fn members(shape: &Shape) -> usize {
-    if let Shape::Clump(clump) = shape { clump.spheres.len() } else { 1 }
+    match shape {
+        Shape::Clump(clump) => clump.spheres.len(),
+        Shape::Polyhedron(_) => POLYHEDRON,
+        Shape::Sphere { .. } | Shape::Box { .. } => 1,
+    }
 }
 
 /// Those of some bodies, by their numbers among `count`, that no bond ties to one that is not among them.

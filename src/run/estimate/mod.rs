@@ -21,7 +21,7 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 
 /// Settling of a column over rehearsals.
-const SETTLE: u32 = 3;
+const SETTLE: u32 = 6;
 /// Share of the steps that the cores besides the first take over.
 const SPEED_UP: f64 = 0.8;
 
@@ -61,7 +61,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Rehearses a run of the scene, which `job` is made of, for `budget` by the clock, and estimates the time of all of it; that
-    /// takes up to six times as long.
+    /// takes up to ten times as long.
     ///
     /// # Errors
     /// What the run itself ends with in its first seconds; contacts for which no step can be made.

@@ -14,8 +14,9 @@ use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Rehearsals of growth, at most, over others.
+/// Rehearsals that growth, or settling and compaction, may take before another begins in the main loop.
 const GROWTH: u32 = 8;
+const SETTLING_TOO: u32 = 3;
 /// Time between two looks at the stage of a rehearsal.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -37,9 +38,9 @@ pub struct Rehearsal {
     pub settling: Option<([f64; 2], f64)>,
 }
 
-/// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun. Growth is gone through, if that takes
-/// no more than [`GROWTH`] times as long, and followed by another `budget`: it ends when it is done, and nothing else shows the bed
-/// that it leaves.
+/// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun. What comes before the main loop is
+/// gone through, if that takes no more than [`SETTLING_TOO`] times as long, or [`GROWTH`] times where grains grow, and followed by another
+/// `budget`: growth ends when it is done, and nothing else shows the bed that it leaves; a bed that flows costs more than one at rest.
 ///
 /// # Errors
 /// What the run itself would end with; a folder for temporary files that cannot be written.
@@ -59,8 +60,8 @@ pub fn rehearse(
     let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));
     let timer = thread::spawn(move || {
         let passes = |time| over.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
-        let mut on = true;
-        while on && grows && begun.elapsed() < GROWTH * budget && !is_in_loop(&followed) {
+        let (mut on, most) = (true, if grows { GROWTH } else { SETTLING_TOO });
+        while on && begun.elapsed() < most * budget && !is_in_loop(&followed) {
             on = passes(LOOK);
         }
         // What a stage does first says little of the rest of it.
