@@ -3,13 +3,16 @@
 //! An embankment on its subgrade as that of `inputs/solid/large.toml`, 20-node bricks of 0.41 (0.14 on the crest) x 0.5 x 0.7 m, lumped
 //! mass, grown in all directions at the same size of elements; windows of 0.1 ms under noise on the crest, as stones make it: the last window is no guess of the next.
 //!
-//! * `cargo bench --bench large -- windows` (1 thread), sizes up to 100,000 nodes; `-- windows 0.4` one of them, as a share of the
+//! Statics: the same bodies under their weight and noise. Figures are processor time of one thread.
+//!
+//! * `cargo bench --bench large -- windows` or `-- statics` (1 thread), sizes up to 100,000 nodes; `-- windows 0.4` one of them, as a share of the
 //!   largest; `-- windows 1 gradients` without the factor, which takes 7.3 GB there.
 
 #[path = "common/watch.rs"]
 mod watch;
 
 use std::error::Error;
+use trackbed_fem::statics::StaticSolver;
 use trackbed_fem::window::WindowSolver;
 use trackbed_fem::{
     Constraint, Elastic, Mass, Mesh, Method, Methods, Model, ModelInput, Quadrature, Rayleigh, State,
@@ -31,14 +34,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => ("windows", None, true),
     };
     let shares: Vec<f64> = share.map_or(SHARES.to_vec(), |s| vec![s]);
-    if what != "windows" {
-        return Err(format!("{what}: expected windows").into());
-    }
-    println!(
-        "nodes, equations: factor MB, s, ms a window; gradients MB, s, iterations, ms a window (processor time)"
-    );
+    let measure = match what {
+        "windows" => {
+            println!("nodes, equations: factor MB, s, ms a window; gradients MB, s, iterations, ms a window");
+            windows
+        }
+        "statics" => {
+            println!("nodes, equations: factor MB, s; aggregation MB, set-up s, iterations, s");
+            statics
+        }
+        other => return Err(format!("{other}: expected windows or statics").into()),
+    };
     for &share in &shares {
-        pool(1).install(|| windows(share, direct).map_err(|e| e.to_string()))?;
+        pool(1).install(|| measure(share, direct).map_err(|e| e.to_string()))?;
     }
     Ok(())
 }
@@ -103,6 +111,44 @@ fn run(model: &Model) -> Result<(f64, f64, State, f64), Box<dyn Error>> {
     }
     let mean = solver.counts().map_or(0.0, |c| c.iterations as f64 / c.solves as f64);
     Ok((set_up.cpu, watch.cpu / f64::from(COUNT), state, mean))
+}
+
+/// Processor seconds of the set-up and of one solution, that solution, iterations, memory.
+type Stand = (f64, f64, Vec<f64>, u32, usize);
+
+/// A body under its weight and noise.
+fn stand(model: &Model) -> Result<Stand, Box<dyn Error>> {
+    let (mut set_up, mut watch) = (Watch::default(), Watch::default());
+    let mut solver = set_up.time(|| StaticSolver::new(model))?;
+    let (mut load, mut seed) = (model.gravity_load(), 1);
+    load.iter_mut().for_each(|l| *l += 10.0 * noise(&mut seed));
+    let solution = watch.time(|| solver.solve(model, &load))?;
+    let most = solver.counts().map_or(0, |c| c.most);
+    Ok((set_up.cpu, watch.cpu, solution.u, most, solver.iteration_memory().unwrap_or(0)))
+}
+
+fn statics(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {
+    let tolerance = Method::WINDOW_TOLERANCE;
+    let methods = Methods { statics: Method::Iterative { tolerance }, ..Methods::default() };
+    let model = embankment(share, methods)?;
+    let (set_up, seconds, u, iterations, memory) = stand(&model)?;
+    let (nodes, equations) = (model.mesh().node_count(), model.free_dof_count());
+    let factor = if direct {
+        let model = embankment(share, Methods::default())?;
+        let demand = model.solver_demand(true)?;
+        let (factor, seconds, other, _, _) = stand(&model)?;
+        let miss = u.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let size = other.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let mb = 1e-6 * demand.bytes as f64;
+        format!("{mb:.0} MB, {:.2} s (differs by {:.0e})", factor + seconds, miss / size)
+    } else {
+        "not made".into()
+    };
+    let mb = 1e-6 * memory as f64;
+    println!(
+        "{nodes}, {equations}: {factor}; {mb:.0} MB, {set_up:.2} s, {iterations} iterations, {seconds:.2} s"
+    );
+    Ok(())
 }
 
 fn windows(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {

@@ -203,6 +203,11 @@ impl Matrices {
         self.row_start[p]..self.row_start[p + 1]
     }
 
+    /// First slot of each row, and the number of all.
+    pub(crate) fn row_starts(&self) -> &[usize] {
+        &self.row_start
+    }
+
     /// Row of a slot.
     pub(crate) fn row_of(&self, slot: usize) -> usize {
         self.row_start.partition_point(|&s| s <= slot) - 1

@@ -139,6 +139,10 @@ pub enum SolveError {
          `solid.equations.tolerance` or `method = \"direct\"` may help"
     )]
     NotConverged { stopped: Stopped, tolerance: f64 },
+    #[error(
+        "the body is not held: a part of it has no stiffness; `solid.equations.method = \"direct\"` names a node of it"
+    )]
+    Singular,
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
 }

@@ -3,15 +3,17 @@
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 1.6. A body with a free rigid motion
 //! is refused from its geometry before factoring; a mechanism that only the stiffness shows (a hinge, a mode without
 //! stiffness of the reduced rule) is found by its pivot. Each solution is checked against equilibrium and corrected
-//! when rounding shows. Limits: pivots below 1e-11 of the diagonal count as no stiffness, which also refuses bodies
+//! when rounding or the tolerance of an iteration shows. Limits: pivots below 1e-11 of the diagonal count as no stiffness, which also refuses bodies
 //! so slender (some thousand elements in a single row) or so unlike in stiffness that few digits would be left.
 
 use crate::assembly::Combination;
 use crate::boundary::spring_points;
 use crate::equations::cholesky::Cholesky;
+use crate::equations::iteration::{Counts, Iteration};
+use crate::equations::method::Method;
+use crate::equations::system::Equations;
 use crate::error::SolveError;
 use crate::model::Model;
-use crate::solver::LinearSolver;
 use crate::supports::name;
 
 /// Pivot over diagonal below which a dof counts as having no stiffness.
@@ -23,7 +25,7 @@ pub(crate) const NO_STIFFNESS: f64 = 1e-11;
 const IMPROVE: f64 = 1e-13;
 /// Solves at most.
 const CORRECTIONS: usize = 3;
-/// Residual over the largest force above which the solution is refused.
+/// Residual over the largest force above which the solution is refused, unless the tolerance of an iteration is larger.
 const REFUSE: f64 = 1e-6;
 
 /// A static solution. Shapes `[3 * nodes]`.
@@ -35,9 +37,11 @@ pub struct Static {
     pub reactions: Vec<f64>,
 }
 
-/// Holds the factor of the stiffness matrix, for any number of loads.
+/// Holds the factor of the stiffness matrix, or what an iteration needs, for any number of loads.
 pub struct StaticSolver {
-    factor: Cholesky,
+    system: Equations,
+    /// Residual over the largest force at which no correction follows.
+    enough: f64,
     nodal: Vec<f64>,
     equations: Vec<f64>,
 }
@@ -58,7 +62,8 @@ pub fn check_held(model: &Model) -> Result<(), SolveError> {
 }
 
 impl StaticSolver {
-    /// Checks that the body is held, and factors its stiffness.
+    /// Checks that the body is held, and factors its stiffness or sets up conjugate gradients with smoothed aggregation, as the
+    /// model's [`methods`](Model::methods) say.
     ///
     /// # Errors
     /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely;
@@ -66,16 +71,26 @@ impl StaticSolver {
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
         check_linear(model)?;
         check_held(model)?;
-        let (mesh, supports) = (model.mesh(), model.supports());
-        let of_stiffness = Combination { stiffness: 1.0, ..Combination::default() };
-        let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, of_stiffness)?;
-        let weakest = factor.weakest_pivot();
-        if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {
-            let (node, direction) = name(mesh, weakest.dof);
-            return Err(SolveError::NoStiffness { node, direction, pivot: weakest.ratio });
-        }
+        let (system, enough) = match model.methods().statics {
+            Method::Direct => (Equations::Direct(Box::new(factor(model)?)), IMPROVE),
+            Method::Iterative { tolerance } => {
+                let (mesh, supports) = (model.mesh(), model.supports());
+                let iteration = Iteration::aggregation(mesh, &model.shared_matrices(), supports, tolerance)?;
+                (Equations::Aggregation(Box::new(iteration)), IMPROVE.max(100.0 * tolerance))
+            }
+        };
         let equations = vec![0.0; model.free_dof_count()];
-        Ok(StaticSolver { factor, nodal: vec![0.0; model.dof_count()], equations })
+        Ok(StaticSolver { system, enough, nodal: vec![0.0; model.dof_count()], equations })
+    }
+
+    /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
+    pub fn counts(&self) -> Option<Counts> {
+        self.system.counts()
+    }
+
+    /// Memory of conjugate gradients beside that of the model [bytes].
+    pub fn iteration_memory(&self) -> Option<usize> {
+        self.system.iteration_memory()
     }
 
     /// Displacements and reactions under `load` [N], shape `[3 * nodes]`, and the prescribed displacements of the model.
@@ -106,12 +121,12 @@ impl StaticSolver {
         }
         let mut worst = (0, f64::INFINITY);
         for _ in 0..CORRECTIONS {
-            worst = self.correct(model, load, &mut u);
-            if worst.1 <= IMPROVE || worst.1.is_nan() {
+            worst = self.correct(model, load, &mut u)?;
+            if worst.1 <= self.enough || worst.1.is_nan() {
                 break;
             }
         }
-        if worst.1.is_nan() || worst.1 > REFUSE {
+        if worst.1.is_nan() || worst.1 > REFUSE.max(self.enough) {
             let (node, direction) = name(model.mesh(), worst.0);
             return Err(SolveError::Inaccurate { node, direction, residual: worst.1 });
         }
@@ -124,13 +139,13 @@ impl StaticSolver {
 
     /// Adds the solution of `K du = F - K u` to u, leaves `K u` behind, and returns the dof and the size of the largest
     /// residual against the largest force.
-    fn correct(&mut self, model: &Model, load: &[f64], u: &mut [f64]) -> (usize, f64) {
+    fn correct(&mut self, model: &Model, load: &[f64], u: &mut [f64]) -> Result<(usize, f64), SolveError> {
         let free = model.supports().free();
         model.stiffness_times(u, &mut self.nodal);
         for (slot, &dof) in self.equations.iter_mut().zip(free) {
             *slot = load[dof as usize] - self.nodal[dof as usize];
         }
-        self.factor.solve_in_place(&mut self.equations);
+        self.system.solve(model.supports(), &mut self.equations, |_| 0.0)?;
         for (du, &dof) in self.equations.iter().zip(free) {
             u[dof as usize] += du;
         }
@@ -143,8 +158,21 @@ impl StaticSolver {
                 worst = (dof as usize, residual);
             }
         }
-        worst
+        Ok(worst)
     }
+}
+
+/// The factor of a stiffness that is left everywhere.
+fn factor(model: &Model) -> Result<Cholesky, SolveError> {
+    let (mesh, supports) = (model.mesh(), model.supports());
+    let of_stiffness = Combination { stiffness: 1.0, ..Combination::default() };
+    let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, of_stiffness)?;
+    let weakest = factor.weakest_pivot();
+    if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {
+        let (node, direction) = name(mesh, weakest.dof);
+        return Err(SolveError::NoStiffness { node, direction, pivot: weakest.ratio });
+    }
+    Ok(factor)
 }
 
 /// One static solution: builds a [`StaticSolver`], uses it once.

@@ -5,7 +5,7 @@
 
 use crate::failure::Failure;
 use crate::machine::{available, resident};
-use crate::model::solid::{Analysis, EquationPlan, SolidPart};
+use crate::model::solid::{Analysis, SolidPart};
 use serde_json::{Value, json};
 use trackbed_fem::Method;
 
@@ -33,12 +33,15 @@ impl Prediction {
     pub fn of(part: &SolidPart) -> Result<Prediction, Failure> {
         let (model, plan) = (resident().unwrap_or(0), &part.equations);
         let (mut solver, mut flops) = (0, 0.0);
-        if takes_factor(part) {
+        if plan.takes_factor() {
             let symmetric = part.model.symmetric_tangent() || matches!(part.analysis, Analysis::Static);
             let demand = part.model.solver_demand(symmetric).map_err(|e| part.failure(&e))?;
             (solver, flops) = (demand.bytes as u64, demand.flops);
         }
-        // A factor of the static solve is gone when the steps begin.
+        // What the static solve takes is gone when the steps begin.
+        if plan.statics && plan.methods.statics != Method::Direct {
+            solver = solver.max(part.model.static_iteration_memory() as u64);
+        }
         if plan.dynamics && plan.methods.dynamics != Method::Direct {
             solver = solver.max(part.model.window_iteration_memory() as u64);
         }
@@ -71,16 +74,6 @@ impl Prediction {
     }
 }
 
-/// Whether any equations of a solid are factored.
-fn takes_factor(part: &SolidPart) -> bool {
-    let EquationPlan { methods, statics, dynamics, .. } = &part.equations;
-    // Neither: plastic steps, which always are.
-    let neither = !*statics && !*dynamics;
-    neither
-        || *statics && methods.statics == Method::Direct
-        || *dynamics && methods.dynamics == Method::Direct
-}
-
 /// How the equations of an elastic solid are solved, why, and with how much memory, beside that of the method not taken.
 ///
 /// # Errors
@@ -89,6 +82,10 @@ pub fn methods(part: &SolidPart) -> Result<Vec<(String, Value)>, Failure> {
     let (plan, model) = (&part.equations, &part.model);
     let factor = || model.solver_demand(true).map(|d| d.bytes as u64).map_err(|e| part.failure(&e));
     let mut lines = Vec::new();
+    if plan.statics {
+        let (factor, iteration) = (factor()?, model.static_iteration_memory() as u64);
+        lines.push(line("statics", plan.methods.statics, &plan.statics_reason, factor, iteration));
+    }
     if plan.dynamics {
         let (factor, iteration) = (factor()?, model.window_iteration_memory() as u64);
         lines.push(line("steps", plan.methods.dynamics, &plan.dynamics_reason, factor, iteration));

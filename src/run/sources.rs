@@ -7,9 +7,22 @@ pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     let mut sources = vec![
         "elements: serendipity and linear kinds with mean dilatation, Zienkiewicz & Taylor, The Finite Element Method; Hughes \
          1980",
-        "sparse factorization: multifrontal (Duff & Reid 1983) over dense kernels of the crate faer, nested dissection by \
-         coordinates (George 1973)",
     ];
+    if part.equations.takes_factor() {
+        sources.push(
+            "sparse factorization: multifrontal (Duff & Reid 1983) over dense kernels of the crate faer, nested dissection by \
+             coordinates (George 1973)",
+        );
+    }
+    let [statics, steps] = part.equations.iterates();
+    if statics {
+        sources.push(
+            "static equations: conjugate gradients with smoothed aggregation, Vaněk, Mandel & Brezina 1996",
+        );
+    }
+    if steps {
+        sources.push("equations of steps: conjugate gradients with inverse nodal blocks, Saad 2003");
+    }
     match &part.analysis {
         _ if coupled => {
             sources.push("time integration of a window: mid-point form, Simo & Tarnow, ZAMP 43, 1992")

@@ -2,6 +2,7 @@
 
 use crate::assembly::{Combination, Matrices};
 use crate::error::SolveError;
+use crate::iterative::aggregation::{self, Aggregation};
 use crate::iterative::block_jacobi::BlockJacobi;
 use crate::iterative::product::Product;
 use crate::mesh::Mesh;
@@ -27,6 +28,8 @@ pub struct Counts {
 /// A matrix, its preconditioner and work space; solves allocate nothing.
 pub struct Iteration<P> {
     matrix: Product,
+    /// The matrix in single precision, and two vectors: where the preconditioner is so cheap that products count.
+    rounded: Option<(Product, [Vec<f64>; 2])>,
     preconditioner: P,
     gradients: ConjugateGradients,
     tolerance: f64,
@@ -48,34 +51,72 @@ impl Iteration<BlockJacobi> {
         combination: Combination,
         tolerance: f64,
     ) -> Result<Iteration<BlockJacobi>, SolveError> {
-        let matrix = Product::new(matrices, supports, combination);
-        let preconditioner = BlockJacobi::new(&matrix.diagonal_blocks()).map_err(|dof| {
-            let (node, direction) = name(mesh, dof);
-            SolveError::NoStiffness { node, direction, pivot: 0.0 }
-        })?;
+        let matrix = Product::new(matrices.clone(), supports, combination);
+        let preconditioner = jacobi(mesh, &matrix)?;
+        let values = 3 * mesh.node_count();
+        let rounded = Product::rounded(matrices, supports, combination);
+        let rounded = Some((rounded, [vec![0.0; values], vec![0.0; values]]));
+        Ok(Iteration { rounded, ..Iteration::new(matrix, preconditioner, values, tolerance) })
+    }
+}
+
+impl Iteration<Aggregation> {
+    /// The stiffness, preconditioned by smoothed aggregation.
+    ///
+    /// # Errors
+    /// [`SolveError::NoStiffness`] names a node without stiffness in some direction, [`SolveError::Singular`] says that a larger
+    /// part of the body has none.
+    pub fn aggregation(
+        mesh: &Mesh,
+        matrices: &Arc<Matrices>,
+        supports: &Supports,
+        tolerance: f64,
+    ) -> Result<Iteration<Aggregation>, SolveError> {
+        let stiffness = Combination { stiffness: 1.0, ..Combination::default() };
+        let matrix = Product::new(matrices.clone(), supports, stiffness);
+        // Near the inverse is near enough for a preconditioner.
+        let rounded = Product::rounded(matrices.clone(), supports, stiffness);
+        let jacobi = jacobi(mesh, &matrix)?;
+        let preconditioner = Aggregation::new(rounded, &jacobi, &mesh.coordinates)
+            .map_err(|aggregation::NotPositive| SolveError::Singular)?;
         Ok(Iteration::new(matrix, preconditioner, 3 * mesh.node_count(), tolerance))
     }
+
+    /// Rows of each level of the aggregation, from the finest on.
+    pub fn levels(&self) -> Vec<usize> {
+        self.preconditioner.sizes()
+    }
+}
+
+fn jacobi(mesh: &Mesh, matrix: &Product) -> Result<BlockJacobi, SolveError> {
+    BlockJacobi::new(&matrix.diagonal_blocks()).map_err(|dof| {
+        let (node, direction) = name(mesh, dof);
+        SolveError::NoStiffness { node, direction, pivot: 0.0 }
+    })
 }
 
 /// Memory of an iteration with the inverse blocks of the nodes beside that of the model [bytes].
 pub fn block_jacobi_memory(matrices: Arc<Matrices>, supports: &Supports) -> usize {
     let values = 3 * matrices.node_count();
+    let entries = 36 * matrices.stiffness_blocks().len();
     let product = Product::new(matrices, supports, Combination::default());
-    // Inverse blocks; vectors of the equations and of the gradients.
-    product.memory() + 16 * values + 6 * 8 * values
+    // Two products, one with entries of its own; inverse blocks; vectors of the equations, of the gradients and of corrections.
+    2 * product.memory() + entries + 16 * values + 8 * 8 * values
 }
 
 impl<P: Preconditioner> Iteration<P> {
     fn new(matrix: Product, preconditioner: P, values: usize, tolerance: f64) -> Iteration<P> {
         let gradients = ConjugateGradients::new(values, LIMIT);
         let (load, solution) = (vec![0.0; values], vec![0.0; values]);
-        Iteration { matrix, preconditioner, gradients, tolerance, load, solution, counts: Counts::default() }
+        let counts = Counts::default();
+        Iteration { matrix, rounded: None, preconditioner, gradients, tolerance, load, solution, counts }
     }
 
     /// Memory beside the model's [bytes].
     pub fn memory(&self) -> usize {
         let vectors = 16 * self.load.len() + self.gradients.memory();
-        self.matrix.memory() + self.preconditioner.memory() + vectors
+        let rounded = self.rounded.as_ref().map_or(0, |(m, _)| m.memory() + 16 * self.load.len());
+        self.matrix.memory() + rounded + self.preconditioner.memory() + vectors
     }
 
     /// Counts so far.
@@ -96,11 +137,25 @@ impl<P: Preconditioner> Iteration<P> {
         for &d in supports.free() {
             self.solution[d as usize] = guess(d as usize);
         }
-        let Iteration { matrix, preconditioner, gradients, tolerance, load, solution, counts } = self;
+        let Iteration { matrix, rounded, preconditioner, gradients, tolerance, load, solution, counts } =
+            self;
         supports.scatter(x, load);
-        let iterations = gradients
-            .solve(matrix, preconditioner, load, solution, *tolerance)
-            .map_err(|stopped| SolveError::NotConverged { stopped, tolerance: *tolerance })?;
+        let solved = match rounded {
+            Some((rounded, [residual, change])) => {
+                let scratch = [&mut residual[..], &mut change[..]];
+                gradients.solve_by_corrections(
+                    [matrix, rounded],
+                    preconditioner,
+                    load,
+                    solution,
+                    *tolerance,
+                    scratch,
+                )
+            }
+            None => gradients.solve(matrix, preconditioner, load, solution, *tolerance),
+        };
+        let iterations =
+            solved.map_err(|stopped| SolveError::NotConverged { stopped, tolerance: *tolerance })?;
         counts.solves += 1;
         counts.iterations += u64::from(iterations);
         counts.most = counts.most.max(iterations);

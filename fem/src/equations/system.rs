@@ -3,6 +3,7 @@
 use super::cholesky::Cholesky;
 use super::iteration::{Counts, Iteration};
 use crate::error::SolveError;
+use crate::iterative::aggregation::Aggregation;
 use crate::iterative::block_jacobi::BlockJacobi;
 use crate::solver::LinearSolver;
 use crate::supports::Supports;
@@ -13,6 +14,8 @@ pub enum Equations {
     Direct(Box<Cholesky>),
     /// Conjugate gradients with the inverse blocks of the nodes.
     BlockJacobi(Box<Iteration<BlockJacobi>>),
+    /// Conjugate gradients with smoothed aggregation.
+    Aggregation(Box<Iteration<Aggregation>>),
 }
 
 impl Equations {
@@ -33,6 +36,7 @@ impl Equations {
                 Ok(())
             }
             Equations::BlockJacobi(iteration) => iteration.solve(supports, x, guess),
+            Equations::Aggregation(iteration) => iteration.solve(supports, x, guess),
         }
     }
 
@@ -41,6 +45,16 @@ impl Equations {
         match self {
             Equations::Direct(_) => None,
             Equations::BlockJacobi(iteration) => Some(iteration.counts()),
+            Equations::Aggregation(iteration) => Some(iteration.counts()),
+        }
+    }
+
+    /// Memory of an iteration beside the model's [bytes].
+    pub fn iteration_memory(&self) -> Option<usize> {
+        match self {
+            Equations::Direct(_) => None,
+            Equations::BlockJacobi(iteration) => Some(iteration.memory()),
+            Equations::Aggregation(iteration) => Some(iteration.memory()),
         }
     }
 }

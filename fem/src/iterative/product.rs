@@ -4,6 +4,7 @@
 //! collects what belongs to columns of later parts aside; these are added afterwards, each node by the thread of its own part, in the
 //! order of the parts. Constrained dofs take no part: x has to be 0 there and y is.
 
+use super::upper::Upper;
 use crate::assembly::{Combination, Matrices};
 use crate::solver::conjugate::Operator;
 use crate::solver::conjugate::vectors::NODES;
@@ -16,6 +17,8 @@ use std::sync::Arc;
 pub struct Product {
     matrices: Arc<Matrices>,
     combination: Combination,
+    /// All entries of the combination, rounded; without, those of the matrices count.
+    single: Option<Vec<[f32; 9]>>,
     parts: Vec<Part>,
     /// Where contributions from other parts begin for each node; shape `[nodes + 1]`.
     start: Vec<u32>,
@@ -34,8 +37,9 @@ struct Part {
     place: Vec<u32>,
     /// Blocks of the dashpots: places of row and column.
     dashpots: Vec<([u32; 2], [f64; 9])>,
-    x: Vec<[f64; 3]>,
-    y: Vec<[f64; 3]>,
+    /// Padded to four lanes; x times the factor of the stiffness.
+    x: Vec<[f64; 4]>,
+    y: Vec<[f64; 4]>,
 }
 
 impl Product {
@@ -64,7 +68,26 @@ impl Product {
         }
         let free = |dof: usize| supports.free_index()[dof] != CONSTRAINED;
         let free = (0..nodes).map(|n| [0, 1, 2].map(|k| free(3 * n + k))).collect();
-        Product { matrices, combination, parts, start, from, free }
+        Product { matrices, combination, single: None, parts, start, from, free }
+    }
+
+    /// The same, its entries rounded to single precision and kept apart: half as much to read in a product. Vectors and sums are
+    /// double. A value beyond single precision becomes infinite, which the iteration reports.
+    pub fn rounded(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> Product {
+        let mut product = Product::new(matrices, supports, combination);
+        let (matrices, c) = (product.matrices.clone(), combination);
+        let mut single = Vec::with_capacity(matrices.stiffness_blocks().len());
+        let mut dashpots = matrices.dashpot_blocks().peekable();
+        for (slot, (k, m)) in matrices.stiffness_blocks().iter().zip(matrices.mass_entries()).enumerate() {
+            let mut block = k.map(|k| c.stiffness * k);
+            (0..3).for_each(|i| block[4 * i] += c.mass * m);
+            if let Some((_, d)) = dashpots.next_if(|(s, _)| *s == slot) {
+                block.iter_mut().zip(d).for_each(|(b, d)| *b += c.dashpots * d);
+            }
+            single.push(block.map(|v| v as f32));
+        }
+        product.single = Some(single);
+        product
     }
 
     /// The diagonal blocks by nodes, rows and columns of constrained dofs being those of the identity.
@@ -97,11 +120,22 @@ impl Product {
         blocks
     }
 
+    /// The matrices of the model.
+    pub fn matrices(&self) -> &Matrices {
+        &self.matrices
+    }
+
+    /// Whether each dof is free, by nodes.
+    pub fn free(&self) -> &[[bool; 3]] {
+        &self.free
+    }
+
     /// Memory that it holds beside the matrices of the model [bytes].
     pub fn memory(&self) -> usize {
         let of_part =
-            |p: &Part| 4 * (p.beyond.len() + p.place.len()) + 80 * p.dashpots.len() + 48 * p.x.len();
+            |p: &Part| 4 * (p.beyond.len() + p.place.len()) + 80 * p.dashpots.len() + 64 * p.x.len();
         self.parts.iter().map(of_part).sum::<usize>()
+            + self.single.as_ref().map_or(0, |s| size_of_val(&s[..]))
             + 4 * self.start.len()
             + 8 * self.from.len()
             + 3 * self.free.len()
@@ -123,51 +157,47 @@ impl Part {
             }
         };
         let place = nodes.clone().flat_map(|p| matrices.row(p)).map(place_of).collect();
-        let all = vec![[0.0; 3]; nodes.len() + beyond.len()];
+        let all = vec![[0.0; 4]; nodes.len() + beyond.len()];
         Part { nodes, beyond, place, dashpots: Vec::new(), x: all.clone(), y: all }
     }
 
-    /// The products of the own rows and columns. `MASS`: the mass is not diagonal.
-    fn multiply<const MASS: bool>(&mut self, matrices: &Matrices, c: Combination, x: &[[f64; 3]]) {
+    /// Takes over the values of x, times a factor.
+    fn gather(&mut self, x: &[[f64; 3]], factor: f64) {
         let own = self.nodes.len();
-        self.x[..own].copy_from_slice(&x[self.nodes.clone()]);
+        let scaled = |x: &[f64; 3]| [factor * x[0], factor * x[1], factor * x[2], 0.0];
+        self.x.iter_mut().zip(&x[self.nodes.clone()]).for_each(|(to, x)| *to = scaled(x));
         for (to, &n) in self.x[own..].iter_mut().zip(&self.beyond) {
-            *to = x[n as usize];
+            *to = scaled(&x[n as usize]);
         }
-        self.y.fill([0.0; 3]);
-        let (blocks, mass) = (matrices.stiffness_blocks(), matrices.mass_entries());
-        let first = matrices.slots(self.nodes.start).start;
-        for p in 0..own {
-            let slots = matrices.slots(self.nodes.start + p);
-            let xp = self.x[p];
-            let (mut sum, mut inertia) = ([0.0; 3], [0.0; 3]);
-            let places = &self.place[slots.start - first..slots.end - first];
-            for (i, (k, &place)) in blocks[slots.clone()].iter().zip(places).enumerate() {
-                let xq = self.x[place as usize];
-                for r in 0..3 {
-                    sum[r] += k[3 * r] * xq[0] + k[3 * r + 1] * xq[1] + k[3 * r + 2] * xq[2];
-                }
-                let m = if MASS { c.mass * mass[slots.start + i] } else { 0.0 };
-                if MASS {
-                    (0..3).for_each(|r| inertia[r] += m * xq[r]);
-                }
-                // The diagonal comes first; it has no column of its own.
-                if i > 0 {
-                    let y = &mut self.y[place as usize];
-                    for r in 0..3 {
-                        let column = k[r] * xp[0] + k[3 + r] * xp[1] + k[6 + r] * xp[2];
-                        y[r] += c.stiffness * column + if MASS { m * xp[r] } else { 0.0 };
-                    }
-                }
-            }
-            (0..3).for_each(|r| self.y[p][r] += c.stiffness * sum[r] + inertia[r]);
-        }
+        self.y.fill([0.0; 4]);
+    }
+
+    /// The products of the own rows and columns with these blocks of all slots. `MASS`: further multiples of the identity.
+    fn multiply<T: Copy + Into<f64>, const MASS: bool>(
+        &mut self,
+        matrices: &Matrices,
+        blocks: &[[T; 9]],
+        inertia: f64,
+    ) {
+        let slots = matrices.slots(self.nodes.start).start..matrices.slots(self.nodes.end - 1).end;
+        let rows = Upper {
+            start: &matrices.row_starts()[self.nodes.start..=self.nodes.end],
+            place: &self.place,
+            blocks: &blocks[slots.clone()],
+            mass: &matrices.mass_entries()[slots],
+            inertia,
+        };
+        rows.times::<MASS>(&self.x, &mut self.y);
+    }
+
+    /// Adds the products with the dashpots, times a factor.
+    fn multiply_dashpots(&mut self, factor: f64) {
         for &([p, q], d) in &self.dashpots {
             let ([xp, xq], p, q) = ([self.x[p as usize], self.x[q as usize]], p as usize, q as usize);
             for r in 0..3 {
-                self.y[p][r] += c.dashpots * (d[3 * r] * xq[0] + d[3 * r + 1] * xq[1] + d[3 * r + 2] * xq[2]);
+                self.y[p][r] += factor * (d[3 * r] * xq[0] + d[3 * r + 1] * xq[1] + d[3 * r + 2] * xq[2]);
                 if p != q {
-                    self.y[q][r] += c.dashpots * (d[r] * xp[0] + d[3 + r] * xp[1] + d[6 + r] * xp[2]);
+                    self.y[q][r] += factor * (d[r] * xp[0] + d[3 + r] * xp[1] + d[6 + r] * xp[2]);
                 }
             }
         }
@@ -178,15 +208,27 @@ impl Operator for Product {
     fn apply(&mut self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
         let (matrices, c) = (&*self.matrices, self.combination);
-        let lumped = if c.mass == 0.0 { None } else { matrices.lumped_mass() };
-        let full = c.mass != 0.0 && lumped.is_none();
+        let (single, blocks) = (&self.single, matrices.stiffness_blocks());
+        let lumped = if c.mass == 0.0 || single.is_some() { None } else { matrices.lumped_mass() };
+        let full = c.mass != 0.0 && matrices.lumped_mass().is_none();
         self.parts.par_iter_mut().for_each(|part| {
-            if full { part.multiply::<true>(matrices, c, x) } else { part.multiply::<false>(matrices, c, x) }
+            if let Some(single) = single {
+                part.gather(x, 1.0);
+                part.multiply::<f32, false>(matrices, single, 0.0);
+                return;
+            }
+            part.gather(x, c.stiffness);
+            if full {
+                part.multiply::<f64, true>(matrices, blocks, c.mass / c.stiffness);
+            } else {
+                part.multiply::<f64, false>(matrices, blocks, 0.0);
+            }
+            part.multiply_dashpots(c.dashpots / c.stiffness);
         });
         let (parts, start, from, free) = (&self.parts, &self.start, &self.from, &self.free);
         (parts.par_iter(), y.par_chunks_mut(NODES)).into_par_iter().for_each(|(part, y)| {
             for (i, (y, n)) in y.iter_mut().zip(part.nodes.clone()).enumerate() {
-                let mut sum = part.y[i];
+                let [mut sum @ .., _] = part.y[i];
                 for &[k, place] in &from[start[n] as usize..start[n + 1] as usize] {
                     let other = parts[k as usize].y[place as usize];
                     (0..3).for_each(|r| sum[r] += other[r]);

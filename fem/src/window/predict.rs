@@ -53,18 +53,14 @@ impl WindowSolver {
         for (slot, &d) in self.equations.iter_mut().zip(supports.free()) {
             *slot = theta * dt * force[d as usize];
         }
-        let contacts = Contacts { supports, factor: theta * dt, add: contacts };
+        let (x, scale) = (&mut self.equations[..], theta * dt);
         let iterations = match &mut self.system {
-            Equations::BlockJacobi(iteration) => iteration.solve_with(
-                supports,
-                &mut self.equations,
-                contacts.factor,
-                contacts.add,
-                TOLERANCE,
-            )?,
+            Equations::BlockJacobi(system) => system.solve_with(supports, x, scale, contacts, TOLERANCE)?,
+            Equations::Aggregation(system) => system.solve_with(supports, x, scale, contacts, TOLERANCE)?,
             Equations::Direct(factor) => {
+                let contacts = Contacts { supports, factor: scale, add: contacts };
                 let scratch = [&mut self.work[..], &mut self.product];
-                on_factor(factor, &mut self.equations, contacts, scratch)
+                on_factor(factor, x, contacts, scratch)
             }
         };
         rate.copy_from_slice(&state.v);

@@ -3,6 +3,7 @@
 //! The tables are in `tests/data/fem` of the workspace; each folder's `case.json` tells how they were made.
 
 mod absorbing;
+mod aggregation;
 mod cavity;
 mod collapse_common;
 mod collapse_footing;

@@ -5,9 +5,12 @@ use crate::scene::solid::{EquationMethod, Mass, Solid};
 use crate::scene::{SceneError, Table};
 use trackbed_fem::{Method, Methods};
 
-/// Nodes from which conjugate gradients are faster than a kept factor in steps with a lumped mass (`benches/README.md`,
-/// section "Large solids").
-const WINDOW_NODES: usize = 80_000;
+/// Nodes from which steps with a lumped mass take conjugate gradients: about the time of a kept factor there, a thirtieth of its memory,
+/// and none of its set-up (`benches/README.md`, section "Large solids").
+const WINDOW_NODES: usize = 100_000;
+
+/// Nodes from which conjugate gradients with smoothed aggregation are faster than a factor for a static solve (the same section).
+const STATIC_NODES: usize = 25_000;
 
 /// The methods of a solid, and why these.
 #[derive(Clone, Debug)]
@@ -22,6 +25,21 @@ pub struct EquationPlan {
     pub statics_reason: String,
     /// Why steps have theirs.
     pub dynamics_reason: String,
+}
+
+impl EquationPlan {
+    /// Whether any equations of the solid are factored.
+    pub fn takes_factor(&self) -> bool {
+        let direct = |used: bool, method: Method| used && method == Method::Direct;
+        // Neither a linear static solve nor linear steps: plastic ones, which always are.
+        let neither = !self.statics && !self.dynamics;
+        neither || direct(self.statics, self.methods.statics) || direct(self.dynamics, self.methods.dynamics)
+    }
+
+    /// Whether any are solved by conjugate gradients: in statics, in steps.
+    pub fn iterates(&self) -> [bool; 2] {
+        [self.methods.statics, self.methods.dynamics].map(|m| m != Method::Direct)
+    }
 }
 
 /// Resolves `[solid.equations]` for a solid of so many nodes.
@@ -67,7 +85,9 @@ pub(super) fn plan(
         "consistent mass".into()
     };
     let (of_steps, dynamics_reason) = choose(dynamics, lumped && nodes >= WINDOW_NODES, why);
-    let (of_statics, statics_reason) = (Method::Direct, "the only method".into());
+    let compare = if nodes >= STATIC_NODES { "at least" } else { "fewer than" };
+    let why = format!("{compare} {STATIC_NODES} nodes");
+    let (of_statics, statics_reason) = choose(statics, nodes >= STATIC_NODES, why);
     let methods = Methods { statics: of_statics, dynamics: of_steps };
     Ok(EquationPlan { methods, statics, dynamics, statics_reason, dynamics_reason })
 }

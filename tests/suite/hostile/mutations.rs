@@ -127,7 +127,7 @@ fn shipped() -> Vec<PathBuf> {
                 open.push(path);
             } else if path.extension().is_some_and(|e| e == "toml") {
                 let text = fs::read_to_string(&path).unwrap();
-                let large = path.ends_with("embankment_large.toml");
+                let large = ["embankment_large.toml", "solid/large.toml"].iter().any(|l| path.ends_with(l));
                 let is_scene =
                     text.lines().any(|l| ["[solid]", "[[grains]]"].iter().any(|h| l.starts_with(h)));
                 found.extend((is_scene && !large).then_some(path));
