@@ -29,7 +29,7 @@ pub struct Rehearsal {
     pub whole: bool,
     /// Seconds in the stage that it was stopped in.
     pub seconds: f64,
-    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from three quarters of the way there on;
+    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on;
     /// none where it had not begun.
     pub reached: Option<(f64, f64)>,
     /// Seconds of a simulated second of the compaction that it was stopped in; none where that was not so.
@@ -105,10 +105,10 @@ pub fn rehearse(
     }
 }
 
-/// Seconds by the clock of a simulated second in the last quarter of a trace's main loop: what has begun to flow goes on flowing.
+/// Seconds by the clock of a simulated second in the second half of a trace's main loop.
 fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
     let begun = trace.iter().position(|(_, moment)| moment.stage == RUN)?;
-    let (middle, end) = (&trace[(begun + 3 * trace.len()) / 4], trace.last()?);
+    let (middle, end) = (&trace[(begun + trace.len()) / 2], trace.last()?);
     let (middle, time) = match end.1.time - middle.1.time {
         0.0 => (trace.get(begun)?, end.1.time - trace.get(begun)?.1.time),
         time => (middle, time),
