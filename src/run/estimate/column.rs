@@ -15,7 +15,7 @@ use trackbed_dem::{BackEnd, BodyInput, ModelInput, Plane, Shape, Vec3};
 const SPHERES: usize = 2000;
 /// Spheres up to which it is all of the bed: beds of few grains are of large and small ones.
 const WHOLE: usize = 6000;
-/// Spheres that a polyhedron stands for. One costs some hundred; a column of a few tens still is a bed.
+/// Spheres that a polyhedron stands for. One costs some hundred; a column needs as many neighbours as a bed has.
 const POLYHEDRON: usize = 50;
 /// Time between two looks at the speed [s].
 const LOOK: f64 = 1e-3;
