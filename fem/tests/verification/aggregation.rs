@@ -79,7 +79,8 @@ fn iterations_hardly_depend_on_the_size_of_the_mesh() {
         println!("{counts:?}, {} nodes: {most} iterations", model.mesh().node_count());
         most
     });
-    assert!(counts.iter().all(|&c| c > 5 && c <= 2 * counts[0] && c < 60), "{counts:?}");
+    // An unsmoothed prolongator takes 16, 20 and 25.
+    assert!(counts.iter().all(|&c| c > 5 && 10 * c <= 13 * counts[0] && c < 20), "{counts:?}");
 }
 
 #[test]
