@@ -94,6 +94,7 @@ def scenes(page):
         "specimen": grains(spheres + platens + e("`[specimen]`")),
         "contact_point": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 1)),
         "direct": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 2)),
+        "face": grains(group.replace("sphere", "polyhedron") + e("`[[grains]]`", 3) + 'bond = "b"\n[[bond]]\nname = "b"\n' + e("`[[bond]]`", 3)),
         "periodic": grains(spheres + e("`[periodic]`") + floor + e("`[wind]`")),
         "water": grains(spheres + floor + e("`[water]`")),
         "lattice": grains(group + e("`[[grains]]`", 1)),
