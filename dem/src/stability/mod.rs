@@ -92,16 +92,11 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
         c if c > 1.1 => (interval / 2).max(LEAST),
         _ => interval,
     };
+    pace.look = state.steps + pace.interval;
     // What cannot be saved is not kept.
     pace.limit = if found.is_finite() { found } else { 0.0 };
     let share = if change < 1.1 { share } else { UNSTEADY * share };
-    let wanted = (share * found).min(longest);
-    // Bonds have the same limit from the start: the step is not to wait for it through long intervals.
-    if wanted > GROWTH * pace.wanted {
-        pace.interval = LEAST;
-    }
-    pace.look = state.steps + pace.interval;
-    let wanted = wanted.min(GROWTH * pace.wanted);
+    let wanted = (share * found).min(longest).min(GROWTH * pace.wanted);
     pace.wanted = rung(model.dt(), wanted);
     pace.dt = pace.wanted;
     true
