@@ -89,7 +89,9 @@ fn circles_are_kept_clear() {
     );
 }
 
-fn refused(text: &str, expected: &str) {
+/// A scene that `check` refuses.
+#[track_caller]
+pub fn refused(text: &str, expected: &str) {
     let folder = Folder::new("refused");
     let scene = folder.write("scene.toml", text).display().to_string();
     let Outcome { code, stderr, .. } = trackbed(["check", &scene]);

@@ -1,6 +1,7 @@
 //! Sheets of bonded floes, through the program.
 
-use super::support::{Folder, Outcome, Table, json, run, trackbed};
+use super::floes::refused;
+use super::support::{Folder, Table, json, run};
 
 /// A sheet of 30 floes that meets a held pile at its front, in the plane.
 const SHEET: &str = r#"gravity = [0, 0, 0]
@@ -106,9 +107,6 @@ fn bad_sheets_are_refused() {
         ),
     ] {
         assert_eq!(SHEET.matches(old).count(), 1, "{old}");
-        let folder = Folder::new("bad_sheets");
-        let scene = folder.write("scene.toml", &SHEET.replace(old, new)).display().to_string();
-        let Outcome { code, stderr, .. } = trackbed(["check", &scene]);
-        assert!(code == 2 && stderr.contains(expected), "{code}: {stderr}\nexpected: {expected}");
+        refused(&SHEET.replace(old, new), expected);
     }
 }

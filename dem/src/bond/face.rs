@@ -15,7 +15,7 @@
 //! row, turning about the vertical is held by the shear of the faces around.
 
 use super::parallel::ShearStrength;
-use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, positive, strength};
+use super::springs::{BondDamping, Cement, Criterion, Joint, Problem, Section, Springs, positive, strength};
 
 /// A face bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,10 +44,10 @@ pub struct Face {
 }
 
 /// Saint-Venant's constant of torsion of a rectangle [m⁴], and its shorter side [m].
-fn torsion([w, t]: [f64; 2]) -> (f64, f64) {
+fn torsion([w, t]: [f64; 2]) -> [f64; 2] {
     let (a, b) = (w.max(t), w.min(t));
     let slender = b / a;
-    (a * b.powi(3) * (1.0 / 3.0 - 0.21 * slender * (1.0 - slender.powi(4) / 12.0)), b)
+    [a * b.powi(3) * (1.0 / 3.0 - 0.21 * slender * (1.0 - slender.powi(4) / 12.0)), b]
 }
 
 impl FaceBond {
@@ -61,23 +61,16 @@ impl FaceBond {
 
     pub(super) fn springs(&self, joint: &Joint, face: &Face) -> Springs {
         let [w, t] = face.size;
-        let (area, second) = (w * t, w * t.powi(3) / 12.0);
-        let (polar, shorter) = torsion(face.size);
+        let section =
+            Section { area: w * t, bending: [w * t.powi(3) / 12.0, 0.5 * t], torsion: torsion(face.size) };
         let kn = self.young / joint.length;
-        let ks = kn / self.ratio;
-        let tensile = 1.0 / self.tensile_strength;
-        let (shear, confined) = self.shear_strength.inverse();
-        Springs {
-            stiffness: [kn * area, ks * area, kn * second, ks * polar],
-            limit: [
-                tensile / area,
-                0.5 * t / second * tensile,
-                shear / area,
-                shorter / polar * shear,
-                confined / area,
-            ],
-            offset: face.offset,
-        }
+        let cement = Cement {
+            stiffness: [kn, kn / self.ratio],
+            tensile_strength: self.tensile_strength,
+            shear_strength: self.shear_strength,
+            moment_factor: 1.0,
+        };
+        section.springs(&cement, face.offset)
     }
 }
 
@@ -90,7 +83,7 @@ mod tests {
     #[test]
     fn torsion_of_rectangles() {
         for (w, t, exact) in [(1.0, 1.0, 0.1406), (2.0, 1.0, 2.0 * 0.229), (0.1, 1.0, 0.312e-3)] {
-            let (j, shorter) = torsion([w, t]);
+            let [j, shorter] = torsion([w, t]);
             assert!((j / exact - 1.0).abs() < 3e-3, "{w} × {t}: {j}");
             assert_eq!(shorter, f64::min(w, t));
         }

@@ -11,7 +11,9 @@
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; the moment factor β is that of Potyondy
 //! (Proc. 45th US Rock Mech. Symp., 2011).
 
-use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
+use super::springs::{
+    BondDamping, Cement, Criterion, Joint, Problem, Section, Springs, not_negative, positive, strength,
+};
 use std::f64::consts::PI;
 
 /// Stiffness of the cement.
@@ -117,18 +119,13 @@ impl ParallelBond {
             }
             ParallelStiffness::PerArea { normal, shear } => (normal, shear),
         };
-        let tensile = 1.0 / self.tensile_strength;
-        let (shear, confined) = self.shear_strength.inverse();
-        Springs {
-            stiffness: [kn * area, ks * area, kn * second, ks * polar],
-            limit: [
-                tensile / area,
-                self.moment_factor * r / second * tensile,
-                shear / area,
-                r / polar * shear,
-                confined / area,
-            ],
-            offset: joint.radii[0] - joint.radii[1],
-        }
+        let section = Section { area, bending: [second, r], torsion: [polar, r] };
+        let cement = Cement {
+            stiffness: [kn, ks],
+            tensile_strength: self.tensile_strength,
+            shear_strength: self.shear_strength,
+            moment_factor: self.moment_factor,
+        };
+        section.springs(&cement, joint.radii[0] - joint.radii[1])
     }
 }

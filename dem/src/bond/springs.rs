@@ -1,4 +1,6 @@
-//! What every kind of bond makes: springs with their limits, damping, and the check of its numbers.
+//! What every kind of bond makes: springs with their limits, damping, and the check of its numbers; the springs of those that are beams.
+
+use super::parallel::ShearStrength;
 
 /// Viscous damping of a bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +45,51 @@ pub(crate) struct Springs {
     pub limit: [f64; 5],
     /// Difference of the lever arms of the two bodies [m]: where between the centres forces act; 0 in the middle.
     pub offset: f64,
+}
+
+/// The section of a bond that is a beam of cement.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Section {
+    /// Area [m²].
+    pub area: f64,
+    /// Second moment of area [m⁴], and the farthest fibre from its axis [m].
+    pub bending: [f64; 2],
+    /// Constant of torsion [m⁴], and what a moment over it is multiplied with to give the largest stress [m].
+    pub torsion: [f64; 2],
+}
+
+/// What the cement of a bond is like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cement {
+    /// Stiffness by area in tension and shear [Pa/m].
+    pub stiffness: [f64; 2],
+    /// Tensile strength [Pa].
+    pub tensile_strength: f64,
+    /// Shear strength.
+    pub shear_strength: ShearStrength,
+    /// Part of the bending moment that counts in the tensile stress.
+    pub moment_factor: f64,
+}
+
+impl Section {
+    /// Springs of a beam with this section.
+    pub(super) fn springs(&self, cement: &Cement, offset: f64) -> Springs {
+        let Section { area, bending: [second, fibre], torsion: [polar, rim] } = *self;
+        let [kn, ks] = cement.stiffness;
+        let tensile = 1.0 / cement.tensile_strength;
+        let (shear, confined) = cement.shear_strength.inverse();
+        Springs {
+            stiffness: [kn * area, ks * area, kn * second, ks * polar],
+            limit: [
+                tensile / area,
+                cement.moment_factor * fibre / second * tensile,
+                shear / area,
+                rim / polar * shear,
+                confined / area,
+            ],
+            offset,
+        }
+    }
 }
 
 /// A quantity out of range: its name, value and what it must be.

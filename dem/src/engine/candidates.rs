@@ -26,7 +26,8 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     super::bonds::hold(model, state, &mut work.held);
     let Work { members, blocks: works, parallel, held, walls: standing, sheet, .. } = &mut *work;
     let all = All::new(model, state, members, held);
-    let kinds = model.solids.then(|| Search::new(now(model, state, members, (standing, sheet))));
+    let kinds =
+        model.solids.then(|| Search::new(now(model, state, members, (standing, sheet)), &model.patch_trees));
     let walls = model.walls.placed(&state.walls);
     let one = |(b, w): (usize, &mut BlockWork)| {
         let c = &mut w.candidates;

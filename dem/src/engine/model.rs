@@ -14,7 +14,7 @@ use crate::law::Laws;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::Plane;
-use crate::spatial::patchwork::Patch;
+use crate::spatial::patchwork::{Patch, Trees};
 use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::{Sheet, SheetFacet};
 use crate::wall::{WallInput, set::Walls};
@@ -57,6 +57,8 @@ pub struct Model {
     pub(crate) bonds: Vec<crate::bond::Constants>,
     /// Patches of the walls, where bodies with faces may touch them.
     pub(crate) patches: Vec<Patch>,
+    /// Trees of the patches.
+    pub(crate) patch_trees: Trees,
     /// The external surface, where bodies with faces may touch it.
     pub(crate) sheet: Sheet,
     pub(crate) periodic: Option<Periodic>,
@@ -162,6 +164,7 @@ impl Model {
             body_forces: input.body_forces,
             shapes: input.shapes,
             skin,
+            patch_trees: Trees::new(&patches),
             patches,
             sheet: Sheet::new(input.surface_mesh.as_deref().filter(|_| faces)),
             periodic,

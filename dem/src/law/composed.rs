@@ -230,6 +230,13 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         (force - self.common.pull * radius, stiffness)
     }
 
+    fn longest_spring(&self, overlap: f64, radius: f64, history: &History) -> f64 {
+        let (force, stiffness) = self.springs(overlap, radius, history);
+        let normal = force + self.common.pull * radius;
+        let limit = T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius);
+        if stiffness > 0.0 { limit / stiffness } else { 0.0 }
+    }
+
     #[inline(always)]
     fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R {
         let Some(stiffness) = T::at_end::<R>(&law.tangential) else { return R::zero() };

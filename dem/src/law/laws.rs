@@ -158,6 +158,11 @@ impl Laws {
         with_law!(self, t => t.get(a, b).stored(overlap, radius, history))
     }
 
+    /// Longest tangential spring that friction holds [m].
+    pub fn longest_spring(&self, [a, b]: [u32; 2], overlap: f64, radius: f64, history: &History) -> f64 {
+        with_law!(self, t => t.get(a, b).longest_spring(overlap, radius, history))
+    }
+
     pub fn rolls(&self) -> bool {
         with_law!(self, t => t.rolls())
     }

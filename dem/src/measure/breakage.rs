@@ -62,7 +62,8 @@ impl Breakage {
 /// Share of the mass that passes each sieve: of pieces that are no larger.
 fn passing(sieves: &[f64], pieces: &[Piece]) -> Vec<f64> {
     let total: f64 = pieces.iter().map(|p| p.1).sum();
-    let finer = |sieve: f64| pieces.iter().filter(|p| p.0 <= sieve).map(|p| p.1).sum::<f64>();
+    // Not `sum`, which is -0 of nothing.
+    let finer = |sieve: f64| pieces.iter().filter(|p| p.0 <= sieve).fold(0.0, |sum, p| sum + p.1);
     sieves.iter().map(|&s| if total > 0.0 { finer(s) / total } else { 0.0 }).collect()
 }
 

@@ -100,12 +100,20 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
         if !counted(c) {
             return;
         }
-        // The spring belongs to the last full step: half a step of sliding brings it to the half step.
+        // The spring belongs to the last full step: half a step of sliding brings it to the half step, but no farther than friction
+        // holds it.
         let n = &c.geometry.normal;
         let slip = c.velocity - n * c.velocity.dot(n);
         let mut history = *c.history;
         if !history.is_fresh() {
+            let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
+            let most =
+                history.spring.norm().max(model.laws.longest_spring(c.materials, overlap, radius, &history));
             history.spring += slip * back;
+            let length = history.spring.norm();
+            if length > most {
+                history.spring *= most / length;
+            }
             if model.laws.rolls() {
                 let about = c.spin.dot(n);
                 let roll = (c.spin - n * about) * (c.geometry.radius * back);

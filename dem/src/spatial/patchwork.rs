@@ -1,6 +1,6 @@
 //! Walls as bodies with faces and edges see them: triangles and round patches, in frames that move as rigid wholes.
 
-use super::bvh::Aabb;
+use super::bvh::{Aabb, Bvh};
 use super::facet::Facet;
 use super::round::Round;
 use crate::base::Vec3;
@@ -63,15 +63,46 @@ pub(crate) struct WallNow {
     pub driven: bool,
 }
 
-impl WallNow {
-    /// Bounds of a patch in the world [m].
-    pub fn bounds(&self, patch: &Patch) -> Aabb {
-        let (low, high) = patch.form.bounds();
+/// Trees of the patches of each wall in its own frame. Walls move as rigid wholes: the trees never change.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Trees {
+    each: Vec<Tree>,
+}
+
+/// Patches of one wall.
+#[derive(Clone, Debug)]
+struct Tree {
+    wall: u32,
+    /// Its first patch.
+    first: u32,
+    boxes: Bvh,
+}
+
+impl Trees {
+    /// Trees of patches that lie wall by wall.
+    pub fn new(patches: &[Patch]) -> Trees {
+        let mut first = 0;
+        let tree = |own: &[Patch]| {
+            let bounds: Vec<Aabb> = own.iter().map(|p| p.form.bounds()).collect();
+            let tree = Tree { wall: own[0].wall, first, boxes: Bvh::new(&bounds) };
+            first += own.len() as u32;
+            tree
+        };
+        Trees { each: patches.chunk_by(|a, b| a.wall == b.wall).map(tree).collect() }
+    }
+
+    /// Appends the patches that may come within bounds in the world to `out`; ascending.
+    pub fn query(&self, walls: &[WallNow], (low, high): Aabb, out: &mut Vec<u32>) {
         let (low, high) = (Vec3::from(low), Vec3::from(high));
-        let turn = self.orientation.to_rotation_matrix();
-        let (middle, half) = ((low + high) * 0.5, turn.matrix().abs() * ((high - low) * 0.5));
-        let middle = self.origin + turn * middle;
-        ((middle - half).into(), (middle + half).into())
+        let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+        for tree in &self.each {
+            let wall = &walls[tree.wall as usize];
+            let back = wall.orientation.to_rotation_matrix().transpose();
+            let (middle, half) = (back * (middle - wall.origin), back.matrix().abs() * half);
+            let from = out.len();
+            tree.boxes.query((middle - half).into(), (middle + half).into(), out);
+            out[from..].iter_mut().for_each(|patch| *patch += tree.first);
+        }
     }
 }
 

@@ -173,3 +173,26 @@ fn ball_rides_a_swinging_table() {
     eprintln!("energy error {coarse:e} and {fine:e} J");
     assert!(fine < coarse / 8.0, "{coarse:e} {fine:e}");
 }
+
+/// What slides over a grain stretches no spring beyond what friction holds: the energy of springs does not depend on how fast a smooth
+/// gate is drawn past a heap.
+#[test]
+fn a_gate_drawn_past_grains_leaves_no_energy_in_springs() {
+    for friction in [0.0, 0.3] {
+        let mut input = heap(1, 0.09, Material { friction, ..stone() });
+        let motion = Motion { velocity: Vec3::new(3.0, 0.0, 0.0), ..Motion::default() };
+        input.walls.push(WallInput { motion, ..WallInput::fixed(square(0.09, 0.0), 0) });
+        let mut run = Run::new(input);
+        let mut most = 0.0_f64;
+        while run.state.time < 0.05 {
+            run.step();
+            let e = measure::energies(&run.model, &run.state);
+            // The floor's spring holds μ F at most, F² being twice the stiffness times the energy of the normal spring.
+            let ratio = stone().tangential_ratio;
+            let held = friction * friction / ratio * e.elastic_normal;
+            most = most.max(e.elastic_tangential - 1.2 * held);
+        }
+        println!("friction {friction}: {most:.3e} J beyond what friction holds");
+        assert!(most <= 1e-12, "{most} J with a friction of {friction}");
+    }
+}

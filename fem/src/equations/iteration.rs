@@ -25,11 +25,9 @@ pub struct Counts {
     pub most: u32,
 }
 
-/// A matrix, its preconditioner and work space; solves allocate nothing.
+/// A matrix, its preconditioner and work space; [`Iteration::solve`] allocates nothing.
 pub struct Iteration<P> {
     matrix: Product,
-    /// The matrix in single precision, and two vectors: where the preconditioner is so cheap that products count.
-    rounded: Option<(Product, [Vec<f64>; 2])>,
     preconditioner: P,
     gradients: ConjugateGradients,
     tolerance: f64,
@@ -51,12 +49,9 @@ impl Iteration<BlockJacobi> {
         combination: Combination,
         tolerance: f64,
     ) -> Result<Iteration<BlockJacobi>, SolveError> {
-        let matrix = Product::new(matrices.clone(), supports, combination);
+        let matrix = Product::new(matrices, supports, combination);
         let preconditioner = jacobi(mesh, &matrix)?;
-        let values = 3 * mesh.node_count();
-        let rounded = Product::rounded(matrices, supports, combination);
-        let rounded = Some((rounded, [vec![0.0; values], vec![0.0; values]]));
-        Ok(Iteration { rounded, ..Iteration::new(matrix, preconditioner, values, tolerance) })
+        Ok(Iteration::new(matrix, preconditioner, 3 * mesh.node_count(), tolerance))
     }
 }
 
@@ -98,10 +93,9 @@ fn jacobi(mesh: &Mesh, matrix: &Product) -> Result<BlockJacobi, SolveError> {
 /// Memory of an iteration with the inverse blocks of the nodes beside that of the model [bytes].
 pub fn block_jacobi_memory(matrices: Arc<Matrices>, supports: &Supports) -> usize {
     let values = 3 * matrices.node_count();
-    let entries = 36 * matrices.stiffness_blocks().len();
     let product = Product::new(matrices, supports, Combination::default());
-    // Two products, one with entries of its own; inverse blocks; vectors of the equations, of the gradients and of corrections.
-    2 * product.memory() + entries + 16 * values + 8 * 8 * values
+    // The product, inverse blocks, two vectors of the equations and four of the gradients.
+    product.memory() + 16 * values + 6 * 8 * values
 }
 
 impl<P: Preconditioner> Iteration<P> {
@@ -109,14 +103,13 @@ impl<P: Preconditioner> Iteration<P> {
         let gradients = ConjugateGradients::new(values, LIMIT);
         let (load, solution) = (vec![0.0; values], vec![0.0; values]);
         let counts = Counts::default();
-        Iteration { matrix, rounded: None, preconditioner, gradients, tolerance, load, solution, counts }
+        Iteration { matrix, preconditioner, gradients, tolerance, load, solution, counts }
     }
 
     /// Memory beside the model's [bytes].
     pub fn memory(&self) -> usize {
         let vectors = 16 * self.load.len() + self.gradients.memory();
-        let rounded = self.rounded.as_ref().map_or(0, |(m, _)| m.memory() + 16 * self.load.len());
-        self.matrix.memory() + rounded + self.preconditioner.memory() + vectors
+        self.matrix.memory() + self.preconditioner.memory() + vectors
     }
 
     /// Counts so far.
@@ -137,25 +130,11 @@ impl<P: Preconditioner> Iteration<P> {
         for &d in supports.free() {
             self.solution[d as usize] = guess(d as usize);
         }
-        let Iteration { matrix, rounded, preconditioner, gradients, tolerance, load, solution, counts } =
-            self;
+        let Iteration { matrix, preconditioner, gradients, tolerance, load, solution, counts } = self;
         supports.scatter(x, load);
-        let solved = match rounded {
-            Some((rounded, [residual, change])) => {
-                let scratch = [&mut residual[..], &mut change[..]];
-                gradients.solve_by_corrections(
-                    [matrix, rounded],
-                    preconditioner,
-                    load,
-                    solution,
-                    *tolerance,
-                    scratch,
-                )
-            }
-            None => gradients.solve(matrix, preconditioner, load, solution, *tolerance),
-        };
-        let iterations =
-            solved.map_err(|stopped| SolveError::NotConverged { stopped, tolerance: *tolerance })?;
+        let iterations = gradients
+            .solve(matrix, preconditioner, load, solution, *tolerance)
+            .map_err(|stopped| SolveError::NotConverged { stopped, tolerance: *tolerance })?;
         counts.solves += 1;
         counts.iterations += u64::from(iterations);
         counts.most = counts.most.max(iterations);

@@ -5,8 +5,8 @@ use crate::scene::solid::{EquationMethod, Mass, Solid};
 use crate::scene::{SceneError, Table};
 use trackbed_fem::{Method, Methods};
 
-/// Nodes from which steps with a lumped mass take conjugate gradients: about the time of a kept factor there, a thirtieth of its memory,
-/// and none of its set-up (`benches/README.md`, section "Large solids").
+/// Nodes from which steps with a lumped mass take conjugate gradients: about the time of a kept factor there, a hundredth of its
+/// memory, and none of its set-up (`benches/README.md`, section "Large solids").
 const WINDOW_NODES: usize = 100_000;
 
 /// Nodes from which conjugate gradients with smoothed aggregation are faster than a factor for a static solve (the same section).

@@ -14,9 +14,14 @@ use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Rehearsals that growth, or settling and compaction, may take before another begins in the main loop.
+/// Rehearsals that growth and what follows it may take before another begins in the main loop.
 const GROWTH: u32 = 8;
-const SETTLING_TOO: u32 = 3;
+/// The same of settling and compaction without growth.
+const PREPARATION: u32 = 3;
+/// Share of the main loop that a rehearsal goes on to, if that takes no more than [`LOOP`] times as long: a bed that rests at first may flow
+/// once a wall has turned far enough.
+const SEEN: f64 = 0.2;
+const LOOP: u32 = 5;
 /// Time between two looks at the stage of a rehearsal.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -39,7 +44,7 @@ pub struct Rehearsal {
 }
 
 /// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun. What comes before the main loop is
-/// gone through, if that takes no more than [`SETTLING_TOO`] times as long, or [`GROWTH`] times where grains grow, and followed by another
+/// gone through, if that takes no more than [`PREPARATION`] times as long, or [`GROWTH`] times where grains grow, and followed by another
 /// `budget`: growth ends when it is done, and nothing else shows the bed that it leaves; a bed that flows costs more than one at rest.
 ///
 /// # Errors
@@ -55,18 +60,28 @@ pub fn rehearse(
     let (interrupt, trace) = Interrupt::traced();
     let (ended, over) = mpsc::channel::<()>();
     let (watched, followed) = (interrupt.clone(), trace.clone());
+    let seen = SEEN * job.end;
     let grows = job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty());
     let begun = Instant::now();
     let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));
     let timer = thread::spawn(move || {
         let passes = |time| over.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
-        let (mut on, most) = (true, if grows { GROWTH } else { SETTLING_TOO });
-        while on && begun.elapsed() < most * budget && !is_in_loop(&followed) {
+        let (mut on, most) = (true, if grows { GROWTH } else { PREPARATION });
+        while on && begun.elapsed() < most * budget && come(&followed).is_none() {
             on = passes(LOOK);
         }
         // What a stage does first says little of the rest of it.
-        if on && passes(budget) && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget)))
-        {
+        on = on
+            && passes(budget)
+            && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget)));
+        let more = || {
+            come(&followed).is_some_and(|time| time < seen)
+                && stage_age(&followed).is_some_and(|age| age < LOOP * budget)
+        };
+        while on && more() {
+            on = passes(LOOK);
+        }
+        if on {
             watched.request();
         }
     });
@@ -116,10 +131,10 @@ fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
     (time > 0.0).then(|| (end.0 - middle.0).as_secs_f64() / time)
 }
 
-/// Whether a run is in its main loop.
-fn is_in_loop(trace: &Trace) -> bool {
+/// Simulated time that a run has come to in its main loop [s]; none before it.
+fn come(trace: &Trace) -> Option<f64> {
     let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
-    trace.last().is_some_and(|(_, moment)| moment.stage == RUN)
+    trace.last().filter(|(_, moment)| moment.stage == RUN).map(|(_, moment)| moment.time)
 }
 
 /// How long ago by the clock the stage began that a run is in.

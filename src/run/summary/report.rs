@@ -123,7 +123,7 @@ impl Summary {
                 let index =
                     b.ballast_index.map_or(String::new(), |i| format!(", ballast breakage index {i:.3}"));
                 lines.push(format!(
-                    "breakage of the bonded stones: {:.1} % by Marsal{index}",
+                    "breakage of what bonds held together: {:.1} % by Marsal{index}",
                     100.0 * b.marsal
                 ));
             }

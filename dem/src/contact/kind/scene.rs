@@ -9,7 +9,7 @@ use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::bvh::{Aabb, Bvh};
-use crate::spatial::patchwork::{Patch, WallNow, Walls};
+use crate::spatial::patchwork::{Patch, Trees, WallNow, Walls};
 use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::SheetFacet;
 use nalgebra::UnitQuaternion;
@@ -222,14 +222,14 @@ pub(crate) struct Search<'a> {
     /// Block and place of each, ascending.
     pub solids: Vec<[u32; 2]>,
     tree: Bvh,
-    patches: Bvh,
+    patches: &'a Trees,
     facets: Bvh,
     /// Where images of what is looked for may be, from the bodies [m]; no way at all without borders.
     images: Vec<Vec3>,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(now: Now<'a>) -> Search<'a> {
+    pub fn new(now: Now<'a>, patches: &'a Trees) -> Search<'a> {
         let mut solids = Vec::new();
         for (b, (block, members)) in now.blocks.list.iter().zip(now.members.list).enumerate() {
             if members.solid() {
@@ -238,23 +238,20 @@ impl<'a> Search<'a> {
         }
         let bounds: Vec<Aabb> =
             solids.iter().map(|&[b, k]| now.placed(b as usize, k as usize).bounds()).collect();
-        let Walls { patches, walls } = now.walls;
-        let of_patch = |p: &Patch| walls[p.wall as usize].bounds(p);
-        let patches = Bvh::new(&patches.iter().map(of_patch).collect::<Vec<_>>());
         let facets = Bvh::new(&now.sheet.facets.iter().map(SheetFacet::bounds).collect::<Vec<_>>());
         let images = now.periodic.map_or_else(Vec::new, Periodic::around);
         Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds), patches, facets, images }
     }
 
-    /// What of a tree may come within bounds, itself or an image; ascending.
-    fn near(&self, tree: &Bvh, (low, high): Aabb, row: &mut Vec<u32>) {
+    /// What `query` finds within bounds, itself or an image; ascending.
+    fn near(&self, (low, high): Aabb, row: &mut Vec<u32>, query: impl Fn(Aabb, &mut Vec<u32>)) {
         row.clear();
         if self.images.is_empty() {
-            return tree.query(low, high, row);
+            return query((low, high), row);
         }
         for way in &self.images {
             let moved = |x: [f64; 3]| std::array::from_fn(|d| x[d] - way[d]);
-            tree.query(moved(low), moved(high), row);
+            query((moved(low), moved(high)), row);
         }
         row.sort_unstable();
         row.dedup();
@@ -262,19 +259,19 @@ impl<'a> Search<'a> {
 
     /// Calls `f` with each patch of a wall that may come within bounds; ascending.
     pub fn patches_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
-        self.near(&self.patches, bounds, row);
+        self.near(bounds, row, |bounds, row| self.patches.query(self.now.walls.walls, bounds, row));
         row.iter().copied().for_each(f);
     }
 
     /// Calls `f` with each triangle of the external surface that may come within bounds; ascending.
     pub fn facets_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
-        self.near(&self.facets, bounds, row);
+        self.near(bounds, row, |(low, high), row| self.facets.query(low, high, row));
         row.iter().copied().for_each(f);
     }
 
     /// Calls `f` with block and place of each body, not made of spheres, that may come within bounds; ascending.
     pub fn solids_near(&self, bounds: Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
-        self.near(&self.tree, bounds, row);
+        self.near(bounds, row, |(low, high), row| self.tree.query(low, high, row));
         for &k in row.iter() {
             let [b, place] = self.solids[k as usize];
             f(b, place);

@@ -37,11 +37,6 @@ pub struct ConjugateGradients {
     limit: u32,
 }
 
-/// Relative residual at which corrections from a rounded matrix end: what the rounding leaves of more is not worth it.
-const CORRECTION: f64 = 1e-4;
-/// Corrections at most; two or three are made.
-const CORRECTIONS: u32 = 12;
-
 /// Why a solve has not found the solution.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Stopped {
@@ -74,69 +69,6 @@ impl ConjugateGradients {
     /// Memory that it holds [bytes].
     pub fn memory(&self) -> usize {
         size_of::<f64>() * (4 * self.r.len() + self.partial.len())
-    }
-
-    /// As [`ConjugateGradients::solve`], most products being made with a matrix near A that is cheaper: corrections from that
-    /// one until the residual of A itself is small, and A alone where they do not help. Scratch is two vectors.
-    ///
-    /// # Errors
-    /// [`Stopped`].
-    pub fn solve_by_corrections(
-        &mut self,
-        [a, near]: [&mut impl Operator; 2],
-        preconditioner: &mut impl Preconditioner,
-        b: &[f64],
-        x: &mut [f64],
-        tolerance: f64,
-        [residual, change]: [&mut [f64]; 2],
-    ) -> Result<u32, Stopped> {
-        preconditioner.apply(b, &mut self.z);
-        let scale = dot(b, &self.z, &mut self.partial);
-        if !(scale > 0.0 && scale.is_finite()) {
-            return self.solve(a, preconditioner, b, x, tolerance);
-        }
-        let mut square = scale;
-        residual.copy_from_slice(b);
-        if x.iter().any(|x| *x != 0.0) {
-            square = self.size_of_residual(a, preconditioner, b, x, residual);
-            if square.is_nan() || square >= scale {
-                x.fill(0.0);
-                square = scale;
-                residual.copy_from_slice(b);
-            }
-        }
-        let mut iterations = 0;
-        for _ in 0..CORRECTIONS {
-            let size = (square / scale).sqrt();
-            if size <= tolerance {
-                return Ok(iterations);
-            }
-            change.fill(0.0);
-            let target = (0.5 * tolerance / size).max(CORRECTION);
-            iterations += self.solve(near, preconditioner, residual, change, target)?;
-            add_scaled(x, 1.0, change);
-            let next = self.size_of_residual(a, preconditioner, b, x, residual);
-            if next.is_nan() || next > 0.25 * square {
-                break;
-            }
-            square = next;
-        }
-        Ok(iterations + self.solve(a, preconditioner, b, x, tolerance)?)
-    }
-
-    /// `residual = b - A x` and its square in the norm of the preconditioner.
-    fn size_of_residual(
-        &mut self,
-        a: &mut impl Operator,
-        preconditioner: &mut impl Preconditioner,
-        b: &[f64],
-        x: &[f64],
-        residual: &mut [f64],
-    ) -> f64 {
-        a.apply(x, &mut self.q);
-        subtract(b, &self.q, residual);
-        preconditioner.apply(residual, &mut self.z);
-        dot(residual, &self.z, &mut self.partial)
     }
 
     /// Solves `A x = b` from the guess in `x` and returns the iterations.
@@ -285,34 +217,6 @@ mod tests {
         let far: Vec<f64> = exact.iter().map(|e| -3.0 * e).collect();
         let (from_far, from_zero) = (solve(n, 0.5, &far, 1e-10), solve(n, 0.5, &vec![0.0; n], 1e-10));
         assert_eq!(from_far, from_zero);
-    }
-
-    /// A matrix that is near spares most products with the true one; one that is far costs a cycle and is left.
-    #[test]
-    fn corrections_from_a_near_matrix_reach_the_tolerance() {
-        struct Counted(f64, u32);
-        impl Operator for Counted {
-            fn apply(&mut self, x: &[f64], y: &mut [f64]) {
-                self.1 += 1;
-                Line(self.0).apply(x, y);
-            }
-        }
-        let n = 2000;
-        let exact: Vec<f64> = (0..n).map(|i| (0.7 * i as f64).sin()).collect();
-        let mut b = vec![0.0; n];
-        Line(0.1).apply(&exact, &mut b);
-        let solve = |shift: f64| {
-            let (mut a, mut near, mut x) = (Counted(0.1, 0), Counted(shift, 0), vec![0.0; n]);
-            let (mut cg, scratch) =
-                (ConjugateGradients::new(n, 200), [&mut vec![0.0; n][..], &mut vec![0.0; n]]);
-            cg.solve_by_corrections([&mut a, &mut near], &mut Scale(0.5), &b, &mut x, 1e-9, scratch).unwrap();
-            let error = x.iter().zip(&exact).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max);
-            (error, a.1, near.1)
-        };
-        let ((near, few, most), (far, many, _)) = (solve(0.1 + 1e-7), solve(30.0));
-        println!("{few} and {most} products near, {many} far; errors {near:.1e}, {far:.1e}");
-        assert!(near < 1e-7 && far < 1e-7, "{near:e} {far:e}");
-        assert!(few <= 4 && most > 20 && many > 20);
     }
 
     #[test]

@@ -27,15 +27,18 @@ pub(super) fn join(
 ) {
     for ([i, j], [p, q]) in shared(sites, cells) {
         let (Some(a), Some(b)) = (floes[i], floes[j]) else { continue };
-        let way = [0, 1].map(|d| a.centre[d] - b.centre[d]);
-        let length = libm::hypot(way[0], way[1]);
-        // Along the line of centres, from the face to both of them.
-        let middle = [0, 1].map(|d| 0.5 * (p[d] + q[d]));
-        let from = |floe: Floe| (0..2).map(|d| (floe.centre[d] - middle[d]) * way[d] / length).sum::<f64>();
-        let offset = from(a) + from(b);
-        let size = [libm::hypot(q[0] - p[0], q[1] - p[1]), thickness];
-        bonds.join_face([a.body, b.body], kind, Face { size, offset });
+        bonds.join_face([a.body, b.body], kind, face([a.centre, b.centre], [p, q], thickness));
     }
+}
+
+/// The face over a side between two centres in plan.
+fn face([a, b]: [Point; 2], [p, q]: [Point; 2], thickness: f64) -> Face {
+    let way = [0, 1].map(|d| a[d] - b[d]);
+    let length = libm::hypot(way[0], way[1]);
+    // Along the line of centres, from the face to both of them.
+    let middle = [0, 1].map(|d| 0.5 * (p[d] + q[d]));
+    let from = |centre: Point| (0..2).map(|d| (centre[d] - middle[d]) * way[d] / length).sum::<f64>();
+    Face { size: [libm::hypot(q[0] - p[0], q[1] - p[1]), thickness], offset: from(a) + from(b) }
 }
 
 /// Pairs of sites whose cells share a side, the smaller number first, and that side.
@@ -87,5 +90,17 @@ mod tests {
         assert!((all - 2.0 * inner - 130.0).abs() < 1e-2, "{all} {inner}");
         // Some three for each cell (Euler).
         assert!((1350..1500).contains(&shared.len()), "{}", shared.len());
+    }
+
+    /// Centres 1 m and 3 m from a face of 2 m across the line between them: the lever arms differ by -2 m, whichever way the line points.
+    #[test]
+    fn faces_lie_between_their_floes() {
+        for turn in [0.0, 0.7, 2.5] {
+            let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+            let at = |x: f64, y: f64| [5.0 + cos * x - sin * y, -2.0 + sin * x + cos * y];
+            let face = face([at(1.0, 0.0), at(-3.0, 0.0)], [at(0.0, -0.7), at(0.0, 1.3)], 0.5);
+            assert!((face.size[0] - 2.0).abs() < 1e-12 && face.size[1] == 0.5, "{face:?}");
+            assert!((face.offset + 2.0).abs() < 1e-12, "{face:?}");
+        }
     }
 }
