@@ -7,13 +7,14 @@
 //! (several numbers at a time), `shape`, `spatial` (trees, cells, surfaces, how two shapes touch), `law` (laws of
 //! contact), `bodies` (arrays of motion), `pairs` (storage of contacts), `contact` (the loops over contacts),
 //! `integrate`, `body_force`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `stability` (the step that contacts
-//! allow), `insert`.
+//! allow), `insert`, `device` (steps computed elsewhere).
 
 mod base;
 mod bodies;
 pub mod body_force;
 pub mod bond;
 mod contact;
+pub mod device;
 mod engine;
 pub mod insert;
 pub mod integrate;

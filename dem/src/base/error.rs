@@ -244,6 +244,14 @@ pub enum StepError {
         /// The walls, counted through.
         walls: [usize; 2],
     },
+    /// The device that computes the steps does not respond, or has no memory left.
+    #[error("at t = {time} s the device failed: {problem}")]
+    Device {
+        /// Time [s].
+        time: f64,
+        /// What went wrong.
+        problem: String,
+    },
     /// An applied force names no body, or is not finite.
     #[error(
         "at t = {time} s applied force {index} (body {body}) names no body that is there, or is not finite"

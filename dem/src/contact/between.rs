@@ -78,7 +78,8 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
             let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
             match contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut spent, dt) {
                 None => slots.fill(Record::default()),
-                Some(o) => {
+                Some(found) => {
+                    let o = &found.forces;
                     if RIGID || ROLL {
                         let on_a = records::<R>(o.force, o.torque_a);
                         let on_b = records::<R>(o.torque_b, V3::zero());
@@ -91,14 +92,14 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
                             *torque_b = last[0];
                         }
                     } else {
-                        let (la, lb) = (o.levers.0.only(o.on), o.levers.1.only(o.on));
+                        let (la, lb) = (o.levers.0.only(found.on), o.levers.1.only(found.on));
                         let rows = R::records(four(o.force, la), four(o.moment, lb));
                         for (l, slot) in slots.as_chunks_mut::<2>().0.iter_mut().enumerate() {
                             R::put(rows[l], slot);
                         }
                     }
-                    if o.deep != 0 && deepest.is_none() {
-                        deepest = Some(o.too_deep(g));
+                    if found.deep != 0 && deepest.is_none() {
+                        deepest = Some(found.too_deep(g));
                     }
                 }
             }

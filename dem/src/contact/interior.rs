@@ -79,7 +79,8 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
                 else {
                     continue;
                 };
-                let (on_a, on_b) = R::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
+                let f = &out.forces;
+                let (on_a, on_b) = R::opposed(f.force.array(), f.torque_a.array(), f.torque_b.array());
                 for l in 0..R::LANES {
                     // SAFETY: compared above.
                     unsafe {

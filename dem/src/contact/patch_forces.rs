@@ -134,7 +134,7 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
                 (memory.roll, memory.twist) = (V3::new(rx, ry, rz), twist);
             }
             let LawOutput { force, moment, dashpot, friction, .. } =
-                L::evaluate::<R, ROLL>(&mix.of(own, other), &touch, &mut memory, on, dt);
+                L::evaluate::<R, ROLL>(&mix.of(own, other), &touch, &mut memory, on, R::splat(dt));
             let mut torque = arm.cross(force);
             if ROLL {
                 torque = torque + moment;

@@ -10,16 +10,16 @@ use crate::bodies::block::Block;
 use crate::bodies::members::Members;
 use crate::bodies::sums::Tally;
 use crate::lanes::record::Record;
-use crate::lanes::{Four, Kernel, Pack, V3};
-use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, PairTable};
+use crate::lanes::{Four, Kernel, Pack, Real, V3};
+use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, Memory, PairTable};
 use crate::pairs::groups::{Group, Groups};
 use crate::shape::plane::{Plane, PlaneMotion};
 
 /// A plane where it is now: unit normal and its product with a point; velocity and material.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneNow {
-    face: Record,
-    motion: Record,
+    pub face: Record,
+    pub motion: Record,
 }
 
 /// The planes as they are at this time.
@@ -93,31 +93,24 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
                 continue;
             }
             let [ux, uy, uz, inverse_mass] = R::columns(R::rows(|l| body.velocity(l)));
-            let spin = V3::new(wx, wy, wz);
-            let to_point = -(normal * height);
-            let arm = arm_to::<R, RIGID>(&body, position, to_point);
+            let (velocity, spin) = (V3::new(ux, uy, uz), V3::new(wx, wy, wz));
             let wall = V3::new(vx, vy, vz);
-            let velocity = V3::new(ux, uy, uz) + spin.cross(arm) - wall;
-            let touch = LawInput { inverse_mass, radius: r, overlap: r - height, normal, velocity, spin };
-            let LawOutput { force, moment, dashpot, friction, .. } =
-                L::evaluate::<R, ROLL>(&law, &touch, &mut memory, on, dt);
+            let offset = offset::<R, RIGID>(&body, position);
+            let touch =
+                Touch { position, offset, radius: r, normal, height, velocity, inverse_mass, spin, wall };
+            let f = forces::<L, R, RIGID, ROLL>(&law, &touch, &mut memory, on, R::splat(dt));
             remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
-            spent.dashpot = dashpot.only(on).add_to(spent.dashpot);
-            spent.friction = friction.only(on).add_to(spent.friction);
-            let force = force.only(on);
-            let mut torque = arm.cross(force);
-            if ROLL {
-                torque = torque + moment.only(on);
-            }
-            done.add::<R, ROLL>(force, moment.only(on), position + to_point, wall);
-            let records = records::<R>(force, torque);
+            spent.dashpot = f.dashpot.add_to(spent.dashpot);
+            spent.friction = f.friction.add_to(spent.friction);
+            done.add(&f);
+            let records = records::<R>(f.force, f.torque);
             for l in 0..R::LANES {
                 R::give(records[l], &mut sums[body.body(l)].0);
             }
-            let deep = R::mask_bits((touch.overlap).gt(r) & on);
+            let deep = R::mask_bits(f.deep);
             if deep != 0 && failure.is_none() {
                 let l = deep.trailing_zeros() as usize;
-                failure = Some((4 * g + l, touch.overlap.numbers()[l], r.numbers()[l]));
+                failure = Some((4 * g + l, f.overlap.numbers()[l], r.numbers()[l]));
             }
         }
         tally.sums = sums;
@@ -130,14 +123,87 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
     }
 }
 
-/// From the centres of the bodies to points that lie `to_point` from the centres of their spheres at `position`.
+/// From the centres of the bodies to those of their spheres at `position`; zero for single spheres.
 #[inline(always)]
-fn arm_to<R: Pack, const RIGID: bool>(body: &Own<'_, RIGID>, position: V3<R>, to_point: V3<R>) -> V3<R> {
+fn offset<R: Pack, const RIGID: bool>(body: &Own<'_, RIGID>, position: V3<R>) -> V3<R> {
     if RIGID {
         let [cx, cy, cz, _] = R::columns(R::rows(|l| body.centre(l)));
-        position - V3::new(cx, cy, cz) + to_point
+        position - V3::new(cx, cy, cz)
     } else {
-        to_point
+        V3::zero()
+    }
+}
+
+/// Spheres and the planes that they touch, by lane, as the law of their contact needs them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch<R> {
+    /// Centre of the sphere; the same from the centre of its body, not used for single spheres.
+    pub position: V3<R>,
+    pub offset: V3<R>,
+    pub radius: R,
+    /// Of the plane, and how far the sphere's centre is above it.
+    pub normal: V3<R>,
+    pub height: R,
+    /// Of the body.
+    pub velocity: V3<R>,
+    pub inverse_mass: R,
+    pub spin: V3<R>,
+    /// Velocity of the plane.
+    pub wall: V3<R>,
+}
+
+/// Forces of planes on bodies and their torques; what they took; work over time and moment about the origin of what planes
+/// did; and which overlap by more than the radius.
+pub(crate) struct Forces<R: Real> {
+    pub force: V3<R>,
+    pub torque: V3<R>,
+    pub dashpot: R,
+    pub friction: R,
+    pub power: R,
+    pub about_origin: V3<R>,
+    pub deep: R::Mask,
+    pub overlap: R,
+}
+
+/// Forces of the contacts in the lanes `on`, over a step [s]; advances their memory.
+#[inline(always)]
+pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool>(
+    law: &L::Lanes<R>,
+    t: &Touch<R>,
+    memory: &mut Memory<R>,
+    on: R::Mask,
+    step: R,
+) -> Forces<R> {
+    let to_point = -(t.normal * t.height);
+    let arm = if RIGID { t.offset + to_point } else { to_point };
+    let overlap = t.radius - t.height;
+    let input = LawInput {
+        inverse_mass: t.inverse_mass,
+        radius: t.radius,
+        overlap,
+        normal: t.normal,
+        velocity: t.velocity + t.spin.cross(arm) - t.wall,
+        spin: t.spin,
+    };
+    let LawOutput { force, moment, dashpot, friction, .. } =
+        L::evaluate::<R, ROLL>(law, &input, memory, on, step);
+    let force = force.only(on);
+    let mut torque = arm.cross(force);
+    let mut about_origin = (t.position + to_point).cross(force);
+    if ROLL {
+        let moment = moment.only(on);
+        torque = torque + moment;
+        about_origin = about_origin + moment;
+    }
+    Forces {
+        force,
+        torque,
+        dashpot: dashpot.only(on),
+        friction: friction.only(on),
+        power: force.dot(t.wall),
+        about_origin,
+        deep: overlap.gt(t.radius) & on,
+        overlap,
     }
 }
 
@@ -162,22 +228,11 @@ impl<Q: Four> Done<Q> {
         Done { work: Q::zero(), linear: V3::zero(), angular: V3::zero() }
     }
 
-    /// Adds forces on bodies at points of planes that move with `velocity`, and moments where spheres roll.
     #[inline(always)]
-    fn add<R: Pack<Quad = Q>, const ROLL: bool>(
-        &mut self,
-        force: V3<R>,
-        moment: V3<R>,
-        point: V3<R>,
-        velocity: V3<R>,
-    ) {
-        let mut about_origin = point.cross(force);
-        if ROLL {
-            about_origin = about_origin + moment;
-        }
-        self.work = force.dot(velocity).add_to(self.work);
-        self.linear = add(force, self.linear);
-        self.angular = add(about_origin, self.angular);
+    fn add<R: Pack<Quad = Q>>(&mut self, f: &Forces<R>) {
+        self.work = f.power.add_to(self.work);
+        self.linear = add(f.force, self.linear);
+        self.angular = add(f.about_origin, self.angular);
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use super::ends::End;
 use super::group_memory::{Mix, Spent, recall, remember};
 use crate::lanes::record::Record;
 use crate::lanes::{Pack, Real, V3};
-use crate::law::{ContactLaw, FRESH, LawInput, LawOutput};
+use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, Memory};
 use crate::pairs::groups::Springs;
 
 /// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` (1, 0 or −1) before.
@@ -16,35 +16,42 @@ fn difference<R: Pack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
     R::columns([p[0].less(q[0], sign), p[1].less(q[1], sign), p[2].less(q[2], sign), p[3].less(q[3], sign)])
 }
 
-/// Forces of contacts in lanes: on a, and the torques on a and b; and what to complain of.
-pub(crate) struct Outcome<R: Real> {
+/// Two spheres in each lane, as the law of their contact needs them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair<R> {
+    /// From the centre of b to that of a, and the square of its length.
+    pub between: V3<R>,
+    pub distance2: R,
+    /// Sum of the radii, and the radius of a.
+    pub reach: R,
+    pub radius: R,
+    /// Velocity of body a less that of b, and the sum of their inverse masses.
+    pub velocity: V3<R>,
+    pub inverse_mass: R,
+    pub spins: (V3<R>, V3<R>),
+    /// From the centres of the bodies to those of the spheres; not used for single spheres.
+    pub offsets: (V3<R>, V3<R>),
+}
+
+/// Forces of contacts in lanes: on a, and the torques on a and b; what they took; and what to complain of.
+pub(crate) struct Forces<R: Real> {
     pub force: V3<R>,
     pub torque_a: V3<R>,
     pub torque_b: V3<R>,
     /// Of single spheres: force times normal, and the levers of both.
     pub moment: V3<R>,
     pub levers: (R, R),
-    pub on: R::Mask,
-    /// Record that overlap by more than the smaller radius.
-    pub deep: u32,
-    overlap: R,
-    bound: R,
-}
-
-impl<R: Pack> Outcome<R> {
-    /// The first contact that is too deep: its number in a list where the lanes begin with group `g`, the overlap and
-    /// its bound.
-    #[cold]
-    pub fn too_deep(&self, g: usize) -> (usize, f64, f64) {
-        let l = self.deep.trailing_zeros() as usize;
-        (4 * g + l, self.overlap.numbers()[l], self.bound.numbers()[l])
-    }
+    pub dashpot: R,
+    pub friction: R,
+    /// Which overlap by more than the smaller radius, the overlap and that radius.
+    pub deep: R::Mask,
+    pub overlap: R,
+    pub bound: R,
 }
 
 /// How two spheres that touch move against each other.
 struct Approach<R: Real> {
     input: LawInput<R>,
-    materials: (R, R),
     radii: (R, R),
     /// From the centres of the spheres to the contact point, along the normal.
     levers: (R, R),
@@ -52,17 +59,11 @@ struct Approach<R: Real> {
     arms: (V3<R>, V3<R>),
 }
 
-impl<R: Pack> Approach<R> {
-    /// `xa`, `xb`: the records of the spheres; `between` from b to a, `distance2` its square, `reach` the radii's sum.
+impl<R: Real> Approach<R> {
     #[inline(always)]
-    fn new<const RIGID: bool>(
-        a: &impl End,
-        b: &impl End,
-        (xa, xb): ([R; 4], [R; 4]),
-        (between, distance2, reach): (V3<R>, R, R),
-    ) -> Approach<R> {
-        let (va, wa) = R::two_rows(|l| (a.velocity(l), a.spin(l)));
-        let (vb, wb) = R::two_rows(|l| (b.velocity(l), b.spin(l)));
+    fn new<const RIGID: bool>(pair: &Pair<R>) -> Approach<R> {
+        let &Pair { between, distance2, reach, velocity: translation, inverse_mass, spins: (wa, wb), .. } =
+            pair;
         let distance = distance2.sqrt();
         // distance/distance² rather than 1/distance: the division need not wait for the root.
         let mut normal = between * (distance * (R::splat(1.0) / distance2));
@@ -71,31 +72,105 @@ impl<R: Pack> Approach<R> {
             normal = V3::select(apart, normal, V3::new(R::zero(), R::zero(), R::splat(1.0)));
         }
         let overlap = reach - distance;
-        let ra = R::columns(xa)[3];
+        let ra = pair.radius;
         let rb = reach - ra;
         // From the centres to the contact point, which halves the overlap.
         let la = ra - R::splat(0.5) * overlap;
         let lb = distance - la;
-
-        let [ux, uy, uz, inverse_mass] = difference(va, vb, -1.0);
-        let [wax, way, waz, ma] = R::columns(wa);
-        let [wbx, wby, wbz, mb] = R::columns(wb);
-        let (wa, wb) = (V3::new(wax, way, waz), V3::new(wbx, wby, wbz));
-        let translation = V3::new(ux, uy, uz);
         let (mut arm_a, mut arm_b) = (V3::zero(), V3::zero());
         let velocity = if RIGID {
-            let [ax, ay, az, _] = difference(xa, R::rows(|l| a.centre(l)), 0.0);
-            let [bx, by, bz, _] = difference(xb, R::rows(|l| b.centre(l)), 0.0);
-            arm_a = V3::new(ax, ay, az) - normal * la;
-            arm_b = V3::new(bx, by, bz) + normal * lb;
+            arm_a = pair.offsets.0 - normal * la;
+            arm_b = pair.offsets.1 + normal * lb;
             translation + wa.cross(arm_a) - wb.cross(arm_b)
         } else {
             translation + normal.cross(wa * la + wb * lb)
         };
         let input =
             LawInput { inverse_mass, radius: ra * rb / reach, overlap, normal, velocity, spin: wa - wb };
-        Approach { input, materials: (ma, mb), radii: (ra, rb), levers: (la, lb), arms: (arm_a, arm_b) }
+        Approach { input, radii: (ra, rb), levers: (la, lb), arms: (arm_a, arm_b) }
     }
+}
+
+/// Forces of the contacts in the lanes `on`, over a step [s]; advances their memory.
+#[inline(always)]
+pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool>(
+    law: &L::Lanes<R>,
+    pair: &Pair<R>,
+    memory: &mut Memory<R>,
+    on: R::Mask,
+    step: R,
+) -> Forces<R> {
+    let m = Approach::<R>::new::<RIGID>(pair);
+    let overlap = m.input.overlap;
+    let LawOutput { force, moment, dashpot, friction, .. } =
+        L::evaluate::<R, ROLL>(law, &m.input, memory, on, step);
+    let force = force.only(on);
+    let lever = force.cross(m.input.normal).only(on);
+    let (la, lb) = m.levers;
+    let (mut torque_a, mut torque_b) =
+        if RIGID { (m.arms.0.cross(force), -m.arms.1.cross(force)) } else { (lever * la, lever * lb) };
+    if RIGID || ROLL {
+        let moment = moment.only(on);
+        torque_a = (torque_a + moment).only(on);
+        torque_b = (torque_b - moment).only(on);
+    }
+    let bound = m.radii.0.min(m.radii.1);
+    Forces {
+        force,
+        torque_a,
+        torque_b,
+        moment: lever,
+        levers: (la, lb),
+        dashpot: dashpot.only(on),
+        friction: friction.only(on),
+        deep: overlap.gt(bound) & on,
+        overlap,
+        bound,
+    }
+}
+
+/// Forces of contacts of a list, and which of them touch.
+pub(crate) struct Outcome<R: Real> {
+    pub forces: Forces<R>,
+    pub on: R::Mask,
+    /// Lanes that overlap by more than the smaller radius.
+    pub deep: u32,
+}
+
+impl<R: Pack> Outcome<R> {
+    /// The first contact that is too deep: its number in a list where the lanes begin with group `g`, the overlap and
+    /// its bound.
+    #[cold]
+    pub fn too_deep(&self, g: usize) -> (usize, f64, f64) {
+        let l = self.deep.trailing_zeros() as usize;
+        (4 * g + l, self.forces.overlap.numbers()[l], self.forces.bound.numbers()[l])
+    }
+}
+
+/// The bodies of spheres that touch: what [`Pair`] has of them, and their materials. `x`: the records of the spheres;
+/// `between` from b to a, `distance2` its square, `reach` the radii's sum.
+#[inline(always)]
+fn pair<R: Pack, const RIGID: bool>(
+    a: &impl End,
+    b: &impl End,
+    (xa, xb): ([R; 4], [R; 4]),
+    (between, distance2, reach): (V3<R>, R, R),
+) -> (Pair<R>, (R, R)) {
+    let (va, wa) = R::two_rows(|l| (a.velocity(l), a.spin(l)));
+    let (vb, wb) = R::two_rows(|l| (b.velocity(l), b.spin(l)));
+    let radius = R::columns(xa)[3];
+    let [ux, uy, uz, inverse_mass] = difference(va, vb, -1.0);
+    let [wax, way, waz, ma] = R::columns(wa);
+    let [wbx, wby, wbz, mb] = R::columns(wb);
+    let spins = (V3::new(wax, way, waz), V3::new(wbx, wby, wbz));
+    let mut offsets = (V3::zero(), V3::zero());
+    if RIGID {
+        let [ax, ay, az, _] = difference(xa, R::rows(|l| a.centre(l)), 0.0);
+        let [bx, by, bz, _] = difference(xb, R::rows(|l| b.centre(l)), 0.0);
+        offsets = (V3::new(ax, ay, az), V3::new(bx, by, bz));
+    }
+    let velocity = V3::new(ux, uy, uz);
+    (Pair { between, distance2, reach, radius, velocity, inverse_mass, spins, offsets }, (ma, mb))
 }
 
 /// Contacts between spheres. `None` when none of them touches. `law` mixes constants for materials in lanes.
@@ -127,33 +202,12 @@ pub(crate) fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bo
     if !R::any(on) {
         return None;
     }
-    let m = Approach::<R>::new::<RIGID>(a, b, (xa, xb), (between, distance2, reach));
-    let overlap = m.input.overlap;
-    let LawOutput { force, moment, dashpot, friction, .. } =
-        L::evaluate::<R, ROLL>(&law.of(m.materials.0, m.materials.1), &m.input, &mut memory, on, dt);
+    let (m, materials) = pair::<R, RIGID>(a, b, (xa, xb), (between, distance2, reach));
+    let law = law.of(materials.0, materials.1);
+    let forces = forces::<L, R, RIGID, ROLL>(&law, &m, &mut memory, on, R::splat(dt));
     remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
-    spent.dashpot = dashpot.only(on).add_to(spent.dashpot);
-    spent.friction = friction.only(on).add_to(spent.friction);
-    let force = force.only(on);
-    let lever = force.cross(m.input.normal).only(on);
-    let (la, lb) = m.levers;
-    let (mut torque_a, mut torque_b) =
-        if RIGID { (m.arms.0.cross(force), -m.arms.1.cross(force)) } else { (lever * la, lever * lb) };
-    if RIGID || ROLL {
-        let moment = moment.only(on);
-        torque_a = (torque_a + moment).only(on);
-        torque_b = (torque_b - moment).only(on);
-    }
-    let bound = m.radii.0.min(m.radii.1);
-    Some(Outcome {
-        force,
-        torque_a,
-        torque_b,
-        moment: lever,
-        levers: (la, lb),
-        on,
-        deep: R::mask_bits(overlap.gt(bound) & on),
-        overlap,
-        bound,
-    })
+    spent.dashpot = forces.dashpot.add_to(spent.dashpot);
+    spent.friction = forces.friction.add_to(spent.friction);
+    let deep = R::mask_bits(forces.deep);
+    Some(Outcome { forces, on, deep })
 }

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 /// Makes the near list anew when it is due. `surface_speed` is the bound of the external surface [m/s].
 pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let due = (2.0 * state.drift).max(state.drift + state.wall_drift) > state.near;
+    let due = used_up(state);
     if !due && !state.stale {
         return;
     }
@@ -49,6 +49,16 @@ pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
     state.lasted = 0;
     state.stale = false;
     work.searched.refreshes += 1;
+}
+
+/// Whether motion may have used the reach of the near list up.
+fn used_up(state: &State) -> bool {
+    (2.0 * state.drift).max(state.drift + state.wall_drift) > state.near
+}
+
+/// Whether [`update`] makes the near list anew.
+pub(crate) fn due(state: &State) -> bool {
+    state.stale || used_up(state)
 }
 
 /// A bound on the way that any two partners have come together since the candidates were found [m].

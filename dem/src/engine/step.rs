@@ -252,7 +252,12 @@ impl<S: Surface> Shared<'_, S> {
 }
 
 /// Adds up what the blocks report, in block order, and moves on in time.
-fn collect(model: &Model, state: &mut State, work: &mut Work, surface_speed: f64) -> Result<(), StepError> {
+pub(crate) fn collect(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface_speed: f64,
+) -> Result<(), StepError> {
     let dt = state.pace.dt;
     let mut fastest = 0.0_f64;
     let mut failure = None;

@@ -11,6 +11,7 @@
 //!
 //! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
 
+use super::kick::{Push, Single, kick_free, kick_single, resist, turn_of_sphere};
 use super::pace::Pace;
 use super::rotation::{self, Turn};
 use crate::base::Vec3;
@@ -205,14 +206,6 @@ impl<R: Four> Sums<R> {
     }
 }
 
-/// Local damping of a force or a torque against a motion, component by component.
-#[inline(always)]
-fn resist<R: Four>(load: R, motion: R, damping: f64) -> R {
-    let (zero, one) = (R::zero(), R::splat(1.0));
-    let sign = R::select(motion.gt(zero), one, (-one).only(motion.lt(zero)));
-    -(R::splat(damping) * load.abs()) * sign
-}
-
 /// Square of the largest speed of a body's points.
 fn speed2<const RIGID: bool>(block: &Block, members: &Members, k: usize) -> f64 {
     let v = xyz(&block.velocity[k]).norm();
@@ -233,6 +226,7 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
     let step = R::load(&[kick, kick, kick, 0.0]);
     let way = R::load(&[dt, dt, dt, 0.0]);
+    let damping = R::splat(drive.damping);
     let gravity = R::load(&[drive.gravity.x, drive.gravity.y, drive.gravity.z, 0.0]);
     let (mut before, mut after) = ([R::zero(); 4], [R::zero(); 4]);
     let (mut torque, mut held, mut stop) = ([R::zero(); 4], [R::zero(); 4], [R::zero(); 4]);
@@ -241,19 +235,14 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     for l in 0..4 {
         let (x, v) = (R::load(&centre[l]), R::load(&velocity[l]));
         let inverse_mass = R::splat(velocity[l][3]);
-        let mut push = R::load(force[l].force());
-        let kicked = if DAMPED {
-            push = push + gravity * (R::splat(1.0) / inverse_mass);
-            held[l] = resist(push, v, drive.damping);
-            sums.force = sums.force + held[l];
-            v + (push + held[l]) * (inverse_mass * step)
-        } else {
-            v + (push * inverse_mass + gravity) * step
-        };
+        let push = Push { force: R::load(force[l].force()), gravity, inverse_mass, step, damping };
+        let (kicked, hold) = kick_free::<R, DAMPED>(v, &push);
         torque[l] = R::load(force[l].torque());
         if DAMPED {
+            held[l] = hold;
+            sums.force = sums.force + hold;
             let mean = (v + kicked) * R::splat(0.5);
-            stop[l] = resist(torque[l], R::load(&spin[l]), drive.damping);
+            stop[l] = resist(torque[l], R::load(&spin[l]), damping);
             sums.power = sums.power + held[l] * mean;
             sums.torque = sums.torque + stop[l];
             torque[l] = torque[l] + stop[l];
@@ -276,8 +265,7 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     if clumps {
         speed2 = turn_four::<R, DAMPED>(block, members, k, (torque, stop), &drive.pace, speed2, sums);
     } else {
-        // A sphere's moment of inertia is 2/5 m r².
-        let kick = (R::splat(2.5 * kick) * inverse_mass / (r * r)).array();
+        let kick = turn_of_sphere(R::splat(kick), inverse_mass, r).array();
         for l in 0..4 {
             let old = R::load(&spin[l]);
             let new = old + torque[l] * R::splat(kick[l]);
@@ -420,21 +408,23 @@ fn general<const RIGID: bool>(
     let (mass, fixed) = (body.mass, body.fixed);
     let load = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.force);
     let load_torque = loads.iter().fold(Vec3::zeros(), |sum, a| sum + a.torque);
-    let mut force = xyz(sums.force()) + load + drive.gravity * mass;
-    let mut torque = xyz(sums.torque()) + load_torque;
-    let held = |v: &Vec3| Vec3::from_fn(|d, _| -drive.damping * v[d].abs());
-    let damping = held(&force).component_mul(&v0.map(sign));
-    let damping_torque = held(&torque).component_mul(&w0.map(sign));
-    force += damping;
-    torque += damping_torque;
+    let bit = |d: usize| fixed >> d & 1 == 1;
+    let single = Single {
+        velocity: V3::from_vec(&v0),
+        spin: V3::from_vec(&w0),
+        force: (V3::from_vec(&xyz(sums.force())), V3::from_vec(&load)),
+        torque: (V3::from_vec(&xyz(sums.torque())), V3::from_vec(&load_torque)),
+        gravity: V3::from_vec(&drive.gravity),
+        mass,
+        inertia: body.inertia.x,
+        fixed: [[bit(0), bit(1), bit(2)], [bit(3), bit(4), bit(5)]],
+        damping: drive.damping,
+    };
+    let kicked = kick_single(&single, kick);
+    let (v1, force, torque) = (kicked.velocity.to_vec(), kicked.force.to_vec(), kicked.torque.to_vec());
+    let (damping, damping_torque) = (kicked.damping.to_vec(), kicked.damping_torque.to_vec());
 
     // Translation.
-    let mut v1 = v0 + force * (kick / mass);
-    for d in 0..3 {
-        if fixed >> d & 1 == 1 {
-            v1[d] = v0[d];
-        }
-    }
     let mean = (v0 + v1) * 0.5;
     let ledger = &mut tally.ledger;
     if fixed & 7 != 0 {
@@ -450,12 +440,7 @@ fn general<const RIGID: bool>(
         let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, ledger);
         (spin, members.reach[k])
     } else {
-        let mut w1 = w0 + torque * (kick / body.inertia.x);
-        for d in 0..3 {
-            if fixed >> (d + 3) & 1 == 1 {
-                w1[d] = w0[d];
-            }
-        }
+        let w1 = kicked.spin.to_vec();
         let mean = (w0 + w1) * 0.5;
         if fixed >> 3 != 0 {
             let hold = (w1 - w0) * body.inertia.x - torque * kick;
@@ -478,11 +463,6 @@ fn general<const RIGID: bool>(
     }
     let speed = v1.norm() + xyz(&block.spin[k]).norm() * reach;
     speed * speed
-}
-
-/// Sign with sign(0) = 0: a body at rest is not damped.
-fn sign(x: f64) -> f64 {
-    if x == 0.0 { 0.0 } else { 1.0_f64.copysign(x) }
 }
 
 /// Kicks and turns a clump or a box; returns the mean spin of the kick.

@@ -1,5 +1,6 @@
 //! Integration in time.
 
+pub(crate) mod kick;
 pub(crate) mod leapfrog;
 pub(crate) mod pace;
 pub mod rotation;

@@ -105,10 +105,10 @@ fn onset<R: Real>(
     overlap: R,
     fresh: R::Mask,
     on: R::Mask,
-    dt: f64,
+    step: R,
     weighted: bool,
 ) -> Onset<R> {
-    let (one, step) = (R::splat(1.0), R::splat(dt));
+    let one = R::splat(1.0);
     let mut now = R::splat(1.5) * approach - R::splat(0.5) * remembered;
     let (mut time, mut weight) = (step, one);
     if R::any(fresh & on) {
@@ -153,15 +153,14 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         touch: &LawInput<R>,
         memory: &mut Memory<R>,
         on: R::Mask,
-        dt: f64,
+        step: R,
     ) -> LawOutput<R> {
         let (n, overlap, common) = (touch.normal, touch.overlap, &law.common);
         let approach = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * approach;
-        let step = R::splat(dt);
         let fresh = memory.rate.equals(R::splat(FRESH));
         let Onset { now, time, weight } =
-            onset::<R>(approach, memory.rate, overlap, fresh, on, dt, N::JUMPS || ROLL);
+            onset::<R>(approach, memory.rate, overlap, fresh, on, step, N::JUMPS || ROLL);
 
         let own =
             N::respond(&law.normal, touch.inverse_mass, touch.radius, overlap, memory.rate, fresh, step);
@@ -185,7 +184,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         }
         let grip = T::grip(&law.tangential, own.circle);
         let limit = T::limit(&law.tangential, common.friction, normal, touch.radius);
-        let slid = slide::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, dt, on);
+        let slid = slide::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, step, on);
         dashpot = dashpot + slid.dashpot;
         let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };
 
@@ -207,7 +206,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
                 radius: touch.radius,
                 time,
             };
-            let t = turning(&part, &mut memory.roll, &mut memory.twist, n, touch.spin, dt, on);
+            let t = turning(&part, &mut memory.roll, &mut memory.twist, n, touch.spin, step, on);
             moment = t.force;
             dashpot = dashpot + t.dashpot;
             friction = friction + t.friction;

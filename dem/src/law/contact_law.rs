@@ -12,14 +12,14 @@ pub trait ContactLaw: Constants {
     /// Mixes the constants of two materials.
     fn mix(pair: &Pair<'_>) -> Self;
 
-    /// The forces of the contacts in the lanes `on`, over a step `dt` [s]. Advances their memory; what it does to the
+    /// The forces of the contacts in the lanes `on`, over a step [s]. Advances their memory; what it does to the
     /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and with adhesion.
     fn evaluate<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,
         touch: &LawInput<R>,
         memory: &mut Memory<R>,
         on: R::Mask,
-        dt: f64,
+        step: R,
     ) -> LawOutput<R>;
 
     /// Energy stored in the normal spring, and in the tangential, rolling and twisting springs together [J].

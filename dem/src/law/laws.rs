@@ -163,6 +163,11 @@ impl Laws {
         with_law!(self, t => t.get(a, b).longest_spring(overlap, radius, history))
     }
 
+    /// How many materials there are.
+    pub fn materials(&self) -> u32 {
+        with_law!(self, t => t.count as u32)
+    }
+
     pub fn rolls(&self) -> bool {
         with_law!(self, t => t.rolls())
     }

@@ -78,7 +78,7 @@ macro_rules! combinations {
                 touch: &$crate::law::contact::LawInput<R>,
                 memory: &mut $crate::law::contact::Memory<R>,
                 on: R::Mask,
-                dt: f64,
+                step: R,
             ) -> $crate::law::contact::LawOutput<R> {
                 use $crate::law::contact::{LawOutput, Memory};
                 let before = *memory;
@@ -88,7 +88,7 @@ macro_rules! combinations {
                     if R::any(own) {
                         let mut after = before;
                         let force = <Composed<$normal, $tangential>>::evaluate::<R, ROLL>(
-                            &law.$row, touch, &mut after, own, dt,
+                            &law.$row, touch, &mut after, own, step,
                         );
                         out = LawOutput::select(own, &force, &out);
                         *memory = Memory::select(own, &after, memory);

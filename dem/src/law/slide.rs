@@ -30,7 +30,7 @@ pub(crate) fn plane<R: Real>(
     damping: R,
     limit: R,
     time: R,
-    dt: f64,
+    step: R,
     on: R::Mask,
 ) -> Slid<V3<R>, R> {
     let stiffness = grip.stiffness;
@@ -49,7 +49,7 @@ pub(crate) fn plane<R: Real>(
     let stretched = before + velocity * time;
     let viscous = velocity * damping;
     let mut force = -(stretched * stiffness + viscous);
-    let mut dashpot = viscous.dot(velocity) * R::splat(dt);
+    let mut dashpot = viscous.dot(velocity) * step;
     let mut friction = R::zero();
     *spring = stretched;
     let size2 = force.norm2();
@@ -71,7 +71,7 @@ pub(crate) fn plane<R: Real>(
             let held = (own + ends) * (R::splat(0.5) * stiffness) + rate * damping;
             short = V3::select(damped, ends, short);
             lost = R::select(damped, held.dot(velocity - rate) * time, lost);
-            let viscous = rate.norm2() * damping * R::splat(dt);
+            let viscous = rate.norm2() * damping * step;
             dashpot = R::select(damped & slides, viscous, dashpot);
         }
         short = short.only(sprung);
@@ -91,7 +91,7 @@ pub(crate) fn line<R: Real>(
     damping: R,
     limit: R,
     time: R,
-    dt: f64,
+    step: R,
 ) -> Slid<R, R> {
     let before = *spring;
     let stretched = before + velocity * time;
@@ -108,7 +108,7 @@ pub(crate) fn line<R: Real>(
     let lost = held.only(damped) + (R::splat(0.5) * stiffness * (short + before)).only(!damped);
     *spring = R::select(slides, short, stretched);
     let power = R::select(slides & damped, rate * rate * damping, viscous * velocity);
-    Slid { force, dashpot: power * R::splat(dt), friction: (lost * slide).only(slides) }
+    Slid { force, dashpot: power * step, friction: (lost * slide).only(slides) }
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub(crate) fn turning<R: Real>(
     twist: &mut R,
     normal: V3<R>,
     spin: V3<R>,
-    dt: f64,
+    step: R,
     on: R::Mask,
 ) -> Slid<V3<R>, R> {
     let about = spin.dot(normal);
@@ -48,7 +48,7 @@ pub(crate) fn turning<R: Real>(
         t.damping.only(rolls),
         t.rolling * t.normal_force,
         t.time,
-        dt,
+        step,
         on & rolls,
     );
     let w = line(
@@ -58,7 +58,7 @@ pub(crate) fn turning<R: Real>(
         t.damping.only(twists),
         t.twisting * t.normal_force,
         t.time,
-        dt,
+        step,
     );
     *roll = roll.only(rolls);
     *twist = twist.only(twists);

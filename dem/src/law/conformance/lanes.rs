@@ -47,7 +47,7 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
             roll: vector(|c| Vec3::new(c.history.turn[0], c.history.turn[1], c.history.turn[2])),
             twist: of(|c| c.history.turn[3]),
         };
-        let f = L::evaluate::<R, ROLL>(&law, &touch, &mut memory, R::below(8), cases[0].dt);
+        let f = L::evaluate::<R, ROLL>(&law, &touch, &mut memory, R::below(8), R::splat(cases[0].dt));
         let left = L::stored_in_springs::<R, ROLL>(&law, &memory);
         let numbers = [
             [f.force.x, f.force.y, f.force.z, f.normal, f.moment.x, f.moment.y, f.moment.z, f.dashpot],

@@ -1,0 +1,303 @@
+//! The back end: what is handed to a device and back, and in which order its kernels run.
+
+use super::arrays::{Constants, Lists, Memory, Motion};
+use super::layout::{Count, Features, HELD_WIDTH, Number, QUANTITIES, Slot};
+use super::machine::{Call, Machine};
+use super::scope::{self, Unsupported};
+use super::text;
+use crate::base::Vec3;
+use crate::base::error::StepError;
+use crate::base::ledger::Ledger;
+use crate::contact::planes;
+use crate::engine::input::AppliedForce;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::engine::{neighbours, order, step};
+use crate::spatial::surface::NoSurface;
+
+/// The text of the kernels for a model: C and CUDA at once.
+///
+/// # Errors
+/// [`Unsupported`] names what a device does not compute.
+pub fn source(model: &Model) -> Result<String, Unsupported> {
+    scope::check(model)?;
+    Ok(text::text(&model.laws, &text::features(model)))
+}
+
+/// Steps on a device. A state that it has taken over is whole again after [`Device::download`].
+pub struct Device<M> {
+    machine: M,
+    /// What the processor needs for the search, and for the steps that it makes itself.
+    work: Work,
+    call: Call,
+    features: Features,
+    books: Vec<f64>,
+    /// Whether the device is ahead of the state.
+    ahead: bool,
+    /// Contacts on the device.
+    contacts: usize,
+}
+
+/// Arrays that change places after each step.
+const PAIRS: [(Slot, Slot); 5] = [
+    (Slot::OldX, Slot::NewX),
+    (Slot::OldV, Slot::NewV),
+    (Slot::OldW, Slot::NewW),
+    (Slot::OldMemory, Slot::NewMemory),
+    (Slot::OldTurn, Slot::NewTurn),
+];
+
+impl<M: Machine> Device<M> {
+    /// A device that has taken a state over. `machine` has the kernels of the model's [`source`].
+    ///
+    /// # Errors
+    /// The device has no memory for it, or does not respond.
+    pub fn new(machine: M, model: &Model, state: &State) -> Result<Device<M>, StepError> {
+        let work = Work::new(model, state);
+        let mut call = Call::new();
+        let materials = model.laws.materials();
+        let g = model.gravity;
+        call.number(Number::GravityX, g.x);
+        call.number(Number::GravityY, g.y);
+        call.number(Number::GravityZ, g.z);
+        call.number(Number::Damping, model.damping);
+        call.count(Count::Materials, materials as usize);
+        let mut device = Device {
+            machine,
+            work,
+            call,
+            features: text::features(model),
+            books: Vec::new(),
+            ahead: false,
+            contacts: 0,
+        };
+        let law = text::law_constants(&model.laws, materials);
+        device.put(Slot::Law, &law).map_err(|e| failed(state, e))?;
+        device.take_over(model, state).map_err(|e| failed(state, e))?;
+        Ok(device)
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &M {
+        &self.machine
+    }
+
+    /// How often candidates were searched and how often the near list was made from them.
+    pub fn rebuilds(&self) -> (u64, u64) {
+        self.work.rebuilds()
+    }
+
+    fn buffer(&self, slot: Slot) -> usize {
+        self.call.buffers[slot as usize]
+    }
+
+    fn put(&mut self, slot: Slot, numbers: &[f64]) -> Result<(), String> {
+        self.machine.put(self.call.buffers[slot as usize], numbers)
+    }
+
+    fn put_counts(&mut self, slot: Slot, counts: &[u32]) -> Result<(), String> {
+        self.machine.put_counts(self.call.buffers[slot as usize], counts)
+    }
+
+    fn reserve(&mut self, slot: Slot, numbers: usize) -> Result<(), String> {
+        self.machine.reserve(self.call.buffers[slot as usize], numbers)
+    }
+
+    /// Takes over another state of the same model, or this one after something else has changed it.
+    ///
+    /// # Errors
+    /// As [`Device::new`].
+    pub fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
+        self.work.follow(model, state);
+        self.take_over(model, state).map_err(|e| failed(state, e))
+    }
+
+    fn take_over(&mut self, model: &Model, state: &State) -> Result<(), String> {
+        let motion = Motion::of(state);
+        let n = motion.x.len();
+        self.call.count(Count::Bodies, n);
+        self.call.count(Count::Blocks, state.blocks.len());
+        for (slot, list) in [(Slot::OldX, &motion.x), (Slot::OldV, &motion.v), (Slot::OldW, &motion.w)] {
+            self.put(slot, list.as_flattened())?;
+        }
+        for slot in [Slot::NewX, Slot::NewV, Slot::NewW] {
+            self.reserve(slot, 4 * n)?;
+        }
+        self.reserve(Slot::Speed2, n)?;
+        let booked = self.features.quantities() * state.blocks.len();
+        self.reserve(Slot::Books, booked)?;
+        self.books.resize(booked, 0.0);
+        self.reserve(Slot::HeldBy, if self.features.held { HELD_WIDTH * n } else { 0 })?;
+        self.put_counts(Slot::Flags, &[0])?;
+        let constants = Constants::of(model, state, &self.work);
+        self.put_counts(Slot::Single, &constants.single)?;
+        self.put(Slot::Constants, constants.inertia.as_flattened())?;
+        self.take_lists(state)?;
+        self.ahead = false;
+        Ok(())
+    }
+
+    /// The near list and the memory of its contacts.
+    fn take_lists(&mut self, state: &State) -> Result<(), String> {
+        let lists = Lists::of(state, &self.work);
+        let memory = Memory::of(state);
+        let count = lists.ends.len();
+        self.contacts = count;
+        self.put_counts(Slot::Ends, lists.ends.as_flattened())?;
+        self.put_counts(Slot::Start, &lists.start)?;
+        self.put_counts(Slot::Entries, &lists.entries)?;
+        self.put_counts(Slot::Ranges, lists.ranges.as_flattened())?;
+        self.put(Slot::OldMemory, memory.spring.as_flattened())?;
+        self.put(Slot::OldTurn, memory.turn.as_flattened())?;
+        self.reserve(Slot::NewMemory, 4 * count)?;
+        self.reserve(Slot::NewTurn, 4 * count)?;
+        self.reserve(Slot::Spent, 2 * count)?;
+        self.reserve(Slot::Walls, 8 * (count - lists.first_plane as usize))?;
+        self.call.count(Count::FirstPlane, lists.first_plane as usize);
+        Ok(())
+    }
+
+    /// Makes `state` whole: motion and memory of contacts as they are now.
+    ///
+    /// # Errors
+    /// The device does not respond.
+    pub fn download(&mut self, state: &mut State) -> Result<(), StepError> {
+        if self.ahead {
+            self.bring_back(state).map_err(|e| failed(state, e))?;
+            self.ahead = false;
+        }
+        Ok(())
+    }
+
+    fn bring_back(&mut self, state: &mut State) -> Result<(), String> {
+        let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
+        let mut motion = Motion { x: vec![[0.0; 4]; n], v: vec![[0.0; 4]; n], w: vec![[0.0; 4]; n] };
+        let mut memory =
+            Memory { spring: vec![[0.0; 4]; self.contacts], turn: vec![[0.0; 4]; self.contacts] };
+        let lists = [
+            (Slot::OldX, &mut motion.x),
+            (Slot::OldV, &mut motion.v),
+            (Slot::OldW, &mut motion.w),
+            (Slot::OldMemory, &mut memory.spring),
+            (Slot::OldTurn, &mut memory.turn),
+        ];
+        for (slot, list) in lists {
+            self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
+        }
+        motion.put(state);
+        memory.put(state);
+        Ok(())
+    }
+
+    /// Advances the state by one step of [`State::dt`]. Its motion and the memory of its contacts stay on the device.
+    ///
+    /// # Errors
+    /// [`StepError`]; the state is then not fit to go on from.
+    pub fn step(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        applied: &[AppliedForce],
+    ) -> Result<(), StepError> {
+        let new_order = state.steps > 0 && state.steps.is_multiple_of(order::EVERY);
+        if new_order || !applied.is_empty() {
+            return self.by_processor(model, state, applied);
+        }
+        if neighbours::due(state) {
+            self.download(state)?;
+            neighbours::update(model, state, &mut self.work, &NoSurface);
+            self.take_lists(state).map_err(|e| failed(state, e))?;
+        }
+        let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
+        if failed_there {
+            // The arrays of the step before are there still: made again, the step says what has failed.
+            self.ahead = true;
+            return self.by_processor(model, state, applied);
+        }
+        self.exchange();
+        self.ahead = true;
+        self.book(model, state);
+        step::collect(model, state, &mut self.work, 0.0)
+    }
+
+    /// Has the engine make a step.
+    fn by_processor(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        applied: &[AppliedForce],
+    ) -> Result<(), StepError> {
+        self.download(state)?;
+        step::step(model, state, &mut self.work, &NoSurface, applied)?;
+        self.take_over(model, state).map_err(|e| failed(state, e))
+    }
+
+    /// Runs the kernels of a step; whether it has failed.
+    fn launch(&mut self, model: &Model, state: &State) -> Result<bool, String> {
+        planes::now(&model.planes, &state.planes, &mut self.work.planes);
+        let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
+        self.put(Slot::Planes, planes.as_flattened())?;
+        let pace = state.pace;
+        self.call.number(Number::Step, pace.kick());
+        self.call.number(Number::Way, pace.dt);
+        self.call.number(Number::Bound, 0.5 * model.radii.0 / pace.dt);
+        self.machine.launch("bodies", state.present_count(), &self.call)?;
+        self.machine.launch("books", self.books.len(), &self.call)?;
+        let mut flags = [0];
+        let (flag, books) = (self.buffer(Slot::Flags), self.buffer(Slot::Books));
+        self.machine.get_counts(flag, &mut flags)?;
+        self.machine.get(books, &mut self.books)?;
+        Ok(flags[0] != 0)
+    }
+
+    /// What was written becomes what is read.
+    fn exchange(&mut self) {
+        for (old, new) in PAIRS {
+            self.call.buffers.swap(old as usize, new as usize);
+        }
+    }
+
+    /// Books what the device has summed up, block by block, where the engine's loops would.
+    fn book(&mut self, model: &Model, state: &State) {
+        let dt = state.pace.kick();
+        let impulse = model.gravity * dt;
+        for (b, q) in self.books.chunks_exact(self.features.quantities()).enumerate() {
+            let vector = |k: usize| Vec3::new(q[k], q[k + 1], q[k + 2]);
+            let cross = &mut self.work.cross[b];
+            cross.clear_books();
+            (cross.dashpot, cross.friction) = (q[0], q[1]);
+            let tally = &mut self.work.blocks[b].tally;
+            let ledger = &mut tally.ledger;
+            *ledger = Ledger::default();
+            ledger.dissipated_dashpot = q[2] + q[4];
+            ledger.dissipated_friction = q[3] + q[5];
+            ledger.work_walls = q[6] * dt;
+            ledger.walls.linear = vector(7) * dt;
+            ledger.walls.angular = vector(10) * dt;
+            ledger.gravity.linear = impulse * self.work.members[b].mass_sum;
+            ledger.gravity.angular = vector(13).cross(&impulse);
+            tally.fastest = q[16].sqrt();
+            if let Some(held) = q.get(QUANTITIES..).filter(|q| !q.is_empty()) {
+                book_held(ledger, held, dt, self.features.damped);
+            }
+            tally.failure = None;
+        }
+    }
+}
+
+/// Books local damping and fixed motions of a block.
+fn book_held(ledger: &mut Ledger, q: &[f64], kick: f64, damped: bool) {
+    let vector = |k: usize| Vec3::new(q[k], q[k + 1], q[k + 2]);
+    ledger.work_constraints = q[7];
+    (ledger.constraints.linear, ledger.constraints.angular) = (vector(8), vector(11));
+    if damped {
+        ledger.dissipated_local_damping = q[14] - q[0] * kick;
+        ledger.local_damping.linear = vector(15) + vector(1) * kick;
+        ledger.local_damping.angular = vector(18) + vector(4) * kick;
+    }
+}
+
+fn failed(state: &State, problem: String) -> StepError {
+    StepError::Device { time: state.time, problem }
+}

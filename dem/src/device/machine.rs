@@ -1,0 +1,76 @@
+//! What carries the kernels out.
+
+use super::layout::{Arguments, Count, Number, Slot};
+
+/// A launch: which array is where, and the numbers and counts.
+#[derive(Clone, Debug)]
+pub struct Call {
+    /// Number of the buffer for each address that the text knows.
+    pub buffers: Vec<usize>,
+    numbers: [f64; Number::COUNT],
+    counts: [u32; Count::COUNT],
+}
+
+impl Call {
+    /// Buffers in their places, numbers and counts zero.
+    pub(super) fn new() -> Call {
+        Call { buffers: (0..Slot::COUNT).collect(), numbers: [0.0; Number::COUNT], counts: [0; Count::COUNT] }
+    }
+
+    pub(super) fn number(&mut self, which: Number, x: f64) {
+        self.numbers[which as usize] = x;
+    }
+
+    pub(super) fn count(&mut self, which: Count, n: usize) {
+        self.counts[which as usize] = n as u32;
+    }
+
+    /// The arguments as kernels take them: a structure by value on a device. `address`: of a buffer.
+    pub fn arguments(&self, address: impl Fn(usize) -> u64) -> Arguments {
+        let mut at = [0; Slot::COUNT];
+        at.iter_mut().zip(&self.buffers).for_each(|(to, &buffer)| *to = address(buffer));
+        Arguments { at, number: self.numbers, count: self.counts }
+    }
+}
+
+/// A device: buffers by number, and kernels by name. Messages say what went wrong.
+pub trait Machine {
+    /// Makes a buffer hold these numbers, whatever its size was.
+    ///
+    /// # Errors
+    /// No memory is left, or the device does not respond.
+    fn put(&mut self, buffer: usize, numbers: &[f64]) -> Result<(), String>;
+
+    /// Makes a buffer hold these counts.
+    ///
+    /// # Errors
+    /// As [`Machine::put`].
+    fn put_counts(&mut self, buffer: usize, counts: &[u32]) -> Result<(), String>;
+
+    /// Makes a buffer hold so many numbers, whatever they are.
+    ///
+    /// # Errors
+    /// As [`Machine::put`].
+    fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String>;
+
+    /// Reads as many numbers of a buffer as there is room for.
+    ///
+    /// # Errors
+    /// The device does not respond.
+    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String>;
+
+    /// Reads counts of a buffer.
+    ///
+    /// # Errors
+    /// As [`Machine::get`].
+    fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String>;
+
+    /// Runs a kernel with so many threads, after all that was launched before.
+    ///
+    /// # Errors
+    /// The device does not respond.
+    fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String>;
+}
+
+/// The kernels that a text has.
+pub const KERNELS: [&str; 2] = ["bodies", "books"];

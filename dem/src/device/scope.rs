@@ -1,0 +1,35 @@
+//! What a device computes: models with anything else are refused by name.
+
+use crate::engine::model::Model;
+use crate::shape::Shape;
+
+/// What a model has and a device does not compute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} are not computed on a device, only on the processor")]
+pub struct Unsupported(pub &'static str);
+
+/// Whether a device computes all that a model has.
+///
+/// # Errors
+/// [`Unsupported`] names the first thing that it does not.
+pub fn check(model: &Model) -> Result<(), Unsupported> {
+    let shape = |k: usize| model.shape(k);
+    let bodies = || 0..model.body_count();
+    let (any_clump, any_solid) = (
+        bodies().any(|k| matches!(shape(k), Shape::Clump(_))),
+        bodies().any(|k| matches!(shape(k), Shape::Box { .. } | Shape::Polyhedron(_))),
+    );
+    let all = [
+        (any_clump, "clumps"),
+        (any_solid, "boxes and polyhedra"),
+        (!model.walls.walls.is_empty(), "walls other than planes"),
+        (model.surface_material.is_some(), "contacts with a solid"),
+        (!model.body_forces.is_empty(), "body forces other than gravity"),
+        (model.periodic.is_some(), "periodic borders"),
+        (!model.bonds.is_empty(), "bonds"),
+    ];
+    match all.into_iter().find(|(there, _)| *there) {
+        Some((_, name)) => Err(Unsupported(name)),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,315 @@
+//! A number that writes down what is done to it: formulas written over [`Real`] become text of C.
+//!
+//! Equal operations on equal operands are written once, what no result needs is left out. A guard `any` of a formula counts as true
+//! and `all` as false: both ways are written down, and the formula selects by the same mask what holds. Nothing is rearranged, so
+//! the text has the bits of the formula wherever products are not contracted with sums.
+
+use crate::lanes::{Real, V3};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// One operation; operands are numbers of operations before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Op {
+    Constant(u64),
+    Input(u32),
+    Negate(u32),
+    Root(u32),
+    Magnitude(u32),
+    /// An operator of C between two operands.
+    Infix(&'static str, u32, u32),
+    Smaller(u32, u32),
+    Larger(u32, u32),
+    Not(u32),
+    Select(u32, u32, u32),
+}
+
+impl Op {
+    fn operands(&self) -> [Option<u32>; 3] {
+        match *self {
+            Op::Constant(_) | Op::Input(_) => [None; 3],
+            Op::Negate(a) | Op::Root(a) | Op::Magnitude(a) | Op::Not(a) => [Some(a), None, None],
+            Op::Infix(_, a, b) | Op::Smaller(a, b) | Op::Larger(a, b) => [Some(a), Some(b), None],
+            Op::Select(m, a, b) => [Some(m), Some(a), Some(b)],
+        }
+    }
+
+    /// Whether it yields a truth value.
+    fn is_truth(&self) -> bool {
+        matches!(self, Op::Not(_) | Op::Infix("<" | "<=" | "==" | "&" | "|", ..))
+    }
+}
+
+#[derive(Default)]
+struct Tape {
+    ops: Vec<Op>,
+    known: HashMap<Op, u32>,
+    inputs: Vec<String>,
+    /// Constants that [`next`] has handed out.
+    counted: usize,
+    /// Constants that [`value`] has seen.
+    values: Vec<f64>,
+}
+
+thread_local!(static TAPE: RefCell<Tape> = RefCell::default());
+
+fn put(op: Op) -> u32 {
+    TAPE.with_borrow_mut(|t| {
+        let Tape { ops, known, .. } = t;
+        *known.entry(op).or_insert_with(|| {
+            ops.push(op);
+            ops.len() as u32 - 1
+        })
+    })
+}
+
+/// A number on the tape of this thread.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Recorded(u32);
+
+/// A truth value: one that is known while recording, or one on the tape.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Truth {
+    Known(bool),
+    Open(u32),
+}
+
+/// Begins an empty tape on this thread.
+pub(super) fn begin() {
+    TAPE.set(Tape::default());
+}
+
+fn named(expression: String) -> u32 {
+    let k = TAPE.with_borrow_mut(|t| {
+        t.inputs.push(expression);
+        t.inputs.len() as u32 - 1
+    });
+    put(Op::Input(k))
+}
+
+/// A number that an expression of C yields where the text will stand.
+pub(super) fn input(expression: impl Into<String>) -> Recorded {
+    Recorded(named(expression.into()))
+}
+
+/// The numbers x, y, z of a record of C.
+pub(super) fn vector(record: &str) -> V3<Recorded> {
+    V3::new(input(format!("{record}.x")), input(format!("{record}.y")), input(format!("{record}.z")))
+}
+
+/// A truth value that an expression of C yields.
+pub(super) fn truth(expression: &str) -> Truth {
+    Truth::Open(named(expression.into()))
+}
+
+/// The next of the constants `k[0]`, `k[1]`, … in the order in which they are fetched.
+pub(super) fn next(_: &[f64; 8]) -> Recorded {
+    let k = TAPE.with_borrow_mut(|t| {
+        t.counted += 1;
+        t.counted - 1
+    });
+    input(format!("k[{k}]"))
+}
+
+/// Notes the value of a constant; see [`values`].
+pub(super) fn value(x: &[f64; 8]) -> Recorded {
+    TAPE.with_borrow_mut(|t| t.values.push(x[0]));
+    Recorded::splat(x[0])
+}
+
+/// The constants that [`value`] has seen since [`begin`], in the order of [`next`].
+pub(super) fn values() -> Vec<f64> {
+    TAPE.with_borrow(|t| t.values.clone())
+}
+
+macro_rules! infix {
+    ($trait:ident, $f:ident, $sign:literal) => {
+        impl $trait for Recorded {
+            type Output = Recorded;
+            fn $f(self, o: Recorded) -> Recorded {
+                Recorded(put(Op::Infix($sign, self.0, o.0)))
+            }
+        }
+    };
+}
+infix!(Add, add, "+");
+infix!(Sub, sub, "-");
+infix!(Mul, mul, "*");
+infix!(Div, div, "/");
+
+impl Neg for Recorded {
+    type Output = Recorded;
+    fn neg(self) -> Recorded {
+        Recorded(put(Op::Negate(self.0)))
+    }
+}
+
+impl BitAnd for Truth {
+    type Output = Truth;
+    fn bitand(self, o: Truth) -> Truth {
+        match (self, o) {
+            (Truth::Known(true), x) | (x, Truth::Known(true)) => x,
+            (Truth::Known(false), _) | (_, Truth::Known(false)) => Truth::Known(false),
+            (Truth::Open(a), Truth::Open(b)) => Truth::Open(put(Op::Infix("&", a, b))),
+        }
+    }
+}
+
+impl BitOr for Truth {
+    type Output = Truth;
+    fn bitor(self, o: Truth) -> Truth {
+        match (self, o) {
+            (Truth::Known(false), x) | (x, Truth::Known(false)) => x,
+            (Truth::Known(true), _) | (_, Truth::Known(true)) => Truth::Known(true),
+            (Truth::Open(a), Truth::Open(b)) => Truth::Open(put(Op::Infix("|", a, b))),
+        }
+    }
+}
+
+impl Not for Truth {
+    type Output = Truth;
+    fn not(self) -> Truth {
+        match self {
+            Truth::Known(x) => Truth::Known(!x),
+            Truth::Open(a) => Truth::Open(put(Op::Not(a))),
+        }
+    }
+}
+
+impl Real for Recorded {
+    type Mask = Truth;
+
+    fn splat(x: f64) -> Recorded {
+        Recorded(put(Op::Constant(x.to_bits())))
+    }
+    fn sqrt(self) -> Recorded {
+        Recorded(put(Op::Root(self.0)))
+    }
+    fn abs(self) -> Recorded {
+        Recorded(put(Op::Magnitude(self.0)))
+    }
+    fn min(self, o: Recorded) -> Recorded {
+        Recorded(put(Op::Smaller(self.0, o.0)))
+    }
+    fn max(self, o: Recorded) -> Recorded {
+        Recorded(put(Op::Larger(self.0, o.0)))
+    }
+    fn lt(self, o: Recorded) -> Truth {
+        Truth::Open(put(Op::Infix("<", self.0, o.0)))
+    }
+    fn le(self, o: Recorded) -> Truth {
+        Truth::Open(put(Op::Infix("<=", self.0, o.0)))
+    }
+    fn equals(self, o: Recorded) -> Truth {
+        Truth::Open(put(Op::Infix("==", self.0, o.0)))
+    }
+    fn select(mask: Truth, yes: Recorded, no: Recorded) -> Recorded {
+        match mask {
+            Truth::Known(true) => yes,
+            Truth::Known(false) => no,
+            Truth::Open(_) if yes.0 == no.0 => yes,
+            Truth::Open(m) => Recorded(put(Op::Select(m, yes.0, no.0))),
+        }
+    }
+    fn any(mask: Truth) -> bool {
+        !matches!(mask, Truth::Known(false))
+    }
+    fn all(mask: Truth) -> bool {
+        matches!(mask, Truth::Known(true))
+    }
+}
+
+/// What the text assigns: an expression of C to the left, and what is on the tape.
+#[derive(Default)]
+pub(super) struct Results(Vec<(String, u32)>);
+
+impl Results {
+    pub fn number(&mut self, to: impl Into<String>, x: Recorded) {
+        self.0.push((to.into(), x.0));
+    }
+
+    /// The numbers x, y, z of a record of C.
+    pub fn vector(&mut self, to: &str, v: V3<Recorded>) {
+        for (c, x) in ["x", "y", "z"].iter().zip(v.array()) {
+            self.number(format!("{to}.{c}"), x);
+        }
+    }
+
+    /// Vectors one after another in an array of C.
+    pub fn row(&mut self, to: &str, list: &[V3<Recorded>]) {
+        let numbers = list.iter().flat_map(|v| v.array());
+        numbers.enumerate().for_each(|(k, x)| self.number(format!("{to}[{k}]"), x));
+    }
+
+    pub fn truth(&mut self, to: &str, t: Truth) {
+        match t {
+            Truth::Open(k) => self.0.push((to.into(), k)),
+            Truth::Known(x) => self.0.push((to.into(), Recorded::splat(f64::from(x)).0)),
+        }
+    }
+
+    /// The lines of C that these results need of this thread's tape.
+    pub fn text(&self) -> String {
+        TAPE.with_borrow(|t| {
+            let mut live = vec![false; t.ops.len()];
+            self.0.iter().for_each(|(_, k)| live[*k as usize] = true);
+            for k in (0..t.ops.len()).rev() {
+                if live[k] {
+                    t.ops[k].operands().into_iter().flatten().for_each(|a| live[a as usize] = true);
+                }
+            }
+            let mut out = String::new();
+            for (k, op) in t.ops.iter().enumerate().filter(|(k, _)| live[*k]) {
+                if let Some(expression) = t.expression(op) {
+                    let kind = if op.is_truth() { "int" } else { "real" };
+                    _ = writeln!(out, "    const {kind} t{k} = {expression};");
+                }
+            }
+            for (to, k) in &self.0 {
+                _ = writeln!(out, "    {to} = {};", t.operand(*k));
+            }
+            out
+        })
+    }
+}
+
+impl Tape {
+    /// How an operation is written; `None` for what is written where it is used.
+    fn expression(&self, op: &Op) -> Option<String> {
+        let of = |k: u32| self.operand(k);
+        Some(match *op {
+            Op::Constant(_) | Op::Input(_) => return None,
+            Op::Negate(a) => format!("-{}", of(a)),
+            Op::Root(a) => format!("sqrt({})", of(a)),
+            Op::Magnitude(a) => format!("fabs({})", of(a)),
+            Op::Infix(sign, a, b) => format!("{} {sign} {}", of(a), of(b)),
+            Op::Smaller(a, b) => format!("{0} < {1} ? {0} : {1}", of(a), of(b)),
+            Op::Larger(a, b) => format!("{0} > {1} ? {0} : {1}", of(a), of(b)),
+            Op::Not(a) => format!("!{}", of(a)),
+            Op::Select(m, a, b) => format!("{} ? {} : {}", of(m), of(a), of(b)),
+        })
+    }
+
+    fn operand(&self, k: u32) -> String {
+        match self.ops[k as usize] {
+            Op::Constant(bits) => literal(f64::from_bits(bits)),
+            Op::Input(i) => self.inputs[i as usize].clone(),
+            _ => format!("t{k}"),
+        }
+    }
+}
+
+/// A number with all its digits.
+pub(super) fn literal(x: f64) -> String {
+    let bits = x.to_bits();
+    let (exponent, digits) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
+    let text = match (exponent, digits) {
+        (0, 0) => "0.0".to_string(),
+        (0, _) => format!("0x0.{digits:013x}p-1022"),
+        (0x7ff, 0) => "ENDLESS".to_string(),
+        _ => format!("0x1.{digits:013x}p{}", exponent as i64 - 1023),
+    };
+    if bits >> 63 == 1 { format!("(-{text})") } else { text }
+}

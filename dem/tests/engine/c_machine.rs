@@ -1,0 +1,132 @@
+//! A device of the system's C compiler: the text of the kernels as a library, its threads one after another.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
+use trackbed_dem::device::{Arguments, Call, Machine};
+
+type Kernel = unsafe extern "C" fn(*const Arguments, u32, i32);
+
+/// A buffer: of numbers, or of counts.
+enum Buffer {
+    Numbers(Vec<f64>),
+    Counts(Vec<u32>),
+}
+
+/// The device. Threads run from the first to the last and from the last to the first by turns: whatever depended on their
+/// order would show.
+pub struct CMachine {
+    library: libloading::Library,
+    folder: PathBuf,
+    buffers: Vec<Buffer>,
+    launches: u32,
+}
+
+/// Whether there is a C compiler; says so where there is none.
+pub fn compiler_is_there() -> bool {
+    let there = Command::new("cc").arg("--version").output().is_ok_and(|o| o.status.success());
+    if !there {
+        eprintln!("skipped: no C compiler (cc) on this machine, so the text of the kernels is not run");
+    }
+    there
+}
+
+impl CMachine {
+    /// Compiles a text.
+    pub fn new(text: &str) -> CMachine {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name =
+            format!("trackbed-kernels-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        let (source, library) = (folder.join("kernels.c"), folder.join("kernels.so"));
+        std::fs::write(&source, text).unwrap();
+        compile(&source, &library);
+        // SAFETY: the library is the one just compiled, whose loading runs no code.
+        let library = unsafe { libloading::Library::new(&library) }.unwrap();
+        CMachine { library, folder, buffers: Vec::new(), launches: 0 }
+    }
+
+    fn set(&mut self, buffer: usize, to: Buffer) {
+        while self.buffers.len() <= buffer {
+            self.buffers.push(Buffer::Numbers(Vec::new()));
+        }
+        self.buffers[buffer] = to;
+    }
+}
+
+fn compile(source: &Path, library: &Path) {
+    let options = [
+        "-std=c11",
+        "-O2",
+        "-ffp-contract=off",
+        "-fno-math-errno",
+        "-Wall",
+        "-Wno-unused",
+        "-Werror",
+        "-shared",
+    ];
+    let done =
+        Command::new("cc").args(options).args(["-fPIC", "-o"]).args([library, source]).arg("-lm").output();
+    let done = done.unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
+impl Drop for CMachine {
+    fn drop(&mut self) {
+        _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+impl Machine for CMachine {
+    fn put(&mut self, buffer: usize, numbers: &[f64]) -> Result<(), String> {
+        self.set(buffer, Buffer::Numbers(numbers.to_vec()));
+        Ok(())
+    }
+
+    fn put_counts(&mut self, buffer: usize, counts: &[u32]) -> Result<(), String> {
+        self.set(buffer, Buffer::Counts(counts.to_vec()));
+        Ok(())
+    }
+
+    fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String> {
+        // Whatever is read before it is written spoils the result.
+        self.set(buffer, Buffer::Numbers(vec![f64::NAN; numbers]));
+        Ok(())
+    }
+
+    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
+        match &self.buffers[buffer] {
+            Buffer::Numbers(own) => numbers.copy_from_slice(own),
+            Buffer::Counts(_) => return Err(format!("buffer {buffer} holds counts")),
+        }
+        Ok(())
+    }
+
+    fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
+        match &self.buffers[buffer] {
+            Buffer::Counts(own) => counts.copy_from_slice(own),
+            Buffer::Numbers(_) => return Err(format!("buffer {buffer} holds numbers")),
+        }
+        Ok(())
+    }
+
+    fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String> {
+        let addresses: Vec<u64> = self
+            .buffers
+            .iter_mut()
+            .map(|b| match b {
+                Buffer::Numbers(n) => n.as_mut_ptr() as u64,
+                Buffer::Counts(n) => n.as_mut_ptr() as u64,
+            })
+            .collect();
+        let arguments = call.arguments(|buffer| addresses.get(buffer).copied().unwrap_or(0));
+        self.launches += 1;
+        // SAFETY: the function has this signature, and reads and writes within the buffers as the device has laid them out.
+        unsafe {
+            let kernel = self.library.get::<Kernel>(kernel.as_bytes()).map_err(|e| e.to_string())?;
+            kernel(&arguments, threads as u32, (self.launches % 4 > 1) as i32);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! The kernels that a device is given, compiled by the system's C compiler: every bit of the state is the engine's.
+
+use crate::c_machine::{CMachine, compiler_is_there};
+use crate::scene::{Random, plane, sphere, stone};
+use trackbed_dem::device::{Device, source};
+use trackbed_dem::law::damping::Damping;
+use trackbed_dem::law::material::{LawName, PairOverride};
+use trackbed_dem::law::table;
+use trackbed_dem::surface::NoSurface;
+use trackbed_dem::{LocalDamping, Material, Model, ModelInput, Plane, Shape, State, Vec3, Work, step};
+
+const STEPS: usize = 1000;
+/// Both materials of a scene.
+const PAIR: PairOverride = PairOverride {
+    a: 0,
+    b: 1,
+    friction: None,
+    restitution: None,
+    stiffness: None,
+    adhesion: None,
+    normal: None,
+    tangential: None,
+    damping: None,
+    rolling_friction: None,
+    twisting_friction: None,
+};
+
+/// Spheres of unlike sizes thrown about in a box of planes, the floor of which comes up; more than a block of them.
+fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> ModelInput {
+    let mut random = Random::new(7);
+    let mut input = ModelInput {
+        materials: materials.to_vec(),
+        contacts,
+        shapes: vec![Shape::Sphere { radius: 0.01 }],
+        gravity: Vec3::new(0.3, -0.2, -9.81),
+        ..ModelInput::default()
+    };
+    for k in 0..1085_usize {
+        let cell = Vec3::new((k % 11) as f64, (k / 11 % 11) as f64, (k / 121) as f64);
+        let mut body =
+            sphere((cell + Vec3::repeat(0.5)) * 0.0206 + random.vector() * 3e-4, random.vector() * 1.5);
+        body.material = usize::from(k % 3 == 0);
+        body.scale = 0.8 + 0.2 * random.unit();
+        body.spin = random.vector() * 40.0;
+        input.bodies.push(body);
+    }
+    let far = 0.0206 * 11.0;
+    for (k, (point, normal)) in [
+        (Vec3::zeros(), Vec3::z()),
+        (Vec3::zeros(), Vec3::x()),
+        (Vec3::zeros(), Vec3::y()),
+        (Vec3::repeat(far), -Vec3::x()),
+        (Vec3::new(0.0, far, 0.0), Vec3::new(0.1, -1.0, 0.2)),
+        (Vec3::repeat(0.19), -Vec3::z()),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let velocity = if k == 0 { Vec3::new(0.1, 0.0, 0.4) } else { Vec3::zeros() };
+        input.planes.push(Plane { material: k % 2, velocity, ..plane(point, normal) });
+    }
+    input
+}
+
+/// What differs between the state on a device and that of the engine after so many steps, each compared as a whole every
+/// seventh step; and the engine's state.
+fn compare(
+    input: ModelInput,
+    steps: usize,
+    change: impl Fn(String) -> String,
+) -> (Option<usize>, State, (u64, u64)) {
+    let model = Model::new(input).expect("a good input");
+    let text = change(source(&model).expect("a model for a device"));
+    let (mut ours, mut theirs) = (State::new(&model), State::new(&model));
+    let mut work = Work::new(&model, &theirs);
+    let mut device = Device::new(CMachine::new(&text), &model, &ours).expect("memory");
+    let mut differs = None;
+    for k in 1..=steps {
+        step(&model, &mut theirs, &mut work, &NoSurface, &[]).expect("a good step");
+        device.step(&model, &mut ours, &[]).expect("a good step on the device");
+        if k % 7 == 0 || k == steps {
+            device.download(&mut ours).expect("a device that responds");
+            let bytes = |s: &State| postcard::to_stdvec(s).unwrap();
+            if bytes(&ours) != bytes(&theirs) {
+                differs = Some(k);
+                break;
+            }
+        }
+    }
+    (differs, theirs, device.rebuilds())
+}
+
+fn same_bits(name: &str, input: ModelInput) {
+    let (differs, state, (searches, refreshes)) = compare(input, STEPS, |text| text);
+    let l = &state.ledger;
+    println!(
+        "{name}: {STEPS} steps, {searches} searches, {refreshes} near lists, dashpots {:.3e} J, friction {:.3e} J, planes {:.3e} J",
+        l.dissipated_dashpot, l.dissipated_friction, l.work_walls
+    );
+    assert_eq!(differs, None, "{name}: the first step after which the states differ");
+    assert!(searches > 2 && refreshes > 10, "{name}: {searches} searches, {refreshes} near lists");
+    assert!(l.dissipated_dashpot > 0.0 && l.dissipated_friction > 0.0 && l.work_walls != 0.0, "{name}");
+}
+
+fn smooth() -> Material {
+    Material { friction: 0.2, restitution: 0.8, tangential_damping_ratio: 0.1, density: 2000.0, ..stone() }
+}
+
+fn elastic(m: Material) -> Material {
+    Material { young: Some(4e7), poisson: 0.25, stiffness: f64::INFINITY, ..m }
+}
+
+/// A name in the table of laws.
+fn named(name: &str) -> Option<LawName> {
+    Some(table::normal_named(name).expect("a normal law"))
+}
+
+fn turning(m: Material) -> Material {
+    Material { rolling_friction: 0.1, twisting_friction: 0.05, ..m }
+}
+
+#[test]
+fn linear_law() {
+    if compiler_is_there() {
+        same_bits("linear", gas([stone(), smooth()], Vec::new()));
+        let slips = PairOverride { tangential: Some(LawName::NONE), damping: Some(Damping::None), ..PAIR };
+        same_bits("linear, a pair without tangential force", gas([stone(), smooth()], vec![slips]));
+    }
+}
+
+#[test]
+fn hertz_law() {
+    if compiler_is_there() {
+        same_bits("hertz", gas([elastic(stone()), elastic(smooth())], Vec::new()));
+    }
+}
+
+#[test]
+fn rolling_twisting_adhesion() {
+    if compiler_is_there() {
+        let sticky = PairOverride { adhesion: Some(2.0), ..PAIR };
+        same_bits("linear, rolling, adhesion", gas([turning(stone()), turning(smooth())], vec![sticky]));
+        same_bits("hertz, rolling", gas([turning(elastic(stone())), turning(elastic(smooth()))], Vec::new()));
+    }
+}
+
+#[test]
+fn rough_and_several_laws() {
+    if compiler_is_there() {
+        let rough = Material { asperity_friction: 0.5, asperity_pressure: 2e4, ..stone() };
+        same_bits("rough", gas([rough, smooth()], Vec::new()));
+        let yielding = Material { normal: named("walton_braun"), restitution: 0.6, ..stone() };
+        same_bits("walton-braun", gas([yielding, yielding], Vec::new()));
+        let linear = PairOverride { normal: named("linear"), stiffness: Some(1e5), ..PAIR };
+        same_bits("three laws", gas([turning(yielding), turning(elastic(stone()))], vec![linear]));
+    }
+}
+
+#[test]
+fn local_damping_and_fixed_motions() {
+    if compiler_is_there() {
+        let mut input = gas([turning(stone()), smooth()], Vec::new());
+        for (k, body) in input.bodies.iter_mut().enumerate().filter(|(k, _)| k % 37 == 0) {
+            body.fixed = std::array::from_fn(|d| [1, 2, 4, 8, 16, 32, 56, 7, 63][k / 37 % 9] >> d & 1 == 1);
+        }
+        same_bits("fixed motions", input.clone());
+        input.damping = Some(LocalDamping { factor: 0.3 });
+        same_bits("fixed motions, local damping", input);
+    }
+}
+
+/// The comparison sees a last bit: one operation of the text changed in a way that rounding alone shows.
+#[test]
+fn a_changed_operation_is_seen() {
+    if compiler_is_there() {
+        for (from, to) in
+            [("x.w - ", "1.0000000000000002 * x.w - "), ("lane[0] + lane[1]", "lane[0] + lane[2]")]
+        {
+            let change = |text: String| {
+                assert!(text.contains(from), "{from}");
+                text.replacen(from, to, 1)
+            };
+            let (differs, ..) = compare(gas([stone(), smooth()], Vec::new()), 300, change);
+            println!("{from} -> {to}: {differs:?}");
+            assert!(differs.is_some(), "{from} -> {to}");
+        }
+    }
+}
