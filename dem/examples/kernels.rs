@@ -10,21 +10,25 @@ use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, PairOve
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the name of a folder is missing")?;
     std::fs::create_dir_all(&folder)?;
-    let spring = Material { density: 2600.0, stiffness: 1e5, friction: 0.5, restitution: 0.5, ..Material::RIGID };
+    let spring =
+        Material { density: 2600.0, stiffness: 1e5, friction: 0.5, restitution: 0.5, ..Material::RIGID };
     let rough = Material { asperity_friction: 0.5, asperity_pressure: 1e6, ..spring };
     let elastic = Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..spring };
     let yielding = Material { normal: table::normal_named("walton_braun"), ..spring };
-    for (name, material) in [("linear", spring), ("rough", rough), ("hertz", elastic), ("several", yielding)] {
+    for (name, material) in [("linear", spring), ("rough", rough), ("hertz", elastic), ("several", yielding)]
+    {
         for turning in [false, true] {
             let mut material = material;
-            let mut input = ModelInput { shapes: vec![Shape::Sphere { radius: 0.01 }], ..ModelInput::default() };
+            let mut input =
+                ModelInput { shapes: vec![Shape::Sphere { radius: 0.01 }], ..ModelInput::default() };
             if turning {
                 // All that a model can have.
                 (material.rolling_friction, material.twisting_friction) = (0.1, 0.1);
                 input.damping = Some(LocalDamping { factor: 0.2 });
             }
             input.materials = vec![material];
-            input.contacts = vec![PairOverride { adhesion: turning.then_some(1.0), ..PairOverride::default() }];
+            input.contacts =
+                vec![PairOverride { adhesion: turning.then_some(1.0), ..PairOverride::default() }];
             input.bodies = vec![BodyInput::default()];
             let text = device::source(&Model::new(input)?)?;
             let file = format!("{name}{}.cu", if turning { "_turning_damped" } else { "" });

@@ -10,13 +10,13 @@
 //! at after fixed numbers of steps, so that it depends neither on the search nor on a restart.
 
 use super::slot::BondSlot;
-use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
 use crate::contact::single;
-use crate::lanes::record::xyz;
-use crate::law::{ContactGeometry, History, Laws};
+use crate::lanes::record::Record;
+use crate::lanes::{Real, V3};
+use crate::law::{ContactGeometry, ContactLaw, History, LawInput, Laws, Memory, with_law};
 use serde::{Deserialize, Serialize};
 
 /// Steps between two looks at which pairs have separated.
@@ -58,16 +58,95 @@ pub(crate) fn overlap_for(stored: impl Fn(f64) -> f64, radius: f64, pressure: f6
     low
 }
 
+/// A sphere that was bonded to another: centre, radius, velocity, inverse mass and spin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sphere<R> {
+    pub x: V3<R>,
+    pub radius: R,
+    pub v: V3<R>,
+    pub inverse_mass: R,
+    pub w: V3<R>,
+}
+
+/// How two spheres lie to each other: normal from b to a, contact point, overlap, effective radius.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Meeting<R> {
+    pub normal: V3<R>,
+    pub point: V3<R>,
+    pub overlap: R,
+    pub radius: R,
+}
+
+/// How two spheres lie to each other.
+#[inline(always)]
+pub(crate) fn meet<R: Real>(a: &Sphere<R>, b: &Sphere<R>) -> Meeting<R> {
+    let between = a.x - b.x;
+    let distance = between.norm2().sqrt();
+    let unit = V3::new(between.x / distance, between.y / distance, between.z / distance);
+    let upward = V3::new(R::zero(), R::zero(), R::splat(1.0));
+    let normal = V3::select(R::zero().lt(distance), unit, upward);
+    let overlap = a.radius + b.radius - distance;
+    let point = a.x - normal * (a.radius - R::splat(0.5) * overlap);
+    Meeting { normal, point, overlap, radius: a.radius * b.radius / (a.radius + b.radius) }
+}
+
+/// What the contact of two such spheres does: force on a, torques on both, and what it took [J].
+pub(crate) struct Forces<R> {
+    pub force: V3<R>,
+    pub torque_a: V3<R>,
+    pub torque_b: V3<R>,
+    pub dashpot: R,
+    pub friction: R,
+}
+
+/// The force of an overlap beyond a reference, over a step [s]; advances the memory of the contact.
+#[inline(always)]
+pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
+    law: &L::Lanes<R>,
+    (a, b): (&Sphere<R>, &Sphere<R>),
+    m: &Meeting<R>,
+    reference: R,
+    memory: &mut Memory<R>,
+    on: R::Mask,
+    step: R,
+) -> Forces<R> {
+    let (arm_a, arm_b) = (m.point - a.x, m.point - b.x);
+    // In this order: the last bits of broken stones hang on it.
+    let velocity = a.v + a.w.cross(arm_a) - b.v - b.w.cross(arm_b);
+    let input = LawInput {
+        inverse_mass: a.inverse_mass + b.inverse_mass,
+        radius: m.radius,
+        overlap: m.overlap - reference,
+        normal: m.normal,
+        velocity,
+        spin: a.w - b.w,
+    };
+    let f = L::evaluate::<R, ROLL>(law, &input, memory, on, step);
+    Forces {
+        force: f.force,
+        torque_a: arm_a.cross(f.force) + f.moment,
+        torque_b: -arm_b.cross(f.force) - f.moment,
+        dashpot: f.dashpot,
+        friction: f.friction,
+    }
+}
+
+fn sphere(block: &Block, k: usize) -> Sphere<f64> {
+    let (x, v, w) = (&block.centre[k], &block.velocity[k], &block.spin[k]);
+    let vector = |r: &Record| V3::new(r[0], r[1], r[2]);
+    Sphere { x: vector(x), radius: x[3], v: vector(v), inverse_mass: v[3], w: vector(w) }
+}
+
 /// Geometry of a pair now: that of its contact, overlap beyond the reference; and the whole overlap [m].
 pub(crate) fn geometry(a: &Block, i: usize, b: &Block, j: usize, reference: f64) -> (ContactGeometry, f64) {
-    let (p, q) = (&a.centre[i], &b.centre[j]);
-    let between = xyz(p) - xyz(q);
-    let distance = between.norm();
-    let normal = if distance > 0.0 { between / distance } else { Vec3::z() };
-    let overlap = p[3] + q[3] - distance;
-    let point = xyz(p) - normal * (p[3] - 0.5 * overlap);
-    let radius = p[3] * q[3] / (p[3] + q[3]);
-    (ContactGeometry { point, normal, overlap: overlap - reference, radius }, overlap)
+    let m = meet(&sphere(a, i), &sphere(b, j));
+    let geometry = ContactGeometry {
+        point: m.point.to_vec(),
+        normal: m.normal.to_vec(),
+        overlap: m.overlap - reference,
+        radius: m.radius,
+    };
+    (geometry, m.overlap)
 }
 
 /// The contact of a debonded pair: its forces, what it dissipated [J], and its failure.
@@ -82,24 +161,42 @@ pub(crate) struct PairForces {
 pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, dt: f64) -> PairForces {
     let (i, j) = (r.i as usize, r.j as usize);
     let materials = [a.material(i), b.material(j)];
-    let (g, overlap) = geometry(a, i, b, j, r.reference);
-    if g.overlap <= 0.0 {
+    let (p, q) = (sphere(a, i), sphere(b, j));
+    let m = meet(&p, &q);
+    if m.overlap - r.reference <= 0.0 {
         let friction = single::end(laws, materials, &mut r.history);
         return PairForces { slot: BondSlot::default(), dashpot: 0.0, friction, failure: None };
     }
-    let (ma, mb) = (a.motion(i, &g.point), b.motion(j, &g.point));
-    // In this order: the last bits of broken stones hang on it.
-    let relative = ma.at_point() - xyz(&mb.velocity) - mb.spin().cross(&mb.arm);
-    let inverse_mass = ma.inverse_mass() + mb.inverse_mass();
-    let spin = ma.spin() - mb.spin();
-    let f = single::evaluate(laws, materials, inverse_mass, &g, &relative, &spin, &mut r.history, dt);
-    let bound = a.centre[i][3].min(b.centre[j][3]);
-    let failure = (overlap > bound).then(|| Failure::Overlap {
+    let mut memory = r.history.memory();
+    let f = with_law!(laws, laws => {
+        let law = laws.get(materials[0], materials[1]);
+        of_one(law, (&p, &q), &m, r.reference, &mut memory, dt)
+    });
+    r.history = History::of(&memory);
+    let bound = p.radius.min(q.radius);
+    let failure = (m.overlap > bound).then(|| Failure::Overlap {
         body: a.bodies[i],
         partner: Partner::Body(b.bodies[j] as usize),
-        overlap,
+        overlap: m.overlap,
         bound,
     });
-    let slot = BondSlot::new(f.force, ma.arm.cross(&f.force) + f.moment, -mb.arm.cross(&f.force) - f.moment);
+    let slot = BondSlot::new(f.force.to_vec(), f.torque_a.to_vec(), f.torque_b.to_vec());
     PairForces { slot, dashpot: f.dashpot, friction: f.friction, failure }
+}
+
+/// [`forces`] of one pair.
+fn of_one<L: ContactLaw>(
+    law: &L,
+    spheres: (&Sphere<f64>, &Sphere<f64>),
+    m: &Meeting<f64>,
+    reference: f64,
+    memory: &mut Memory<f64>,
+    dt: f64,
+) -> Forces<f64> {
+    let lanes = law.splat::<f64>();
+    if law.rolls() {
+        forces::<L, f64, true>(&lanes, spheres, m, reference, memory, true, dt)
+    } else {
+        forces::<L, f64, false>(&lanes, spheres, m, reference, memory, true, dt)
+    }
 }

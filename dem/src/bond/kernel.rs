@@ -173,6 +173,12 @@ pub(crate) fn respond<R: Real>(
     }
 }
 
+/// Where bonds hold. A share that is not a number counts as holding: the bodies then fail the check of their speed.
+#[inline(always)]
+pub(crate) fn holds<R: Real>(r: &Response<R>) -> R::Mask {
+    !R::splat(1.0).le(r.share)
+}
+
 /// Elastic energy of tension, shear, bending, twisting [J].
 #[inline(always)]
 pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &Memory<f64>) -> f64 {

@@ -36,8 +36,7 @@ fn bonds<P: Pack>(
     store(memory.shear, &mut g.shear, &mut h.shear);
     store(memory.turn, &mut g.turn, &mut h.turn);
     let r = respond(&k, a, b, &frame, &memory);
-    // A share that is not a number counts as holding: the bodies then fail the check of their speed.
-    let holds = !P::splat(1.0).le(r.share);
+    let holds = kernel::holds(&r);
     *power = r.power.only(holds).add_to(*power);
     Outcome {
         force: r.force.only(holds),

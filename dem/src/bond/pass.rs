@@ -16,13 +16,13 @@ use crate::lanes::{self, Simd, V3};
 use crate::law::Laws;
 use rayon::prelude::*;
 
-/// One body's share in a slot.
+/// One body's share in a slot: of a bond, or of a debonded pair behind all bonds.
 #[derive(Clone, Copy, Debug)]
-struct Share {
-    place: u32,
-    block: u32,
-    slot: u32,
-    first: bool,
+pub(crate) struct Share {
+    pub place: u32,
+    pub block: u32,
+    pub slot: u32,
+    pub first: bool,
 }
 
 /// A bond that broke in this step.
@@ -69,6 +69,11 @@ impl Default for BondWork {
 }
 
 impl BondWork {
+    /// The shares of a block's bodies in what bonds between blocks do, in the order in which they are added.
+    pub fn shares(&self, block: usize) -> &[Share] {
+        self.shares.get(block).map_or(&[], |s| s)
+    }
+
     /// Lays constants and slots out in the present order of the bodies: `inner` yields each block's list and its scratch.
     pub fn arrange<'a>(
         &mut self,
@@ -133,7 +138,8 @@ fn describe(parts: &Parts<'_>, at: u32, e: &Entry, own: &Block, other: &Block) -
 }
 
 impl ListWork {
-    fn reset(&mut self) {
+    /// Begins a step.
+    pub fn reset(&mut self) {
         self.found.clear();
         self.broken.clear();
         (self.power, self.dashpot, self.friction, self.failure) = (0.0, 0.0, 0.0, None);
@@ -153,7 +159,7 @@ pub(crate) struct Parts<'a> {
 
 impl Parts<'_> {
     /// Time since the last step [s].
-    fn since(&self) -> f64 {
+    pub fn since(&self) -> f64 {
         if self.fresh { 0.0 } else { self.dt }
     }
 }

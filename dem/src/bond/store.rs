@@ -7,7 +7,7 @@ use super::{Break, Constants};
 use crate::base::held::held;
 use crate::lanes::V3;
 use crate::lanes::record::Record;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Number of a lane without a bond.
 const NONE: u32 = u32::MAX;
@@ -38,9 +38,21 @@ pub(crate) struct Entry {
 /// Bonds of a block, and pairs that were bonded.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct BondList {
+    #[serde(serialize_with = "without_spare_lanes")]
     pub groups: Vec<Group>,
     pub count: u32,
     pub debonded: Vec<DebondedPair>,
+}
+
+/// Lanes without a bond compute along; what that leaves in them has no meaning, and is saved as nothing.
+fn without_spare_lanes<S: Serializer>(groups: &[Group], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut groups = groups.to_vec();
+    for g in &mut groups {
+        for l in (0..4).filter(|&l| g.number[l] == NONE) {
+            g.shear.iter_mut().chain(&mut g.turn).for_each(|v| v[l] = 0.0);
+        }
+    }
+    groups.serialize(serializer)
 }
 
 /// What else changes with bonds.
@@ -72,7 +84,8 @@ impl BondList {
         Entry { number: g.number[l], i: g.i[l], block: g.block[l], j: g.j[l], memory }
     }
 
-    fn set(&mut self, at: usize, e: &Entry) {
+    /// Replaces the bond at a position.
+    pub fn set(&mut self, at: usize, e: &Entry) {
         let (g, l) = (&mut self.groups[at / 4], at % 4);
         (g.number[l], g.i[l], g.block[l], g.j[l]) = (e.number, e.i, e.block, e.j);
         for (to, v) in [(&mut g.shear, e.memory.shear), (&mut g.turn, e.memory.turn)] {

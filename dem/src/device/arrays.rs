@@ -1,13 +1,19 @@
 //! A state as the flat arrays that a device keeps, and back.
 //!
-//! Bodies lie block by block, contacts list by list: across blocks, within them, with planes, each block by block. Each body has the
-//! contacts that it takes part in as entries, in the order in which the engine adds them up.
+//! Bodies lie block by block, contacts list by list: across blocks, within them, with planes, of debonded pairs across and within, each
+//! block by block; so do bonds, across and within. Each body has what it takes part in as entries, in the order in which the engine adds
+//! it up.
 
-use super::layout::LISTS;
+use super::layout::{LISTS, List, What};
 use crate::bodies::members::Members;
+use crate::bond::BondList;
+use crate::bond::debonded::DebondedPair;
+use crate::bond::kernel;
+use crate::bond::store::Entry;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
+use crate::lanes::V3;
 use crate::law::History;
 use crate::pairs::groups::Groups;
 
@@ -77,14 +83,30 @@ fn by_four(members: &Members, k: usize, n: usize) -> bool {
     group + 4 <= n && (members.plain() || members.all_free(group))
 }
 
-/// Memory of all contacts: spring and the number of the normal law; rolling and twisting springs.
+/// Lists of bonds across blocks, then within.
+fn bond_lists(state: &State) -> [Vec<&BondList>; 2] {
+    [state.bonds.cross.iter().collect(), state.lists.iter().map(|l| &l.bonds).collect()]
+}
+
+fn bond_lists_mut(state: &mut State) -> impl Iterator<Item = &mut BondList> {
+    state.bonds.cross.iter_mut().chain(state.lists.iter_mut().map(|l| &mut l.bonds))
+}
+
+/// Memory of all contacts: spring and the number of the normal law; rolling and twisting springs. And that of all bonds: shear, turn.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memory {
     pub spring: Vec<[f64; 4]>,
     pub turn: Vec<[f64; 4]>,
+    pub bonds: Vec<[f64; 4]>,
 }
 
 impl Memory {
+    /// Zeros for so many contacts and bonds.
+    pub fn zeros(contacts: usize, bonds: usize) -> Memory {
+        let zero = [0.0; 4];
+        Memory { spring: vec![zero; contacts], turn: vec![zero; contacts], bonds: vec![zero; 2 * bonds] }
+    }
+
     /// That of a state.
     pub fn of(state: &State) -> Memory {
         let mut out = Memory::default();
@@ -95,22 +117,45 @@ impl Memory {
         state.cross.iter().for_each(|c| c.spheres.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.pairs.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.planes.iter().for_each(|(_, h)| add(h)));
+        for list in bond_lists(state).iter().flatten() {
+            list.debonded.iter().for_each(|pair| add(pair.history));
+            for kernel::Memory { shear, turn } in list.iter().map(|e| e.memory) {
+                out.bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
+            }
+        }
         out
     }
 
     /// Puts it into a state with the same lists.
     pub fn put(&self, state: &mut State) {
-        let mut at = 0;
+        let (mut at, mut bond) = (0, 0);
         state.cross.iter_mut().for_each(|c| self.fill(&mut c.spheres, &mut at));
         state.lists.iter_mut().for_each(|l| self.fill(&mut l.pairs, &mut at));
         state.lists.iter_mut().for_each(|l| self.fill(&mut l.planes, &mut at));
+        for list in bond_lists_mut(state) {
+            for DebondedPair { history, .. } in &mut list.debonded {
+                *history = self.history(at, true);
+                at += 1;
+            }
+            for k in 0..list.count as usize {
+                let vector = |[x, y, z, _]: [f64; 4]| V3::new(x, y, z);
+                let memory =
+                    kernel::Memory { shear: vector(self.bonds[bond]), turn: vector(self.bonds[bond + 1]) };
+                list.set(k, &Entry { memory, ..list.get(k) });
+                bond += 2;
+            }
+        }
+    }
+
+    fn history(&self, at: usize, turning: bool) -> History {
+        let [x, y, z, rate] = self.spring[at];
+        let turn = if turning { self.turn[at] } else { [0.0; 4] };
+        History { spring: crate::Vec3::new(x, y, z), rate, turn }
     }
 
     fn fill<const N: usize>(&self, list: &mut Groups<N>, at: &mut usize) {
         for k in 0..list.len() {
-            let ([x, y, z, rate], turn) = (self.spring[*at], self.turn[*at]);
-            let turn = if list.turning { turn } else { [0.0; 4] };
-            list.set_history(k, &History { spring: crate::Vec3::new(x, y, z), rate, turn });
+            list.set_history(k, &self.history(*at, list.turning));
             *at += 1;
         }
     }
@@ -126,67 +171,147 @@ pub(super) struct Lists {
     pub entries: Vec<u32>,
     /// Where the lists of each block begin, and one past the last of each.
     pub ranges: Vec<[u32; LISTS]>,
-    pub first_plane: u32,
+    /// Bodies of each bond, and its constants.
+    pub bond_ends: Vec<[u32; 2]>,
+    pub bond_constants: Vec<[f64; kernel::COUNT]>,
+    /// Overlap of each debonded pair that does not count.
+    pub reference: Vec<f64>,
+    /// Number of blocks.
+    blocks: usize,
 }
 
 impl Lists {
-    pub fn of(state: &State, work: &Work) -> Lists {
-        let mut first = vec![0_u32];
-        state.blocks.iter().for_each(|b| first.push(first[first.len() - 1] + b.bodies.len() as u32));
-        let mut out = Lists { ranges: vec![[0; LISTS]; state.blocks.len() + 1], ..Lists::default() };
-        for (b, cross) in state.cross.iter().enumerate() {
-            out.ranges[b][1] = out.ends.len() as u32;
-            out.ends
-                .extend(cross.spheres.iter().map(|([i, to, j], _)| [first[b] + i, first[to as usize] + j]));
+    pub fn of(model: &Model, state: &State, work: &Work) -> Lists {
+        let blocks = state.blocks.len();
+        let mut out = Lists { ranges: vec![[0; LISTS]; blocks + 1], blocks, ..Lists::default() };
+        let mut first = 0;
+        for (b, block) in state.blocks.iter().enumerate() {
+            out.ranges[b][0] = first;
+            first += block.bodies.len() as u32;
         }
-        for (b, lists) in state.lists.iter().enumerate() {
-            out.ranges[b][2] = out.ends.len() as u32;
-            out.ends.extend(lists.pairs.iter().map(|(name, _)| name.map(|k| first[b] + k)));
+        out.ranges[blocks][0] = first;
+        out.contacts(state);
+        let places =
+            [List::CrossDebonded, List::OwnDebonded].into_iter().zip([List::CrossBonds, List::OwnBonds]);
+        for ((debonded, bonds), lists) in places.zip(bond_lists(state)) {
+            out.bonds(model, debonded, bonds, &lists);
         }
-        out.first_plane = out.ends.len() as u32;
-        for (b, lists) in state.lists.iter().enumerate() {
-            out.ranges[b][3] = out.ends.len() as u32;
-            out.ends.extend(lists.planes.iter().map(|([i, plane], _)| [first[b] + i, plane]));
-        }
-        for (range, first) in out.ranges.iter_mut().zip(&first) {
-            range[0] = *first;
-        }
-        let last = state.blocks.len();
-        let own = out.ranges.first().map_or(0, |r| r[2]);
-        out.ranges[last] = [first[last], own, out.first_plane, out.ends.len() as u32];
-        out.enter(state, work, &first);
+        out.enter(state, work);
         out
     }
 
-    /// Enters the contacts with their bodies: across blocks in the order of shares, then within, then planes.
-    fn enter(&mut self, state: &State, work: &Work, first: &[u32]) {
-        let mut all: Vec<(u32, u32)> = Vec::with_capacity(2 * self.ends.len());
+    /// Where a list of a block begins; block `blocks`: one past its last.
+    pub fn from(&self, list: List, block: usize) -> u32 {
+        self.ranges[block][list as usize]
+    }
+
+    fn body(&self, block: usize, place: u32) -> u32 {
+        self.ranges[block][0] + place
+    }
+
+    /// Contacts of spheres with spheres and planes.
+    fn contacts(&mut self, state: &State) {
+        let mark =
+            |out: &mut Lists, list: List, b: usize| out.ranges[b][list as usize] = out.ends.len() as u32;
+        for (b, cross) in state.cross.iter().enumerate() {
+            mark(self, List::Cross, b);
+            for ([i, to, j], _) in cross.spheres.iter() {
+                self.ends.push([self.body(b, i), self.body(to as usize, j)]);
+            }
+        }
+        mark(self, List::Cross, self.blocks);
+        for (b, lists) in state.lists.iter().enumerate() {
+            mark(self, List::Own, b);
+            for ([i, j], _) in lists.pairs.iter() {
+                self.ends.push([self.body(b, i), self.body(b, j)]);
+            }
+        }
+        mark(self, List::Own, self.blocks);
+        for (b, lists) in state.lists.iter().enumerate() {
+            mark(self, List::Planes, b);
+            for ([i, plane], _) in lists.planes.iter() {
+                self.ends.push([self.body(b, i), plane]);
+            }
+        }
+        mark(self, List::Planes, self.blocks);
+    }
+
+    /// Debonded pairs and bonds of some lists, one of each block; `debonded`, `bonds`: what these are here.
+    fn bonds(&mut self, model: &Model, debonded: List, bonds: List, lists: &[&BondList]) {
+        let across = bonds == List::CrossBonds;
+        for b in 0..=self.blocks {
+            self.ranges[b][debonded as usize] = self.ends.len() as u32;
+            self.ranges[b][bonds as usize] = self.bond_ends.len() as u32;
+            let Some(list) = lists.get(b) else { continue };
+            let there = |block: u32| if across { block as usize } else { b };
+            for pair in &list.debonded {
+                self.ends.push([self.body(b, pair.i), self.body(there(pair.block), pair.j)]);
+                self.reference.push(pair.reference);
+            }
+            for e in list.iter() {
+                self.bond_ends.push([self.body(b, e.i), self.body(there(e.block), e.j)]);
+                self.bond_constants.push(model.bonds[e.number as usize].values);
+            }
+        }
+    }
+
+    /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
+    /// and within, contacts within, planes.
+    fn enter(&mut self, state: &State, work: &Work) {
+        let mut all: Vec<(u32, u32)> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
+        let mut put = |body: u32, what: What, of: u32, second: bool| {
+            all.push((body, of << 3 | (what as u32) << 1 | u32::from(second)));
+        };
         for (b, w) in work.blocks.iter().enumerate() {
             for share in &w.shares.list {
                 let from = share.block as usize;
                 let slot = (share.record() / work.cross[from].width) as u32;
-                let contact = self.ranges[from][1] + slot;
-                all.push((first[b] + share.place, contact << 2 | u32::from(!share.first())));
+                put(
+                    self.body(b, share.place),
+                    What::Spheres,
+                    self.from(List::Cross, from) + slot,
+                    !share.first(),
+                );
+            }
+            for share in work.bonds.shares(b) {
+                let from = share.block as usize;
+                let count = state.bonds.cross[from].count;
+                let (what, of) = match share.slot.checked_sub(count) {
+                    Some(slot) => (What::Debonded, self.from(List::CrossDebonded, from) + slot),
+                    None => (What::Bond, self.from(List::CrossBonds, from) + share.slot),
+                };
+                put(self.body(b, share.place), what, of, !share.first);
             }
         }
-        let bodies = first[state.blocks.len()] as usize;
-        let own = self.ranges.first().map_or(0, |r| r[2]);
-        for contact in own..self.first_plane {
-            let [i, j] = self.ends[contact as usize];
-            all.push((i, contact << 2));
-            all.push((j, contact << 2 | 1));
+        let lists = [
+            (What::Bond, List::OwnBonds, &self.bond_ends),
+            (What::Debonded, List::OwnDebonded, &self.ends),
+            (What::Spheres, List::Own, &self.ends),
+        ];
+        for (what, list, ends) in lists {
+            for of in self.from(list, 0)..self.from(list, self.blocks) {
+                let [i, j] = ends[of as usize];
+                put(i, what, of, false);
+                put(j, what, of, true);
+            }
         }
-        let planes = self.first_plane..self.ends.len() as u32;
-        all.extend(planes.map(|contact| (self.ends[contact as usize][0], contact << 2 | 2)));
-        // Sorted by body; the order of each body's entries stays.
+        for of in self.from(List::Planes, 0)..self.from(List::Planes, self.blocks) {
+            put(self.ends[of as usize][0], What::Plane, of, false);
+        }
+        self.sort(&all);
+    }
+
+    /// Sorts entries by body; the order of each body's entries stays.
+    fn sort(&mut self, all: &[(u32, u32)]) {
+        let bodies = self.from(List::Bodies, self.blocks) as usize;
         self.start = vec![0; bodies + 1];
         all.iter().for_each(|(body, _)| self.start[*body as usize + 1] += 1);
         (0..bodies).for_each(|k| self.start[k + 1] += self.start[k]);
         let mut next = self.start.clone();
         self.entries = vec![0; all.len()];
         for (body, entry) in all {
-            let to = &mut next[body as usize];
-            self.entries[*to as usize] = entry;
+            let to = &mut next[*body as usize];
+            self.entries[*to as usize] = *entry;
             *to += 1;
         }
     }

@@ -1,7 +1,7 @@
 //! The back end: what is handed to a device and back, and in which order its kernels run.
 
 use super::arrays::{Constants, Lists, Memory, Motion};
-use super::layout::{Count, Features, HELD_WIDTH, Number, QUANTITIES, Slot};
+use super::layout::{Count, Features, HELD_WIDTH, List, Number, QUANTITIES, Slot};
 use super::machine::{Call, Machine};
 use super::scope::{self, Unsupported};
 use super::text;
@@ -13,7 +13,7 @@ use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{neighbours, order, step};
+use crate::engine::{bonds, neighbours, order, step};
 use crate::spatial::surface::NoSurface;
 
 /// The text of the kernels for a model: C and CUDA at once.
@@ -35,17 +35,19 @@ pub struct Device<M> {
     books: Vec<f64>,
     /// Whether the device is ahead of the state.
     ahead: bool,
-    /// Contacts on the device.
+    /// Contacts and bonds on the device.
     contacts: usize,
+    bonds: usize,
 }
 
 /// Arrays that change places after each step.
-const PAIRS: [(Slot, Slot); 5] = [
+const PAIRS: [(Slot, Slot); 6] = [
     (Slot::OldX, Slot::NewX),
     (Slot::OldV, Slot::NewV),
     (Slot::OldW, Slot::NewW),
     (Slot::OldMemory, Slot::NewMemory),
     (Slot::OldTurn, Slot::NewTurn),
+    (Slot::OldBonds, Slot::NewBonds),
 ];
 
 impl<M: Machine> Device<M> {
@@ -71,6 +73,7 @@ impl<M: Machine> Device<M> {
             books: Vec::new(),
             ahead: false,
             contacts: 0,
+            bonds: 0,
         };
         let law = text::law_constants(&model.laws, materials);
         device.put(Slot::Law, &law).map_err(|e| failed(state, e))?;
@@ -133,29 +136,52 @@ impl<M: Machine> Device<M> {
         let constants = Constants::of(model, state, &self.work);
         self.put_counts(Slot::Single, &constants.single)?;
         self.put(Slot::Constants, constants.inertia.as_flattened())?;
-        self.take_lists(state)?;
+        self.take_lists(model, state)?;
         self.ahead = false;
         Ok(())
     }
 
-    /// The near list and the memory of its contacts.
-    fn take_lists(&mut self, state: &State) -> Result<(), String> {
-        let lists = Lists::of(state, &self.work);
+    /// The near list, bonds, and the memory of both.
+    fn take_lists(&mut self, model: &Model, state: &State) -> Result<(), String> {
+        let lists = Lists::of(model, state, &self.work);
         let memory = Memory::of(state);
-        let count = lists.ends.len();
-        self.contacts = count;
-        self.put_counts(Slot::Ends, lists.ends.as_flattened())?;
-        self.put_counts(Slot::Start, &lists.start)?;
-        self.put_counts(Slot::Entries, &lists.entries)?;
-        self.put_counts(Slot::Ranges, lists.ranges.as_flattened())?;
-        self.put(Slot::OldMemory, memory.spring.as_flattened())?;
-        self.put(Slot::OldTurn, memory.turn.as_flattened())?;
-        self.reserve(Slot::NewMemory, 4 * count)?;
-        self.reserve(Slot::NewTurn, 4 * count)?;
-        self.reserve(Slot::Spent, 2 * count)?;
-        self.reserve(Slot::Walls, 8 * (count - lists.first_plane as usize))?;
-        self.call.count(Count::FirstPlane, lists.first_plane as usize);
-        Ok(())
+        let last = state.blocks.len();
+        let (count, bonds) = (lists.ends.len(), lists.bond_ends.len());
+        (self.contacts, self.bonds) = (count, bonds);
+        let planes = lists.from(List::Planes, 0);
+        let debonded = lists.from(List::CrossDebonded, 0);
+        self.call.count(Count::FirstPlane, planes as usize);
+        self.call.count(Count::FirstDebonded, debonded as usize);
+        let counts: [(Slot, &[u32]); 5] = [
+            (Slot::Ends, lists.ends.as_flattened()),
+            (Slot::Start, &lists.start),
+            (Slot::Entries, &lists.entries),
+            (Slot::Ranges, lists.ranges.as_flattened()),
+            (Slot::BondEnds, lists.bond_ends.as_flattened()),
+        ];
+        for (slot, list) in counts {
+            self.put_counts(slot, list)?;
+        }
+        let numbers: [(Slot, &[f64]); 5] = [
+            (Slot::OldMemory, memory.spring.as_flattened()),
+            (Slot::OldTurn, if self.features.roll { memory.turn.as_flattened() } else { &[] }),
+            (Slot::OldBonds, memory.bonds.as_flattened()),
+            (Slot::BondConstants, lists.bond_constants.as_flattened()),
+            (Slot::Reference, &lists.reference),
+        ];
+        for (slot, list) in numbers {
+            self.put(slot, list)?;
+        }
+        let with_planes = (lists.from(List::Planes, last) - planes) as usize;
+        let room = [
+            (Slot::NewMemory, 4 * count),
+            (Slot::NewTurn, if self.features.roll { 4 * count } else { 0 }),
+            (Slot::NewBonds, 8 * bonds),
+            (Slot::Spent, 2 * count),
+            (Slot::Walls, 8 * with_planes),
+            (Slot::Power, bonds),
+        ];
+        room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
 
     /// Makes `state` whole: motion and memory of contacts as they are now.
@@ -173,16 +199,19 @@ impl<M: Machine> Device<M> {
     fn bring_back(&mut self, state: &mut State) -> Result<(), String> {
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let mut motion = Motion { x: vec![[0.0; 4]; n], v: vec![[0.0; 4]; n], w: vec![[0.0; 4]; n] };
-        let mut memory =
-            Memory { spring: vec![[0.0; 4]; self.contacts], turn: vec![[0.0; 4]; self.contacts] };
+        let mut memory = Memory::zeros(self.contacts, self.bonds);
         let lists = [
             (Slot::OldX, &mut motion.x),
             (Slot::OldV, &mut motion.v),
             (Slot::OldW, &mut motion.w),
             (Slot::OldMemory, &mut memory.spring),
             (Slot::OldTurn, &mut memory.turn),
+            (Slot::OldBonds, &mut memory.bonds),
         ];
         for (slot, list) in lists {
+            if slot == Slot::OldTurn && !self.features.roll {
+                continue;
+            }
             self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
         }
         motion.put(state);
@@ -207,7 +236,7 @@ impl<M: Machine> Device<M> {
         if neighbours::due(state) {
             self.download(state)?;
             neighbours::update(model, state, &mut self.work, &NoSurface);
-            self.take_lists(state).map_err(|e| failed(state, e))?;
+            self.take_lists(model, state).map_err(|e| failed(state, e))?;
         }
         let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
         if failed_there {
@@ -218,6 +247,9 @@ impl<M: Machine> Device<M> {
         self.exchange();
         self.ahead = true;
         self.book(model, state);
+        if bonds::looks_at_separation(state) {
+            self.download(state)?;
+        }
         step::collect(model, state, &mut self.work, 0.0)
     }
 
@@ -241,6 +273,9 @@ impl<M: Machine> Device<M> {
         let pace = state.pace;
         self.call.number(Number::Step, pace.kick());
         self.call.number(Number::Way, pace.dt);
+        let bonds = bonds::parts(model, pace.last, state.bonds.fresh);
+        self.call.number(Number::Last, bonds.dt);
+        self.call.number(Number::Since, bonds.since());
         self.call.number(Number::Bound, 0.5 * model.radii.0 / pace.dt);
         self.machine.launch("bodies", state.present_count(), &self.call)?;
         self.machine.launch("books", self.books.len(), &self.call)?;
@@ -278,10 +313,19 @@ impl<M: Machine> Device<M> {
             ledger.gravity.linear = impulse * self.work.members[b].mass_sum;
             ledger.gravity.angular = vector(13).cross(&impulse);
             tally.fastest = q[16].sqrt();
-            if let Some(held) = q.get(QUANTITIES..).filter(|q| !q.is_empty()) {
-                book_held(ledger, held, dt, self.features.damped);
+            if self.features.held {
+                book_held(ledger, &q[self.features.held_at()..], dt, self.features.damped);
             }
             tally.failure = None;
+            if self.features.bonds {
+                let lists = [&mut self.work.bonds.cross[b], &mut self.work.blocks[b].bonds];
+                for (k, list) in lists.into_iter().enumerate() {
+                    list.reset();
+                    list.power = q[QUANTITIES + k];
+                    let at = QUANTITIES + 2 + 2 * k;
+                    (list.dashpot, list.friction) = (q[at], q[at + 1]);
+                }
+            }
         }
     }
 }

@@ -75,6 +75,28 @@ DEVICE void plane(const four x, const four v, const four w, const four face, con
 //@PLANE
 }
 
+#if BONDS
+/// Carries a bond on and returns whether it holds; `n`: its memory after that.
+DEVICE int bond_holds(const four xa, const four va, const four wa, const four xb, const four vb, const four wb, const real *k, const four shear,
+                      const four turn, const real dt, outcome *o, four *n) {
+    int holds;
+//@BOND
+    return holds;
+}
+
+/// The contact of two spheres that were bonded, of which `reference` does not count.
+DEVICE int debonded_touch(const four xa, const four xb, const real reference) {
+    int on;
+//@DEBONDED_TOUCH
+    return on;
+}
+
+DEVICE void debonded(const four xa, const four va, const four wa, const four xb, const four vb, const four wb, const real *k, const four m,
+                     const four r, const real reference, const real step, outcome *o) {
+//@DEBONDED
+}
+#endif
+
 /// Moves a body that is free, as all of its group of four are.
 DEVICE void advance_free(const four x, const four v, const four w, const sums s, const four g, const real kick, const real dt,
                          const real damping, four *nx, four *nv, four *nw, real *speed2, real *held) {
@@ -121,7 +143,7 @@ DEVICE void end(ARGUMENTS p, const unsigned c, const real *k, const four m, cons
     keep(p, c, o);
 }
 
-/// A contact of two spheres, seen from the one that it is asked for.
+/// A contact of two spheres, seen from one of them.
 DEVICE void sphere_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
     const unsigned other = second ? ENDS[c].first : ENDS[c].second;
     const four x_there = OLD_X[other];
@@ -176,17 +198,76 @@ DEVICE void plane_contact(ARGUMENTS p, const unsigned c, const four x, const fou
     keep(p, c, o);
 }
 
+#if BONDS
+/// A bond, seen from one of its bodies.
+DEVICE void bond(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
+    const unsigned other = second ? BOND_ENDS[c].first : BOND_ENDS[c].second;
+    const four x_there = OLD_X[other], v_there = OLD_V[other], w_there = OLD_W[other];
+    outcome o;
+    four n[2];
+    const int holds = bond_holds(second ? x_there : x, second ? v_there : v, second ? w_there : w, second ? x : x_there,
+                                 second ? v : v_there, second ? w : w_there, BOND_CONSTANTS + BOND_WIDTH * c,
+                                 OLD_BONDS[2 * c], OLD_BONDS[2 * c + 1], SINCE, &o, n);
+    if (second) {
+        subtract(&s->force, o.force);
+        add(&s->torque, o.torque_b);
+        return;
+    }
+    add(&s->force, o.force);
+    add(&s->torque, o.torque_a);
+    NEW_BONDS[2 * c] = n[0];
+    NEW_BONDS[2 * c + 1] = n[1];
+    POWER[c] = o.dashpot;
+    if (!holds) FLAGS[0] = 1;
+}
+
+/// The contact of a pair that was bonded, seen from one of its bodies.
+DEVICE void debonded_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
+    const unsigned other = second ? ENDS[c].first : ENDS[c].second;
+    const four x_there = OLD_X[other], v_there = OLD_V[other], w_there = OLD_W[other], m = OLD_MEMORY[c];
+    const four xa = second ? x_there : x, wa = second ? w_there : w, xb = second ? x : x_there, wb = second ? w : w_there;
+    const real reference = REFERENCE[c - FIRST_DEBONDED], *k = law_of(p, wa, wb);
+#if ROLL
+    const four r = OLD_TURN[c];
+#else
+    const four r = none();
+#endif
+    if (!debonded_touch(xa, xb, reference)) {
+        if (!second) end(p, c, k, m, r);
+        return;
+    }
+    outcome o;
+    debonded(xa, second ? v_there : v, wa, xb, second ? v : v_there, wb, k, m, r, reference, LAST, &o);
+    if (second) {
+        subtract(&s->force, o.force);
+        add(&s->torque, o.torque_b);
+    } else {
+        add(&s->force, o.force);
+        add(&s->torque, o.torque_a);
+        keep(p, c, o);
+    }
+}
+#endif
+
 KERNEL(bodies) {
     THREAD(i, BODIES)
     const four x = OLD_X[i], v = OLD_V[i], w = OLD_W[i], g = {GRAVITY_X, GRAVITY_Y, GRAVITY_Z, 0.0};
     sums s = {none(), none()};
     for (unsigned e = START[i]; e < START[i + 1]; ++e) {
-        const unsigned c = ENTRIES[e] >> 2, what = ENTRIES[e] & 3;
-        if (what < 2) {
-            sphere_contact(p, c, what == 1, x, v, w, &s);
-        } else {
+        const unsigned c = ENTRIES[e] >> 3, what = ENTRIES[e] >> 1 & 3;
+        const int second = (int)(ENTRIES[e] & 1);
+        if (what == 0) {
+            sphere_contact(p, c, second, x, v, w, &s);
+        } else if (what == 1) {
             plane_contact(p, c, x, v, w, &s);
         }
+#if BONDS
+        else if (what == 2) {
+            bond(p, c, second, x, v, w, &s);
+        } else {
+            debonded_contact(p, c, second, x, v, w, &s);
+        }
+#endif
     }
     four nx = x, nv = v, nw = w;
     real speed2;
@@ -212,6 +293,13 @@ DEVICE real in_lanes(const real *list, const unsigned count, const unsigned stri
     real lane[4] = {0.0, 0.0, 0.0, 0.0};
     for (unsigned k = 0; k < count; ++k) lane[k & 3] += list[k * stride];
     return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+/// The same one by one.
+DEVICE real in_turn(const real *list, const unsigned count, const unsigned stride) {
+    real sum = 0.0;
+    for (unsigned k = 0; k < count; ++k) sum += list[k * stride];
+    return sum;
 }
 
 /// Component `d` of the sum of mass times position of a block's bodies.
@@ -306,12 +394,23 @@ KERNEL(books) {
         x = moment(p, from[0], to[0], q - 13);
     } else if (q == 16) {
         x = fastest2(p, from[0], to[0]);
-    } else {
-#if HELD
-        x = held_books(p, from[0], to[0], q - 17);
-#else
-        x = 0.0;
+    }
+#if BONDS
+    else if (q < BONDS_BOOKED + 2) {
+        const unsigned list = 6 + q - BONDS_BOOKED;
+        x = in_lanes(POWER + from[list], to[list] - from[list], 1);
+    } else if (q < BONDS_BOOKED + 6) {
+        const unsigned list = 4 + (q - BONDS_BOOKED - 2) / 2;
+        x = in_turn((const real *)(SPENT + from[list]) + ((q - BONDS_BOOKED) & 1), to[list] - from[list], 2);
+    }
 #endif
+#if HELD
+    else if (q >= HELD_BOOKED) {
+        x = held_books(p, from[0], to[0], q - HELD_BOOKED);
+    }
+#endif
+    else {
+        x = 0.0;
     }
     BOOKS[t] = x;
 }

@@ -34,7 +34,7 @@ table! {
         Ends = "ENDS": "const ends",
         /// Where the entries of each body begin, and one past the last.
         Start = "START": "const unsigned",
-        /// Four times a contact; plus one where the body is the second, two with a plane.
+        /// Eight times a contact or bond; plus twice what it is ([`What`]), plus one where the body is the second.
         Entries = "ENTRIES": "const unsigned",
         /// Constants of the laws of each pair of materials.
         Law = "LAW": "const real",
@@ -44,7 +44,7 @@ table! {
         Single = "SINGLE": "const unsigned",
         /// Mass and moment of inertia of each body.
         Constants = "CONSTANTS": "const two",
-        /// Where the lists of each block begin: bodies, contacts across, within, with planes.
+        /// Where the lists of each block begin ([`List`]).
         Ranges = "RANGES": "const unsigned",
         /// What dashpots and friction took in each contact.
         Spent = "SPENT": "two",
@@ -52,6 +52,14 @@ table! {
         Walls = "WALLS": "four",
         /// What local damping and fixed motions did to each body, where a model has them.
         HeldBy = "HELD_BY": "real",
+        /// Bodies of each bond, its constants, what it remembers (shear, turn), and the power of its dashpots.
+        BondEnds = "BOND_ENDS": "const ends",
+        BondConstants = "BOND_CONSTANTS": "const real",
+        OldBonds = "OLD_BONDS": "const four",
+        NewBonds = "NEW_BONDS": "four",
+        Power = "POWER": "real",
+        /// Overlap of each debonded pair that does not count.
+        Reference = "REFERENCE": "const real",
         /// Square of the speed of each body.
         Speed2 = "SPEED2": "real",
         /// What each block books.
@@ -71,6 +79,9 @@ table! {
         GravityZ = "GRAVITY_Z",
         Damping = "DAMPING",
         Bound = "BOUND",
+        /// The last step, and the time since then: zero before the first.
+        Last = "LAST",
+        Since = "SINCE",
     }
 }
 
@@ -82,13 +93,39 @@ table! {
         Materials = "MATERIALS",
         /// The first contact with a plane.
         FirstPlane = "FIRST_PLANE",
+        /// The first contact of a debonded pair.
+        FirstDebonded = "FIRST_DEBONDED",
     }
 }
 
-/// Lists of a block: bodies; contacts across, within, with planes.
-pub(super) const LISTS: usize = 4;
-/// Numbers that a block books, and those for local damping and fixed motions beside them.
+/// What an entry of a body is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum What {
+    Spheres,
+    Plane,
+    Bond,
+    Debonded,
+}
+
+/// Lists of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum List {
+    Bodies,
+    /// Contacts of spheres with other blocks and within; with planes; of debonded pairs across and within.
+    Cross,
+    Own,
+    Planes,
+    CrossDebonded,
+    OwnDebonded,
+    /// Bonds across and within.
+    CrossBonds,
+    OwnBonds,
+}
+pub(super) const LISTS: usize = 8;
+
+/// Numbers that a block books, and those for bonds, for local damping and fixed motions beside them.
 pub(super) const QUANTITIES: usize = 17;
+pub(super) const BOND_QUANTITIES: usize = 6;
 pub(super) const HELD_QUANTITIES: usize = 21;
 /// Numbers that a body keeps for these.
 pub(super) const HELD_WIDTH: usize = 21;
@@ -115,12 +152,18 @@ pub(super) struct Features {
     /// Whether there are local damping, and motions held by it or fixed.
     pub damped: bool,
     pub held: bool,
+    pub bonds: bool,
 }
 
 impl Features {
     /// Numbers that a block books.
     pub fn quantities(&self) -> usize {
-        QUANTITIES + if self.held { HELD_QUANTITIES } else { 0 }
+        self.held_at() + if self.held { HELD_QUANTITIES } else { 0 }
+    }
+
+    /// Where those for local damping and fixed motions begin; those for bonds lie before them.
+    pub fn held_at(&self) -> usize {
+        QUANTITIES + if self.bonds { BOND_QUANTITIES } else { 0 }
     }
 }
 
@@ -144,13 +187,16 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
     let sizes = [
         ("LISTS", LISTS),
         ("QUANTITIES", f.quantities()),
+        ("BONDS_BOOKED", QUANTITIES),
+        ("HELD_BOOKED", f.held_at()),
         ("LAW_WIDTH", f.law_width),
         ("HELD_WIDTH", HELD_WIDTH),
+        ("BOND_WIDTH", crate::bond::kernel::COUNT),
     ];
     for (name, value) in sizes {
         _ = writeln!(out, "#define {name} {value}u");
     }
-    for (name, on) in [("ROLL", f.roll), ("HELD", f.held)] {
+    for (name, on) in [("ROLL", f.roll), ("HELD", f.held), ("BONDS", f.bonds)] {
         _ = writeln!(out, "#define {name} {}", u32::from(on));
     }
     _ = writeln!(out, "#define FRESH {fresh}");

@@ -26,7 +26,6 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
         (model.surface_material.is_some(), "contacts with a solid"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
         (model.periodic.is_some(), "periodic borders"),
-        (!model.bonds.is_empty(), "bonds"),
     ];
     match all.into_iter().find(|(there, _)| *there) {
         Some((_, name)) => Err(Unsupported(name)),

@@ -2,6 +2,7 @@
 
 use super::layout::{self, Features};
 use super::tape::{self, Recorded, Results, input, next, truth, vector};
+use crate::bond::{debonded as loose, kernel};
 use crate::contact::{planes, sphere_pair};
 use crate::engine::model::Model;
 use crate::integrate::kick::{self, Push, Single};
@@ -16,7 +17,8 @@ pub(super) fn features(model: &Model) -> Features {
     let damped = model.damping != 0.0;
     let fixed = (0..model.body_count()).any(|k| model.body(k).fixed != 0);
     let law_width = with_law!(&model.laws, table => constants(table, 1).len());
-    Features { law_width, roll: model.laws.rolls(), damped, held: damped || fixed }
+    let bonds = !model.bonds.is_empty();
+    Features { law_width, roll: model.laws.rolls(), damped, held: damped || fixed, bonds }
 }
 
 /// The text for the laws of a model.
@@ -64,6 +66,9 @@ fn contacts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>) -> Vec<(&'sta
         ("LEFT", left::<L, ROLL>(&law)),
         ("PLANE_TOUCHES", plane_touches()),
         ("PLANE", plane::<L, ROLL>(&law)),
+        ("BOND", bond()),
+        ("DEBONDED_TOUCH", debonded_touch()),
+        ("DEBONDED", debonded::<L, ROLL>(&law)),
     ]
 }
 
@@ -178,6 +183,66 @@ fn plane<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>)
     for (name, x) in names.into_iter().zip([f.power, fx, fy, fz, ax, ay, az, zero]) {
         out.number(name, x);
     }
+    out.text()
+}
+
+fn bond() -> String {
+    tape::begin();
+    let constants: [Recorded; kernel::COUNT] = std::array::from_fn(|c| input(format!("k[{c}]")));
+    let motion = |side: &str| kernel::Motion {
+        x: vector(&format!("x{side}")),
+        v: vector(&format!("v{side}")),
+        w: vector(&format!("w{side}")),
+    };
+    let (a, b) = (motion("a"), motion("b"));
+    let mut memory = kernel::Memory { shear: vector("shear"), turn: vector("turn") };
+    let frame = kernel::carry(constants[kernel::OFFSET], &a, &b, &mut memory, input("dt"));
+    let r = kernel::respond(&constants, &a, &b, &frame, &memory);
+    let holds = kernel::holds(&r);
+    let mut out = Results::default();
+    out.truth("holds", holds);
+    out.vector("o->force", r.force.only(holds));
+    out.vector("o->torque_a", r.torque_a.only(holds));
+    out.vector("o->torque_b", r.torque_b.only(holds));
+    out.number("o->dashpot", r.power.only(holds));
+    out.vector("n[0]", memory.shear);
+    out.vector("n[1]", memory.turn);
+    out.text()
+}
+
+/// The two spheres of a debonded pair.
+fn parted() -> [loose::Sphere<Recorded>; 2] {
+    ["a", "b"].map(|side| loose::Sphere {
+        x: vector(&format!("x{side}")),
+        radius: input(format!("x{side}.w")),
+        v: vector(&format!("v{side}")),
+        inverse_mass: input(format!("v{side}.w")),
+        w: vector(&format!("w{side}")),
+    })
+}
+
+fn debonded_touch() -> String {
+    tape::begin();
+    let [a, b] = parted();
+    let beyond = loose::meet(&a, &b).overlap - input("reference");
+    let mut out = Results::default();
+    out.truth("on", !beyond.le(Recorded::zero()));
+    out.text()
+}
+
+fn debonded<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+    tape::begin();
+    let (law, mut m, [a, b], reference) = (law(), memory(), parted(), input("reference"));
+    let meeting = loose::meet(&a, &b);
+    let on = tape::Truth::Known(true);
+    let f =
+        loose::forces::<L, Recorded, ROLL>(&law, (&a, &b), &meeting, reference, &mut m, on, input("step"));
+    let mut out = Results::default();
+    out.vector("o->force", f.force);
+    out.vector("o->torque_a", f.torque_a);
+    out.vector("o->torque_b", f.torque_b);
+    let deep = meeting.overlap.gt(a.radius.min(b.radius));
+    keep::<ROLL>(&mut out, &m, f.dashpot, f.friction, deep);
     out.text()
 }
 

@@ -237,6 +237,15 @@ fn part(
     pair
 }
 
+/// Whether [`settle`] looks at which debonded pairs have separated, for which it needs their places and memory.
+pub(crate) fn looks_at_separation(state: &State) -> bool {
+    let mut any = false;
+    if state.steps.is_multiple_of(debonded::EVERY) {
+        state.each_debonded(|_, _| any = true);
+    }
+    any
+}
+
 /// Hands pairs that have separated over to the ordinary contacts, at its time.
 pub(crate) fn hand_over(state: &mut State) -> bool {
     if !state.steps.is_multiple_of(debonded::EVERY) {

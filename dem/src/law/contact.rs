@@ -49,6 +49,13 @@ impl History {
         History { spring: -self.spring, rate: self.rate, turn: [-x, -y, -z, twist] }
     }
 
+    /// Of one lane.
+    #[inline(always)]
+    pub(crate) fn of(memory: &Memory<f64>) -> History {
+        let &Memory { spring, rate, roll, twist } = memory;
+        History { spring: spring.to_vec(), rate, turn: [roll.x, roll.y, roll.z, twist] }
+    }
+
     /// In one lane.
     #[inline(always)]
     pub(crate) fn memory(&self) -> Memory<f64> {

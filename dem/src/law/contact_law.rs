@@ -96,8 +96,7 @@ pub trait ContactLaw: Constants {
         } else {
             Self::evaluate::<f64, false>(&law, &touch, &mut memory, true, dt)
         };
-        let Memory { spring, rate, roll, twist } = memory;
-        *history = History { spring: spring.to_vec(), rate, turn: [roll.x, roll.y, roll.z, twist] };
+        *history = History::of(&memory);
         ContactForce {
             force: a.force.to_vec(),
             normal: a.normal,

@@ -2,6 +2,9 @@
 
 use crate::c_machine::{CMachine, compiler_is_there};
 use crate::scene::{Random, plane, sphere, stone};
+use trackbed_dem::bond::{
+    Bond, BondDamping, BondInput, Criterion, ParallelBond, ParallelStiffness, ShearStrength, within_gap,
+};
 use trackbed_dem::device::{Device, source};
 use trackbed_dem::law::damping::Damping;
 use trackbed_dem::law::material::{LawName, PairOverride};
@@ -83,6 +86,7 @@ fn compare(
             let bytes = |s: &State| postcard::to_stdvec(s).unwrap();
             if bytes(&ours) != bytes(&theirs) {
                 differs = Some(k);
+                explain(&model, &ours, &theirs);
                 break;
             }
         }
@@ -90,7 +94,14 @@ fn compare(
     (differs, theirs, device.rebuilds())
 }
 
-fn same_bits(name: &str, input: ModelInput) {
+/// Prints what differs most plainly.
+fn explain(model: &Model, ours: &State, theirs: &State) {
+    let motion = |s: &State, b: usize| [s.position(b), s.velocity(b), s.spin(b)];
+    let other = (0..model.body_count()).filter(|&b| motion(ours, b) != motion(theirs, b)).count();
+    println!("{other} bodies move otherwise; ledgers: {:?}\n{:?}", ours.ledger, theirs.ledger);
+}
+
+fn same_bits(name: &str, input: ModelInput) -> State {
     let (differs, state, (searches, refreshes)) = compare(input, STEPS, |text| text);
     let l = &state.ledger;
     println!(
@@ -100,6 +111,7 @@ fn same_bits(name: &str, input: ModelInput) {
     assert_eq!(differs, None, "{name}: the first step after which the states differ");
     assert!(searches > 2 && refreshes > 10, "{name}: {searches} searches, {refreshes} near lists");
     assert!(l.dissipated_dashpot > 0.0 && l.dissipated_friction > 0.0 && l.work_walls != 0.0, "{name}");
+    state
 }
 
 fn smooth() -> Material {
@@ -166,6 +178,44 @@ fn local_damping_and_fixed_motions() {
         same_bits("fixed motions", input.clone());
         input.damping = Some(LocalDamping { factor: 0.3 });
         same_bits("fixed motions, local damping", input);
+    }
+}
+
+/// A block of bonded spheres, pressed and torn by the planes that shut in on it, in which bonds break and broken pairs part.
+fn bonded(kind: Bond, material: Material) -> ModelInput {
+    let mut input = gas([material, smooth()], Vec::new());
+    input.bodies.iter_mut().for_each(|b| b.velocity *= 0.4);
+    let spheres: Vec<_> = input.bodies.iter().map(|b| (b.position, 0.01 * b.scale)).collect();
+    input.bond_kinds = vec![kind];
+    let pairs = within_gap(&spheres, 2.5e-3, |a, b| (a * 7 + b) % 5 != 0);
+    input.bonds = pairs.into_iter().map(|[a, b]| BondInput::new(a, b, 0)).collect();
+    input
+}
+
+#[test]
+fn bonds_that_break() {
+    if compiler_is_there() {
+        let parallel = ParallelBond {
+            radius_factor: 0.8,
+            stiffness: ParallelStiffness::Modulus { young: 2e7, ratio: 2.5 },
+            tensile_strength: 2e5,
+            shear_strength: ShearStrength::MohrCoulomb { cohesion: 1e5, friction: 0.5 },
+            moment_factor: 0.5,
+            criterion: Criterion::Stress,
+            damping: BondDamping::Fraction(0.05),
+            contact: false,
+        };
+        for (name, material, contact) in [
+            ("parallel bonds", stone(), false),
+            ("parallel bonds beside contacts that roll", turning(stone()), true),
+        ] {
+            let input = bonded(Bond::Parallel(ParallelBond { contact, ..parallel }), material);
+            let bonds = input.bonds.len();
+            let state = same_bits(name, input);
+            let left = state.bond_count();
+            println!("{bonds} bonds, {left} left, {:?} broken by tension and shear", state.broken_bonds());
+            assert!(left < bonds - 20 && left > bonds / 4, "{left} of {bonds} bonds are left");
+        }
     }
 }
 
