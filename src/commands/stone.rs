@@ -13,7 +13,8 @@ use crate::write::{atomic, stl::stl_bytes};
 use trackbed_dem::insert::library::Stone;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
-use trackbed_dem::shape::polyhedron::Polyhedron;
+use trackbed_dem::shape::dilated::Dilated;
+use trackbed_dem::shape::polyhedron::{self, Polyhedron};
 
 /// Most spheres of a clump: the moments of the union take n³ steps.
 const MOST_CLUMP: usize = 200;
@@ -268,11 +269,33 @@ fn info(input: &Path) -> Result<(), Failure> {
     print(&text)
 }
 
+/// Numbers of a polyhedron of a library, in words.
+fn of_polyhedron(body: &Dilated) -> String {
+    let (mut extents, sieve) = (body.extents(), body.sieve_size());
+    extents.sort_by(|a, b| b.total_cmp(a));
+    let [x, y, z] = body.inertia.map(|v| v / sieve.powi(5));
+    format!(
+        "polyhedron, {} corners, {} faces, sieve size {sieve:.6} m; for sieve size 1 m: volume {:.6} m³, inertia {x:.6} {y:.6} {z:.6} m⁵, \
+         radius of its edges {:.4} m; b/a {:.3}, c/b {:.3}, sphericity {:.3}",
+        body.core.corners.len(),
+        body.core.faces.len(),
+        body.volume / sieve.powi(3),
+        body.radius / sieve,
+        extents[1] / extents[0],
+        extents[2] / extents[1],
+        polyhedron::sphericity(body.volume, body.area),
+    )
+}
+
 fn library_info(input: &Path) -> Result<(), Failure> {
     let document = Document::open(input)?;
     let library: StoneLibrary = document.read()?;
     let fault = |e: &dyn std::fmt::Display| {
-        document.error("stones", e.to_string(), "stones of connected spheres with positive radii")
+        document.error(
+            "stones",
+            e.to_string(),
+            "stones of connected spheres, or of convex `corners`, with positive radii",
+        )
     };
     if library.stones.is_empty() {
         return Err(document.error("stones", "none", "at least one stone").into());
@@ -281,6 +304,11 @@ fn library_info(input: &Path) -> Result<(), Failure> {
     for (i, stone) in library.stones.iter().enumerate() {
         // A stone alone, so that rigid and bonded ones may stand in one file.
         let alone = StoneLibrary { stones: vec![stone.clone()], ..library.clone() };
+        if !stone.corners.is_empty() {
+            let body = alone.polyhedra().map_err(|e| fault(&e))?.swap_remove(0);
+            let _ = writeln!(text, "{i} '{}': {}", stone.name, of_polyhedron(&body));
+            continue;
+        }
         let least = stone.spheres.iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
         let (kind, shape, volume, inertia, mut extents, sieve) = if stone.bonds.is_empty() {
             let c: Clump = alone.clumps().map_err(|e| fault(&e))?.swap_remove(0);

@@ -194,3 +194,29 @@ fn the_shipped_libraries_are_what_their_commands_make() {
     }
     assert_eq!(found, 4);
 }
+
+/// `stone info` reads libraries of polyhedra.
+#[test]
+fn a_library_of_polyhedra_is_measured() {
+    let folder = Folder::new("stone_polyhedra");
+    // A cube of 0.2 m of which a sphere of 0.1 m makes one of 0.4 m.
+    let corners = (0..8).map(|k| {
+        format!("[{}, {}, {}]", 0.2 * f64::from(k & 1), 0.1 * f64::from(k & 2), 0.05 * f64::from(k & 4))
+    });
+    let corners = corners.collect::<Vec<_>>().join(", ");
+    let text = format!(
+        "name = \"one\"\nsource = \"test\"\n\n[[stones]]\nname = \"cube\"\nradius = 0.1\ncorners = [{corners}]\n"
+    );
+    fs::write(folder.join("cube.toml"), text).unwrap();
+    let info = trackbed_in(folder.path(), ["stone", "info", "cube.toml"]).good().stdout;
+    // Steiner: a³ + 6 a² r + 3 π a r² + 4/3 π r³.
+    let pi = std::f64::consts::PI;
+    let volume = (0.008 + 6.0 * 0.04 * 0.1 + 3.0 * pi * 0.2 * 0.01 + 4.0 / 3.0 * pi * 0.001) / 0.064;
+    let expected = format!(
+        "0 'cube': polyhedron, 8 corners, 6 faces, sieve size 0.400000 m; for sieve size 1 m: volume {volume:.6} m³"
+    );
+    assert!(info.contains(&expected), "{info}\n{expected}");
+    let shipped = repository().join("inputs/data/polyhedra.toml");
+    let info = trackbed(["stone", "info", &shipped.display().to_string()]).good().stdout;
+    assert_eq!(info.matches(": polyhedron, ").count(), 5, "{info}");
+}

@@ -3,7 +3,8 @@
 //!
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond, a glue of no size).
 
-use super::springs::{BondDamping, Joint, Problem, Springs, not_negative, positive, strength};
+use super::kind::{Bond, BondKind};
+use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
 
 /// A contact-point bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +23,8 @@ pub struct ContactPoint {
     pub contact: bool,
 }
 
-impl ContactPoint {
-    pub(super) fn problem(&self) -> Problem {
+impl BondKind for ContactPoint {
+    fn problem(&self) -> Problem {
         positive("normal stiffness", self.normal)
             .or(not_negative("shear stiffness", self.shear))
             .or(strength("largest tension", self.tension_limit))
@@ -31,11 +32,27 @@ impl ContactPoint {
             .or(self.damping.problem())
     }
 
-    pub(super) fn springs(&self, joint: &Joint) -> Springs {
+    fn springs(&self, joint: &Joint) -> Springs {
         Springs {
             stiffness: [self.normal, self.shear, 0.0, 0.0],
             limit: [1.0 / self.tension_limit, 0.0, 1.0 / self.shear_limit, 0.0, 0.0],
             offset: joint.radii[0] - joint.radii[1],
         }
+    }
+
+    fn damping(&self) -> BondDamping {
+        self.damping
+    }
+
+    fn criterion(&self) -> Criterion {
+        Criterion::Stress
+    }
+
+    fn contact(&self) -> bool {
+        self.contact
+    }
+
+    fn unbreakable(&self) -> Bond {
+        Bond::ContactPoint(ContactPoint { tension_limit: f64::INFINITY, shear_limit: f64::INFINITY, ..*self })
     }
 }

@@ -4,7 +4,8 @@
 //! Source: Wang, Acta Geotechnica 4, 2009 (four springs, criterion by sum). With small rotations the springs are those
 //! of the bonded-particle models that keep a quaternion per bond.
 
-use super::springs::{BondDamping, Criterion, Problem, Springs, not_negative, positive, strength};
+use super::kind::{Bond, BondKind};
+use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
 
 /// A bond by stiffness and strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +22,8 @@ pub struct DirectBond {
     pub contact: bool,
 }
 
-impl DirectBond {
-    pub(super) fn problem(&self) -> Problem {
+impl BondKind for DirectBond {
+    fn problem(&self) -> Problem {
         let [normal, shear, bending, twisting] = self.stiffness;
         positive("stiffness in tension", normal)
             .or(not_negative("stiffness in shear", shear))
@@ -32,8 +33,24 @@ impl DirectBond {
             .or(self.damping.problem())
     }
 
-    pub(super) fn springs(&self) -> Springs {
+    fn springs(&self, _: &Joint) -> Springs {
         let [tension, shear, bending, twisting] = self.strength.map(|s| 1.0 / s);
         Springs { stiffness: self.stiffness, limit: [tension, bending, shear, twisting, 0.0], offset: 0.0 }
+    }
+
+    fn damping(&self) -> BondDamping {
+        self.damping
+    }
+
+    fn criterion(&self) -> Criterion {
+        self.criterion
+    }
+
+    fn contact(&self) -> bool {
+        self.contact
+    }
+
+    fn unbreakable(&self) -> Bond {
+        Bond::Direct(DirectBond { strength: [f64::INFINITY; 4], ..*self })
     }
 }

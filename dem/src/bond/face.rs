@@ -14,6 +14,7 @@
 //! Limit: bending is as stiff and as strong about the axis across the sheet as about that along it, by the thickness. In a sheet that is no
 //! row, turning about the vertical is held by the shear of the faces around.
 
+use super::kind::{Bond, BondKind};
 use super::parallel::ShearStrength;
 use super::springs::{BondDamping, Cement, Criterion, Joint, Problem, Section, Springs, positive, strength};
 
@@ -50,8 +51,8 @@ fn torsion([w, t]: [f64; 2]) -> [f64; 2] {
     [a * b.powi(3) * (1.0 / 3.0 - 0.21 * slender * (1.0 - slender.powi(4) / 12.0)), b]
 }
 
-impl FaceBond {
-    pub(super) fn problem(&self) -> Problem {
+impl BondKind for FaceBond {
+    fn problem(&self) -> Problem {
         positive("Young's modulus", self.young)
             .or(positive("stiffness ratio", self.ratio))
             .or(strength("tensile strength", self.tensile_strength))
@@ -59,7 +60,8 @@ impl FaceBond {
             .or(self.damping.problem())
     }
 
-    pub(super) fn springs(&self, joint: &Joint, face: &Face) -> Springs {
+    fn springs(&self, joint: &Joint) -> Springs {
+        let face = joint.face.expect("bonds that fill faces are checked to have one");
         let [w, t] = face.size;
         let section =
             Section { area: w * t, bending: [w * t.powi(3) / 12.0, 0.5 * t], torsion: torsion(face.size) };
@@ -71,6 +73,27 @@ impl FaceBond {
             moment_factor: 1.0,
         };
         section.springs(&cement, face.offset)
+    }
+
+    fn damping(&self) -> BondDamping {
+        self.damping
+    }
+
+    fn criterion(&self) -> Criterion {
+        self.criterion
+    }
+
+    fn contact(&self) -> bool {
+        true
+    }
+
+    fn fills_faces(&self) -> bool {
+        true
+    }
+
+    fn unbreakable(&self) -> Bond {
+        let shear_strength = ShearStrength::Constant(f64::INFINITY);
+        Bond::Face(FaceBond { tensile_strength: f64::INFINITY, shear_strength, ..*self })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bonds between bodies: elastic bars that carry force (and moment) until they break.
 //!
-//! A [`Bond`] is a kind of bond, one file each: [`ParallelBond`] (a cemented disk between two spheres), [`ContactPoint`]
+//! A [`Bond`] is a kind of bond, one file each, and listed in `kind.rs`: [`ParallelBond`] (a cemented disk between two spheres), [`ContactPoint`]
 //! (force only), [`DirectBond`] (stiffnesses and strengths of the bond itself), [`FaceBond`] (the face between two bodies of any
 //! shape). A [`BondInput`] puts one between two bodies. All of them end up as the same sixteen constants, and one kernel (`kernel.rs`) computes the forces:
 //!
@@ -21,6 +21,7 @@ pub(crate) mod debonded;
 mod direct;
 mod face;
 pub(crate) mod kernel;
+mod kind;
 mod limit;
 mod loops;
 mod pairs;
@@ -34,6 +35,7 @@ mod strength;
 pub use contact_point::ContactPoint;
 pub use direct::DirectBond;
 pub use face::{Face, FaceBond};
+pub use kind::Bond;
 pub use pairs::within_gap;
 pub use parallel::{ParallelBond, ParallelStiffness, ShearStrength};
 pub use springs::{BondDamping, Criterion};
@@ -48,19 +50,6 @@ use crate::bodies::input::BodyInput;
 use crate::bodies::table::{Bodies, Body, Kind};
 use serde::{Deserialize, Serialize};
 use springs::Joint;
-
-/// A kind of bond.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Bond {
-    /// A cemented disk between the spheres: force and moment.
-    Parallel(ParallelBond),
-    /// A spring at the contact point: force only.
-    ContactPoint(ContactPoint),
-    /// Stiffnesses and strengths of the bond itself, the same for every length and radius.
-    Direct(DirectBond),
-    /// What fills the face between two bodies of any shape: force and moment.
-    Face(FaceBond),
-}
 
 /// A bond between two bodies: single spheres, or, by their face, bodies of any shape. Its length at rest is their distance at the start of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,13 +122,7 @@ pub(crate) fn resolve(
     bodies: &Bodies,
 ) -> Result<Vec<Constants>, ModelError> {
     for (kind, bond) in kinds.iter().enumerate() {
-        let problem = match bond {
-            Bond::Parallel(p) => p.problem(),
-            Bond::ContactPoint(p) => p.problem(),
-            Bond::Direct(d) => d.problem(),
-            Bond::Face(f) => f.problem(),
-        };
-        if let Some((quantity, value, requirement)) = problem {
+        if let Some((quantity, value, requirement)) = bond.kind().problem() {
             return Err(ModelError::BondKind { kind, quantity, value, requirement });
         }
     }
@@ -149,7 +132,7 @@ pub(crate) fn resolve(
         .enumerate()
         .map(|(index, b)| {
             let error = |problem: String| ModelError::Bond { index, problem };
-            let by_face = matches!(kinds.get(b.kind), Some(Bond::Face(_)));
+            let by_face = kinds.get(b.kind).is_some_and(Bond::fills_faces);
             for body in [b.a, b.b] {
                 if body >= bodies.len() {
                     return Err(error(format!("there is no body {body}")));
@@ -203,18 +186,12 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
         length,
         mass: reduced(p.inverse_mass + q.inverse_mass),
         inertia: reduced(inertia(p) + inertia(q)),
+        face: b.face,
     };
-    let (springs, damping, criterion, contact) = match kind {
-        Bond::Parallel(k) => (k.springs(&joint), k.damping, k.criterion, k.contact),
-        Bond::ContactPoint(k) => (k.springs(&joint), k.damping, Criterion::Stress, k.contact),
-        Bond::Direct(k) => (k.springs(), k.damping, k.criterion, k.contact),
-        Bond::Face(k) => {
-            let face = b.face.expect("checked");
-            (k.springs(&joint, &face), k.damping, k.criterion, true)
-        }
-    };
+    let kind = kind.kind();
+    let springs = kind.springs(&joint);
     let stiffness = springs.stiffness.map(|k| k * b.stiffness);
-    let dashpots = match damping {
+    let dashpots = match kind.damping() {
         BondDamping::None => [0.0; 4],
         BondDamping::Coefficients(c) => c,
         BondDamping::Fraction(zeta) => std::array::from_fn(|m| {
@@ -236,29 +213,6 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
         confined / b.shear,
     ];
     values[kernel::LIMIT..kernel::LIMIT + 5].copy_from_slice(&limit);
-    values[kernel::SUM] = if criterion == Criterion::Sum { 1.0 } else { 0.0 };
-    Constants { ends: [b.a as u32, b.b as u32], values, contact }
-}
-
-impl Bond {
-    /// The same bond without a limit of strength.
-    pub fn unbreakable(&self) -> Bond {
-        let endless = f64::INFINITY;
-        match self {
-            Bond::Parallel(p) => Bond::Parallel(ParallelBond {
-                tensile_strength: endless,
-                shear_strength: ShearStrength::Constant(endless),
-                ..*p
-            }),
-            Bond::ContactPoint(p) => {
-                Bond::ContactPoint(ContactPoint { tension_limit: endless, shear_limit: endless, ..*p })
-            }
-            Bond::Direct(d) => Bond::Direct(DirectBond { strength: [endless; 4], ..*d }),
-            Bond::Face(f) => Bond::Face(FaceBond {
-                tensile_strength: endless,
-                shear_strength: ShearStrength::Constant(endless),
-                ..*f
-            }),
-        }
-    }
+    values[kernel::SUM] = if kind.criterion() == Criterion::Sum { 1.0 } else { 0.0 };
+    Constants { ends: [b.a as u32, b.b as u32], values, contact: kind.contact() }
 }

@@ -11,6 +11,7 @@
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; the moment factor β is that of Potyondy
 //! (Proc. 45th US Rock Mech. Symp., 2011).
 
+use super::kind::{Bond, BondKind};
 use super::springs::{
     BondDamping, Cement, Criterion, Joint, Problem, Section, Springs, not_negative, positive, strength,
 };
@@ -89,8 +90,8 @@ pub struct ParallelBond {
     pub contact: bool,
 }
 
-impl ParallelBond {
-    pub(super) fn problem(&self) -> Problem {
+impl BondKind for ParallelBond {
+    fn problem(&self) -> Problem {
         let stiffness = match self.stiffness {
             ParallelStiffness::Modulus { young, ratio } => {
                 positive("Young's modulus", young).or(positive("stiffness ratio", ratio))
@@ -108,7 +109,7 @@ impl ParallelBond {
             .or(self.damping.problem())
     }
 
-    pub(super) fn springs(&self, joint: &Joint) -> Springs {
+    fn springs(&self, joint: &Joint) -> Springs {
         let r = self.radius_factor * joint.radii[0].min(joint.radii[1]);
         let area = PI * r * r;
         let second = 0.25 * area * r * r;
@@ -127,5 +128,22 @@ impl ParallelBond {
             moment_factor: self.moment_factor,
         };
         section.springs(&cement, joint.radii[0] - joint.radii[1])
+    }
+
+    fn damping(&self) -> BondDamping {
+        self.damping
+    }
+
+    fn criterion(&self) -> Criterion {
+        self.criterion
+    }
+
+    fn contact(&self) -> bool {
+        self.contact
+    }
+
+    fn unbreakable(&self) -> Bond {
+        let shear_strength = ShearStrength::Constant(f64::INFINITY);
+        Bond::Parallel(ParallelBond { tensile_strength: f64::INFINITY, shear_strength, ..*self })
     }
 }

@@ -1,5 +1,6 @@
 //! What every kind of bond makes: springs with their limits, damping, and the check of its numbers; the springs of those that are beams.
 
+use super::face::Face;
 use super::parallel::ShearStrength;
 
 /// Viscous damping of a bond.
@@ -33,6 +34,8 @@ pub(crate) struct Joint {
     /// Reduced mass [kg] and moment of inertia [kg m²]; zero between two fixed bodies.
     pub mass: f64,
     pub inertia: f64,
+    /// Face between the bodies, of a bond that fills one.
+    pub face: Option<Face>,
 }
 
 /// Four springs and what breaks them, as a kind of bond makes them for a joint.

@@ -21,7 +21,7 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 
 /// Settling of a column over rehearsals.
-const SETTLE: u32 = 6;
+const SETTLE: u32 = 15;
 /// Share of the steps that the cores besides the first take over.
 const SPEED_UP: f64 = 0.8;
 
@@ -61,7 +61,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Rehearses a run of the scene, which `job` is made of, for `budget` by the clock, and estimates the time of all of it; that
-    /// takes up to ten times as long.
+    /// takes up to twenty times as long.
     ///
     /// # Errors
     /// What the run itself ends with in its first seconds; contacts for which no step can be made.
@@ -151,7 +151,8 @@ fn left(
         return Ok(vec![unknown(RUN.into(), rehearsed.seconds)]);
     };
     let whole = column.share / cores(threads);
-    let whole = whole * beside(&column, rehearsed, whole);
+    // A bed that has just begun to fall has few contacts, as the column has then.
+    let whole = whole * beside(&column, rehearsed, whole) / column.full;
     if let Some(plan) = deposition {
         // Each layer falls on those before it.
         let layers = f64::from(plan.layers);

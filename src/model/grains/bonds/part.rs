@@ -105,7 +105,7 @@ impl BondPart {
 
     /// Whether bonds of a kind fill faces.
     pub(super) fn fills_faces(&self, kind: usize) -> bool {
-        matches!(self.kinds[kind], Bond::Face(_))
+        self.kinds[kind].fills_faces()
     }
 
     /// Adds a bond within a stone.
