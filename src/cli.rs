@@ -4,6 +4,7 @@ mod convert;
 mod render;
 
 use crate::progress::Verbosity;
+use crate::run::Place;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -95,6 +96,10 @@ pub struct RunArgs {
     /// Threads; default all cores. The results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
+    /// Where the steps of grains alone are computed in the run proper: spheres, planes and bonds on a CUDA device (not run on a
+    /// device yet), all else on the processor.
+    #[arg(long, value_enum, default_value_t)]
+    pub device: Place,
     /// Replace one key of the scene, as key.path=value; may be given again.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

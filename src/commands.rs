@@ -77,6 +77,7 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let options = run::Options {
         out: args.out,
         threads: args.threads,
+        device: args.device,
         set: args.set,
         memory,
         resume: args.resume,

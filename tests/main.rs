@@ -12,6 +12,7 @@ mod suite {
     mod contact_laws;
     mod convert;
     mod determinism;
+    mod device;
     mod examples;
     mod exchange;
     mod extremes;

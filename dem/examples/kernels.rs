@@ -4,8 +4,9 @@
 //! `cargo run --release -p trackbed-dem --example kernels -- FOLDER`
 
 use std::path::Path;
+use trackbed_dem::bond::{Bond, BondDamping, BondInput, ContactPoint};
 use trackbed_dem::law::table;
-use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, PairOverride, Shape, device};
+use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, Shape, Vec3, device};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the name of a folder is missing")?;
@@ -27,11 +28,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 input.damping = Some(LocalDamping { factor: 0.2 });
             }
             input.materials = vec![material];
-            input.contacts =
-                vec![PairOverride { adhesion: turning.then_some(1.0), ..PairOverride::default() }];
-            input.bodies = vec![BodyInput::default()];
+            let position = Vec3::new(0.0, 0.0, 0.02);
+            input.bodies = vec![BodyInput::default(), BodyInput { position, ..BodyInput::default() }];
+            if turning {
+                let tension_limit = f64::INFINITY;
+                input.bond_kinds = vec![Bond::ContactPoint(ContactPoint {
+                    normal: 1e5,
+                    shear: 1e5,
+                    tension_limit,
+                    shear_limit: tension_limit,
+                    damping: BondDamping::None,
+                    contact: false,
+                })];
+                input.bonds = vec![BondInput::new(0, 1, 0)];
+            }
             let text = device::source(&Model::new(input)?)?;
-            let file = format!("{name}{}.cu", if turning { "_turning_damped" } else { "" });
+            let file = format!("{name}{}.cu", if turning { "_with_all" } else { "" });
             std::fs::write(Path::new(&folder).join(&file), &text)?;
             println!("{file}: {} bytes", text.len());
         }

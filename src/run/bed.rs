@@ -46,9 +46,9 @@ impl<'a> Bed<'a> {
             Some(s) => work.step(model, state, s, applied),
             None => work.step(model, state, &dem::surface::NoSurface, applied),
         }
-        .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
         // A bed is looked at after every step.
-        self.work.download(&self.model, &mut self.state);
+        .and_then(|()| work.download(model, state))
+        .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
         self.checkpoints.check(self.doing, self.state.time)
     }
 

@@ -2,6 +2,7 @@
 
 use super::checkpoint_store::CheckpointStore;
 use super::companion::Accompanied;
+use super::device::Place;
 use super::folder;
 use super::origin::quoted;
 use super::run_file::{self, RunFile, Source};
@@ -27,6 +28,8 @@ pub struct Run<'a> {
     pub verbosity: Verbosity,
     /// Most memory that a solid may need [bytes].
     pub memory: Option<u64>,
+    /// Where the steps of the grains are computed in the main loop.
+    pub device: Place,
     /// Whether the folder is cleared of earlier results and holds those of this run.
     pub prepared: Cell<bool>,
     /// Where checkpoints go.

@@ -6,6 +6,8 @@ mod checkpoint;
 mod checkpoint_store;
 mod companion;
 mod context;
+mod cuda;
+mod device;
 mod energy_watch;
 pub mod estimate;
 mod events;
@@ -36,6 +38,7 @@ mod wall_output;
 
 pub use checkpoint_store::Interrupt;
 pub use companion::{Accompanied, Companion, Shown};
+pub use device::Place;
 pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, methods, parse_size, size};
@@ -75,6 +78,8 @@ pub struct Options {
     pub set: Vec<String>,
     /// Most memory that a solid may need [bytes]; default what the machine has free.
     pub memory: Option<u64>,
+    /// Where the steps of grains alone are computed.
+    pub device: Place,
     /// Go on from the last checkpoint in the folder of the results.
     pub resume: bool,
     /// Folder of a finished run from whose end this one goes on.
@@ -145,6 +150,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         if let Some(source) = source {
             from::check(&job, &document, source)?;
         }
+        device::check(options.device, &job)?;
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
         if loaded.is_none() && !options.force && !own {
@@ -170,6 +176,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             dir: &dir,
             verbosity: options.verbosity,
             memory: options.memory,
+            device: options.device,
             prepared: Cell::new(false),
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),

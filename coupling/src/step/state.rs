@@ -93,12 +93,13 @@ impl Work {
     /// # Errors
     /// As [`Work::with_back_end`].
     pub fn new(model: &Model<'_>, state: &State, surface: SolidSurface) -> Result<Work, SolveError> {
-        Work::with_back_end(model, state, surface)
+        let grains = dem::Work::new(&model.grains, &state.grains);
+        Work::with_back_end(model, state, surface, grains)
     }
 }
 
 impl<B: dem::BackEnd> Work<B> {
-    /// Scratch memory, the factor of the solid's window matrix, and what computes the grains' steps.
+    /// Scratch memory, the factor of the solid's window matrix, and what computes the grains' steps, which has taken their state over.
     ///
     /// # Errors
     /// The matrix cannot be factored, or the solid is plastic and the scheme needs a constant matrix.
@@ -106,10 +107,11 @@ impl<B: dem::BackEnd> Work<B> {
         model: &Model<'_>,
         state: &State,
         surface: SolidSurface,
+        grains: B,
     ) -> Result<Work<B>, SolveError> {
         let n = 3 * model.solid.mesh().node_count();
         Ok(Work {
-            grains: B::new(&model.grains, &state.grains),
+            grains,
             transfer: Transfer::new(&surface),
             surface,
             solver: SolidSolver::new(model, state.solid.points.is_empty())?,

@@ -142,7 +142,7 @@ fn iterated<B: BackEnd>(
         copy(&work.before, &mut state.solid);
         state.solid.points.clone_from(&work.before.points);
         (state.grains, state.audit) = start.clone();
-        work.grains.upload(&model.grains, &state.grains);
+        work.grains.upload(&model.grains, &state.grains)?;
         passes += 1;
     }
 }
@@ -205,7 +205,7 @@ fn grains<B: BackEnd>(
         work.grains.step(&model.grains, &mut state.grains, &work.surface, &work.applied)?;
         work.transfer.add(&work.surface, work.grains.surface_contacts(), kick, &mut state.audit);
     }
-    work.grains.download(&model.grains, &mut state.grains);
+    work.grains.download(&model.grains, &mut state.grains)?;
     work.contact_load.fill(0.0);
     work.transfer.add_mean_load(&work.surface, model.window(), &mut work.contact_load);
     work.transfer.audit_spread(&work.surface, model.window(), &work.contact_load, &mut state.audit);

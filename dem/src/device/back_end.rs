@@ -9,12 +9,13 @@ use crate::base::Vec3;
 use crate::base::error::StepError;
 use crate::base::ledger::Ledger;
 use crate::contact::planes;
+use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::engine::{bonds, neighbours, order, step};
-use crate::spatial::surface::NoSurface;
+use crate::spatial::surface::{NoSurface, Surface, SurfaceContact};
 
 /// The text of the kernels for a model: C and CUDA at once.
 ///
@@ -25,7 +26,7 @@ pub fn source(model: &Model) -> Result<String, Unsupported> {
     Ok(text::text(&model.laws, &text::features(model)))
 }
 
-/// Steps on a device. A state that it has taken over is whole again after [`Device::download`].
+/// Steps on a device. A state that it has taken over is whole again after [`BackEnd::download`].
 pub struct Device<M> {
     machine: M,
     /// What the processor needs for the search, and for the steps that it makes itself.
@@ -107,15 +108,6 @@ impl<M: Machine> Device<M> {
         self.machine.reserve(self.call.buffers[slot as usize], numbers)
     }
 
-    /// Takes over another state of the same model, or this one after something else has changed it.
-    ///
-    /// # Errors
-    /// As [`Device::new`].
-    pub fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
-        self.work.follow(model, state);
-        self.take_over(model, state).map_err(|e| failed(state, e))
-    }
-
     fn take_over(&mut self, model: &Model, state: &State) -> Result<(), String> {
         let motion = Motion::of(state);
         let n = motion.x.len();
@@ -184,11 +176,8 @@ impl<M: Machine> Device<M> {
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
 
-    /// Makes `state` whole: motion and memory of contacts as they are now.
-    ///
-    /// # Errors
-    /// The device does not respond.
-    pub fn download(&mut self, state: &mut State) -> Result<(), StepError> {
+    /// Makes `state` whole.
+    fn fetch(&mut self, state: &mut State) -> Result<(), StepError> {
         if self.ahead {
             self.bring_back(state).map_err(|e| failed(state, e))?;
             self.ahead = false;
@@ -219,11 +208,8 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Advances the state by one step of [`State::dt`]. Its motion and the memory of its contacts stay on the device.
-    ///
-    /// # Errors
-    /// [`StepError`]; the state is then not fit to go on from.
-    pub fn step(
+    /// Advances the state by one step. Its motion and the memory of its contacts stay on the device.
+    fn advance(
         &mut self,
         model: &Model,
         state: &mut State,
@@ -234,7 +220,7 @@ impl<M: Machine> Device<M> {
             return self.by_processor(model, state, applied);
         }
         if neighbours::due(state) {
-            self.download(state)?;
+            self.fetch(state)?;
             neighbours::update(model, state, &mut self.work, &NoSurface);
             self.take_lists(model, state).map_err(|e| failed(state, e))?;
         }
@@ -248,7 +234,7 @@ impl<M: Machine> Device<M> {
         self.ahead = true;
         self.book(model, state);
         if bonds::looks_at_separation(state) {
-            self.download(state)?;
+            self.fetch(state)?;
         }
         step::collect(model, state, &mut self.work, 0.0)
     }
@@ -260,7 +246,7 @@ impl<M: Machine> Device<M> {
         state: &mut State,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
-        self.download(state)?;
+        self.fetch(state)?;
         step::step(model, state, &mut self.work, &NoSurface, applied)?;
         self.take_over(model, state).map_err(|e| failed(state, e))
     }
@@ -339,6 +325,32 @@ fn book_held(ledger: &mut Ledger, q: &[f64], kick: f64, damped: bool) {
         ledger.dissipated_local_damping = q[14] - q[0] * kick;
         ledger.local_damping.linear = vector(15) + vector(1) * kick;
         ledger.local_damping.angular = vector(18) + vector(4) * kick;
+    }
+}
+
+impl<M: Machine> BackEnd for Device<M> {
+    fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
+        self.work.follow(model, state);
+        self.take_over(model, state).map_err(|e| failed(state, e))
+    }
+
+    fn step<S: Surface>(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        surface: &S,
+        applied: &[AppliedForce],
+    ) -> Result<(), StepError> {
+        // A model with a material for such a surface is refused.
+        if surface.is_empty() { self.advance(model, state, applied) } else { Err(StepError::SurfaceMaterial) }
+    }
+
+    fn download(&mut self, _: &Model, state: &mut State) -> Result<(), StepError> {
+        self.fetch(state)
+    }
+
+    fn surface_contacts(&self) -> &[SurfaceContact] {
+        &[]
     }
 }
 

@@ -324,10 +324,10 @@ fn single_held(out: &mut Results, s: &Single<Recorded>, k: &kick::Kicked<Recorde
     let hold = ((k.velocity - s.velocity) * s.mass - k.force * kick).only(any("7u"));
     let turn = ((k.spin - s.spin) * s.inertia - k.torque * kick).only(any("56u"));
     let (impulse, torque) = (k.damping * kick, k.damping_torque * kick);
-    let taken = -((k.damping.dot(mean) + k.damping_torque.dot(mean_spin)) * kick);
+    let lost = -((k.damping.dot(mean) + k.damping_torque.dot(mean_spin)) * kick);
     out.number("held[0]", hold.dot(mean));
     out.number("held[7]", turn.dot(mean_spin));
-    out.number("held[11]", taken);
+    out.number("held[11]", lost);
     let rows =
         [(1, hold), (4, x.cross(hold)), (8, turn), (12, impulse), (15, x.cross(impulse)), (18, torque)];
     for (at, v) in rows {

@@ -15,12 +15,12 @@ use crate::base::error::StepError;
 use crate::spatial::surface::{Surface, SurfaceContact};
 
 /// What computes the steps of one model's states.
-pub trait BackEnd: Sized {
-    /// A back end that has taken `state` over.
-    fn new(model: &Model, state: &State) -> Self;
-
+pub trait BackEnd {
     /// Takes over another state of the same model, or this one after something else has changed it.
-    fn upload(&mut self, model: &Model, state: &State);
+    ///
+    /// # Errors
+    /// A device does not respond, or has no memory left.
+    fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError>;
 
     /// Advances the state by one step of [`State::dt`]; see [`step()`](super::step::step).
     ///
@@ -36,19 +36,19 @@ pub trait BackEnd: Sized {
 
     /// Makes `state` whole: motion and memory of contacts as they are now. Before it is measured, written, looked at for the
     /// length of steps, or changed.
-    fn download(&mut self, model: &Model, state: &mut State);
+    ///
+    /// # Errors
+    /// A device does not respond.
+    fn download(&mut self, model: &Model, state: &mut State) -> Result<(), StepError>;
 
     /// Contacts with the external surface in the last step, by block, then sphere, then patch.
     fn surface_contacts(&self) -> &[SurfaceContact];
 }
 
 impl BackEnd for Work {
-    fn new(model: &Model, state: &State) -> Work {
-        Work::new(model, state)
-    }
-
-    fn upload(&mut self, model: &Model, state: &State) {
+    fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
         self.follow(model, state);
+        Ok(())
     }
 
     fn step<S: Surface>(
@@ -61,7 +61,9 @@ impl BackEnd for Work {
         step::step(model, state, self, surface, applied)
     }
 
-    fn download(&mut self, _: &Model, _: &mut State) {}
+    fn download(&mut self, _: &Model, _: &mut State) -> Result<(), StepError> {
+        Ok(())
+    }
 
     fn surface_contacts(&self) -> &[SurfaceContact] {
         Work::surface_contacts(self)

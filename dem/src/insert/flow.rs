@@ -7,6 +7,7 @@
 //! Limits: no boxes, and no bodies that the model joins by bonds.
 
 use crate::base::Vec3;
+use crate::base::error::StepError;
 use crate::bodies::block::Rotation;
 use crate::bodies::table::Kind;
 use crate::engine::back_end::BackEnd;
@@ -47,6 +48,9 @@ pub enum FlowError {
         /// Why not.
         problem: &'static str,
     },
+    /// What computes the steps cannot take the bodies over.
+    #[error(transparent)]
+    Step(#[from] StepError),
 }
 
 /// Takes out the bodies `leave` and puts in `arrive`, which may be bodies that have just left. Contacts among bodies that
@@ -117,7 +121,7 @@ pub fn exchange(
         let momentum = measure::momentum_of(model, state, come);
         state.ledger.flow += &momentum;
     }
-    work.upload(model, state);
+    work.upload(model, state)?;
     Ok(())
 }
 

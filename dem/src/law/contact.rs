@@ -45,6 +45,10 @@ impl History {
 
     /// The same contact seen from the other partner. A twist has the same sense from both sides.
     pub(crate) fn turned(&self) -> History {
+        if self.is_fresh() {
+            // No zero gets a sign that a step without a contact would not take away from it.
+            return *self;
+        }
         let [x, y, z, twist] = self.turn;
         History { spring: -self.spring, rate: self.rate, turn: [-x, -y, -z, twist] }
     }

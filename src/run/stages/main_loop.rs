@@ -66,12 +66,13 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     let interval = run.job.output.history_interval;
     let mut resumed = state.loaded.take();
     let mut system = match &mut resumed {
-        Some(loaded) => GrainsSystem::resume(model, interval, loaded)?,
+        Some(loaded) => GrainsSystem::resume(model, interval, loaded, run.device)?,
         None => {
             let start = state.grains.as_ref().expect("a run with grains").start(&model)?;
-            let mut system = GrainsSystem::new(model, start, interval)?;
+            let mut system = GrainsSystem::new(model, start, interval, run.device)?;
             if let Some(carried) = state.grains.as_ref().and_then(|grains| grains.carried.as_ref()) {
-                carried.remember(&system.model, &mut system.state);
+                let (model, state) = system.state_mut();
+                carried.remember(model, state);
             }
             system
         }

@@ -87,7 +87,8 @@ fn settle(
         .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
         // Look at the speed every millisecond.
         if bed::passed(&state, LOOK) {
-            work.download(&model, &mut state);
+            work.download(&model, &mut state)
+                .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
             let speed = bed::rms_speed(&model, &state);
             // Everything starts at rest: free fall has to be under way before slowness means anything.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);

@@ -3,6 +3,7 @@
 use super::{Applied, GrainsView, System};
 use crate::failure::Failure;
 use crate::run::checkpoint::{Body, Loaded};
+use crate::run::device::{Place, Steps};
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
@@ -16,8 +17,10 @@ pub struct GrainsSystem {
     pub model: dem::Model,
     /// State.
     pub state: dem::State,
-    /// Scratch.
-    pub work: dem::Work,
+    /// What computes the steps.
+    work: Steps,
+    /// Whether something has changed the state that a device has taken over.
+    changed: bool,
     applied: Vec<dem::AppliedForce>,
     /// Length of a window [s].
     window: f64,
@@ -27,26 +30,57 @@ impl GrainsSystem {
     /// The grains in the state that they start from; `interval` is that of the history [s].
     ///
     /// # Errors
-    /// They overlap so much that no step can be made.
-    pub fn new(model: dem::Model, mut state: dem::State, interval: f64) -> Result<GrainsSystem, Failure> {
+    /// They overlap so much that no step can be made; a device refuses them.
+    pub fn new(
+        model: dem::Model,
+        mut state: dem::State,
+        interval: f64,
+        place: Place,
+    ) -> Result<GrainsSystem, Failure> {
         let mut work = dem::Work::new(&model, &state);
         dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
-        Ok(GrainsSystem { window: window(&model, interval), model, state, work, applied: Vec::new() })
+        GrainsSystem::with(model, state, work, interval, place)
     }
 
     /// The grains as a checkpoint has them; `interval` as in [`GrainsSystem::new`].
     ///
     /// # Errors
-    /// A checkpoint of something else.
-    pub fn resume(model: dem::Model, interval: f64, loaded: &mut Loaded) -> Result<GrainsSystem, Failure> {
+    /// A checkpoint of something else; a device refuses the grains.
+    pub fn resume(
+        model: dem::Model,
+        interval: f64,
+        loaded: &mut Loaded,
+        place: Place,
+    ) -> Result<GrainsSystem, Failure> {
         let state = loaded.take()?;
         let work = dem::Work::new(&model, &state);
-        Ok(GrainsSystem { window: window(&model, interval), model, state, work, applied: Vec::new() })
+        GrainsSystem::with(model, state, work, interval, place)
+    }
+
+    fn with(
+        model: dem::Model,
+        state: dem::State,
+        work: dem::Work,
+        interval: f64,
+        place: Place,
+    ) -> Result<GrainsSystem, Failure> {
+        let work = match place {
+            Place::Cpu => Steps::processor(work),
+            Place::Gpu => Steps::device(&model, &state)?,
+        };
+        let (window, applied) = (window(&model, interval), Vec::new());
+        Ok(GrainsSystem { model, state, work, changed: false, applied, window })
     }
 }
 
 impl GrainsSystem {
+    /// The state, to be changed.
+    pub fn state_mut(&mut self) -> (&dem::Model, &mut dem::State) {
+        self.changed = true;
+        (&self.model, &mut self.state)
+    }
+
     /// Lets time and accounts begin anew.
     pub fn begin_anew(&mut self) {
         self.state.begin_anew();
@@ -77,8 +111,9 @@ impl TrackSystem for GrainsSystem {
     }
 
     fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
-        moves.iter().for_each(|(body, shift, turn)| self.state.shift(&self.model, *body, shift, turn));
-        self.state.forget_neighbours();
+        let (model, state) = self.state_mut();
+        moves.iter().for_each(|(body, shift, turn)| state.shift(model, *body, shift, turn));
+        state.forget_neighbours();
     }
 }
 
@@ -89,15 +124,17 @@ impl System for GrainsSystem {
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
         let none = &dem::surface::NoSurface;
+        let failed = |e: dem::StepError| Failure::Numerical(format!("grains: {e}"));
+        // The processor steps the state itself.
+        if std::mem::take(&mut self.changed) && matches!(self.work, Steps::Device(_)) {
+            self.work.upload(&self.model, &self.state).map_err(failed)?;
+        }
         for _ in 0..dem::stability::divide(&self.model, &mut self.state, self.window, 1) {
             self.applied.clear();
             applied(self.state.time, &self.model, &self.state, &mut self.applied);
-            self.work
-                .step(&self.model, &mut self.state, none, &self.applied)
-                .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+            self.work.step(&self.model, &mut self.state, none, &self.applied).map_err(failed)?;
         }
-        self.work.download(&self.model, &mut self.state);
-        Ok(())
+        self.work.download(&self.model, &mut self.state).map_err(failed)
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {

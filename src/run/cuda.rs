@@ -1,0 +1,149 @@
+//! A CUDA device as the machine of `trackbed_dem::device`: the driver's and NVRTC's libraries are loaded when they are asked for, so
+//! that neither the build nor any other run needs them. Not run on a device yet: what it hands over and in which order is tested with
+//! a machine of the C compiler (`dem/tests/engine/device.rs`), and the text with NVRTC (`tests/nvrtc_check.py`).
+
+use bytemuck::{Pod, cast_slice, cast_slice_mut};
+use cudarc::driver::{
+    CudaContext, CudaFunction, CudaSlice, CudaStream, DevicePtr, DeviceRepr, DriverError, LaunchConfig,
+    PushKernelArg,
+};
+use cudarc::nvrtc::{CompileError, CompileOptions, compile_ptx_with_opts};
+use std::collections::HashMap;
+use std::sync::Arc;
+use trackbed_dem::device::{Arguments, Call, KERNELS, Machine};
+
+/// Threads of a block, as the text states them in its launch bounds.
+const THREADS: u32 = 128;
+
+/// A CUDA device with the kernels of one model.
+pub struct Cuda {
+    stream: Arc<CudaStream>,
+    kernels: HashMap<&'static str, CudaFunction>,
+    buffers: Vec<Option<CudaSlice<u8>>>,
+    /// What it is called.
+    pub name: String,
+}
+
+/// Arguments of a kernel, by value.
+#[repr(transparent)]
+struct ByValue(Arguments);
+
+// SAFETY: `Arguments` is `repr(C)` of plain numbers, laid out as the text declares its only parameter.
+unsafe impl DeviceRepr for ByValue {}
+
+/// What this machine lacks for a device, if anything.
+pub fn missing() -> Option<&'static str> {
+    // SAFETY: both only try to open a library by name.
+    let (driver, compiler) =
+        unsafe { (cudarc::driver::sys::is_culib_present(), cudarc::nvrtc::sys::is_culib_present()) };
+    match (driver, compiler) {
+        (false, _) => Some("the library of NVIDIA's driver (libcuda) is not on this machine"),
+        (_, false) => Some("the library of CUDA's run-time compiler (libnvrtc) is not on this machine"),
+        _ => None,
+    }
+}
+
+fn of_driver(e: DriverError) -> String {
+    format!("CUDA's driver: {e}")
+}
+
+impl Cuda {
+    /// The first device, with the kernels of a text. Call it where nothing is [`missing`].
+    ///
+    /// # Errors
+    /// There is no device, or it does not take the kernels.
+    pub fn new(text: &str) -> Result<Cuda, String> {
+        let context = CudaContext::new(0).map_err(of_driver)?;
+        let (major, minor) = context.compute_capability().map_err(of_driver)?;
+        let options = CompileOptions {
+            // Products that are contracted with sums would have other bits.
+            fmad: Some(false),
+            options: vec![format!("--gpu-architecture=compute_{major}{minor}")],
+            ..CompileOptions::default()
+        };
+        let code = compile_ptx_with_opts(text, options).map_err(|e| match e {
+            CompileError::CompileError { log, .. } => format!("NVRTC: {}", log.to_string_lossy()),
+            other => format!("NVRTC: {other}"),
+        })?;
+        let module = context.load_module(code).map_err(of_driver)?;
+        let kernel = |name| Ok((name, module.load_function(name).map_err(of_driver)?));
+        let kernels = KERNELS.into_iter().map(kernel).collect::<Result<_, String>>()?;
+        let name = context.name().map_err(of_driver)?;
+        Ok(Cuda { stream: context.default_stream(), kernels, buffers: Vec::new(), name })
+    }
+
+    /// A buffer with room for so many bytes; what it held is lost where it was too small.
+    fn room(&mut self, buffer: usize, bytes: usize) -> Result<&mut CudaSlice<u8>, String> {
+        if self.buffers.len() <= buffer {
+            self.buffers.resize_with(buffer + 1, || None);
+        }
+        let slot = &mut self.buffers[buffer];
+        if slot.as_ref().is_none_or(|slice| slice.len() < bytes) {
+            // Freed first: both need not fit beside each other. Lists grow and shrink a little from search to search.
+            *slot = None;
+            *slot = Some(self.stream.alloc_zeros((bytes + bytes / 4).max(64)).map_err(of_driver)?);
+        }
+        slot.as_mut().ok_or_else(|| "no buffer".to_string())
+    }
+
+    fn write<T: Pod>(&mut self, buffer: usize, data: &[T]) -> Result<(), String> {
+        let bytes: &[u8] = cast_slice(data);
+        let stream = self.stream.clone();
+        let slice = self.room(buffer, bytes.len())?;
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        stream.memcpy_htod(bytes, &mut slice.slice_mut(..bytes.len())).map_err(of_driver)
+    }
+
+    fn read<T: Pod>(&mut self, buffer: usize, data: &mut [T]) -> Result<(), String> {
+        let bytes: &mut [u8] = cast_slice_mut(data);
+        let Some(Some(slice)) = self.buffers.get(buffer).filter(|_| !bytes.is_empty()) else { return Ok(()) };
+        self.stream.memcpy_dtoh(&slice.slice(..bytes.len()), bytes).map_err(of_driver)?;
+        self.stream.synchronize().map_err(of_driver)
+    }
+}
+
+impl Machine for Cuda {
+    fn put(&mut self, buffer: usize, numbers: &[f64]) -> Result<(), String> {
+        self.write(buffer, numbers)
+    }
+
+    fn put_counts(&mut self, buffer: usize, counts: &[u32]) -> Result<(), String> {
+        self.write(buffer, counts)
+    }
+
+    fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String> {
+        self.room(buffer, numbers * size_of::<f64>()).map(|_| ())
+    }
+
+    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
+        self.read(buffer, numbers)
+    }
+
+    fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
+        self.read(buffer, counts)
+    }
+
+    fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String> {
+        if threads == 0 {
+            return Ok(());
+        }
+        let threads = u32::try_from(threads).map_err(|_| format!("{threads} threads are too many"))?;
+        let address = |buffer: usize| match self.buffers.get(buffer) {
+            Some(Some(slice)) => slice.device_ptr(&self.stream).0,
+            _ => 0,
+        };
+        let arguments = ByValue(call.arguments(address));
+        let function = self.kernels.get(kernel).ok_or_else(|| format!("there is no kernel {kernel}"))?;
+        let grid = LaunchConfig {
+            grid_dim: (threads.div_ceil(THREADS), 1, 1),
+            block_dim: (THREADS, 1, 1),
+            shared_mem_bytes: 0,
+        };
+        let mut launch = self.stream.launch_builder(function);
+        launch.arg(&arguments);
+        // SAFETY: the kernel has this one parameter, and its buffers are as large as the counts in it say.
+        unsafe { launch.launch(grid) }.map(|_| ()).map_err(of_driver)
+    }
+}

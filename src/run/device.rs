@@ -1,0 +1,104 @@
+//! Where the steps of grains are computed.
+
+use super::cuda::{self, Cuda};
+use crate::failure::Failure;
+use crate::message;
+use crate::model::Job;
+use trackbed_dem as dem;
+use trackbed_dem::device::{self, Device};
+use trackbed_dem::surface::{Surface, SurfaceContact};
+use trackbed_dem::{AppliedForce, BackEnd, StepError};
+
+/// Where the steps of the run proper are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Place {
+    /// The processor.
+    #[default]
+    Cpu,
+    /// A CUDA device; not run on a device yet.
+    Gpu,
+}
+
+/// Whether a scene can be computed there, before anything is written.
+///
+/// # Errors
+/// Bad input: the scene has what a device does not compute, or this machine lacks what a device needs.
+pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
+    if place == Place::Cpu {
+        return Ok(());
+    }
+    let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
+    let grains = match (&job.grains, &job.solid) {
+        (Some(grains), None) => grains,
+        _ => return Err(refused("solids are not computed on a device, only on the processor".into())),
+    };
+    // A scene whose grains are wrong is refused where they are made, with the keys to blame.
+    if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
+        device::check(&model).map_err(|e| refused(e.to_string()))?;
+    }
+    cuda::missing().map_or(Ok(()), |what| Err(refused(what.into())))
+}
+
+/// What computes the steps.
+pub enum Steps {
+    /// The processor.
+    Processor(Box<dem::Work>),
+    /// A device.
+    Device(Box<Device<Cuda>>),
+}
+
+impl Steps {
+    /// On the processor.
+    pub fn processor(work: dem::Work) -> Steps {
+        Steps::Processor(Box::new(work))
+    }
+
+    /// On a device, which takes the state over.
+    ///
+    /// # Errors
+    /// The model has what a device does not compute; there is no device, or it has no memory for the state.
+    pub fn device(model: &dem::Model, state: &dem::State) -> Result<Steps, Failure> {
+        let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
+        let text = device::source(model).map_err(|e| refused(e.to_string()))?;
+        let machine = Cuda::new(&text).map_err(refused)?;
+        message::note(&format!("the steps of the run proper are computed on {}", machine.name));
+        let device = Device::new(machine, model, state).map_err(|e| refused(e.to_string()))?;
+        Ok(Steps::Device(Box::new(device)))
+    }
+}
+
+impl BackEnd for Steps {
+    fn upload(&mut self, model: &dem::Model, state: &dem::State) -> Result<(), StepError> {
+        match self {
+            Steps::Processor(work) => work.upload(model, state),
+            Steps::Device(device) => device.upload(model, state),
+        }
+    }
+
+    fn step<S: Surface>(
+        &mut self,
+        model: &dem::Model,
+        state: &mut dem::State,
+        surface: &S,
+        applied: &[AppliedForce],
+    ) -> Result<(), StepError> {
+        match self {
+            Steps::Processor(work) => work.step(model, state, surface, applied),
+            Steps::Device(device) => device.step(model, state, surface, applied),
+        }
+    }
+
+    fn download(&mut self, model: &dem::Model, state: &mut dem::State) -> Result<(), StepError> {
+        match self {
+            Steps::Processor(work) => work.download(model, state),
+            Steps::Device(device) => device.download(model, state),
+        }
+    }
+
+    fn surface_contacts(&self) -> &[SurfaceContact] {
+        match self {
+            Steps::Processor(work) => BackEnd::surface_contacts(&**work),
+            Steps::Device(device) => device.surface_contacts(),
+        }
+    }
+}
