@@ -21,7 +21,9 @@ fn a_device_refuses_by_name() {
     let cylinder =
         "walls=[{ kind = \"cylinder\", base = [0, 0, -1], radius = 1, height = 3, material = \"stone\" }]";
     let clumps = fs::read_to_string(repository().join("inputs/grains/gradation.toml")).unwrap();
-    let clumps = clumps.replace("\"../", &format!("\"{}/", repository().join("inputs").display()));
+    let inputs = repository().join("inputs").display().to_string();
+    let clumps = clumps.replace("\"../", &format!("\"{inputs}/"));
+    let clumps = clumps.replace("\"stones.toml", &format!("\"{inputs}/grains/stones.toml"));
     let cases: [(&str, &str, &[&str], &str); 4] = [
         ("device_solid", COUPLED, &[], "solids are not"),
         ("device_wall", GRAINS, &[cylinder], "walls other than planes are not"),
