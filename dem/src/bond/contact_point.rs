@@ -3,8 +3,9 @@
 //!
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond, a glue of no size).
 
-use super::kind::{Bond, BondKind};
-use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
+use super::springs::{
+    BondDamping, BondKind, Criterion, Joint, Problem, Springs, not_negative, positive, strength,
+};
 
 /// A contact-point bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +53,7 @@ impl BondKind for ContactPoint {
         self.contact
     }
 
-    fn unbreakable(&self) -> Bond {
-        Bond::ContactPoint(ContactPoint { tension_limit: f64::INFINITY, shear_limit: f64::INFINITY, ..*self })
+    fn unbreakable(&self) -> ContactPoint {
+        ContactPoint { tension_limit: f64::INFINITY, shear_limit: f64::INFINITY, ..*self }
     }
 }

@@ -4,8 +4,9 @@
 //! Source: Wang, Acta Geotechnica 4, 2009 (four springs, criterion by sum). With small rotations the springs are those
 //! of the bonded-particle models that keep a quaternion per bond.
 
-use super::kind::{Bond, BondKind};
-use super::springs::{BondDamping, Criterion, Joint, Problem, Springs, not_negative, positive, strength};
+use super::springs::{
+    BondDamping, BondKind, Criterion, Joint, Problem, Springs, not_negative, positive, strength,
+};
 
 /// A bond by stiffness and strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +51,7 @@ impl BondKind for DirectBond {
         self.contact
     }
 
-    fn unbreakable(&self) -> Bond {
-        Bond::Direct(DirectBond { strength: [f64::INFINITY; 4], ..*self })
+    fn unbreakable(&self) -> DirectBond {
+        DirectBond { strength: [f64::INFINITY; 4], ..*self }
     }
 }

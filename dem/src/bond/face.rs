@@ -14,9 +14,10 @@
 //! Limit: bending is as stiff and as strong about the axis across the sheet as about that along it, by the thickness. In a sheet that is no
 //! row, turning about the vertical is held by the shear of the faces around.
 
-use super::kind::{Bond, BondKind};
 use super::parallel::ShearStrength;
-use super::springs::{BondDamping, Cement, Criterion, Joint, Problem, Section, Springs, positive, strength};
+use super::springs::{
+    BondDamping, BondKind, Cement, Criterion, Joint, Problem, Section, Springs, positive, strength,
+};
 
 /// A face bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,9 +92,9 @@ impl BondKind for FaceBond {
         true
     }
 
-    fn unbreakable(&self) -> Bond {
+    fn unbreakable(&self) -> FaceBond {
         let shear_strength = ShearStrength::Constant(f64::INFINITY);
-        Bond::Face(FaceBond { tensile_strength: f64::INFINITY, shear_strength, ..*self })
+        FaceBond { tensile_strength: f64::INFINITY, shear_strength, ..*self }
     }
 }
 

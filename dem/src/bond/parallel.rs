@@ -11,9 +11,9 @@
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; the moment factor β is that of Potyondy
 //! (Proc. 45th US Rock Mech. Symp., 2011).
 
-use super::kind::{Bond, BondKind};
 use super::springs::{
-    BondDamping, Cement, Criterion, Joint, Problem, Section, Springs, not_negative, positive, strength,
+    BondDamping, BondKind, Cement, Criterion, Joint, Problem, Section, Springs, not_negative, positive,
+    strength,
 };
 use std::f64::consts::PI;
 
@@ -142,8 +142,8 @@ impl BondKind for ParallelBond {
         self.contact
     }
 
-    fn unbreakable(&self) -> Bond {
+    fn unbreakable(&self) -> ParallelBond {
         let shear_strength = ShearStrength::Constant(f64::INFINITY);
-        Bond::Parallel(ParallelBond { tensile_strength: f64::INFINITY, shear_strength, ..*self })
+        ParallelBond { tensile_strength: f64::INFINITY, shear_strength, ..*self }
     }
 }

@@ -3,6 +3,34 @@
 use super::face::Face;
 use super::parallel::ShearStrength;
 
+/// A kind of bond.
+pub(super) trait BondKind {
+    /// What is wrong with its numbers.
+    fn problem(&self) -> Problem;
+
+    /// Its springs between two bodies, and what breaks them.
+    fn springs(&self, joint: &Joint) -> Springs;
+
+    /// Its dashpots.
+    fn damping(&self) -> BondDamping;
+
+    /// When it breaks.
+    fn criterion(&self) -> Criterion;
+
+    /// Whether the contact of the pair acts beside it.
+    fn contact(&self) -> bool;
+
+    /// Whether it fills a face between bodies of any shape; else it joins single spheres.
+    fn fills_faces(&self) -> bool {
+        false
+    }
+
+    /// The same bond without a limit of strength.
+    fn unbreakable(&self) -> Self
+    where
+        Self: Sized;
+}
+
 /// Viscous damping of a bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondDamping {
