@@ -229,11 +229,10 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         (force - self.common.pull * radius, stiffness)
     }
 
-    fn longest_spring(&self, overlap: f64, radius: f64, history: &History) -> f64 {
+    fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let (force, stiffness) = self.springs(overlap, radius, history);
         let normal = force + self.common.pull * radius;
-        let limit = T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius);
-        if stiffness > 0.0 { limit / stiffness } else { 0.0 }
+        (T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius), stiffness)
     }
 
     #[inline(always)]

@@ -29,8 +29,8 @@ pub trait ContactLaw: Constants {
     /// this memory.
     fn springs(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
-    /// Longest tangential spring that friction holds with this memory [m].
-    fn longest_spring(&self, overlap: f64, radius: f64, history: &History) -> f64;
+    /// Largest force of the tangential spring that friction holds with this memory [N], and the spring's stiffness [N/m].
+    fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
     /// Energy that contacts which end leave in their tangential, rolling and twisting springs [J].
     fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;

@@ -158,9 +158,15 @@ impl Laws {
         with_law!(self, t => t.get(a, b).stored(overlap, radius, history))
     }
 
-    /// Longest tangential spring that friction holds [m].
-    pub fn longest_spring(&self, [a, b]: [u32; 2], overlap: f64, radius: f64, history: &History) -> f64 {
-        with_law!(self, t => t.get(a, b).longest_spring(overlap, radius, history))
+    /// Largest force of the tangential spring that friction holds [N], and the spring's stiffness [N/m].
+    pub fn held_by_friction(
+        &self,
+        [a, b]: [u32; 2],
+        overlap: f64,
+        radius: f64,
+        history: &History,
+    ) -> (f64, f64) {
+        with_law!(self, t => t.get(a, b).held_by_friction(overlap, radius, history))
     }
 
     /// How many materials there are.

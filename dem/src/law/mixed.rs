@@ -114,7 +114,7 @@ macro_rules! combinations {
             $crate::law::mixed::of_each_row! { $($row),+ => {
                 stored(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> (f64, f64), (overlap, radius, history);
                 springs(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> (f64, f64), (overlap, radius, history);
-                longest_spring(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> f64, (overlap, radius, history);
+                held_by_friction(overlap: f64, radius: f64, history: &$crate::law::contact::History) -> (f64, f64), (overlap, radius, history);
                 loading(overlap: f64, radius: f64) -> (f64, f64), (overlap, radius);
                 stiffness(overlap: f64, radius: f64) -> f64, (overlap, radius);
                 linearised(mass: f64, radius: f64, overlap: f64, history: &$crate::law::contact::History) -> $crate::law::contact::Linearised, (mass, radius, overlap, history);

@@ -100,19 +100,20 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
         if !counted(c) {
             return;
         }
-        // The spring belongs to the last full step: half a step of sliding brings it to the half step, but no farther than friction
-        // holds it.
+        // The spring belongs to the last full step: half a step of sliding brings it to the half step. Beyond what friction holds that is
+        // work of friction, which the ledger has not booked yet.
         let n = &c.geometry.normal;
         let slip = c.velocity - n * c.velocity.dot(n);
         let mut history = *c.history;
         if !history.is_fresh() {
             let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
-            let most =
-                history.spring.norm().max(model.laws.longest_spring(c.materials, overlap, radius, &history));
+            let (force, stiffness) = model.laws.held_by_friction(c.materials, overlap, radius, &history);
+            let most = if stiffness > 0.0 { history.spring.norm().max(force / stiffness) } else { 0.0 };
             history.spring += slip * back;
             let length = history.spring.norm();
             if length > most {
                 history.spring *= most / length;
+                e.elastic_tangential += stiffness * most * (length - most) * c.weight;
             }
             if model.laws.rolls() {
                 let about = c.spin.dot(n);
