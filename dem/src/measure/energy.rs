@@ -106,14 +106,17 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
         let slip = c.velocity - n * c.velocity.dot(n);
         let mut history = *c.history;
         if !history.is_fresh() {
-            let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
-            let (force, stiffness) = model.laws.held_by_friction(c.materials, overlap, radius, &history);
-            let most = if stiffness > 0.0 { history.spring.norm().max(force / stiffness) } else { 0.0 };
+            let before = history.spring.norm();
             history.spring += slip * back;
             let length = history.spring.norm();
-            if length > most {
-                history.spring *= most / length;
-                e.elastic_tangential += stiffness * most * (length - most) * c.weight;
+            if length > before {
+                let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
+                let (force, stiffness) = model.laws.held_by_friction(c.materials, overlap, radius, &history);
+                let most = if stiffness > 0.0 { before.max(force / stiffness) } else { 0.0 };
+                if length > most {
+                    history.spring *= most / length;
+                    e.elastic_tangential += stiffness * most * (length - most) * c.weight;
+                }
             }
             if model.laws.rolls() {
                 let about = c.spin.dot(n);
