@@ -4,7 +4,7 @@
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond, a glue of no size).
 
 use super::springs::{
-    BondDamping, BondKind, Criterion, Joint, Problem, Springs, not_negative, positive, strength,
+    BondDamping, BondKind, Criterion, Joint, Problem, Rules, Springs, not_negative, positive, strength,
 };
 
 /// A contact-point bond.
@@ -41,16 +41,8 @@ impl BondKind for ContactPoint {
         }
     }
 
-    fn damping(&self) -> BondDamping {
-        self.damping
-    }
-
-    fn criterion(&self) -> Criterion {
-        Criterion::Stress
-    }
-
-    fn contact(&self) -> bool {
-        self.contact
+    fn rules(&self) -> Rules {
+        Rules { damping: self.damping, criterion: Criterion::Stress, contact: self.contact }
     }
 
     fn unbreakable(&self) -> ContactPoint {

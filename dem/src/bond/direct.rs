@@ -5,7 +5,7 @@
 //! of the bonded-particle models that keep a quaternion per bond.
 
 use super::springs::{
-    BondDamping, BondKind, Criterion, Joint, Problem, Springs, not_negative, positive, strength,
+    BondDamping, BondKind, Criterion, Joint, Problem, Rules, Springs, not_negative, positive, strength,
 };
 
 /// A bond by stiffness and strength.
@@ -39,16 +39,8 @@ impl BondKind for DirectBond {
         Springs { stiffness: self.stiffness, limit: [tension, bending, shear, twisting, 0.0], offset: 0.0 }
     }
 
-    fn damping(&self) -> BondDamping {
-        self.damping
-    }
-
-    fn criterion(&self) -> Criterion {
-        self.criterion
-    }
-
-    fn contact(&self) -> bool {
-        self.contact
+    fn rules(&self) -> Rules {
+        Rules { damping: self.damping, criterion: self.criterion, contact: self.contact }
     }
 
     fn unbreakable(&self) -> DirectBond {

@@ -16,7 +16,7 @@
 
 use super::parallel::ShearStrength;
 use super::springs::{
-    BondDamping, BondKind, Cement, Criterion, Joint, Problem, Section, Springs, positive, strength,
+    BondDamping, BondKind, Cement, Criterion, Joint, Problem, Rules, Section, Springs, positive, strength,
 };
 
 /// A face bond.
@@ -76,16 +76,8 @@ impl BondKind for FaceBond {
         section.springs(&cement, face.offset)
     }
 
-    fn damping(&self) -> BondDamping {
-        self.damping
-    }
-
-    fn criterion(&self) -> Criterion {
-        self.criterion
-    }
-
-    fn contact(&self) -> bool {
-        true
+    fn rules(&self) -> Rules {
+        Rules { damping: self.damping, criterion: self.criterion, contact: true }
     }
 
     fn fills_faces(&self) -> bool {

@@ -189,9 +189,9 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
         face: b.face,
     };
     let kind = kind.kind();
-    let springs = kind.springs(&joint);
+    let (springs, rules) = (kind.springs(&joint), kind.rules());
     let stiffness = springs.stiffness.map(|k| k * b.stiffness);
-    let dashpots = match kind.damping() {
+    let dashpots = match rules.damping {
         BondDamping::None => [0.0; 4],
         BondDamping::Coefficients(c) => c,
         BondDamping::Fraction(zeta) => std::array::from_fn(|m| {
@@ -213,6 +213,6 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
         confined / b.shear,
     ];
     values[kernel::LIMIT..kernel::LIMIT + 5].copy_from_slice(&limit);
-    values[kernel::SUM] = if kind.criterion() == Criterion::Sum { 1.0 } else { 0.0 };
-    Constants { ends: [b.a as u32, b.b as u32], values, contact: kind.contact() }
+    values[kernel::SUM] = if rules.criterion == Criterion::Sum { 1.0 } else { 0.0 };
+    Constants { ends: [b.a as u32, b.b as u32], values, contact: rules.contact }
 }

@@ -12,8 +12,8 @@
 //! (Proc. 45th US Rock Mech. Symp., 2011).
 
 use super::springs::{
-    BondDamping, BondKind, Cement, Criterion, Joint, Problem, Section, Springs, not_negative, positive,
-    strength,
+    BondDamping, BondKind, Cement, Criterion, Joint, Problem, Rules, Section, Springs, not_negative,
+    positive, strength,
 };
 use std::f64::consts::PI;
 
@@ -130,16 +130,8 @@ impl BondKind for ParallelBond {
         section.springs(&cement, joint.radii[0] - joint.radii[1])
     }
 
-    fn damping(&self) -> BondDamping {
-        self.damping
-    }
-
-    fn criterion(&self) -> Criterion {
-        self.criterion
-    }
-
-    fn contact(&self) -> bool {
-        self.contact
+    fn rules(&self) -> Rules {
+        Rules { damping: self.damping, criterion: self.criterion, contact: self.contact }
     }
 
     fn unbreakable(&self) -> ParallelBond {

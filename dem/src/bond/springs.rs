@@ -3,6 +3,17 @@
 use super::face::Face;
 use super::parallel::ShearStrength;
 
+/// What holds for a kind of bond wherever it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rules {
+    /// Dashpots.
+    pub damping: BondDamping,
+    /// When it breaks.
+    pub criterion: Criterion,
+    /// Whether the contact of the pair acts beside it.
+    pub contact: bool,
+}
+
 /// A kind of bond.
 pub(super) trait BondKind {
     /// What is wrong with its numbers.
@@ -11,14 +22,8 @@ pub(super) trait BondKind {
     /// Its springs between two bodies, and what breaks them.
     fn springs(&self, joint: &Joint) -> Springs;
 
-    /// Its dashpots.
-    fn damping(&self) -> BondDamping;
-
-    /// When it breaks.
-    fn criterion(&self) -> Criterion;
-
-    /// Whether the contact of the pair acts beside it.
-    fn contact(&self) -> bool;
+    /// What holds for it wherever it is.
+    fn rules(&self) -> Rules;
 
     /// Whether it fills a face between bodies of any shape; else it joins single spheres.
     fn fills_faces(&self) -> bool {

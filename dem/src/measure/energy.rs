@@ -19,7 +19,7 @@ pub struct Energies {
     pub kinetic_rotation: f64,
     /// Normal springs.
     pub elastic_normal: f64,
-    /// Tangential springs.
+    /// Tangential springs, and the work of sliding of the last half step, which the ledger books with the next.
     pub elastic_tangential: f64,
     /// Bonds: tension, shear, bending, twisting.
     pub elastic_bonds: f64,

@@ -112,3 +112,7 @@ pub(crate) struct Walls<'a> {
     pub patches: &'a [Patch],
     pub walls: &'a [WallNow],
 }
+
+#[cfg(test)]
+#[path = "patchwork_tests.rs"]
+mod tests;

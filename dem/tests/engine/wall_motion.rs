@@ -180,8 +180,9 @@ fn ball_rides_a_swinging_table() {
 fn a_gate_drawn_past_grains_leaves_no_energy_in_springs() {
     for friction in [0.0, 0.3] {
         let mut input = heap(1, 0.09, Material { friction, ..stone() });
-        let motion = Motion { velocity: Vec3::new(3.0, 0.0, 0.0), ..Motion::default() };
-        input.walls.push(WallInput { motion, ..WallInput::fixed(square(0.09, 0.0), 0) });
+        // So wide that it lies under the grain throughout.
+        let motion = Motion { velocity: Vec3::new(-3.0, 0.0, 0.0), ..Motion::default() };
+        input.walls.push(WallInput { motion, ..WallInput::fixed(square(1.0, 0.0), 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {
             measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
@@ -195,7 +196,8 @@ fn a_gate_drawn_past_grains_leaves_no_energy_in_springs() {
         }
         let turned = run.state.ledger.dissipated();
         println!("friction {friction}: {most:.3e} J in springs, error {worst:.3e} of {turned:.3e} J");
+        assert!(turned > 0.0, "the grain has met nothing");
         assert!(friction > 0.0 || most == 0.0, "{most} J in springs without friction");
-        assert!(worst < 2e-3 * turned + 1e-12, "{worst} J of {turned} J with a friction of {friction}");
+        assert!(worst < 5e-3 * turned, "{worst} J of {turned} J with a friction of {friction}");
     }
 }
