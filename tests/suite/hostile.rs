@@ -15,12 +15,24 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Memory that a refusal may take [kB], address space of the threads' stacks included.
-const MEMORY: u32 = 2_000_000;
+const MEMORY: u64 = 2_000_000;
+
+/// Address space that the library of dense products reserves and hardly touches [kB]: twice the last cache for each of the two threads
+/// (private-gemm-x86 0.1.22, `lib.rs`), 1.9 GB on a processor that says it has 480 MiB of it.
+fn reserved() -> u64 {
+    let size = std::fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
+    let number = |unit| size.trim().strip_suffix(unit).and_then(|n| n.parse::<u64>().ok());
+    2 * 2 * number('K').or(number('M').map(|n| 1024 * n)).unwrap_or(0)
+}
 
 /// Runs the program with little memory, for at most `seconds`; `None` where it takes longer.
 fn within<A: AsRef<OsStr>>(seconds: u64, arguments: impl IntoIterator<Item = A>) -> Option<Outcome> {
     let mut child = Command::new("sh")
-        .args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_trackbed")])
+        .args([
+            "-c",
+            &format!("ulimit -v {}; exec \"$0\" \"$@\"", MEMORY + reserved()),
+            env!("CARGO_BIN_EXE_trackbed"),
+        ])
         .args(arguments)
         .env("RAYON_NUM_THREADS", "2")
         .stdin(Stdio::null())

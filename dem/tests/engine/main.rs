@@ -16,6 +16,7 @@ mod extremes;
 mod friction;
 mod hertz;
 mod impact;
+mod kinetics;
 mod mesh_cases;
 mod order;
 mod packing;

@@ -426,3 +426,6 @@ mod tests;
 #[cfg(test)]
 #[path = "disk_tests.rs"]
 mod disk_tests;
+#[cfg(test)]
+#[path = "dilated_pairs_tests.rs"]
+mod pairs_tests;
