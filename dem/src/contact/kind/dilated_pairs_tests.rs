@@ -3,49 +3,74 @@
 use super::tests::{energy, placed, stones};
 use super::*;
 use crate::base::random::Random;
-use crate::shape::{Shape, cuboid, dilated::Dilated};
+use crate::shape::dilated::{Dilated, Face};
+use crate::shape::{Shape, cuboid};
 
-/// Distance of a point outside of a placed core: the least to any face that it lies above, and to any side of a face.
-fn distance(body: &Placed<'_>, p: &Vec3) -> f64 {
-    let local = body.orientation.inverse() * (p - body.centre) / body.scale;
-    let mut best = f64::INFINITY;
-    for face in &body.core.faces {
-        let corners: Vec<Vec3> = face.corners.iter().map(|c| body.core.corners[*c as usize]).collect();
-        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).normalize();
-        let mut above = true;
-        for (k, a) in corners.iter().enumerate() {
-            let side = corners[(k + 1) % corners.len()] - a;
-            above &= normal.dot(&side.cross(&(local - a))) >= 0.0;
-            let share = ((local - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
-            best = best.min((local - a - side * share).norm());
-        }
-        let height = normal.dot(&(local - corners[0]));
-        if above && height >= 0.0 {
-            best = best.min(height);
-        }
-    }
-    best * body.scale
+/// A placed core, and the normal and the corners with their numbers of each of its faces.
+type Solid<'a> = (&'a Placed<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
+
+fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
+    let face = |face: &Face| {
+        let numbers = face.corners.iter().map(|c| *c as usize);
+        let corners: Vec<_> = numbers.map(|c| (body.core.corners[c], c)).collect();
+        let [a, b, c] = [0, 1, 2].map(|k| corners[k].0);
+        ((b - a).cross(&(c - a)).normalize(), corners)
+    };
+    (body, body.core.faces.iter().map(face).collect())
 }
 
-/// ∫ f by three points of Gauss, halved until that changes nothing.
-fn integral(f: &dyn Fn(f64) -> f64, [low, high]: [f64; 2], depth: u32, close: f64) -> f64 {
+/// Distance of a point outside of a placed core: the least to any face that it lies above, and to any side of a face; and which face, side or
+/// corner that is.
+fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2]) {
+    let local = body.orientation.inverse() * (p - body.centre) / body.scale;
+    let mut best = (f64::INFINITY, [0; 2]);
+    for (f, (normal, corners)) in faces.iter().enumerate() {
+        let mut above = true;
+        for (k, (a, own)) in corners.iter().enumerate() {
+            let (b, other) = corners[(k + 1) % corners.len()];
+            let (side, way) = (b - a, local - a);
+            above &= normal.dot(&side.cross(&way)) >= 0.0;
+            let share = (way.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+            let away = (way - side * share).norm();
+            if away < best.0 {
+                let name = match share {
+                    0.0 => [*own; 2],
+                    1.0 => [other; 2],
+                    _ => [*own.min(&other), *own.max(&other)],
+                };
+                best = (away, name);
+            }
+        }
+        let height = normal.dot(&(local - corners[0].0));
+        if above && height >= 0.0 && height <= best.0 {
+            best = (height, [usize::MAX, f]);
+        }
+    }
+    (best.0 * body.scale, best.1)
+}
+
+/// ∫ f by four points of Gauss, halved until that changes nothing. A stretch over which the second part of `f` changes is halved first: what is
+/// nearest to one place and to another is nearest to all between them, as such regions are convex.
+fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 2], close: f64) -> f64 {
     let rule = |a: f64, b: f64| {
         let (m, h) = (0.5 * (a + b), 0.5 * (b - a));
-        let x = h * 0.6_f64.sqrt();
-        h / 9.0 * (5.0 * (f(m - x) + f(m + x)) + 8.0 * f(m))
+        let two = |x: f64, w: f64| w * (f(m - h * x).0 + f(m + h * x).0);
+        h * (two(0.339_981_043_584_856_3, 0.652_145_154_862_546_1)
+            + two(0.861_136_311_594_052_6, 0.347_854_845_137_453_86))
     };
     let middle = 0.5 * (low + high);
-    let (whole, halves) = (rule(low, high), rule(low, middle) + rule(middle, high));
-    if depth == 0 || (whole - halves).abs() < close {
+    let halves = rule(low, middle) + rule(middle, high);
+    let smooth = f(low).1 == f(high).1 && (rule(low, high) - halves).abs() < close;
+    if smooth || high - low < 1e-9 {
         return halves;
     }
-    integral(f, [low, middle], depth - 1, 0.5 * close) + integral(f, [middle, high], depth - 1, 0.5 * close)
+    integral(f, [low, middle], close) + integral(f, [middle, high], close)
 }
 
 /// Energy of unit springs with which corners and edges of one press into the other.
-fn pressing(one: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
+fn pressing(one: &Placed<'_>, other: &Solid<'_>, reach: f64) -> f64 {
     let world = |c: usize| one.centre + one.orientation * one.core.corners[c] * one.scale;
-    let spring = |p: &Vec3| 0.5 * (reach - distance(other, p)).max(0.0).powi(2);
+    let spring = |p: &Vec3| 0.5 * (reach - distance(other, p).0).max(0.0).powi(2);
     let corners: f64 = (0..one.core.corners.len()).map(|c| spring(&world(c))).sum();
     let edges: f64 = one
         .core
@@ -54,14 +79,15 @@ fn pressing(one: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
         .map(|edge| {
             let [a, b] = edge.ends.map(|e| world(e as usize));
             let length = (b - a).norm();
-            let at = |s: f64| distance(other, &(a + (b - a) * s));
+            let near = |s: f64| distance(other, &(a + (b - a) * s));
+            let at = |s: f64| near(s).0;
             // The distance changes by no more than the way along the edge.
             if at(0.5) > reach + 0.5 * length {
                 return 0.0;
             }
             // It has one minimum, the body being convex: what is below `reach` is one stretch about it.
             let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..100 {
+            for _ in 0..40 {
                 let third = (high - low) / 3.0;
                 if at(low + third) < at(high - third) { high -= third } else { low += third }
             }
@@ -74,15 +100,18 @@ fn pressing(one: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
                     return outside;
                 }
                 let mut inside = best;
-                for _ in 0..60 {
+                for _ in 0..45 {
                     let middle = 0.5 * (inside + outside);
                     if at(middle) < reach { inside = middle } else { outside = middle }
                 }
                 inside
             };
             let stretch = [end(0.0), end(1.0)];
-            let pressed = |s: f64| 0.5 * (reach - at(s)).max(0.0).powi(2);
-            integral(&pressed, stretch, 40, 1e-11 * reach * reach) * length / (LENGTH * reach)
+            let pressed = |s: f64| {
+                let (d, name) = near(s);
+                (0.5 * (reach - d).max(0.0).powi(2), name)
+            };
+            integral(&pressed, stretch, 1e-12 * reach * reach) * length / (LENGTH * reach)
         })
         .sum();
     corners + edges
@@ -139,7 +168,7 @@ fn energies(count: usize) {
             let (mut one, mut two) = (Touches::new(), Touches::new());
             DilatedDilated.touches(&a, &b, &mut one);
             DilatedDilated.touches(&b, &a, &mut two);
-            let exact = pressing(&a, &b, reach) + pressing(&b, &a, reach);
+            let exact = pressing(&a, &solid(&b), reach) + pressing(&b, &solid(&a), reach);
             if exact == 0.0 {
                 assert!(one.is_empty() && two.is_empty());
                 continue;
