@@ -122,6 +122,13 @@ impl WallInput {
         WallInput { motion, ..WallInput::fixed(shape, t.material) }
     }
 
+    /// Whether it leaves its place.
+    pub fn moves(&self) -> bool {
+        let motion = &self.motion;
+        let still = motion.velocity == Vec3::zeros() && motion.angular_velocity == Vec3::zeros();
+        !still || motion.oscillation.is_some() || self.servo.is_some() || self.body.is_some()
+    }
+
     /// The same wall standing still where it starts.
     pub fn at_rest(&self) -> WallInput {
         WallInput::fixed(self.shape.clone(), self.material)

@@ -61,7 +61,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Rehearses a run of the scene, which `job` is made of, for `budget` by the clock, and estimates the time of all of it; that
-    /// takes up to twenty times as long.
+    /// takes up to some forty times as long.
     ///
     /// # Errors
     /// What the run itself ends with in its first seconds; contacts for which no step can be made.

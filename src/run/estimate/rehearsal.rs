@@ -19,9 +19,10 @@ const GROWTH: u32 = 8;
 /// The same of settling and compaction without growth.
 const PREPARATION: u32 = 3;
 /// Share of the main loop that a rehearsal goes on to, if that takes no more than [`LOOP`] times as long: a bed that rests at first may flow
-/// once a wall has turned far enough.
+/// once a wall has turned far enough. Where walls move of themselves [`MOVED`] times: a ship comes into the ice bit by bit.
 const SEEN: f64 = 0.2;
 const LOOP: u32 = 5;
+const MOVED: u32 = 20;
 /// Time between two looks at the stage of a rehearsal.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -62,6 +63,8 @@ pub fn rehearse(
     let (watched, followed) = (interrupt.clone(), trace.clone());
     let seen = SEEN * job.end;
     let grows = job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty());
+    // A gate or a belt costs no more for it, and its run is short; so is the rehearsal then.
+    let moves = job.grains.as_ref().is_some_and(|g| g.walls.others.iter().any(|w| w.moves()));
     let begun = Instant::now();
     let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));
     let timer = thread::spawn(move || {
@@ -74,9 +77,10 @@ pub fn rehearse(
         on = on
             && passes(budget)
             && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget)));
+        let most = if moves { MOVED } else { LOOP };
         let more = || {
             come(&followed).is_some_and(|time| time < seen)
-                && stage_age(&followed).is_some_and(|age| age < LOOP * budget)
+                && stage_age(&followed).is_some_and(|age| age < most * budget)
         };
         while on && more() {
             on = passes(LOOK);
