@@ -17,6 +17,7 @@ mod friction;
 mod hertz;
 mod impact;
 mod mesh_cases;
+mod mounts;
 mod order;
 mod packing;
 mod periodic;

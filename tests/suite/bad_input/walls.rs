@@ -67,7 +67,7 @@ fn servo_with_too_much_gain() {
 #[test]
 fn body_of_a_plane() {
     grains_scene().scene(PLANE, &format!("{PLANE}\nbody = {{ mass = 1 }}")).refused(
-        "scene.toml:20: walls.0.body: found a value, expected no such key for this kind of wall: only triangles make a \
+        "scene.toml:20: walls.0.body: found a value, expected no such key for this kind of wall: a plane makes no \
          body",
     );
 }
