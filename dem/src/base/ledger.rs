@@ -126,7 +126,9 @@ impl Ledger {
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
         let own = [self.walls, self.surface, self.applied, self.body_forces, self.constraints];
-        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps, self.flow, self.mounts]) {
+        for part in
+            own.into_iter().chain([self.local_damping, self.periodic, self.jumps, self.flow, self.mounts])
+        {
             sum += &part;
         }
         sum

@@ -116,8 +116,16 @@ pub(crate) fn limit(
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least =
-        DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, bonds: 0.0, wall: None, mount: 0.0 };
+    let mut least = DtLimit {
+        dt: 1e-4,
+        body: 0,
+        partner: 0,
+        stiffness: 0.0,
+        mass: 0.0,
+        bonds: 0.0,
+        wall: None,
+        mount: 0.0,
+    };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -297,6 +305,8 @@ struct Partner {
     material: u32,
     radius: f64,
     times: f64,
+    /// Whether it is a polyhedron or a disk.
+    faced: bool,
 }
 
 /// What may touch the body of a wall: spheres and planes by a point or two, polyhedra by as much as a face has.
@@ -305,13 +315,13 @@ fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
     let planes = input.planes.iter().map(|p| p.material as u32);
     let all: BTreeSet<u32> = grains.chain(planes).collect();
     let mut partners: Vec<Partner> =
-        all.into_iter().map(|material| Partner { material, radius, times: 1.0 }).collect();
+        all.into_iter().map(|material| Partner { material, radius, times: 1.0, faced: false }).collect();
     let mut faced: Vec<Partner> = Vec::new();
     for body in bodies.iter() {
         let Shape::Polyhedron(it) = &input.shapes[body.shape] else { continue };
         let times = 0.5 * faces(it);
         match faced.iter_mut().find(|p| p.material == body.material) {
-            None => faced.push(Partner { material: body.material, radius: body.radius, times }),
+            None => faced.push(Partner { material: body.material, radius: body.radius, times, faced: true }),
             Some(p) => (p.radius, p.times) = (p.radius.min(body.radius), p.times.max(times)),
         }
     }
@@ -326,7 +336,8 @@ fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
 }
 
 /// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
-/// where the rigid body of a wall needs it; returns the least of these [s]. `radii` are those of the smallest and the largest sphere [m], `expected`
+/// where the rigid body of a wall needs it; returns the longest step [s] that is stable whatever comes to touch such a body before the contacts that are
+/// there are looked at. `radii` are those of the smallest and the largest sphere [m], `expected`
 /// the overlap expected over the radius.
 pub(crate) fn walls(
     walls: &mut Walls,
@@ -348,24 +359,32 @@ pub(crate) fn walls(
         wall.damping = grains.iter().map(|&m| laws.damping_ratio(wall.material, m)).fold(0.0, f64::max);
         let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
         let mount = body.mount_frequency();
-        let mut note = |dt: f64, partner: usize, stiffness: f64| {
-            least = least.min(dt);
+        let mut note = |dt: f64, sudden: f64, partner: usize, stiffness: f64| {
+            least = least.min(sudden);
             if dt < limit.dt {
                 let (bonds, mass) = (0.0, body.mass);
                 *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds, wall: Some(k), mount };
             }
         };
         if mount > 0.0 {
-            note(2.0 / mount.sqrt(), 0, 0.0);
+            let dt = 2.0 / mount.sqrt();
+            note(dt, dt, 0, 0.0);
         }
-        for &Partner { material, radius, times } in &partners {
+        for &Partner { material, radius, times, faced } in &partners {
             let stiffness = times * laws.stiffness(wall.material, material, expected * radii.1, radii.1);
             if !stiffness.is_finite() {
                 continue;
             }
             let ratio = laws.tangential_ratio(wall.material, material) * if laws.rolls() { 2.0 } else { 1.0 };
             let zeta = laws.damping_ratio(wall.material, material);
-            note(body.step_limit(stiffness, stiffness * ratio, zeta, radius), material as usize, stiffness);
+            let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radius);
+            // Faces of many that lie on it are known from the contacts; one may come to lie on it between two looks at them.
+            let sudden = if faced {
+                0.5 * body.step_limit(stiffness, stiffness * ratio, zeta, f64::INFINITY)
+            } else {
+                dt
+            };
+            note(dt, sudden, material as usize, stiffness);
         }
     }
     least

@@ -127,7 +127,11 @@ impl Body {
                 let (centre, tensor) = of_triangles(input, vertices, triangles).map_err(error)?;
                 let mut used = vec![false; vertices.len()];
                 triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-                (centre, tensor, vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v)).collect())
+                (
+                    centre,
+                    tensor,
+                    vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v)).collect(),
+                )
             }
             WallShape::Plane { .. } => return Err(error("an infinite plane cannot be a rigid body")),
             WallShape::Frustum { .. } | WallShape::Sphere { .. } => {
@@ -171,9 +175,9 @@ impl Body {
 
     /// State at time 0, its velocities half a step earlier.
     pub fn start(&self, state: &mut WallState, gravity: &Vec3, dt: f64) {
-        let damping = self.mount.map_or(Vec3::zeros(), |m| m.damping.component_mul(&self.velocity) / self.mass);
-        let kick =
-            Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] - damping[d] });
+        let damping =
+            self.mount.map_or(Vec3::zeros(), |m| m.damping.component_mul(&self.velocity) / self.mass);
+        let kick = Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] - damping[d] });
         state.velocity = self.velocity - kick * (0.5 * dt);
         state.spin = self.spin;
         state.frame = self.axes;
@@ -212,7 +216,8 @@ impl Body {
             }
         }
         if self.fixed & 7 != 0 {
-            let hold = (v1 - v0) * self.mass - whole * kick;
+            let held = |d: usize| self.fixed >> d & 1 == 1;
+            let hold = Vec3::from_fn(|d, _| if held(d) { -whole[d] * kick } else { 0.0 });
             ledger.constraints.add(&x, &hold);
             ledger.work_constraints += hold.dot(&((v0 + v1) * 0.5));
         }
@@ -381,7 +386,11 @@ pub(crate) fn stand(
     let x = body.centre + state.offset;
     for (p, (plane, wall)) in planes.iter().zip(motions).enumerate() {
         let origin = plane.point + wall.offset;
-        if wall.open || !body.stands || body.inverse_mass == 0.0 || (x - origin).dot(&plane.normal) > body.reach {
+        if wall.open
+            || !body.stands
+            || body.inverse_mass == 0.0
+            || (x - origin).dot(&plane.normal) > body.reach
+        {
             continue;
         }
         let materials = [material, plane.material as u32];

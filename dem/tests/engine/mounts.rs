@@ -93,17 +93,15 @@ fn free_vibration() {
         let damping = 2.0 * zeta * mass * omega;
         let mut errors = Vec::new();
         for h in [4e-3, 2e-3, 1e-3] {
-            let mut input = ModelInput { time_step: TimeStep::Fixed(h), ..weightless(stone()) };
+            let mut input = ModelInput { time_step: TimeStep::FixedAboveLimit(h), ..weightless(stone()) };
             let start = RigidBody { velocity: Vec3::y() * speed, ..on_mount(mass, 1, stiffness, damping) };
             let start = RigidBody { fixed: [true, false, true, true, true, true], ..start };
             input.walls.push(wall(WallShape::Sphere { centre: Vec3::x(), radius: 0.1 }, start));
             let mut run = Run::new(input);
             let first = account(&run);
             let (a, square) = (damping * h / (2.0 * mass), (omega * h).powi(2));
-            let (root, angle) = (
-                ((1.0 - a) / (1.0 + a)).sqrt(),
-                ((2.0 - square) / (2.0 * (1.0 - a * a).sqrt())).acos(),
-            );
+            let (root, angle) =
+                (((1.0 - a) / (1.0 + a)).sqrt(), ((2.0 - square) / (2.0 * (1.0 - a * a).sqrt())).acos());
             let damped = omega * (1.0 - zeta * zeta).sqrt();
             let (mut off, mut far, mut energy) = (0.0_f64, 0.0_f64, 0.0_f64);
             let steps = (2.0 / h) as i32;
@@ -112,7 +110,8 @@ fn free_vibration() {
                 let u = run.state.wall_offset(0).y;
                 let t = f64::from(n) * h;
                 let exact = speed / damped * (-zeta * omega * t).exp() * (damped * t).sin();
-                let own = h * speed * (1.0 - a) * root.powi(n - 1) * (f64::from(n) * angle).sin() / angle.sin();
+                let own =
+                    h * speed * (1.0 - a) * root.powi(n - 1) * (f64::from(n) * angle).sin() / angle.sin();
                 off = off.max((u - exact).abs() * damped / speed);
                 far = far.max((u - own).abs() * damped / speed);
                 energy = energy.max((account(&run) / first - 1.0).abs());
@@ -120,7 +119,9 @@ fn free_vibration() {
             assert!(far < 1e-10, "{zeta} {h}: {far:e} from the recurrence");
             let frequency = angle / h / damped - 1.0;
             let decay = if zeta > 0.0 { -root.ln() / h / (zeta * omega) - 1.0 } else { 0.0 };
-            println!("ζ = {zeta}, h = {h}: path {off:.2e}, frequency {frequency:.2e}, decay {decay:.2e}, energy {energy:.2e}");
+            println!(
+                "ζ = {zeta}, h = {h}: path {off:.2e}, frequency {frequency:.2e}, decay {decay:.2e}, energy {energy:.2e}"
+            );
             errors.push([off, frequency, decay, energy]);
             let momentum = measure::momentum(&run.model, &run.state).linear
                 - Vec3::y() * (mass * speed * (1.0 + a))
@@ -130,7 +131,10 @@ fn free_vibration() {
         for pair in errors.windows(2) {
             for k in 0..4 {
                 let order = (pair[0][k] / pair[1][k]).log2();
-                assert!((k == 2 && zeta == 0.0) || (order - 2.0).abs() < 0.15, "ζ = {zeta}: order {order} of {k}");
+                assert!(
+                    (k == 2 && zeta == 0.0) || (order - 2.0).abs() < 0.15,
+                    "ζ = {zeta}: order {order} of {k}"
+                );
             }
         }
     }
@@ -191,7 +195,9 @@ fn collisions_keep_momentum_and_energy() {
                 off = off.max((end.linear - start.linear).norm() / start.linear.norm());
                 turn = turn.max((end.angular - start.angular - impulse.angular).norm() / start.linear.norm());
             }
-            println!("{name} on {what}: {touched} hits, energy {worst:.1e}, momentum {off:.1e}, angular {turn:.1e}");
+            println!(
+                "{name} on {what}: {touched} hits, energy {worst:.1e}, momentum {off:.1e}, angular {turn:.1e}"
+            );
             assert!(touched >= 3 && worst < 3e-3 && off < 1e-12 && turn < 1e-12, "{name} on {what}");
         }
     }
@@ -227,8 +233,16 @@ fn a_sprung_plate_sags() {
         ("disc", pile(Vec3::z() * -0.05, 0.4, 0.1)),
     ];
     for (name, plate) in plates {
-        for (what, shape, half) in [("block", block([0.1, 0.08, 0.06], 0.01), 0.06), ("disk", disk(0.1, 0.02), 0.02)] {
-            let material = Material { restitution: 0.3, friction: 0.4, tangential_ratio: 0.5, ..elastic() };
+        for (what, shape, half) in
+            [("block", block([0.1, 0.08, 0.06], 0.01), 0.06), ("disk", disk(0.1, 0.02), 0.02)]
+        {
+            let material = Material {
+                restitution: 0.3,
+                friction: 0.4,
+                tangential_ratio: 0.5,
+                stiffness: 1e5,
+                ..elastic()
+            };
             let mut input = ModelInput { shapes: vec![shape], ..weightless(material) };
             input.gravity = Vec3::new(0.0, 0.0, -G);
             input.walls.push(wall(plate.clone(), on_mount(mass, 2, stiffness, 250.0)));
@@ -236,14 +250,17 @@ fn a_sprung_plate_sags() {
             let mut run = Run::new(input);
             let (before, start) = (account(&run), measure::momentum(&run.model, &run.state));
             let mut worst = 0.0_f64;
-            while run.state.time < 1.5 {
+            while run.state.time < 2.5 {
                 run.step();
                 worst = worst.max((account(&run) - before).abs());
             }
             let whole = mass + run.model.mass(0);
             let sag = -run.state.wall_offset(0).z * stiffness / (whole * G) - 1.0;
             let ledger = run.state.ledger;
-            println!("{name} under {what}: sag off by {sag:.1e}, account by {:.1e}", worst / ledger.dissipated());
+            println!(
+                "{name} under {what}: sag off by {sag:.1e}, account by {:.1e}",
+                worst / ledger.dissipated()
+            );
             assert!(sag.abs() < 1e-7, "{name} {what}: {sag:e}");
             assert!(worst < 0.02 * ledger.dissipated(), "{name} {what}: {worst:e}");
             let end = measure::momentum(&run.model, &run.state);
@@ -251,7 +268,8 @@ fn a_sprung_plate_sags() {
                 end.linear - start.linear - ledger.impulse().linear,
                 end.angular - start.angular - ledger.impulse().angular,
             );
-            assert!(off.norm() < 1e-11 && turn.norm() < 1e-11, "{off} {turn}");
+            let whole = ledger.impulse().linear.norm().max(ledger.gravity.linear.norm());
+            assert!(off.norm() < 1e-10 * whole && turn.norm() < 1e-10 * whole, "{off} {turn}");
             let held = run.state.wall_force(0).0.z / (run.model.mass(0) * G);
             assert!((held + 1.0).abs() < 1e-7 && ledger.dissipated_mounts > 0.0, "{held}");
         }
@@ -289,7 +307,7 @@ fn response_to_the_recorded_force() {
     let omega = std::f64::consts::TAU * frequency;
     let mut errors = Vec::new();
     for h in [4e-5, 2e-5] {
-        let material = Material { restitution: 0.3, ..elastic() };
+        let material = Material { restitution: 0.3, stiffness: 1e5, ..elastic() };
         let mut input = ModelInput { shapes: vec![block([0.1, 0.1, 0.05], 0.01)], ..weightless(material) };
         input.time_step = TimeStep::Fixed(h);
         let held = on_mount(mass, 0, mass * omega * omega, 2.0 * zeta * mass * omega);
@@ -302,7 +320,7 @@ fn response_to_the_recorded_force() {
         let recurrence = Recurrence { omega, zeta };
         let (mut now, mut last) = ([0.0; 2], None::<f64>);
         let (mut most, mut off, mut hits) = (0.0_f64, 0.0_f64, 0);
-        while run.state.time < 1.2 {
+        while run.state.time < 1.5 {
             let before = run.state.wall_offset(0).x;
             run.step();
             // The force of this step belongs to the place before it.
@@ -323,7 +341,8 @@ fn response_to_the_recorded_force() {
 
 /// Blocks, disks, spheres and clumps fall on mounted bodies.
 fn crowd() -> ModelInput {
-    let material = Material { restitution: 0.4, friction: 0.3, tangential_ratio: 0.5, ..elastic() };
+    let contact = Material { stiffness: 1e5, ..elastic() };
+    let material = Material { restitution: 0.4, friction: 0.3, tangential_ratio: 0.5, ..contact };
     let shapes = vec![
         block([0.05, 0.04, 0.03], 0.006),
         disk(0.05, 0.01),
@@ -338,7 +357,7 @@ fn crowd() -> ModelInput {
     let slab = cuboid(Vec3::z() * -0.1, Vec3::new(0.3, 0.2, 0.05));
     input.walls.push(wall(slab, RigidBody { mount: Some(mount), ..free(8.0) }));
     let held = on_mount(3.0, 0, 2e3, 15.0);
-    input.walls.push(wall(pile(Vec3::new(0.6, 0.0, 0.1), 0.1, 0.8), held));
+    input.walls.push(wall(pile(Vec3::new(0.47, 0.0, 0.1), 0.1, 0.8), held));
     let mut random = Random::new(77);
     for k in 0..60 {
         let at = |n: i32, pitch: f64| (f64::from(n) - 1.5) * pitch;
@@ -346,6 +365,9 @@ fn crowd() -> ModelInput {
         let orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
         let velocity = random.vector() * 0.5 + Vec3::x();
         input.bodies.push(BodyInput { orientation, velocity, ..body(k as usize % 4, place) });
+    }
+    for body in input.bodies.iter_mut().filter(|b| b.shape == 3) {
+        body.scale = 3.0;
     }
     input
 }
@@ -363,8 +385,8 @@ fn same_bits_on_threads_and_over_a_restart() {
             let mut run = Run::new(crowd());
             let (before, start) = (account(&run), measure::momentum(&run.model, &run.state));
             let mut most = [0.0_f64; 2];
-            for k in 0..6000 {
-                if restart && k == 2500 {
+            for k in 0..12_000 {
+                if restart && k == 5000 {
                     run.state = postcard::from_bytes(&bits(&run.state)).expect("a state");
                     run.work = Work::new(&run.model, &run.state);
                 }
@@ -408,8 +430,11 @@ fn the_step_knows_the_mount() {
         input.time_step = TimeStep::FixedAboveLimit(share * 2.0 / omega);
         input.walls[0].body.as_mut().expect("a body").velocity = Vec3::x() * 1e-6;
         let mut run = Run::new(input);
-        run.steps(1000);
-        assert_eq!(run.state.wall_offset(0).norm() < 1e-3 / omega, stable, "{share}");
+        let surface = trackbed_dem::surface::NoSurface;
+        let mut step =
+            || trackbed_dem::step(&run.model, &mut run.state, &mut run.work, &surface, &[]).is_ok();
+        let goes = (0..1000).all(|_| step());
+        assert_eq!(goes && run.state.wall_offset(0).norm() < 1e-3 / omega, stable, "{share}");
     }
     // A sphere of mass m pressed by 1 mm.
     input.walls[0].body = Some(on_mount(mass, 0, 2e6, 0.0));
