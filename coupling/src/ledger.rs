@@ -137,7 +137,8 @@ impl Spent {
 
     /// Energy dissipated [J].
     pub fn dissipated(&self) -> f64 {
-        let grains = self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping + self.mounts;
+        let grains =
+            self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping + self.mounts;
         let track = self.pads + self.track_beyond;
         grains + track + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }

@@ -181,14 +181,12 @@ fn mount(body: &Table<Body>, fixed: [bool; 6]) -> Result<Option<Mount>, SceneErr
         }
         _ => return Err(m.error("frequency", "a value", "no such key beside `stiffness`")),
     };
-    let damping = match (
-        three("damping", m.damping.map(|c| vector(&c)))?,
-        three("damping_ratio", m.damping_ratio)?,
-    ) {
-        (Some(c), None) => c,
-        (None, Some(share)) => share.component_mul(&stiffness.map(|k| 2.0 * (k * mass).sqrt())),
-        (None, None) => Vec3::zeros(),
-        _ => return Err(m.error("damping_ratio", "a value", "no such key beside `damping`")),
-    };
+    let damping =
+        match (three("damping", m.damping.map(|c| vector(&c)))?, three("damping_ratio", m.damping_ratio)?) {
+            (Some(c), None) => c,
+            (None, Some(share)) => share.component_mul(&stiffness.map(|k| 2.0 * (k * mass).sqrt())),
+            (None, None) => Vec3::zeros(),
+            _ => return Err(m.error("damping_ratio", "a value", "no such key beside `damping`")),
+        };
     Ok(Some(Mount { stiffness, damping }))
 }
