@@ -95,7 +95,7 @@ axis = [0, 0]
     text.replace_range(held, pile);
     let run_in = |name: &str, text: &str| {
         let (scene, out) = (folder.write(&format!("{name}.toml"), text), folder.join(name));
-        run(&scene, &out, &["--set", "output.history_interval=0.002"]).good();
+        run(&scene, &out, &["output.history_interval=0.002"]).good();
         (Table::read(&out.join("history.csv")), json(&out.join("summary.json")), out)
     };
     let (table, summary, out) = run_in("sprung", &text);
@@ -107,9 +107,9 @@ axis = [0, 0]
     assert!(most(&load) > 1e3 && most(&way) > 1e-3, "{} {}", most(&load), most(&way));
     assert_eq!(most(&column("pile_motion_y")), 0.0);
     let square = (2.0 * 2.0 * PI).powi(2);
-    let last_hit = load.iter().rposition(|f| *f != 0.0).unwrap();
+    let last_touch = load.iter().rposition(|f| *f != 0.0).unwrap();
     let swings: Vec<f64> = (0..load.len())
-        .filter(|k| load[*k] == 0.0 && *k != last_hit + 1)
+        .filter(|k| load[*k] == 0.0 && *k != last_touch + 1)
         .map(|k| acceleration[k] + square * way[k])
         .collect();
     assert!(swings.len() > 100 && most(&swings) < 0.02 * square * most(&way), "{}", most(&swings));

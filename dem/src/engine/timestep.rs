@@ -170,8 +170,7 @@ pub(crate) fn limit(
                     stiffness,
                     mass: stiffness / own,
                     bonds: bond_stiffness,
-                    wall: None,
-                    mount: 0.0,
+                    ..least
                 };
             }
         }

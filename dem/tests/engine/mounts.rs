@@ -208,7 +208,7 @@ fn collisions_keep_momentum_and_energy() {
 
 /// A central hit comes back with the restitution of its law, whatever the masses: the pair has that of both partners.
 #[test]
-fn central_hits_have_their_restitution() {
+fn central_impacts_have_their_restitution() {
     for (name, shape, half) in [("block", block([0.05; 3], 0.01), 0.05), ("disk", disk(0.05, 0.02), 0.02)] {
         for mass in [0.3, 3.0, 300.0] {
             let material = Material { restitution: 0.5, ..elastic() };
@@ -324,7 +324,7 @@ fn response_to_the_recorded_force() {
         let mut run = Run::new(input);
         let recurrence = Recurrence { omega, zeta };
         let (mut now, mut last) = ([0.0; 2], None::<f64>);
-        let (mut most, mut off, mut hits) = (0.0_f64, 0.0_f64, 0);
+        let (mut most, mut off, mut impacts) = (0.0_f64, 0.0_f64, 0);
         while run.state.time < 1.5 {
             let before = run.state.wall_offset(0).x;
             run.step();
@@ -333,12 +333,12 @@ fn response_to_the_recorded_force() {
             if let Some(last) = last {
                 now = recurrence.step(now, [last, p], h);
             }
-            hits += i32::from(last == Some(0.0) && p != 0.0);
+            impacts += i32::from(last == Some(0.0) && p != 0.0);
             last = Some(p);
             (most, off) = (most.max(before.abs()), off.max((before - now[0]).abs()));
         }
-        println!("h = {h}: {hits} hits, largest way {most:.4e} m, off by {:.2e} of it", off / most);
-        assert!(hits >= 4 && most > 0.01, "{hits} {most}");
+        println!("h = {h}: {impacts} impacts, largest way {most:.4e} m, off by {:.2e} of it", off / most);
+        assert!(impacts >= 4 && most > 0.01, "{impacts} {most}");
         errors.push(off / most);
     }
     assert!(errors[0] < 1e-5 && errors[0] > 3.0 * errors[1], "{errors:?}");

@@ -102,7 +102,7 @@ fn mounts_of_bodies() {
             "mount.frequency: found 1, expected 0 along y, which the body holds",
         ),
     ] {
-        grains_scene().scene(PLANE, &ball(keys)).refused(&format!("scene.toml:19: walls.0.body.{words}"));
+        grains_scene().scene(PLANE, &ball(keys)).refused(&format!("scene.toml:20: walls.0.body.{words}"));
     }
 }
 
