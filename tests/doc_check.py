@@ -87,6 +87,7 @@ def scenes(page):
         "walls": grains(spheres + walls),
         "servo": grains(spheres + servo),
         "body": grains(spheres + "[[walls]]\n" + tetrahedron + e("`[[walls]]`", 2) + "[[walls]]\n" + plane),
+        "mount": grains(spheres + '[[walls]]\nkind = "cylinder"\nmaterial = "steel"\nbase = [25, 25, -3]\nheight = 6\nradius = 2\n' + e("`[[walls]]`", 3)),
         "structure": grains(spheres + '[[walls]]\nkind = "cylinder"\nname = "pile"\nmaterial = "steel"\nbase = [25, 25, -3]\nheight = 6\nradius = 2\n' + e("`[[structure]]`")),
         "flow": grains(e("`[[outlet]]` and `inlet`") + "[[walls]]\n" + plane),
         "bond": grains(spheres + e("`[[bond]]`") + floor + e("`[events]`")),

@@ -21,6 +21,9 @@ pub struct Stored {
     /// Bonds between grains.
     #[serde(default)]
     pub bonds: f64,
+    /// Springs of mounts of rigid bodies.
+    #[serde(default)]
+    pub mounts: f64,
     /// Potential of gravity on the grains.
     pub grains_gravity: f64,
     /// Kinetic energy of the solid.
@@ -37,14 +40,14 @@ pub struct Stored {
 impl Stored {
     /// The parts that springs and motion hold [J]; never below zero, but for gravity's.
     fn held(&self) -> f64 {
-        let grains = self.grains_kinetic + self.contact_springs + self.bonds;
+        let grains = self.grains_kinetic + self.contact_springs + self.bonds + self.mounts;
         grains + self.solid_kinetic + self.solid_strain + self.rail
     }
 
     /// Sum of the sizes of the changes of all parts since `start` [J].
     fn changes(&self, start: &Stored) -> f64 {
         let parts = |s: &Stored| {
-            let grains = [s.grains_kinetic, s.contact_springs, s.bonds, s.grains_gravity];
+            let grains = [s.grains_kinetic, s.contact_springs, s.bonds, s.mounts, s.grains_gravity];
             let rest = [s.solid_kinetic, s.solid_strain, s.solid_gravity, s.rail];
             grains.into_iter().chain(rest)
         };
@@ -56,6 +59,7 @@ impl Stored {
         self.grains_kinetic
             + self.contact_springs
             + self.bonds
+            + self.mounts
             + self.grains_gravity
             + self.solid_kinetic
             + self.solid_strain
@@ -85,6 +89,9 @@ pub struct Spent {
     /// Dissipated by the dashpots of bonds.
     #[serde(default)]
     pub bonds: f64,
+    /// Dissipated by the dashpots of mounts of rigid bodies.
+    #[serde(default)]
+    pub mounts: f64,
     /// Set free by breaking bonds.
     #[serde(default)]
     pub breaks: f64,
@@ -130,17 +137,19 @@ impl Spent {
 
     /// Energy dissipated [J].
     pub fn dissipated(&self) -> f64 {
-        let grains = self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping;
+        let grains =
+            self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping + self.mounts;
         let track = self.pads + self.track_beyond;
         grains + track + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 
     /// Dissipated energies with their names [J]: each is zero or above but for the error of the run.
-    pub fn losses(&self) -> [(&'static str, f64); 10] {
+    pub fn losses(&self) -> [(&'static str, f64); 11] {
         [
             ("dashpots of contacts", self.dashpot - self.dashpot_lag.min(0.0)),
             ("friction", self.friction),
             ("dashpots of bonds", self.bonds),
+            ("dashpots of mounts", self.mounts),
             ("local damping", self.local_damping),
             ("Rayleigh damping", self.rayleigh),
             ("absorbing boundaries", self.absorbed),

@@ -46,5 +46,5 @@ pub use model::Model;
 pub use shape::Shape;
 pub use state::State;
 pub use step::{find_contacts, step};
-pub use wall::{Motion, Oscillation, RigidBody, Servo, TriangleSurface, WallInput, WallShape};
+pub use wall::{Motion, Mount, Oscillation, RigidBody, Servo, TriangleSurface, WallInput, WallShape};
 pub use work::Work;

@@ -4,7 +4,8 @@ use super::findings::{Findings, Usual};
 use crate::scene::Scene;
 use crate::scene::grains::Grains;
 use crate::scene::units::Quantity;
-use crate::scene::walls::Wall;
+use crate::scene::walls::{Mount, Wall};
+use std::f64::consts::TAU;
 
 /// From silt to boulders.
 const SIZE: Usual = Usual::new(1e-5, 2.0, "m");
@@ -99,6 +100,26 @@ fn wall(findings: &mut Findings, k: usize, w: &Wall) {
         findings.weigh(key("servo.max_speed"), s.max_speed.si, Usual::new(1e-6, 20.0, "m/s"));
     }
     if let Some(b) = &w.body {
-        findings.weigh(key("body.mass"), b.mass.si, Usual::new(1e-6, 1e6, "kg"));
+        findings.weigh(key("body.mass"), b.mass.si, Usual::new(1e-6, 1e8, "kg"));
+        if let Some(m) = &b.mount {
+            mount(findings, &key("body.mount"), b.mass.si, m);
+        }
+    }
+}
+
+/// From a slack mooring to a machine's bearing; up to what keeps a body from swinging.
+fn mount(findings: &mut Findings, key: &str, mass: f64, m: &Mount) {
+    let (frequency, share) = (Usual::or_zero(0.002, 500.0, "Hz"), Usual::or_zero(1e-4, 2.0, ""));
+    let angular = |d: usize| match (&m.frequency, &m.stiffness) {
+        (Some(f), _) => TAU * f[d].si,
+        (None, k) => k.as_ref().map_or(0.0, |k| (k[d].si / mass).sqrt()),
+    };
+    let given = if m.frequency.is_some() { "frequency" } else { "stiffness" };
+    for d in 0..3 {
+        findings.weigh(format!("{key}.{given}"), angular(d) / TAU, frequency);
+        findings.weigh_some(format!("{key}.damping_ratio"), m.damping_ratio.map(|z| z[d]), share);
+        if let Some(c) = m.damping.as_ref().filter(|_| angular(d) > 0.0) {
+            findings.weigh(format!("{key}.damping"), c[d].si / (2.0 * mass * angular(d)), share);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Loads on structures: columns of `history.csv`, and the largest and the mean load for the summary.
+//! Loads on structures and the motion of those that move: columns of `history.csv`, and the largest and the mean for the summary.
 
 use super::recorder::{Now, Recorder};
 use super::summary::LoadRecord;
@@ -8,7 +8,7 @@ use crate::write::csv::{Column, Row};
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 
-/// Load on each structure: whole, its moment, by sectors and by height.
+/// Load on each structure: whole, its moment, by sectors and by height; before it displacement and acceleration of one that moves.
 pub struct Structures;
 
 impl<S: System> Recorder<S> for Structures {
@@ -38,6 +38,10 @@ fn load(plan: &StructurePlan, GrainsView { model, state }: GrainsView<'_>, row: 
         }
     });
     let name = &plan.name;
+    if let Some(wall) = plan.body {
+        row.vector(format_args!("{name}_motion"), "m", state.wall_offset(wall));
+        row.vector(format_args!("{name}_acceleration"), "m/s2", state.wall_acceleration(wall));
+    }
     row.vector(format_args!("{name}_load"), "N", force);
     row.put(format_args!("{name}_load_level"), "N", libm::hypot(force.x, force.y));
     row.vector(format_args!("{name}_load_moment"), "N m", moment);
@@ -65,6 +69,20 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
         record.mean[0] += (x - record.mean[0]) * share;
         record.mean[1] += (y - record.mean[1]) * share;
         record.rows += 1;
+        // Displacement and acceleration stand before the load.
+        if let Some(first) = k.checked_sub(6)
+            && columns[first].name.strip_suffix("_motion_x") == Some(name)
+        {
+            let level = |at: usize| libm::hypot(values[at], values[at + 1]);
+            let (way, acceleration) = (level(first), level(first + 3));
+            let motion = record.motion.get_or_insert_default();
+            motion.largest_displacement = motion.largest_displacement.max(way);
+            motion.mean_displacement[0] += (values[first] - motion.mean_displacement[0]) * share;
+            motion.mean_displacement[1] += (values[first + 1] - motion.mean_displacement[1]) * share;
+            motion.largest_acceleration = motion.largest_acceleration.max(acceleration);
+            let square = motion.rms_acceleration * motion.rms_acceleration;
+            motion.rms_acceleration = (square + (acceleration * acceleration - square) * share).sqrt();
+        }
         let head = format!("{name}_sector");
         let of = columns.iter().zip(values).filter(|(c, _)| c.name.starts_with(&head));
         for (sector, (_, value)) in of.enumerate() {

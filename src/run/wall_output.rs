@@ -10,12 +10,16 @@ use trackbed_dem::{Vec3, WallShape};
 /// Corners around a ring in a picture.
 const AROUND: u32 = 48;
 
-/// Force of the grains on each recorded wall, its moment about the wall's centre, and the displacement of that centre.
+/// Energies of mounts; force of the grains on each recorded wall, its moment about the wall's centre, and the displacement of that centre.
 pub struct Walls;
 
 impl<S: System> Recorder<S> for Walls {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
+        if part.walls.others.iter().filter_map(|w| w.body.as_ref()).any(|b| b.mount.is_some()) {
+            row.put("mount_energy", "J", now.balance.now.mounts);
+            row.put("dissipated_mounts", "J", now.balance.spent.mounts);
+        }
         for wall in &part.walls.recorded {
             let (name, wall) = (&wall.name, wall.wall);
             let (force, moment) = view.state.wall_force(wall);

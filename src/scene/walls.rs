@@ -1,7 +1,9 @@
 //! Walls as written in a scene.
 
 use super::track::HeldMotion;
-use super::units::{Angle, Force, Frequency, Length, Mass, Quantity, Spin, Stress, Time, Velocity};
+use super::units::{
+    Angle, Dashpot, Force, Frequency, Length, Mass, Quantity, Spin, Stiffness, Stress, Time, Velocity,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -52,7 +54,7 @@ pub struct Wall {
     pub oscillation: Option<Oscillation>,
     /// Drive by a force.
     pub servo: Option<Servo>,
-    /// Makes triangles a rigid body.
+    /// Makes a wall other than a plane a rigid body.
     pub body: Option<Body>,
     /// Write the force of the grains on the wall, its moment and the wall's displacement to `history.csv`.
     #[serde(default)]
@@ -127,15 +129,16 @@ pub struct Pulses {
     pub start: Option<Quantity<Time>>,
 }
 
-/// Rigid body of triangles.
+/// Rigid body that a wall is.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// Mass [kg].
     pub mass: Quantity<Mass>,
-    /// Centre of mass [m]; default that of the enclosed solid.
+    /// Centre of mass [m]; default that of the enclosed solid, or the middle of a round shape.
     pub centre: Option<[Quantity<Length>; 3]>,
-    /// Inertia about the centre in world axes, xx, yy, zz, xy, yz, zx [kg m²]; default that of the enclosed solid.
+    /// Inertia about the centre in world axes, xx, yy, zz, xy, yz, zx [kg m²]; default that of the enclosed solid; a round
+    /// shape without it does not turn.
     pub inertia: Option<[f64; 6]>,
     /// Velocity at the start [m/s].
     pub velocity: Option<[Quantity<Velocity>; 3]>,
@@ -144,4 +147,20 @@ pub struct Body {
     /// Motions that keep their starting velocity.
     #[serde(default)]
     pub hold: Vec<HeldMotion>,
+    /// Springs and dashpots to where its centre of mass started; default none.
+    pub mount: Option<Mount>,
+}
+
+/// Springs and dashpots that hold a body, along x, y, z. Each is given by its constants or by what the body's mass makes of them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mount {
+    /// Stiffnesses [N/m]; 0 where nothing holds.
+    pub stiffness: Option<[Quantity<Stiffness>; 3]>,
+    /// Natural frequencies of the body on the springs [Hz], in place of `stiffness`.
+    pub frequency: Option<[Quantity<Frequency>; 3]>,
+    /// Dampings [N s/m]; default none.
+    pub damping: Option<[Quantity<Dashpot>; 3]>,
+    /// Shares of critical damping, in place of `damping`.
+    pub damping_ratio: Option<[f64; 3]>,
 }

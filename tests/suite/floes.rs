@@ -69,6 +69,74 @@ fn floes_drift_against_a_pile() {
     assert!(fs::metadata(&picture).unwrap().len() > 5000);
 }
 
+/// A pile on springs of 2 Hz takes the hits of floes: its motion is recorded, in free vibration the acceleration is −ω² of it, and the account of energy
+/// closes with the springs' share. Without the springs it drifts away, and held it stays.
+#[test]
+fn a_pile_on_springs() {
+    let folder = Folder::new("springs");
+    let held = ICE.find("[[grains]]\nname = \"pile\"").unwrap()..ICE.find("[time]").unwrap();
+    let pile = r#"[[walls]]
+kind = "cylinder"
+name = "leg"
+material = "ice"
+base = [0, 0, 0]
+height = 2
+radius = 0.8
+record = true
+body = { mass = "8 t", hold = ["y", "z"], mount = { frequency = ["2 Hz", 0, 0] } }
+
+[[structure]]
+name = "pile"
+parts = ["leg"]
+axis = [0, 0]
+
+"#;
+    let mut text = ICE.to_string();
+    text.replace_range(held, pile);
+    let run_in = |name: &str, text: &str| {
+        let (scene, out) = (folder.write(&format!("{name}.toml"), text), folder.join(name));
+        run(&scene, &out, &["output.history_interval=0.002"]).good();
+        (Table::read(&out.join("history.csv")), json(&out.join("summary.json")), out)
+    };
+    let (table, summary, out) = run_in("sprung", &text);
+    let column = |name: &str| table.column(name);
+    let (way, acceleration, load) =
+        (column("pile_motion_x"), column("pile_acceleration_x"), column("pile_load_x"));
+    assert_eq!(way, column("leg_displacement_x"));
+    let most = |values: &[f64]| values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    assert!(most(&load) > 1e3 && most(&way) > 1e-3, "{} {}", most(&load), most(&way));
+    assert_eq!(most(&column("pile_motion_y")), 0.0);
+    let square = (2.0 * 2.0 * PI).powi(2);
+    let last_touch = load.iter().rposition(|f| *f != 0.0).unwrap();
+    let swings: Vec<f64> = (0..load.len())
+        .filter(|k| load[*k] == 0.0 && *k != last_touch + 1)
+        .map(|k| acceleration[k] + square * way[k])
+        .collect();
+    assert!(swings.len() > 100 && most(&swings) < 0.02 * square * most(&way), "{}", most(&swings));
+    let energy = column("mount_energy");
+    let stiff = 8e3 * square;
+    assert!((most(&energy) / (0.5 * stiff * most(&way).powi(2)) - 1.0).abs() < 0.02);
+    assert_eq!(most(&column("dissipated_mounts")), 0.0);
+    let record = &summary["structures"][0]["motion"];
+    assert!((record["largest_displacement"].as_f64().unwrap() / most(&way) - 1.0).abs() < 1e-12);
+    let mean = acceleration.iter().map(|a| a * a).sum::<f64>() / acceleration.len() as f64;
+    assert!((record["rms_acceleration"].as_f64().unwrap() / mean.sqrt() - 1.0).abs() < 1e-9);
+    assert!(most(&column("energy_error")) < 0.01 * column("grains_kinetic")[0]);
+    let page = folder.join("page.html").display().to_string();
+    trackbed(["report", &out.display().to_string(), "--out", &page]).good();
+    assert!(fs::read_to_string(&page).unwrap().contains("Displacement of structures"));
+    let (loose, ..) = run_in("loose", &text.replace(", mount = { frequency = [\"2 Hz\", 0, 0] }", ""));
+    assert!(*loose.column("pile_motion_x").last().unwrap() > 3.0 * most(&way));
+    let (fixed, ..) = run_in(
+        "fixed",
+        &text.replace(
+            "hold = [\"y\", \"z\"], mount = { frequency = [\"2 Hz\", 0, 0] }",
+            "hold = [\"x\", \"y\", \"z\"]",
+        ),
+    );
+    assert_eq!(most(&fixed.column("pile_motion_x")), 0.0);
+}
+
 /// Without `clear` floes lie where the pile is, and with circles over all of it none is left.
 #[test]
 fn circles_are_kept_clear() {

@@ -24,6 +24,7 @@ const CLAY: &str = "inputs/solid/triaxial_drained.toml";
 const TRAIN: &str = "inputs/track/train/scene.toml";
 const DRUM: &str = "inputs/grains/drum.toml";
 const GRAINS: &str = "inputs/grains/box.toml";
+const SHAKEN: &str = "inputs/ice/vibration.toml";
 const WIND: &str = "inputs/verify/wind.toml";
 
 /// Scene, override, key that must be named, whether it cannot be meant.
@@ -53,6 +54,9 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (WIND, "wind.velocity=[\"600 m/s\", 0, 0]", "wind.velocity", false),
     (WIND, "wind.density=12000", "wind.density", false),
     // Walls.
+    (SHAKEN, "walls.0.body.mount.frequency=[1500, 1.5, 0]", "walls.0.body.mount.frequency", false),
+    (SHAKEN, "walls.0.body.mount.damping_ratio=[0.03, 300, 0]", "walls.0.body.mount.damping_ratio", true),
+    (SHAKEN, "walls.0.body.mount={ stiffness = [\"20 N/m\", 0, 0] }", "walls.0.body.mount.stiffness", false),
     (SERVO, "walls.2.servo.pressure=\"20000 MPa\"", "walls.2.servo.pressure", true),
     (SERVO, "walls.2.servo.area=78539", "walls.2.servo.area", true),
     (SERVO, "walls.2.servo.max_speed=\"200 m/s\"", "walls.2.servo.max_speed", false),

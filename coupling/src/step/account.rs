@@ -38,6 +38,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
         grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
         contact_springs: grains.elastic_normal + grains.elastic_tangential,
         bonds: grains.elastic_bonds,
+        mounts: grains.elastic_mounts,
         grains_gravity: grains.gravity,
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
@@ -78,6 +79,7 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
         dashpot: ledger.dissipated_dashpot,
         friction: ledger.dissipated_friction,
         bonds: ledger.dissipated_bonds,
+        mounts: ledger.dissipated_mounts,
         breaks: ledger.released_by_breaks,
         local_damping: ledger.dissipated_local_damping,
         surface_on_grains: ledger.work_surface,
@@ -109,6 +111,7 @@ mod tests {
             &mut ledger.dissipated_bonds,
             &mut ledger.released_by_breaks,
             &mut ledger.dissipated_local_damping,
+            &mut ledger.dissipated_mounts,
         ];
         // Powers of two: sums are exact, and no two of them alike.
         all.into_iter().zip(0..).for_each(|(part, k)| *part = f64::from(1 << k));

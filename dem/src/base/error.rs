@@ -231,10 +231,10 @@ pub enum StepError {
         /// The bound [m/s].
         bound: f64,
     },
-    /// Two rigid triangle bodies have come within each other's bounds.
+    /// Two rigid bodies of walls have come within each other's bounds.
     #[error(
-        "at t = {time} s the rigid bodies of walls {} and {} come within each other's bounds: contact between triangle \
-         bodies is not modelled",
+        "at t = {time} s the rigid bodies of walls {} and {} come within each other's bounds: contact between bodies of \
+         walls is not modelled",
         walls[0],
         walls[1]
     )]

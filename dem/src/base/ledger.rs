@@ -48,6 +48,9 @@ pub struct Ledger {
     pub released_by_breaks: f64,
     /// Energy taken by local damping [J].
     pub dissipated_local_damping: f64,
+    /// Energy lost in the dashpots of mounts of rigid bodies [J].
+    #[serde(default)]
+    pub dissipated_mounts: f64,
     /// Work of applied forces [J].
     pub work_applied: f64,
     /// Work of body forces, gravity excepted [J].
@@ -85,6 +88,9 @@ pub struct Ledger {
     pub periodic: Impulse,
     /// Impulse of local damping.
     pub local_damping: Impulse,
+    /// Impulse of the mounts of rigid bodies.
+    #[serde(default)]
+    pub mounts: Impulse,
     /// Change of momentum by bodies that were set elsewhere.
     #[serde(default)]
     pub jumps: Impulse,
@@ -101,6 +107,7 @@ impl Ledger {
             + self.dissipated_local_damping
             + self.dissipated_bonds
             + self.released_by_breaks
+            + self.dissipated_mounts
     }
 
     /// All work received from outside, gravity excepted (it has a potential) [J].
@@ -119,7 +126,9 @@ impl Ledger {
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
         let own = [self.walls, self.surface, self.applied, self.body_forces, self.constraints];
-        for part in own.into_iter().chain([self.local_damping, self.periodic, self.jumps, self.flow]) {
+        for part in
+            own.into_iter().chain([self.local_damping, self.periodic, self.jumps, self.flow, self.mounts])
+        {
             sum += &part;
         }
         sum
@@ -131,6 +140,7 @@ impl AddAssign<&Ledger> for Ledger {
         self.dissipated_dashpot += other.dissipated_dashpot;
         self.dissipated_friction += other.dissipated_friction;
         self.dissipated_local_damping += other.dissipated_local_damping;
+        self.dissipated_mounts += other.dissipated_mounts;
         self.dissipated_bonds += other.dissipated_bonds;
         self.released_by_breaks += other.released_by_breaks;
         self.work_applied += other.work_applied;
@@ -149,6 +159,7 @@ impl AddAssign<&Ledger> for Ledger {
         self.constraints += &other.constraints;
         self.periodic += &other.periodic;
         self.local_damping += &other.local_damping;
+        self.mounts += &other.mounts;
         self.jumps += &other.jumps;
         self.flow += &other.flow;
     }

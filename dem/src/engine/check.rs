@@ -289,16 +289,9 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     let is_one = |b: &Body| matches!(input.shapes[b.shape], Shape::Polyhedron(_));
     let Some(first) = bodies.iter().find(is_one) else { return Ok(()) };
     let error = |problem: String| Err(ModelError::Shape { shape: first.shape, problem });
-    for (what, there) in [
-        ("a rigid body of triangles", input.walls.iter().any(|w| w.body.is_some())),
-        (
-            "an external surface that is not given as triangles",
-            surfaces(input).next().is_some() && input.surface_mesh.is_none(),
-        ),
-    ] {
-        if there {
-            return error(format!("a dilated polyhedron or disk; {what} cannot be combined with it"));
-        }
+    if surfaces(input).next().is_some() && input.surface_mesh.is_none() {
+        let what = "an external surface that is not given as triangles";
+        return error(format!("a dilated polyhedron or disk; {what} cannot be combined with it"));
     }
     let partners = timestep::partners(bodies, input);
     for body in bodies.iter().filter(is_one) {
@@ -331,7 +324,7 @@ pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
         return error("bonds");
     }
     if input.walls.iter().any(|w| w.body.is_some()) {
-        return error("rigid bodies of triangles");
+        return error("rigid bodies of walls");
     }
     Ok(())
 }

@@ -128,7 +128,7 @@ impl Model {
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
-        let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input.planes, &laws, expected, radii);
+        let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input, &laws, expected, radii);
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected);
         let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));

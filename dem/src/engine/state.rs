@@ -233,6 +233,11 @@ impl State {
         (self.walls[wall].velocity, self.walls[wall].spin)
     }
 
+    /// Acceleration of the centre of a rigid body that a wall is, in the last step [m/s²]; zero of other walls.
+    pub fn wall_acceleration(&self, wall: usize) -> Vec3 {
+        self.walls[wall].acceleration
+    }
+
     /// Force of the grains on a wall in the last step [N] and its moment about the wall's centre where it was then [N m].
     pub fn wall_force(&self, wall: usize) -> (Vec3, Vec3) {
         (self.walls[wall].force, self.walls[wall].moment)

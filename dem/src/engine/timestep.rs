@@ -43,7 +43,6 @@ use crate::law::normal::Expected;
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
 use crate::shape::dilated::Dilated;
-use crate::shape::plane::Plane;
 use crate::wall::set::Walls;
 use std::collections::BTreeSet;
 use std::fmt;
@@ -65,16 +64,25 @@ pub struct DtLimit {
     pub wall: Option<usize>,
     /// Square of the highest frequency that the body's bonds alone could give it [1/s²].
     pub bonds: f64,
+    /// Square of the highest frequency that the mount of a wall's body gives it [1/s²].
+    pub mount: f64,
 }
 
 impl fmt::Display for DtLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(wall) = self.wall {
-            return write!(
-                f,
-                "the rigid body of wall {wall} in contact with material {} (stiffness {:.3e} N/m)",
-                self.partner, self.stiffness
-            );
+            write!(f, "the rigid body of wall {wall}")?;
+            if self.stiffness > 0.0 {
+                write!(
+                    f,
+                    " in contact with material {} (stiffness {:.3e} N/m)",
+                    self.partner, self.stiffness
+                )?;
+            }
+            if self.mount > 0.0 {
+                write!(f, " on its mount ({:.3e} rad/s)", self.mount.sqrt())?;
+            }
+            return Ok(());
         }
         write!(
             f,
@@ -108,8 +116,16 @@ pub(crate) fn limit(
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least =
-        DtLimit { dt: 1e-4, body: 0, partner: 0, stiffness: 0.0, mass: 0.0, bonds: 0.0, wall: None };
+    let mut least = DtLimit {
+        dt: 1e-4,
+        body: 0,
+        partner: 0,
+        stiffness: 0.0,
+        mass: 0.0,
+        bonds: 0.0,
+        wall: None,
+        mount: 0.0,
+    };
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -154,7 +170,7 @@ pub(crate) fn limit(
                     stiffness,
                     mass: stiffness / own,
                     bonds: bond_stiffness,
-                    wall: None,
+                    ..least
                 };
             }
         }
@@ -281,38 +297,93 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
     1.0 / body.mass + turn
 }
 
+/// What touches the bodies of walls: a material, the radius of the smallest that is made of it [m], and how many times the stiffness of the law acts
+/// between one of them and a wall, over that of two points.
+#[derive(Clone, Copy)]
+struct Partner {
+    material: u32,
+    radius: f64,
+    times: f64,
+    /// Whether it is a polyhedron or a disk.
+    faced: bool,
+}
+
+/// What may touch the body of a wall: spheres and planes by a point or two, polyhedra by as much as a face has.
+fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
+    let grains = bodies.iter().map(|b| b.material);
+    let planes = input.planes.iter().map(|p| p.material as u32);
+    let all: BTreeSet<u32> = grains.chain(planes).collect();
+    let mut partners: Vec<Partner> =
+        all.into_iter().map(|material| Partner { material, radius, times: 1.0, faced: false }).collect();
+    let mut faced: Vec<Partner> = Vec::new();
+    for body in bodies.iter() {
+        let Shape::Polyhedron(it) = &input.shapes[body.shape] else { continue };
+        let times = 0.5 * faces(it);
+        match faced.iter_mut().find(|p| p.material == body.material) {
+            None => faced.push(Partner { material: body.material, radius: body.radius, times, faced: true }),
+            Some(p) => (p.radius, p.times) = (p.radius.min(body.radius), p.times.max(times)),
+        }
+    }
+    // Where polyhedra are all there is of a material nothing else touches.
+    let round = |m: u32| {
+        let point = |b: &Body| b.material == m && !matches!(input.shapes[b.shape], Shape::Polyhedron(_));
+        bodies.iter().any(|b| point(&b)) || input.planes.iter().any(|p| p.material as u32 == m)
+    };
+    partners.retain(|p| round(p.material));
+    partners.extend(faced);
+    partners
+}
+
 /// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
-/// where a rigid body of triangles needs it; returns the least of these [s]. `radii` are those of the smallest and the largest sphere [m], `expected`
+/// where the rigid body of a wall needs it; returns the longest step [s] that is stable whatever comes to touch such a body before the contacts that are
+/// there are looked at. `radii` are those of the smallest and the largest sphere [m], `expected`
 /// the overlap expected over the radius.
 pub(crate) fn walls(
     walls: &mut Walls,
     limit: &mut DtLimit,
     bodies: &Bodies,
-    planes: &[Plane],
+    input: &ModelInput,
     laws: &Laws,
     expected: f64,
     radii: (f64, f64),
 ) -> f64 {
     let mut least = f64::INFINITY;
-    let grains: BTreeSet<u32> = (0..bodies.len()).map(|b| bodies.get(b).material).collect();
-    let planes = planes.iter().map(|p| p.material as u32);
-    let all: BTreeSet<u32> = grains.iter().copied().chain(planes).collect();
+    let grains: BTreeSet<u32> = bodies.iter().map(|b| b.material).collect();
+    let partners = if input.walls.iter().any(|w| w.body.is_some()) {
+        touching(bodies, input, radii.0)
+    } else {
+        Vec::new()
+    };
     for (k, wall) in walls.walls.iter_mut().enumerate() {
         wall.damping = grains.iter().map(|&m| laws.damping_ratio(wall.material, m)).fold(0.0, f64::max);
         let Some(body) = wall.body.as_ref().filter(|b| b.fixed != 0b11_1111) else { continue };
-        for &partner in &all {
-            let stiffness = laws.stiffness(wall.material, partner, expected * radii.1, radii.1);
+        let mount = body.mount_frequency();
+        let mut note = |dt: f64, sudden: f64, partner: usize, stiffness: f64| {
+            least = least.min(sudden);
+            if dt < limit.dt {
+                let (bonds, mass) = (0.0, body.mass);
+                *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds, wall: Some(k), mount };
+            }
+        };
+        if mount > 0.0 {
+            let dt = 2.0 / mount.sqrt();
+            note(dt, dt, 0, 0.0);
+        }
+        for &Partner { material, radius, times, faced } in &partners {
+            let stiffness = times * laws.stiffness(wall.material, material, expected * radii.1, radii.1);
             if !stiffness.is_finite() {
                 continue;
             }
-            let ratio = laws.tangential_ratio(wall.material, partner) * if laws.rolls() { 2.0 } else { 1.0 };
-            let zeta = laws.damping_ratio(wall.material, partner);
-            let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radii.0);
-            least = least.min(dt);
-            if dt < limit.dt {
-                let (partner, mass) = (partner as usize, body.mass);
-                *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds: 0.0, wall: Some(k) };
-            }
+            let ratio = laws.tangential_ratio(wall.material, material) * if laws.rolls() { 2.0 } else { 1.0 };
+            let zeta = laws.damping_ratio(wall.material, material);
+            let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radius);
+            // Faces of many that lie on it are known from the contacts; one may come to lie on it between two looks at them.
+            let sudden = if faced {
+                0.5 * body.step_limit(stiffness, stiffness * ratio, zeta, f64::INFINITY)
+            } else {
+                dt
+            };
+            note(dt, sudden, material as usize, stiffness);
         }
     }
     least

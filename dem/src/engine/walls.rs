@@ -98,7 +98,7 @@ pub(crate) fn advance(
     (fastest, failure.or_else(|| meeting(model, state)))
 }
 
-/// Two triangle bodies whose bounds meet.
+/// Two bodies whose bounds meet.
 fn meeting(model: &Model, state: &State) -> Option<Failure> {
     let bodies =
         || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(_, (w, _))| w.body.is_some());
@@ -147,7 +147,7 @@ pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<
         .fold(0.0, f64::max)
 }
 
-/// The planes that bodies of triangles stand on, for a step of `dt` [s].
+/// The planes that bodies of triangles may stand on, for a step of `dt` [s].
 pub(crate) fn ground<'a>(model: &'a Model, motions: &'a [PlaneMotion], dt: f64) -> Ground<'a> {
     Ground { laws: &model.laws, planes: &model.planes, motions, tip_radius: model.radii.0, dt }
 }

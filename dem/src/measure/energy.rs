@@ -23,6 +23,8 @@ pub struct Energies {
     pub elastic_tangential: f64,
     /// Bonds: tension, shear, bending, twisting.
     pub elastic_bonds: f64,
+    /// Springs of mounts of rigid bodies.
+    pub elastic_mounts: f64,
     /// −m g·x, zero at the origin.
     pub gravity: f64,
 }
@@ -35,7 +37,7 @@ impl Energies {
 
     /// Energy in springs.
     pub fn elastic(&self) -> f64 {
-        self.elastic_normal + self.elastic_tangential + self.elastic_bonds
+        self.elastic_normal + self.elastic_tangential + self.elastic_bonds + self.elastic_mounts
     }
 
     /// All of it. This less [`Ledger::work`](crate::base::ledger::Ledger::work) plus
@@ -53,11 +55,13 @@ pub fn energies(model: &Model, state: &State) -> Energies {
     let ground = crate::engine::walls::ground(model, &state.planes, state.pace.last);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
         let Some(body) = &wall.body else { continue };
-        let [translation, rotation, gravity] = body.energies(own, &model.gravity, 0.5 * state.pace.last);
+        let [translation, rotation, gravity, mount] =
+            body.energies(own, &model.gravity, 0.5 * state.pace.last);
         let [normal, tangential] = wall::body::stored(&ground, body, wall.material, own);
         e.kinetic_translation += translation;
         e.kinetic_rotation += rotation;
         e.gravity += gravity;
+        e.elastic_mounts += mount;
         e.elastic_normal += normal;
         e.elastic_tangential += tangential;
     }

@@ -38,7 +38,8 @@ const GROWTH: f64 = 1.25;
 const RUNG: f64 = 1.090_507_732_665_257_7;
 
 /// The largest stable step [s] for the contacts and bonds of a state, all of them sticking; infinite where nothing holds
-/// anything. Dashpots act with velocities of half a step ago. Rigid bodies of walls are left out: [`Model::longest`] knows theirs.
+/// anything. Dashpots act with velocities of half a step ago. Rigid bodies of walls move and have their mounts;
+/// what they stand on with their vertices is left out: [`Model::longest`] knows it.
 ///
 /// With K and C made of these contacts the leapfrog is stable while the largest eigenvalue of M⁻¹(dt² K + 2 dt C) is below
 /// 4; Lanczos' method finds it, to a few per cent on the safe side.

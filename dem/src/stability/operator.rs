@@ -8,7 +8,7 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::law::lag;
 use crate::measure;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, UnitQuaternion};
 
 /// Springs and dashpots along an axis and across it.
 #[derive(Clone, Copy, Default)]
@@ -45,8 +45,14 @@ const NOTHING: u32 = u32::MAX;
 /// The operator.
 pub(super) struct Operator {
     links: Vec<Link>,
-    /// Square roots of the inverse masses by axis, and of the inverse tensors of inertia.
+    /// Square roots of the inverse masses by axis, and of the inverse tensors of inertia: of bodies, then of those that walls are.
     bodies: Vec<([f64; 3], Matrix3<f64>)>,
+    /// Number among these of the body that a wall is; [`NOTHING`] of the others.
+    walls: Vec<u32>,
+    /// Bodies with a mount, and its stiffness by axis. Its dashpot does not lag: it takes nothing from the step.
+    mounts: Vec<(u32, Vec3)>,
+    /// Square of the step in hand [s²].
+    square: f64,
     /// Motions and forces of all bodies.
     motion: Vec<[Vec3; 2]>,
     force: Vec<[Vec3; 2]>,
@@ -54,10 +60,21 @@ pub(super) struct Operator {
 
 impl Operator {
     pub fn new(model: &Model, state: &State) -> Operator {
-        let bodies: Vec<_> = (0..model.body_count()).map(|b| mobility(model, state, b)).collect();
-        let n = bodies.len();
-        let still = vec![[Vec3::zeros(); 2]; n];
-        let mut operator = Operator { links: Vec::new(), bodies, motion: still.clone(), force: still };
+        let mut bodies: Vec<_> = (0..model.body_count()).map(|b| mobility(model, state, b)).collect();
+        let (mut walls, mut mounts) = (Vec::new(), Vec::new());
+        for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
+            let Some(body) = &wall.body else {
+                walls.push(NOTHING);
+                continue;
+            };
+            let number = bodies.len() as u32;
+            walls.push(number);
+            mounts.extend(body.mount_stiffness().map(|k| (number, k)));
+            bodies.push(moved(body.fixed, body.mass, &body.inertia, Some(own.frame)));
+        }
+        let still = vec![[Vec3::zeros(); 2]; bodies.len()];
+        let (motion, force) = (still.clone(), still);
+        let mut operator = Operator { links: Vec::new(), bodies, walls, mounts, square: 0.0, motion, force };
         operator.add_contacts(model, state);
         operator.add_bonds(model, state);
         operator
@@ -74,7 +91,16 @@ impl Operator {
     }
 
     fn add_contacts(&mut self, model: &Model, state: &State) {
-        let links = &mut self.links;
+        let (links, walls) = (&mut self.links, &self.walls);
+        // What moves with a partner: its number, and its centre.
+        let moving = |partner: Partner| match partner {
+            Partner::Body(b) => Some((b as u32, state.position(b))),
+            other => {
+                let wall = model.walls.wall_of_partner(other)?;
+                let number = *walls.get(wall).filter(|n| **n != NOTHING)?;
+                Some((number, model.walls.walls[wall].centre + state.walls[wall].offset))
+            }
+        };
         measure::visit(model, state, 0.0, |c| {
             // Two that are both held.
             if c.inverse_mass == 0.0 {
@@ -83,14 +109,13 @@ impl Operator {
             let g = &c.geometry;
             let law =
                 model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
-            let other = if let Partner::Body(b) = c.partner { Some(b) } else { None };
-            let arm = |b: usize, shift: Vec3| g.point - shift - state.position(b);
+            let other = moving(c.partner);
             let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
             links.push(Link {
-                ends: [c.body, other.map_or(NOTHING, |b| b as u32)],
+                ends: [c.body, other.map_or(NOTHING, |(number, _)| number)],
                 arms: [
-                    arm(c.body as usize, Vec3::zeros()),
-                    other.map_or_else(Vec3::zeros, |b| arm(b, c.shift)),
+                    g.point - state.position(c.body as usize),
+                    other.map_or_else(Vec3::zeros, |(_, centre)| g.point - c.shift - centre),
                 ],
                 normal: g.normal,
                 stiffness: [pair(law.normal, law.tangential), pair(law.twisting, law.rolling)],
@@ -127,6 +152,7 @@ impl Operator {
 
     /// The operator for steps of `dt` [s].
     pub fn at(&mut self, dt: f64) -> &mut Operator {
+        self.square = dt * dt;
         for link in &mut self.links {
             let (numerator, denominator) = lag::share(link.lag * dt);
             let share = numerator / denominator;
@@ -169,6 +195,10 @@ impl Operator {
                 self.force[b][1] -= link.arms[1].cross(&pull) + couple;
             }
         }
+        for (body, stiffness) in &self.mounts {
+            let v = self.motion[*body as usize][0];
+            self.force[*body as usize][0] += stiffness.component_mul(&v) * self.square;
+        }
         for ((force, body), out) in self.force.iter().zip(&self.bodies).zip(out.chunks_exact_mut(6)) {
             let [x, w] = scaled(body, *force);
             out[..3].copy_from_slice(x.as_slice());
@@ -183,14 +213,23 @@ fn mobility(model: &Model, state: &State, body: usize) -> ([f64; 3], Matrix3<f64
     if !state.present(body) {
         return ([0.0; 3], Matrix3::zeros());
     }
-    let free = |d: usize| if b.fixed >> d & 1 == 1 { 0.0 } else { 1.0 };
-    let root = std::array::from_fn(|d| free(d) / b.mass.sqrt());
-    let local = Matrix3::from_diagonal(&b.inertia.map(|i| 1.0 / i.sqrt()));
-    let turned = if b.kind == Kind::Sphere {
-        local
-    } else {
-        let turn = state.orientation(model, body).to_rotation_matrix();
-        turn.matrix() * local * turn.matrix().transpose()
+    let frame = (b.kind != Kind::Sphere).then(|| state.orientation(model, body));
+    moved(b.fixed, b.mass, &b.inertia, frame)
+}
+
+/// The same of a mass and principal moments in a frame; bits of `fixed`: translation, then rotation.
+fn moved(
+    fixed: u8,
+    mass: f64,
+    inertia: &Vec3,
+    frame: Option<UnitQuaternion<f64>>,
+) -> ([f64; 3], Matrix3<f64>) {
+    let free = |d: usize| if fixed >> d & 1 == 1 { 0.0 } else { 1.0 };
+    let root = std::array::from_fn(|d| free(d) / mass.sqrt());
+    let local = Matrix3::from_diagonal(&inertia.map(|i| 1.0 / i.sqrt()));
+    let turned = match frame.map(|q| q.to_rotation_matrix()) {
+        None => local,
+        Some(turn) => turn.matrix() * local * turn.matrix().transpose(),
     };
     // Fixed rotations about world axes: their rows and columns are left out, which keeps the matrix symmetric.
     (root, Matrix3::from_fn(|i, j| turned[(i, j)] * free(3 + i) * free(3 + j)))

@@ -1,4 +1,4 @@
-//! Rigid bodies whose surface is triangles: mass, centre and inertia, motion, and contacts of their vertices with planes.
+//! Walls that are rigid bodies: mass, centre and inertia, motion, mount, and contacts of vertices of triangles with planes.
 //!
 //! The body takes part in the contacts of the grains as a wall of finite mass. It moves by the same scheme as clumps
 //! (`integrate/leapfrog.rs`, `integrate/rotation.rs`): kick by the forces of the step, then drift.
@@ -7,10 +7,11 @@
 //! Tonon, J. Math. Stat. 1, 2005); the triangles are first turned to look the same way by walking across their edges,
 //! because files need not order their vertices.
 //!
-//! Limits: grains touch the triangles; infinite planes are touched by the vertices; other walls and other triangle bodies
-//! are not touched (the step fails when two bodies come within each other's bounds).
+//! Limits: grains of all shapes touch the surface; infinite planes are touched by vertices of triangles, not by round shapes; other walls and other
+//! bodies are not touched (the step fails when two bodies come within each other's bounds).
 
-use super::input::{RigidBody, WallShape};
+use super::input::{Mount, RigidBody, WallShape};
+use super::mount;
 use super::state::{Foot, WallState};
 use super::triangulated::welded;
 use crate::base::Vec3;
@@ -24,7 +25,7 @@ use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::detect;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-/// Constants of a rigid triangle body.
+/// Constants of a rigid body.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub mass: f64,
@@ -41,8 +42,11 @@ pub(crate) struct Body {
     /// Largest distance of a vertex from the centre, and half the bounds in the starting frame [m].
     pub reach: f64,
     pub half: Vec3,
-    /// Vertices that triangles use [m].
+    /// Vertices that triangles use, or the corners of a round shape's bounds [m].
     pub vertices: Vec<Vec3>,
+    /// Whether planes touch the vertices.
+    stands: bool,
+    mount: Option<Mount>,
 }
 
 /// Volume, centre and inertia about it per unit density of the solid that a closed surface encloses: [m³], [m],
@@ -104,31 +108,46 @@ pub fn enclosed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<(f64, Vec3,
 }
 
 impl Body {
-    /// Resolves a body.
+    /// Resolves a body; `bounds`: corners of the bounds of its patches [m].
     ///
     /// # Errors
-    /// The wall is no triangle surface, encloses nothing and is not given centre and inertia, or the inertia is not that
+    /// The wall is a plane, or encloses nothing and is not given centre and inertia, a round one turns without inertia, or the inertia is not that
     /// of a body.
-    pub fn new(input: &RigidBody, shape: &WallShape, name: &str) -> Result<Body, ModelError> {
+    pub fn new(
+        input: &RigidBody,
+        shape: &WallShape,
+        bounds: Vec<Vec3>,
+        name: &str,
+    ) -> Result<Body, ModelError> {
         let error = |problem| ModelError::Wall { wall: name.to_string(), problem };
-        let WallShape::Triangles { vertices, triangles } = shape else {
-            return Err(error("only a triangle surface can be a rigid body"));
-        };
-        let solid = enclosed(vertices, triangles);
-        let missing = "its surface is not closed: give the centre and the inertia of the body";
-        let (centre, tensor) = match (input.centre, input.inertia) {
-            (Some(c), Some([xx, yy, zz, xy, yz, zx])) => {
-                (c, Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz))
+        let mut bits = input.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
+        let stands = matches!(shape, WallShape::Triangles { .. });
+        let (centre, tensor, vertices) = match shape {
+            WallShape::Triangles { vertices, triangles } => {
+                let (centre, tensor) = of_triangles(input, vertices, triangles).map_err(error)?;
+                let mut used = vec![false; vertices.len()];
+                triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+                (
+                    centre,
+                    tensor,
+                    vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v)).collect(),
+                )
             }
-            (c, given) => {
-                let (volume, own, inertia) = solid.ok_or(error(missing))?;
-                let centre = c.unwrap_or(own);
-                let d = centre - own;
-                let steiner = Matrix3::identity() * d.norm_squared() - d * d.transpose();
-                let own = inertia * (input.mass / volume) + steiner * input.mass;
-                let tensor = given
-                    .map_or(own, |[xx, yy, zz, xy, yz, zx]| Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz));
-                (centre, tensor)
+            WallShape::Plane { .. } => return Err(error("an infinite plane cannot be a rigid body")),
+            WallShape::Frustum { .. } | WallShape::Sphere { .. } => {
+                let centre = input.centre.unwrap_or_else(|| shape.middle());
+                let tensor = match input.inertia {
+                    Some(given) => of_six(given),
+                    None if input.spin != Vec3::zeros() => {
+                        return Err(error("a round body turns only if its inertia is given"));
+                    }
+                    // Any will do: it does not turn.
+                    None => {
+                        bits |= 0b11_1000;
+                        Matrix3::identity() * input.mass
+                    }
+                };
+                (centre, tensor, bounds)
             }
         };
         let (inertia, axes) = principal(&tensor);
@@ -136,12 +155,7 @@ impl Body {
         if !(inertia.min() > 0.0 && sum.is_finite() && 2.0 * inertia.max() <= sum * (1.0 + 1e-9)) {
             return Err(error("its moments of inertia are not those of a body"));
         }
-        let mut used = vec![false; vertices.len()];
-        triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-        let vertices: Vec<Vec3> =
-            vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v)).collect();
         let half = vertices.iter().fold(Vec3::zeros(), |h, v| h.sup(&(v - centre).abs()));
-        let bits = input.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
         Ok(Body {
             mass: input.mass,
             inverse_mass: if bits & 7 == 7 { 0.0 } else { 1.0 / input.mass },
@@ -154,12 +168,16 @@ impl Body {
             reach: vertices.iter().map(|v| (v - centre).norm()).fold(0.0, f64::max),
             half,
             vertices,
+            stands,
+            mount: input.mount.filter(|m| m.stiffness != Vec3::zeros() || m.damping != Vec3::zeros()),
         })
     }
 
     /// State at time 0, its velocities half a step earlier.
     pub fn start(&self, state: &mut WallState, gravity: &Vec3, dt: f64) {
-        let kick = Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] });
+        let damping =
+            self.mount.map_or(Vec3::zeros(), |m| m.damping.component_mul(&self.velocity) / self.mass);
+        let kick = Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] - damping[d] });
         state.velocity = self.velocity - kick * (0.5 * dt);
         state.spin = self.spin;
         state.frame = self.axes;
@@ -188,18 +206,23 @@ impl Body {
         let pull = gravity * self.mass;
         ledger.gravity.add(&x, &(pull * kick));
         let whole = force + pull;
-        let mut v1 = v0 + whole * (kick / self.mass);
+        let mut v1 = match &self.mount {
+            None => v0 + whole * (kick / self.mass),
+            Some(m) => mount::kick(m, self.mass, &v0, &whole, (&x, &state.offset), kick, ledger),
+        };
         for d in 0..3 {
             if self.fixed >> d & 1 == 1 {
                 v1[d] = v0[d];
             }
         }
         if self.fixed & 7 != 0 {
-            let hold = (v1 - v0) * self.mass - whole * kick;
+            let held = |d: usize| self.fixed >> d & 1 == 1;
+            let hold = Vec3::from_fn(|d, _| if held(d) { -whole[d] * kick } else { 0.0 });
             ledger.constraints.add(&x, &hold);
             ledger.work_constraints += hold.dot(&((v0 + v1) * 0.5));
         }
         state.velocity = v1;
+        state.acceleration = (v1 - v0) / kick;
         state.offset += v1 * dt;
 
         let before = state.momentum;
@@ -235,14 +258,16 @@ impl Body {
         state.velocity.norm() + state.spin.norm() * self.reach
     }
 
-    /// Kinetic energy of translation and rotation, and energy in gravity, at the last half step [J].
+    /// Kinetic energy of translation and rotation, energy in gravity, and in the mount, at the last half step [J].
     /// `back`: half of the last step [s].
-    pub fn energies(&self, state: &WallState, gravity: &Vec3, back: f64) -> [f64; 3] {
-        let x = self.centre + state.offset - state.velocity * back;
+    pub fn energies(&self, state: &WallState, gravity: &Vec3, back: f64) -> [f64; 4] {
+        let offset = state.offset - state.velocity * back;
+        let x = self.centre + offset;
         [
             0.5 * self.mass * state.velocity.norm_squared(),
             0.5 * state.spin.dot(&state.momentum),
             -self.mass * gravity.dot(&x),
+            self.mount.as_ref().map_or(0.0, |m| mount::stored(m, &offset)),
         ]
     }
 
@@ -252,21 +277,59 @@ impl Body {
         sum.angular += state.momentum;
     }
 
+    /// Stiffness of the mount by axis [N/m], where there is one.
+    pub fn mount_stiffness(&self) -> Option<Vec3> {
+        self.mount.map(|m| m.stiffness)
+    }
+
+    /// Square of the highest frequency that the mount gives the body [1/s²]; zero without one.
+    pub fn mount_frequency(&self) -> f64 {
+        self.mount.as_ref().map_or(0.0, |m| mount::highest(m, self.mass))
+    }
+
     /// Limit of the time step for a contact of stiffness `k` [N/m] and damping ratio `zeta`: as for a box of the body's
-    /// bounds with grains of radius `r` on its sides (see [`crate::engine::timestep`]).
+    /// bounds with grains of radius `r` on its sides (see [`crate::engine::timestep`]), and its mount, whose dashpot does not lag, beside them.
     pub fn step_limit(&self, k: f64, tangential: f64, zeta: f64, r: f64) -> f64 {
         let n = self.half.map(|h| h / r + 1.0);
         let sides = 4.0 * (n.x * n.y).max(n.y * n.z).max(n.z * n.x);
-        let turn = (0..3)
-            .map(|d| {
-                let (a, b) = (self.half[(d + 1) % 3].powi(2), self.half[(d + 2) % 3].powi(2));
-                (a + b / 3.0).max(a / 3.0 + b)
-            })
-            .fold(0.0, f64::max);
+        let lever = |d: usize| {
+            let (a, b) = (self.half[(d + 1) % 3].powi(2), self.half[(d + 2) % 3].powi(2));
+            (a + b / 3.0).max(a / 3.0 + b)
+        };
+        let turn = if self.fixed >> 3 == 7 { 0.0 } else { (0..3).map(lever).fold(0.0, f64::max) };
         let own = k.max(tangential) * (1.0 / self.mass + turn / self.inertia.min());
         let zeta = zeta * (0.5 * sides).sqrt();
+        let mount = self.mount_frequency();
+        if mount > 0.0 {
+            // (λ + ω²) dt² + 4 ζ' √λ dt = 4.
+            let (all, damping) = (sides * own + mount, 4.0 * zeta * (sides * own).sqrt());
+            return ((damping * damping + 4.0 * all).sqrt() - damping) / all;
+        }
         ((4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta) / (sides * own).sqrt()
     }
+}
+
+/// Centre of mass [m] and tensor of inertia [kg m²] of a body of triangles.
+fn of_triangles(
+    input: &RigidBody,
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> Result<(Vec3, Matrix3<f64>), &'static str> {
+    if let (Some(centre), Some(given)) = (input.centre, input.inertia) {
+        return Ok((centre, of_six(given)));
+    }
+    let missing = "its surface is not closed: give the centre and the inertia of the body";
+    let (volume, own, inertia) = enclosed(vertices, triangles).ok_or(missing)?;
+    let centre = input.centre.unwrap_or(own);
+    let d = centre - own;
+    let steiner = Matrix3::identity() * d.norm_squared() - d * d.transpose();
+    let own = inertia * (input.mass / volume) + steiner * input.mass;
+    Ok((centre, input.inertia.map_or(own, of_six)))
+}
+
+/// A tensor of inertia from xx, yy, zz, xy, yz, zx.
+fn of_six([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
 /// Principal moments and the frame of their axes (columns), right-handed.
@@ -323,7 +386,11 @@ pub(crate) fn stand(
     let x = body.centre + state.offset;
     for (p, (plane, wall)) in planes.iter().zip(motions).enumerate() {
         let origin = plane.point + wall.offset;
-        if wall.open || body.inverse_mass == 0.0 || (x - origin).dot(&plane.normal) > body.reach {
+        if wall.open
+            || !body.stands
+            || body.inverse_mass == 0.0
+            || (x - origin).dot(&plane.normal) > body.reach
+        {
             continue;
         }
         let materials = [material, plane.material as u32];

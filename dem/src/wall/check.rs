@@ -1,6 +1,6 @@
 //! Checks of walls.
 
-use super::input::{WallInput, WallShape};
+use super::input::{RigidBody, WallInput, WallShape};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 
@@ -91,8 +91,19 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
         if !good {
             return Some("its mass must be positive, and its centre, inertia and velocities finite");
         }
+        return mount(b);
     }
     None
+}
+
+fn mount(body: &RigidBody) -> Option<&'static str> {
+    let mount = body.mount.as_ref()?;
+    let values = || mount.stiffness.iter().zip(&mount.damping).flat_map(|(k, c)| [*k, *c]);
+    if !values().all(|x| x >= 0.0 && x.is_finite()) {
+        return Some("stiffness and damping of its mount must be zero or positive, and finite");
+    }
+    let idle = (0..3).any(|d| body.fixed[d] && (mount.stiffness[d] != 0.0 || mount.damping[d] != 0.0));
+    idle.then_some("its mount acts along a direction that is held")
 }
 
 /// Refuses an index that points nowhere.

@@ -14,7 +14,7 @@ pub struct WallInput {
     pub motion: Motion,
     /// Drive that holds a force, in place of a prescribed velocity.
     pub servo: Option<Servo>,
-    /// Makes a triangle surface a body that moves freely, in place of a prescribed motion.
+    /// Makes a wall other than a plane a body that moves by the forces on it, in place of a prescribed motion.
     pub body: Option<RigidBody>,
 }
 
@@ -91,15 +91,15 @@ impl Oscillation {
     }
 }
 
-/// What makes a triangle surface a rigid body.
+/// What makes a wall a rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody {
     /// Mass [kg].
     pub mass: f64,
-    /// Centre of mass at the start [m]; default: that of the solid which the surface encloses.
+    /// Centre of mass at the start [m]; default: that of the solid which the triangles enclose, or the middle of a round shape.
     pub centre: Option<Vec3>,
     /// Tensor of inertia about the centre, world axes at the start, in the order xx, yy, zz, xy, yz, zx [kg m²]; default:
-    /// that of the solid which the surface encloses.
+    /// that of the solid which the triangles enclose. A round shape without it does not turn.
     pub inertia: Option<[f64; 6]>,
     /// Velocity of the centre at the start [m/s].
     pub velocity: Vec3,
@@ -107,6 +107,17 @@ pub struct RigidBody {
     pub spin: Vec3,
     /// Motions that keep their starting velocity: x, y, z, and turning about x, y, z (world axes).
     pub fixed: [bool; 6],
+    /// Springs and dashpots between the centre of mass and where it started.
+    pub mount: Option<Mount>,
+}
+
+/// Linear springs and dashpots along the axes of the world, at rest at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mount {
+    /// Stiffness along x, y, z [N/m]; zero where nothing holds.
+    pub stiffness: Vec3,
+    /// Damping along x, y, z [N s/m].
+    pub damping: Vec3,
 }
 
 impl WallInput {
@@ -136,6 +147,14 @@ impl WallInput {
 }
 
 impl WallShape {
+    /// A point amid it [m].
+    pub(crate) fn middle(&self) -> Vec3 {
+        match self {
+            WallShape::Frustum { base, axis, height, .. } => base + axis.normalize() * (0.5 * height),
+            _ => self.own_centre(),
+        }
+    }
+
     /// The point that a motion turns about unless stated otherwise [m].
     pub fn own_centre(&self) -> Vec3 {
         match self {

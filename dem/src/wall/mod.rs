@@ -10,10 +10,11 @@
 pub mod body;
 pub(crate) mod check;
 pub mod input;
+mod mount;
 pub mod servo;
 pub(crate) mod set;
 pub mod state;
 pub(crate) mod triangulated;
 
-pub use input::{Motion, Oscillation, RigidBody, TriangleSurface, WallInput, WallShape};
+pub use input::{Motion, Mount, Oscillation, RigidBody, TriangleSurface, WallInput, WallShape};
 pub use servo::Servo;

@@ -112,16 +112,20 @@ impl Walls {
                 Kind::Round(r) => self.rounds[r as usize].bounds(),
             })
             .collect();
-        let body = wall.body.as_ref().map(|b| Body::new(b, &wall.shape, &name)).transpose()?;
+        let corners = |(lo, hi): &([f64; 3], [f64; 3])| {
+            let (lo, hi) = (Vec3::from(*lo), Vec3::from(*hi));
+            (0..8).map(move |k| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { hi[d] } else { lo[d] }))
+        };
+        let body = match &wall.body {
+            Some(b) => Some(Body::new(b, &wall.shape, boxes.iter().flat_map(corners).collect(), &name)?),
+            None => None,
+        };
         let centre = match &body {
             Some(b) => b.centre,
             None => wall.motion.centre.unwrap_or_else(|| wall.shape.own_centre()),
         };
-        let far = |(lo, hi): &([f64; 3], [f64; 3])| {
-            (0..8)
-                .map(|k| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { hi[d] } else { lo[d] }))
-                .map(|corner| (corner - centre).norm())
-                .fold(0.0, f64::max)
+        let far = |bounds: &([f64; 3], [f64; 3])| {
+            corners(bounds).map(|corner| (corner - centre).norm()).fold(0.0, f64::max)
         };
         let spin = &wall.motion.angular_velocity;
         let unmoved = body.is_none()
@@ -175,6 +179,7 @@ impl Walls {
                     moment: Vec3::zeros(),
                     frame: UnitQuaternion::identity(),
                     momentum: Vec3::zeros(),
+                    acceleration: Vec3::zeros(),
                     feet: Vec::new(),
                 };
                 if let Some(body) = &w.body {

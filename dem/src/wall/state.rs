@@ -34,6 +34,8 @@ pub(crate) struct WallState {
     /// Principal frame and angular momentum of a rigid body.
     pub frame: UnitQuaternion<f64>,
     pub momentum: Vec3,
+    /// Acceleration of its centre in the last step [m/s²].
+    pub acceleration: Vec3,
     pub feet: Vec<Foot>,
 }
 

@@ -153,6 +153,7 @@ fn mill(n: usize) -> ModelInput {
         velocity: Vec3::z() * -3.0,
         spin: Vec3::new(1.0, 2.0, 0.5),
         fixed: [false; 6],
+        mount: None,
     };
     input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block, 0) });
     input

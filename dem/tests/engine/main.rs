@@ -18,6 +18,7 @@ mod hertz;
 mod impact;
 mod kinetics;
 mod mesh_cases;
+mod mounts;
 mod order;
 mod packing;
 mod periodic;

@@ -20,6 +20,7 @@ fn cuboid(centre: Vec3, half: Vec3, mass: f64) -> WallInput {
         velocity: Vec3::zeros(),
         spin: Vec3::zeros(),
         fixed: [false; 6],
+        mount: None,
     };
     WallInput { body: Some(body), ..WallInput::fixed(WallShape::Triangles { vertices, triangles }, 0) }
 }
@@ -222,8 +223,8 @@ fn refusals() {
         (Some(Vec3::zeros()), Some([1.0, 1.0, 3.0, 0.0, 0.0, 0.0]));
     fails(odd, "not those of a body");
     fails(
-        WallInput { shape: WallShape::Sphere { centre: Vec3::zeros(), radius: 1.0 }, ..good() },
-        "only a triangle",
+        WallInput { shape: WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, ..good() },
+        "an infinite plane",
     );
     let mut moved = good();
     moved.motion.velocity = Vec3::x();

@@ -16,6 +16,8 @@ pub struct StructurePlan {
     pub walls: Vec<usize>,
     /// Groups of grains.
     pub groups: Vec<u32>,
+    /// The one of its walls that is a rigid body, whose motion is recorded.
+    pub body: Option<usize>,
     /// Point of its axis that moments refer to [m].
     pub foot: [f64; 3],
     /// Sectors of equal angle.
@@ -74,6 +76,7 @@ fn plan(
         name: name.clone(),
         walls: Vec::new(),
         groups: Vec::new(),
+        body: None,
         foot: [axis[0].si, axis[1].si, foot.map_or(0.0, |z| z.si)],
         sectors,
         levels,
@@ -90,6 +93,12 @@ fn plan(
                 format!("names among {}", known.join(", ")),
             ));
         }
+    }
+    let bodies: Vec<usize> = plan.walls.iter().copied().filter(|w| walls.others[*w].body.is_some()).collect();
+    plan.body = bodies.first().copied();
+    if bodies.len() > 1 {
+        let found = format!("{} walls that are rigid bodies", bodies.len());
+        return Err(structure.error("parts", found, "at most one, whose motion is that of the structure"));
     }
     if parts.is_empty() {
         return Err(structure.error("parts", "nothing", "names of walls or groups of grains"));

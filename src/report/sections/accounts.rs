@@ -7,10 +7,11 @@ use crate::report::plot::{Plot, Side};
 use serde_json::Value;
 
 /// Columns of the history that store energy, with their names.
-const STORED: [(&str, &str); 8] = [
+const STORED: [(&str, &str); 9] = [
     ("grains_kinetic", "motion of the grains"),
     ("contact_springs", "springs of contacts"),
     ("bond_energy", "bonds"),
+    ("mount_energy", "mounts"),
     ("grains_gravity", "gravity on the grains"),
     ("solid_kinetic", "motion of the solid"),
     ("solid_strain", "strain of the solid"),
@@ -19,12 +20,13 @@ const STORED: [(&str, &str); 8] = [
 ];
 
 /// Columns of work and losses.
-const SPENT: [(&str, &str); 6] = [
+const SPENT: [(&str, &str); 7] = [
     ("work", "work"),
     ("dissipated_dashpot", "dashpots of contacts"),
     ("dissipated_friction", "friction"),
     ("dissipated_solid", "in the solid"),
     ("dissipated_bonds", "dashpots of bonds"),
+    ("dissipated_mounts", "dashpots of mounts"),
     ("dissipated_track", "pads and track beyond"),
 ];
 

@@ -1,4 +1,4 @@
-//! Loads on structures: against time, by sectors around their axis, by height.
+//! Loads on structures: against time, by sectors around their axis, by height; motion of those that move.
 
 use super::overlay::overlay;
 use crate::report::data::RunData;
@@ -24,8 +24,29 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
         (!largest.is_empty()).then(|| largest.iter().enumerate().map(|(k, f)| [*f, k as f64]).collect())
     });
     let side = |name: &str| Side::new(name, "N");
+    let motion = |what: &str| {
+        let axes = ["x", "y"].map(|axis| format!("{what}_{axis}"));
+        overlay(runs, |run| {
+            let Some(table) = run.table("history") else { return Vec::new() };
+            let of = |name: &str, k: usize| {
+                let points = table.points("time", &format!("{name}_{}", axes[k]))?;
+                Some((format!("{name} along {}", ["x", "y"][k]), points))
+            };
+            names(run).into_iter().flat_map(|name| (0..2).filter_map(move |k| of(name, k))).collect()
+        })
+    };
+    let (ways, accelerations) = (motion("motion"), motion("acceleration"));
     let html = plots([
         Plot::new("Level load on structures", Side::new("time", "s"), side("load"), time).figure(),
+        Plot::new("Displacement of structures", Side::new("time", "s"), Side::new("displacement", "m"), ways)
+            .figure(),
+        Plot::new(
+            "Acceleration of structures",
+            Side::new("time", "s"),
+            Side::new("acceleration", "m/s2"),
+            accelerations,
+        )
+        .figure(),
         Plot::new("Largest load of each sector", side("towards the axis, from x"), side("from y"), sectors)
             .figure(),
         Plot::new("Largest level load of each layer", side("load"), Side::count("layer, from below"), layers)

@@ -90,7 +90,7 @@ pub fn with_grains<S: System>(
     let impulse = ledger.impulse();
     let (mut linear, mut angular) = (0.0, 0.0);
     let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.body_forces];
-    for part in outside.into_iter().chain([&ledger.constraints, &ledger.flow]) {
+    for part in outside.into_iter().chain([&ledger.constraints, &ledger.flow, &ledger.mounts]) {
         linear += part.linear.norm();
         angular += part.angular.norm();
     }

@@ -323,4 +323,20 @@ pub struct LoadRecord {
     pub sectors: Vec<f64>,
     /// Rows so far.
     pub rows: u64,
+    /// Motion, of one that moves by the forces on it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub motion: Option<MotionRecord>,
+}
+
+/// The level motion of a structure over a run, at the rows of the history.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct MotionRecord {
+    /// Largest displacement from the start [m].
+    pub largest_displacement: f64,
+    /// Mean displacement, as a vector [m].
+    pub mean_displacement: [f64; 2],
+    /// Largest acceleration [m/s²].
+    pub largest_acceleration: f64,
+    /// Root of the mean square of the acceleration [m/s²].
+    pub rms_acceleration: f64,
 }

@@ -106,6 +106,17 @@ impl Summary {
                 "load on {}: at most {:.3e} N at {:.3} s, mean {:.3e} N along x, {:.3e} N along y",
                 s.name, s.largest, s.time, s.mean[0], s.mean[1]
             ));
+            if let Some(m) = &s.motion {
+                lines.push(format!(
+                    "motion of {}: at most {:.3e} m, mean {:.3e} m along x, {:.3e} m along y; acceleration at most {:.3e} m/s2, r.m.s. {:.3e} m/s2",
+                    s.name,
+                    m.largest_displacement,
+                    m.mean_displacement[0],
+                    m.mean_displacement[1],
+                    m.largest_acceleration,
+                    m.rms_acceleration
+                ));
+            }
         }
         if let Some(b) = &self.bonds {
             lines.push(format!(

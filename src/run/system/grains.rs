@@ -152,6 +152,7 @@ impl System for GrainsSystem {
             grains_kinetic: e.kinetic_translation + e.kinetic_rotation,
             contact_springs: e.elastic_normal + e.elastic_tangential,
             bonds: e.elastic_bonds,
+            mounts: e.elastic_mounts,
             grains_gravity: e.gravity,
             ..Stored::default()
         }

@@ -67,9 +67,53 @@ fn servo_with_too_much_gain() {
 #[test]
 fn body_of_a_plane() {
     grains_scene().scene(PLANE, &format!("{PLANE}\nbody = {{ mass = 1 }}")).refused(
-        "scene.toml:20: walls.0.body: found a value, expected no such key for this kind of wall: only triangles make a \
+        "scene.toml:20: walls.0.body: found a value, expected no such key for this kind of wall: a plane makes no \
          body",
     );
+}
+
+/// A ball that is a body, with more keys.
+fn ball(keys: &str) -> String {
+    format!("kind = \"sphere\"\nbase = [0, 0, -1]\nradius = 0.5\nbody = {{ mass = 1, {keys} }}")
+}
+
+#[test]
+fn mounts_of_bodies() {
+    for (keys, words) in [
+        (
+            "spin = [0, 0, 1]",
+            "spin: found a value, expected no such key without `inertia`: a round shape does not turn then",
+        ),
+        (
+            "mount = {}",
+            "mount.stiffness: found nothing, expected three stiffnesses, or three frequencies by `frequency`",
+        ),
+        ("mount = { stiffness = [1, -2, 0] }", "mount.stiffness: found -2, expected 0 or more"),
+        (
+            "mount = { stiffness = [1, 1, 1], frequency = [1, 1, 1] }",
+            "mount.frequency: found a value, expected no such key beside `stiffness`",
+        ),
+        (
+            "mount = { stiffness = [1, 1, 1], damping = [1, 1, 1], damping_ratio = [1, 1, 1] }",
+            "mount.damping_ratio: found a value, expected no such key beside `damping`",
+        ),
+        (
+            "hold = [\"y\"], mount = { frequency = [1, 1, 1] }",
+            "mount.frequency: found 1, expected 0 along y, which the body holds",
+        ),
+    ] {
+        grains_scene().scene(PLANE, &ball(keys)).refused(&format!("scene.toml:20: walls.0.body.{words}"));
+    }
+}
+
+#[test]
+fn mount_beside_a_factor_on_masses() {
+    grains_scene()
+        .scene(PLANE, &ball("mount = { frequency = [1, 1, 1] }"))
+        .set("time.mass_factor=4")
+        .refused(
+            "--set: time.mass_factor: found 4, expected no such key beside a `mount`: it is for beds that are pressed slowly",
+        );
 }
 
 #[test]

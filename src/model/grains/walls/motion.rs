@@ -3,9 +3,9 @@
 use super::shape::direction;
 use crate::scene::track::HeldMotion;
 use crate::scene::units::vector;
-use crate::scene::walls::{Pulses, Wall, WallKind};
+use crate::scene::walls::{Body, Pulses, Wall, WallKind};
 use crate::scene::{SceneError, Table};
-use trackbed_dem::{Motion, Oscillation, RigidBody, Servo, Vec3};
+use trackbed_dem::{Motion, Mount, Oscillation, RigidBody, Servo, Vec3};
 
 /// The prescribed motion of a wall.
 pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
@@ -125,10 +125,12 @@ fn haversines(pulses: &Table<Pulses>, force: f64) -> Result<Vec<[f64; 2]>, Scene
 /// The body that a wall is, where it is one.
 pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> {
     let Some(b) = wall.optional("body", &wall.body) else { return Ok(None) };
-    if !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh) {
-        let expected = "no such key for this kind of wall: only triangles make a body";
-        return Err(b.here("a value", expected));
+    if wall.kind == WallKind::Plane {
+        return Err(b.here("a value", "no such key for this kind of wall: a plane makes no body"));
     }
+    let round = !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh);
+    let idle = round && b.inertia.is_none() && b.spin.is_some();
+    b.refuse([("spin", idle)], "no such key without `inertia`: a round shape does not turn then")?;
     b.check("mass", b.mass, |m| m > 0.0, "a mass above 0")?;
     let mut fixed = [false; 6];
     for motion in &b.hold {
@@ -149,5 +151,42 @@ pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> 
         velocity: b.velocity.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
         spin: b.spin.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
         fixed,
+        mount: mount(&b, fixed)?,
     }))
+}
+
+/// The springs and dashpots that hold a body.
+fn mount(body: &Table<Body>, fixed: [bool; 6]) -> Result<Option<Mount>, SceneError> {
+    let Some(m) = body.optional("mount", &body.mount) else { return Ok(None) };
+    let good = |x: f64| x >= 0.0 && x.is_finite();
+    let three = |key: &'static str, given: Option<[f64; 3]>| {
+        for (d, x) in given.into_iter().flatten().enumerate() {
+            m.check(key, x, good, "0 or more")?;
+            if fixed[d] && x != 0.0 {
+                let expected = format!("0 along {}, which the body holds", ["x", "y", "z"][d]);
+                return Err(m.error(key, x.to_string(), &expected));
+            }
+        }
+        Ok(given.map(Vec3::from))
+    };
+    let mass = body.mass.si;
+    let stiffness = match (
+        three("stiffness", m.stiffness.map(|k| vector(&k)))?,
+        three("frequency", m.frequency.map(|f| vector(&f)))?,
+    ) {
+        (Some(k), None) => k,
+        (None, Some(f)) => f.map(|f| mass * (std::f64::consts::TAU * f).powi(2)),
+        (None, None) => {
+            return Err(m.missing("stiffness", "three stiffnesses, or three frequencies by `frequency`"));
+        }
+        _ => return Err(m.error("frequency", "a value", "no such key beside `stiffness`")),
+    };
+    let damping =
+        match (three("damping", m.damping.map(|c| vector(&c)))?, three("damping_ratio", m.damping_ratio)?) {
+            (Some(c), None) => c,
+            (None, Some(share)) => share.component_mul(&stiffness.map(|k| 2.0 * (k * mass).sqrt())),
+            (None, None) => Vec3::zeros(),
+            _ => return Err(m.error("damping_ratio", "a value", "no such key beside `damping`")),
+        };
+    Ok(Some(Mount { stiffness, damping }))
 }
