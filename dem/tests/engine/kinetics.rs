@@ -1,12 +1,12 @@
 //! Blocks in motion against tables computed elsewhere (`tests/data/kinetics`, each row by two methods): free rotation, impacts on corners and
 //! edges, sliding to a stop, overhanging stacks, rocking, and a tower on a floor that shakes (Housner, Bull. Seism. Soc. Am. 53, 1963, 403-417).
 
-use crate::scene::{Run, plane, stone, weightless};
+use crate::scene::{FOLLOWED, Run, plane, stone, weightless};
 use crate::tables::read;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trackbed_dem::shape::dilated::Dilated;
-use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TimeStep, Vec3, stability};
+use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
@@ -16,14 +16,6 @@ fn block(half: [f64; 3], radius: f64) -> Shape {
     let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
     let corners: Vec<Vec3> = (0..8).map(core).collect();
     Shape::Polyhedron(Box::new(Dilated::new(&corners, radius).expect("a block").0))
-}
-
-/// Steps that follow the contacts.
-const FOLLOWED: TimeStep = TimeStep::Measured { share: 0.5, longest: f64::INFINITY, collisions: false };
-
-fn follow(run: &mut Run) {
-    stability::follow(&run.model, &mut run.state);
-    run.step();
 }
 
 fn scene(material: Material, shape: Shape) -> ModelInput {
@@ -228,7 +220,7 @@ fn stacks_that_lean_out() {
             let mut run = Run::new(input);
             let sunk = |run: &Run| 0.1 * f64::from(cubes) - 0.05 - run.state.position(cubes as usize - 1).z;
             while run.state.time < 1.5 && sunk(&run) < 0.02 {
-                follow(&mut run);
+                run.follow();
             }
             let (sunk, time) = (sunk(&run), run.state.time);
             println!(
@@ -283,7 +275,7 @@ fn blocks_rock() {
             }
             // At its largest just before the other edge touches.
             (before, spin) = (now, spin.max(run.state.spin(0).norm()));
-            follow(&mut run);
+            run.follow();
         }
     }
 }
@@ -305,14 +297,14 @@ fn a_tower_on_a_shaking_floor() {
             let mut run = Run::new(leaning([width, height, 0.2], radius, 0.0, 1e8));
             // It comes to rest on its springs, which are stiff: what they hold while the weight goes over to one edge sets it turning.
             while run.state.time < 0.05 {
-                follow(&mut run);
+                run.follow();
             }
             let begun = run.state.time;
             let (mut leans, mut before) = (0.0_f64, 0.0);
             loop {
                 let pushed = (run.state.time - begun).min(share * limit);
                 run.state.set_plane_velocity(0, Vec3::x() * (acceleration * pushed));
-                follow(&mut run);
+                run.follow();
                 let now = lean(&run).abs();
                 leans = leans.max(now);
                 // It lies, or comes back.

@@ -47,6 +47,9 @@ pub fn weightless(material: Material) -> ModelInput {
     }
 }
 
+/// Steps that follow the contacts.
+pub const FOLLOWED: TimeStep = TimeStep::Measured { share: 0.5, longest: f64::INFINITY, collisions: false };
+
 /// Model, state and work of one run without an external surface.
 pub struct Run {
     pub model: Model,
@@ -70,6 +73,12 @@ impl Run {
     pub fn step_under(&mut self, applied: &[AppliedForce]) {
         trackbed_dem::step(&self.model, &mut self.state, &mut self.work, &NoSurface, applied)
             .expect("a good step");
+    }
+
+    /// A step as long as the contacts of the moment allow; of models whose step is [`FOLLOWED`].
+    pub fn follow(&mut self) {
+        trackbed_dem::stability::follow(&self.model, &mut self.state);
+        self.step();
     }
 
     pub fn steps(&mut self, n: usize) {
