@@ -111,7 +111,7 @@ fn clipped(zeta: f64) -> f64 {
 /// One corner hits a plane: velocity and spin afterwards, elastic or damped. The dashpot is sized for the whole mass, and a corner has less of it
 /// behind it: m' where the table says, so that its ratio is greater by √(m/m').
 #[test]
-fn a_corner_hits_a_plane() {
+fn a_corner_on_a_plane() {
     let (mass, moment) = (2.58369630788706, 0.00427278112039847);
     for (stiffness, bounds) in [(1e8, [0.02, 0.02]), (1e10, [0.002, 0.002])] {
         let mut worst = [0.0_f64; 2];
@@ -153,7 +153,7 @@ fn a_corner_hits_a_plane() {
 
 /// One edge hits a plane and slides throughout: the same with friction, whose work is what is lost.
 #[test]
-fn an_edge_hits_a_plane_and_slides() {
+fn an_edge_slides_on_a_plane() {
     let rows = read("tests/data/kinetics/oblique_impact_edge_friction.csv");
     for (stiffness, bound) in [(1e8, 0.02), (1e10, 0.002)] {
         let (mut worst, mut work) = (0.0_f64, 0.0_f64);
