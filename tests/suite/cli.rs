@@ -110,7 +110,7 @@ fn explain_reports_every_scene_that_is_shipped() {
     let scenes = inputs();
     assert!(scenes.len() >= 35, "{scenes:?}");
     for scene in scenes {
-        let words = [Path::new("explain"), &scene, Path::new("--rehearse"), Path::new("0.1")];
+        let words = [Path::new("explain"), &scene, Path::new("--rehearse"), Path::new("0.03")];
         let explained = trackbed(words).good().stdout;
         assert!(explained.contains("\n  stages: "), "{scene:?}: {explained}");
         assert!(explained.contains(", by a rehearsal: "), "{scene:?}: {explained}");

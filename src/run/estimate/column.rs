@@ -69,6 +69,10 @@ impl Column {
         let (numbers, planes, full) = cut(&input, all);
         let numbers = unbroken(numbers, &input.bonds, input.bodies.len());
         let bodies: Vec<BodyInput> = numbers.iter().map(|&b| input.bodies[b].clone()).collect();
+        if bodies.is_empty() {
+            return Err("what bonds join is all of the bed, and no column of it".into());
+        }
+        let bonded = !input.bonds.is_empty();
         let share = all as f64 / spheres(&bodies).max(1) as f64;
         input.bonds = among(&numbers, &input.bonds, input.bodies.len());
         input.bodies.clone_from(&bodies);
@@ -103,9 +107,9 @@ impl Column {
         let bonds = std::mem::take(&mut input.bonds);
         let left = below.iter().map(|&b| bodies[b].clone()).collect();
         // Bonds name bodies of the whole bed.
-        let proper = match bonds.is_empty() {
-            true => grains.input(left),
-            false => ModelInput { bodies: left, ..grains.input(grains.groups.bodies.clone()) },
+        let proper = match bonded {
+            false => grains.input(left),
+            true => ModelInput { bodies: left, ..grains.input(grains.groups.bodies.clone()) },
         };
         let mut input = ModelInput { body_forces: Vec::new(), other_surface: None, ..proper };
         input.bonds = among(&below, &bonds, bodies.len());
