@@ -43,7 +43,7 @@ pub enum Command {
         /// Threads that the run will have; default: all cores.
         #[arg(long)]
         threads: Option<usize>,
-        /// Longest time of the rehearsal [s]; 0: none, and no estimate of the time.
+        /// Time of the rehearsal [s], more where it says little by then; 0: none, and no estimate of the time.
         #[arg(long, value_name = "SECONDS", default_value_t = 3.0)]
         rehearse: f64,
         /// Print JSON, for programs.

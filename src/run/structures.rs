@@ -93,3 +93,25 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::summary::MotionRecord;
+
+    /// Checkpoints hold the records one after the other, without names: each is read as it was written, and what follows it too.
+    #[test]
+    fn records_keep_their_place_in_a_checkpoint() {
+        let still = LoadRecord { name: "pile".into(), largest: 3.0, ..LoadRecord::default() };
+        let moved = LoadRecord { motion: Some(MotionRecord::default()), ..still.clone() };
+        for record in [still, moved] {
+            let bytes = postcard::to_stdvec(&(&record, 7_u64)).expect("bytes");
+            let (read, behind): (LoadRecord, u64) =
+                postcard::from_bytes(&bytes).expect("a record and a number");
+            assert_eq!(
+                (read.name, read.largest, read.motion.is_some(), behind),
+                (record.name, 3.0, record.motion.is_some(), 7)
+            );
+        }
+    }
+}

@@ -19,7 +19,7 @@ const GROWTH: u32 = 8;
 /// The same of settling and compaction without growth.
 const PREPARATION: u32 = 3;
 /// Share of the main loop that a rehearsal goes on to, if that takes no more than [`LOOP`] times as long: a bed that rests at first may flow
-/// once a wall has turned far enough. Where walls move of themselves [`MOVED`] times: a ship comes into the ice bit by bit.
+/// once a wall has turned far enough. Where walls move, [`MOVED`] times: a ship comes into the ice bit by bit.
 const SEEN: f64 = 0.2;
 const LOOP: u32 = 5;
 const MOVED: u32 = 20;
@@ -63,7 +63,6 @@ pub fn rehearse(
     let (watched, followed) = (interrupt.clone(), trace.clone());
     let seen = SEEN * job.end;
     let grows = job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty());
-    // A gate or a belt costs no more for it, and its run is short; so is the rehearsal then.
     let moves = job.grains.as_ref().is_some_and(|g| g.walls.others.iter().any(|w| w.moves()));
     let begun = Instant::now();
     let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));

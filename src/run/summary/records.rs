@@ -323,8 +323,8 @@ pub struct LoadRecord {
     pub sectors: Vec<f64>,
     /// Rows so far.
     pub rows: u64,
-    /// Motion, of one that moves by the forces on it.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
+    /// Motion, of one that moves by the forces on it. Written also where there is none: checkpoints hold the record, field by field.
+    #[serde(default)]
     pub motion: Option<MotionRecord>,
 }
 
