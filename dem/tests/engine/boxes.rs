@@ -1,6 +1,6 @@
 //! Boxes on boxes: springs of faces that lie on each other, sliding, tipping, and collisions of edges and corners.
 
-use crate::scene::{Random, Run, plane, rigid, stone, weightless};
+use crate::scene::{Random, Run, body, plane, rigid, stone, weightless};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::measure;
 use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TimeStep, Vec3};
@@ -20,10 +20,6 @@ fn boxes(material: Material, halves: &[[f64; 3]]) -> ModelInput {
     input.shapes = halves.iter().map(|half| Shape::Box { half: *half }).collect();
     input.time_step = TimeStep::Auto { fraction: 0.5 };
     input
-}
-
-fn body(shape: usize, position: Vec3) -> BodyInput {
-    BodyInput { shape, position, ..BodyInput::default() }
 }
 
 fn fixed(shape: usize, position: Vec3) -> BodyInput {

@@ -1,6 +1,6 @@
 //! Dilated disks: at rest, in stacks, bouncing, colliding, rolling, wobbling like a coin, afloat.
 
-use crate::scene::{FOLLOWED, Random, Run, plane, stone, weightless};
+use crate::scene::{FOLLOWED, Random, Run, body, plane, stone, weightless};
 use crate::tables::read;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -30,16 +30,6 @@ fn scene(material: Material, shapes: Vec<Shape>) -> ModelInput {
     ModelInput { shapes, time_step: TimeStep::Auto { fraction: 0.5 }, ..weightless(material) }
 }
 
-fn body(shape: usize, position: Vec3) -> BodyInput {
-    BodyInput { shape, position, ..BodyInput::default() }
-}
-
-fn until(run: &mut Run, time: f64) {
-    while run.state.time < time {
-        run.step();
-    }
-}
-
 fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
@@ -53,7 +43,7 @@ fn a_disk_at_rest() {
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(body(0, Vec3::new(0.3, -0.2, r)));
     let mut run = Run::new(input);
-    until(&mut run, 1.0);
+    run.until(1.0);
     let springs = TAU * big / (2.0 * r);
     let weight = run.model.mass(0) * G;
     let sunk = r - run.state.position(0).z;
@@ -80,13 +70,9 @@ fn ten_disks_stand() {
         input.bodies.push(BodyInput { orientation: turn, scale, ..body(0, position) });
     }
     let mut run = Run::new(input);
-    while run.state.time < 2.0 {
-        run.follow();
-    }
+    run.follow_until(2.0);
     let before: Vec<Vec3> = (0..10).map(|b| run.state.position(b)).collect();
-    while run.state.time < 4.0 {
-        run.follow();
-    }
+    run.follow_until(4.0);
     let drift = (0..10).map(|b| (run.state.position(b) - before[b]).norm()).fold(0.0, f64::max);
     let moving = measure::energies(&run.model, &run.state).kinetic();
     println!("kinetic energy after 4 s: {moving:.1e} J, drift in the last 2 s {drift:.1e} m");
@@ -122,7 +108,7 @@ fn bounces_on_face_and_rim() {
             input.bodies.push(BodyInput { orientation, velocity, ..body(0, Vec3::z() * 0.1) });
             let mut run = Run::new(input);
             let before = total(&run);
-            until(&mut run, 0.35);
+            run.until(0.35);
             let (after, speed) = (total(&run), run.state.velocity(number).z);
             println!("{name}, e = {restitution}: energy {:.2e}, speed {speed:.4}", after / before - 1.0);
             if restitution == 1.0 {
@@ -199,9 +185,9 @@ fn disks_roll_down_an_incline() {
         let orientation = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), FRAC_PI_2);
         input.bodies.push(BodyInput { orientation, ..body(0, Vec3::z() * (big + r)) });
         let mut run = Run::new(input);
-        until(&mut run, 0.1);
+        run.until(0.1);
         let (from, start) = (run.state.velocity(0).x, run.state.time);
-        until(&mut run, 0.5);
+        run.until(0.5);
         let found = (run.state.velocity(0).x - from) / (run.state.time - start);
         println!("acceleration {found:.5} for {acceleration:.5}");
         assert!((found / acceleration - 1.0).abs() < 0.005, "{found} for {acceleration}");
@@ -232,7 +218,7 @@ fn a_leaning_disk_rolls_its_path() {
     for pair in rows.windows(2) {
         way += (v(&pair[1], 1) - v(&pair[0], 1)).norm();
         let early = 0.5 * run.state.dt();
-        until(&mut run, pair[1][0] - early);
+        run.until(pair[1][0] - early);
         worst = worst.max((run.state.position(0) - v(&pair[1], 1)).norm());
     }
     println!("off by {:.2e} of {way:.3} m", worst / way);
@@ -313,7 +299,7 @@ fn a_heap_of_disks() {
         pool.install(|| {
             let mut run = Run::new(input.clone());
             let before = total(&run);
-            until(&mut run, 0.4);
+            run.until(0.4);
             let ledger = run.state.ledger;
             let error = (total(&run) - ledger.work() + ledger.dissipated() - before) / ledger.dissipated();
             let places: Vec<[u64; 3]> =

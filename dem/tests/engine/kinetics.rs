@@ -1,22 +1,14 @@
 //! Blocks in motion against tables computed elsewhere (`tests/data/kinetics`, each row by two methods): free rotation, impacts on corners and
 //! edges, sliding to a stop, overhanging stacks, rocking, and a tower on a floor that shakes (Housner, Bull. Seism. Soc. Am. 53, 1963, 403-417).
 
-use crate::scene::{FOLLOWED, Run, plane, stone, weightless};
+use crate::scene::{FOLLOWED, Run, block, plane, stone, weightless};
 use crate::tables::read;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::{FRAC_PI_2, PI};
-use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
-
-/// A block of the given half sides, rounding included [m], the longest first.
-fn block(half: [f64; 3], radius: f64) -> Shape {
-    let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
-    let corners: Vec<Vec3> = (0..8).map(core).collect();
-    Shape::Polyhedron(Box::new(Dilated::new(&corners, radius).expect("a block").0))
-}
 
 fn scene(material: Material, shape: Shape) -> ModelInput {
     ModelInput {
@@ -90,9 +82,7 @@ fn cube(material: Material, orientation: UnitQuaternion<f64>, velocity: Vec3, sp
     let mut run = Run::new(input);
     assert!((run.model.mass(0) - 2.58369630788706).abs() < 1e-9);
     // Longer than the contact of any of them lasts, too short for a second one.
-    while run.state.time < 8.0 / material.stiffness.sqrt() {
-        run.step();
-    }
+    run.until(8.0 / material.stiffness.sqrt());
     run
 }
 
@@ -190,9 +180,7 @@ fn a_block_slides_to_a_stop() {
         let velocity = Vec3::x() * row[1];
         input.bodies.push(BodyInput { position: Vec3::z() * 0.02, velocity, ..BodyInput::default() });
         let mut run = Run::new(input);
-        while run.state.time < row[3] + 0.1 {
-            run.step();
-        }
+        run.until(row[3] + 0.1);
         let way = run.state.position(0).x;
         println!("μ = {}: {way:.6} m of {:.6}", row[0], row[2]);
         assert!(
@@ -296,9 +284,7 @@ fn a_tower_on_a_shaking_floor() {
         let largest = |share: f64| {
             let mut run = Run::new(leaning([width, height, 0.2], radius, 0.0, 1e8));
             // It comes to rest on its springs, which are stiff: what they hold while the weight goes over to one edge sets it turning.
-            while run.state.time < 0.05 {
-                run.follow();
-            }
+            run.follow_until(0.05);
             let begun = run.state.time;
             let (mut leans, mut before) = (0.0_f64, 0.0);
             loop {

@@ -1,10 +1,10 @@
 //! Dilated polyhedra: at rest on planes, on each other and on boxes, sliding, tipping, bouncing, and collisions of all kinds.
 
-use crate::scene::{FOLLOWED, Random, Run, plane, stone, weightless};
+use crate::scene::{FOLLOWED, Random, Run, block, body, plane, stone, weightless};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Material, Model, ModelInput, Shape, TimeStep, Vec3};
-use trackbed_dem::{flow, measure, stability};
+use trackbed_dem::{flow, measure};
 
 const G: f64 = 9.81;
 const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
@@ -20,12 +20,6 @@ fn elastic() -> Material {
     Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
 }
 
-/// A block of the given half sides, rounding included [m], the longest first.
-fn block(half: [f64; 3], radius: f64) -> Shape {
-    let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
-    polyhedron(&(0..8).map(core).collect::<Vec<_>>(), radius)
-}
-
 fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(corners, radius).expect("a convex body").0))
 }
@@ -38,16 +32,6 @@ fn stone_of(random: &mut Random, corners: usize, half: [f64; 3], radius: f64) ->
 
 fn scene(material: Material, shapes: Vec<Shape>) -> ModelInput {
     ModelInput { shapes, time_step: TimeStep::Auto { fraction: 0.5 }, ..weightless(material) }
-}
-
-fn body(shape: usize, position: Vec3) -> BodyInput {
-    BodyInput { shape, position, ..BodyInput::default() }
-}
-
-fn until(run: &mut Run, time: f64) {
-    while run.state.time < time {
-        run.step();
-    }
 }
 
 fn total(run: &Run) -> f64 {
@@ -77,7 +61,7 @@ fn a_cube_at_rest() {
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(body(0, Vec3::new(0.3, -0.2, half)));
     let mut run = Run::new(input);
-    until(&mut run, 1.0);
+    run.until(1.0);
     let springs = 4.0 + 4.0 * (2.0 * (half - radius)) / (2.0 * radius);
     let weight = run.model.mass(0) * G;
     let sunk = half - run.state.position(0).z;
@@ -105,14 +89,10 @@ fn ten_cubes_stand() {
         input.bodies.push(BodyInput { orientation: turn, ..body(0, position) });
     }
     let mut run = Run::new(input);
-    while run.state.time < 5.0 {
-        run.follow();
-    }
+    run.follow_until(5.0);
     let before: Vec<Vec3> = (0..10).map(|b| run.state.position(b)).collect();
     let moving = measure::energies(&run.model, &run.state).kinetic();
-    while run.state.time < 10.0 {
-        run.follow();
-    }
+    run.follow_until(10.0);
     let drift = (0..10).map(|b| (run.state.position(b) - before[b]).norm()).fold(0.0, f64::max);
     let still = measure::energies(&run.model, &run.state).kinetic();
     println!("kinetic energy after 5 and 10 s: {moving:.1e} J, {still:.1e} J; drift between {drift:.1e} m");
@@ -140,9 +120,9 @@ fn round_plates_on_a_slope() {
         input.bodies.push(body(0, Vec3::z() * (0.015 + 0.03 * f64::from(k))));
     }
     let mut run = Run::new(input);
-    until(&mut run, 0.4);
+    run.until(0.4);
     let before = run.state.position(2);
-    until(&mut run, 0.6);
+    run.until(0.6);
     let (weight, drift) = (run.model.mass(0) * G, (run.state.position(2) - before).norm());
     let contacts = measure::contacts(&run.model, &run.state);
     for joint in 0..3 {
@@ -173,9 +153,9 @@ fn a_block_on_an_incline() {
         input.planes.push(plane(Vec3::zeros(), Vec3::z()));
         input.bodies.push(body(0, Vec3::new(0.0, 0.0, 0.02)));
         let mut run = Run::new(input);
-        until(&mut run, 0.5);
+        run.until(0.5);
         let (speed, from) = (run.state.velocity(0).x, run.state.time);
-        until(&mut run, 1.0);
+        run.until(1.0);
         let found = (run.state.velocity(0).x - speed) / (run.state.time - from);
         let expected = if slides { G * (sine - mu * cosine) } else { 0.0 };
         assert!((found - expected).abs() < 5e-3 * G * 0.01 + 1e-9, "{slope}: {found} for {expected}");
@@ -193,7 +173,7 @@ fn a_block_on_an_incline() {
         let upright = UnitQuaternion::from_axis_angle(&Vec3::y_axis(), std::f64::consts::FRAC_PI_2);
         input.bodies.push(BodyInput { orientation: upright, ..body(0, Vec3::new(0.0, 0.0, 0.1)) });
         let mut run = Run::new(input);
-        until(&mut run, 0.6);
+        run.until(0.6);
         let turned = run.state.orientation(&run.model, 0).angle_to(&upright);
         assert_eq!(turned > 0.05, tips, "slope {slope}: turned by {turned}");
     }
@@ -226,7 +206,7 @@ fn bounces_on_face_edge_and_corner() {
             input.bodies.push(BodyInput { orientation, velocity, ..body(0, Vec3::z() * 0.1) });
             let mut run = Run::new(input);
             let before = total(&run);
-            until(&mut run, 0.3);
+            run.until(0.3);
             let (after, speed) = (total(&run), run.state.velocity(number).z);
             println!("{name}, e = {restitution}: energy {:.2e}, speed {speed:.4}", after / before - 1.0);
             if restitution == 1.0 {
@@ -311,7 +291,7 @@ fn collisions_keep_their_account() {
             }
             let mut run = Run::new(input);
             let before = total(&run);
-            until(&mut run, 0.1);
+            run.until(0.1);
             let ledger = &run.state.ledger;
             let error = (total(&run) + ledger.dissipated() - before) / before;
             worst = worst.max(error.abs());
@@ -352,7 +332,7 @@ fn a_heap_of_stones() {
         pool.install(|| {
             let mut run = Run::new(input.clone());
             let before = total(&run);
-            until(&mut run, 0.5);
+            run.until(0.5);
             let ledger = run.state.ledger;
             let error = (total(&run) - ledger.work() + ledger.dissipated() - before) / ledger.dissipated();
             let places: Vec<[u64; 3]> =
@@ -404,7 +384,7 @@ fn stones_come_and_go() {
     let mut run = Run::new(input);
     assert!(!run.state.present(1));
     let start = total(&run);
-    until(&mut run, 0.05);
+    run.until(0.05);
     let arrival = flow::Arrival {
         body: 1,
         position: Vec3::new(0.3, 0.0, 0.16),
@@ -413,10 +393,10 @@ fn stones_come_and_go() {
         spin: Vec3::zeros(),
     };
     flow::exchange(&run.model, &mut run.state, &mut run.work, &[], &[arrival]).unwrap();
-    until(&mut run, 0.2);
+    run.until(0.2);
     assert!(run.state.velocity(1).z > 0.5, "it has bounced: {}", run.state.velocity(1));
     flow::exchange(&run.model, &mut run.state, &mut run.work, &[0], &[]).unwrap();
-    until(&mut run, 0.25);
+    run.until(0.25);
     assert!(!run.state.present(0) && run.state.present(1));
     let ledger = &run.state.ledger;
     let error = total(&run) + ledger.dissipated() - start - ledger.work_flow;
@@ -442,8 +422,7 @@ fn blocks_that_fall_flat() {
     let mut run = Run::new(input);
     let before = total(&run);
     while run.state.time < 0.6 {
-        stability::follow(&run.model, &mut run.state);
-        run.step();
+        run.follow();
     }
     let ledger = &run.state.ledger;
     let error = (total(&run) + ledger.dissipated() - before) / before;

@@ -1,6 +1,6 @@
 //! Dilated polyhedra on walls of triangles and on round ones, and across periodic borders.
 
-use crate::scene::{Random, Run, plane, stone, weightless};
+use crate::scene::{Random, Run, block, body, plane, stone, weightless};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{
@@ -22,11 +22,6 @@ fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(corners, radius).expect("a convex body").0))
 }
 
-fn block(half: [f64; 3], radius: f64) -> Shape {
-    let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
-    polyhedron(&(0..8).map(core).collect::<Vec<_>>(), radius)
-}
-
 fn stone_of(random: &mut Random, corners: usize, half: [f64; 3], radius: f64) -> Shape {
     let mut corner = || random.vector().normalize().component_mul(&Vec3::from(half));
     polyhedron(&(0..corners).map(|_| corner()).collect::<Vec<_>>(), radius)
@@ -34,16 +29,6 @@ fn stone_of(random: &mut Random, corners: usize, half: [f64; 3], radius: f64) ->
 
 fn scene(material: Material, shapes: Vec<Shape>) -> ModelInput {
     ModelInput { shapes, time_step: TimeStep::Auto { fraction: 0.1 }, ..weightless(material) }
-}
-
-fn body(shape: usize, position: Vec3) -> BodyInput {
-    BodyInput { shape, position, ..BodyInput::default() }
-}
-
-fn until(run: &mut Run, time: f64) {
-    while run.state.time < time {
-        run.step();
-    }
 }
 
 fn total(run: &Run) -> f64 {
@@ -181,7 +166,7 @@ fn a_block_slides_over_seams_as_on_a_plane() {
             ..body(0, Vec3::new(0.0, 0.0, 0.0198))
         });
         let mut run = Run::new(input);
-        until(&mut run, 0.4);
+        run.until(0.4);
         assert!(run.state.velocity(0).norm() < 1e-6, "{}", run.state.velocity(0));
         (run.state.position(0), run.state.orientation(&run.model, 0))
     };
@@ -241,7 +226,7 @@ fn stones_in_funnel(kind: &str) {
         }
         let mut run = Run::new(input);
         let before = total(&run);
-        until(&mut run, 0.9);
+        run.until(0.9);
         let (force, _) = run.state.wall_force(0);
         let weight: f64 = (0..4).map(|b| run.model.mass(b) * G).sum();
         println!("{name}: {force} for a weight of {weight}");
@@ -311,8 +296,8 @@ fn a_border_does_not_show() {
     let [mut one, mut two] = [Run::new(input), Run::new(moved)];
     let before = total(&one);
     // Rounding differs and grows with every collision: a short time.
-    until(&mut one, 0.06);
-    until(&mut two, 0.06);
+    one.until(0.06);
+    two.until(0.06);
     let mut worst = 0.0_f64;
     for b in 0..one.model.body_count() {
         let apart = one.model.wrap(&(one.state.position(b) + way)) - two.model.wrap(&two.state.position(b));
@@ -321,7 +306,7 @@ fn a_border_does_not_show() {
     }
     println!("moved by part of the box: {worst:.1e} m");
     assert!(worst < 1e-9, "{worst:e}");
-    until(&mut one, 0.6);
+    one.until(0.6);
     let contacts = measure::contacts(&one.model, &one.state);
     let across = contacts.iter().filter(|c| c.shift != Vec3::zeros() && c.normal_force > 0.0).count();
     let ledger = one.state.ledger;

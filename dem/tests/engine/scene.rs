@@ -3,10 +3,11 @@
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 use trackbed_dem::shape::clump::Clump;
+use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
-    AppliedForce, BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, TriangleSurface,
-    Vec3, Work,
+    AppliedForce, BodyInput, Material, Model, ModelInput, Plane, RigidBody, Shape, State, TimeStep,
+    TriangleSurface, Vec3, WallShape, Work,
 };
 
 /// A stone material without surprises.
@@ -30,6 +31,41 @@ pub fn rigid(m: Material) -> Material {
 /// A plane of material 0 at rest.
 pub fn plane(point: Vec3, normal: Vec3) -> Plane {
     Plane { point, normal, material: 0, velocity: Vec3::zeros() }
+}
+
+/// A block with rounded edges of the given half sides, rounding included [m], the longest first.
+pub fn block(half: [f64; 3], radius: f64) -> Shape {
+    let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
+    let corners: Vec<Vec3> = (0..8).map(core).collect();
+    Shape::Polyhedron(Box::new(Dilated::new(&corners, radius).expect("a convex body").0))
+}
+
+/// A wall of twelve triangles: a box of the given half sides [m].
+pub fn cuboid(centre: Vec3, half: Vec3) -> WallShape {
+    let vertices = (0..8)
+        .map(|k| centre + Vec3::from_fn(|d, _| if k >> d & 1 == 1 { half[d] } else { -half[d] }))
+        .collect();
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    WallShape::Triangles { vertices, triangles }
+}
+
+/// The body of a wall that moves freely, at rest.
+pub fn free(mass: f64) -> RigidBody {
+    RigidBody {
+        mass,
+        centre: None,
+        inertia: None,
+        velocity: Vec3::zeros(),
+        spin: Vec3::zeros(),
+        fixed: [false; 6],
+        mount: None,
+    }
+}
+
+/// A body of a shape, at rest.
+pub fn body(shape: usize, position: Vec3) -> BodyInput {
+    BodyInput { shape, position, ..BodyInput::default() }
 }
 
 /// A sphere of shape 0.
@@ -79,6 +115,18 @@ impl Run {
     pub fn follow(&mut self) {
         trackbed_dem::stability::follow(&self.model, &mut self.state);
         self.step();
+    }
+
+    pub fn until(&mut self, time: f64) {
+        while self.state.time < time {
+            self.step();
+        }
+    }
+
+    pub fn follow_until(&mut self, time: f64) {
+        while self.state.time < time {
+            self.follow();
+        }
     }
 
     pub fn steps(&mut self, n: usize) {

@@ -1,28 +1,14 @@
 //! Rigid bodies of triangles.
 
-use crate::scene::{Run, plane, sphere, stone, weightless};
+use crate::scene::{Run, free, plane, sphere, stone, weightless};
 use trackbed_dem::{
     BodyInput, Material, Model, ModelError, ModelInput, RigidBody, StepError, TimeStep, Vec3, WallInput,
     WallShape, measure,
 };
 
-/// A box with its centre at `centre`, its sides split into triangles.
+/// A box with its centre at `centre`, its sides split into triangles, that moves freely.
 fn cuboid(centre: Vec3, half: Vec3, mass: f64) -> WallInput {
-    let vertices = (0..8)
-        .map(|k| centre + Vec3::from_fn(|d, _| if k >> d & 1 == 1 { half[d] } else { -half[d] }))
-        .collect();
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
-    let body = RigidBody {
-        mass,
-        centre: None,
-        inertia: None,
-        velocity: Vec3::zeros(),
-        spin: Vec3::zeros(),
-        fixed: [false; 6],
-        mount: None,
-    };
-    WallInput { body: Some(body), ..WallInput::fixed(WallShape::Triangles { vertices, triangles }, 0) }
+    WallInput { body: Some(free(mass)), ..WallInput::fixed(crate::scene::cuboid(centre, half), 0) }
 }
 
 fn with(material: Material) -> ModelInput {
