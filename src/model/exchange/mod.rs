@@ -11,7 +11,7 @@ use super::solid::SolidPart;
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{
-    PointMasses, accurate_w, largest_d, largest_w, point_masses, window_masses,
+    PointMasses, accurate_w, largest_d, largest_w, point_masses, quiet_w, window_masses,
 };
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -119,7 +119,8 @@ impl CouplingPart {
                 };
                 let most = (f64::from(MOST) * growth) as u32;
                 // W and D are proportional to the window.
-                let excess = ground.iter().map(|c| c.at(dt).excess()).fold(0.0, f64::max);
+                let of_one = |c: ContactClass| c.excess().max(c.w / quiet_w(self.scheme));
+                let excess = ground.iter().map(|c| of_one(c.at(dt))).fold(0.0, f64::max);
                 if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
             }
         };

@@ -23,6 +23,8 @@ const PREPARATION: u32 = 3;
 const SEEN: f64 = 0.2;
 const LOOP: u32 = 5;
 const MOVED: u32 = 20;
+/// Share of the moments of a main loop with moving walls after which its pace is that of the rest: grains flow by then.
+const LATE: f64 = 0.75;
 /// Time between two looks at the stage of a rehearsal.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -35,8 +37,8 @@ pub struct Rehearsal {
     pub whole: bool,
     /// Seconds in the stage that it was stopped in.
     pub seconds: f64,
-    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on;
-    /// none where it had not begun.
+    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on, with moving walls in the
+    /// last quarter; none where it had not begun.
     pub reached: Option<(f64, f64)>,
     /// Seconds of a simulated second of the compaction that it was stopped in; none where that was not so.
     pub compacting: Option<f64>,
@@ -110,7 +112,8 @@ pub fn rehearse(
         Ok(Outcome::WasDone(_)) | Err(Failure::Interrupted(_)) => {
             let (stages, reached) = stages::reached(&folder.0, job);
             let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
-            let reached = reached.and_then(|time| Some((time, share * pace(&trace)?)));
+            let from = if moves { LATE } else { 0.5 };
+            let reached = reached.and_then(|time| Some((time, share * pace(&trace, from)?)));
             let done: Vec<_> = stages.into_iter().map(|s| (s.name, share * s.seconds)).collect();
             let before: f64 = done.iter().map(|(_, seconds)| seconds).sum();
             let seconds = (elapsed - before).max(0.0);
@@ -123,10 +126,11 @@ pub fn rehearse(
     }
 }
 
-/// Seconds by the clock of a simulated second in the second half of a trace's main loop.
-fn pace(trace: &[(Instant, Moment)]) -> Option<f64> {
+/// Seconds by the clock of a simulated second in a trace's main loop, from a share of its moments on.
+fn pace(trace: &[(Instant, Moment)], share: f64) -> Option<f64> {
     let begun = trace.iter().position(|(_, moment)| moment.stage == RUN)?;
-    let (middle, end) = (&trace[(begun + trace.len()) / 2], trace.last()?);
+    let from = begun + (share * (trace.len() - begun) as f64) as usize;
+    let (middle, end) = (trace.get(from)?, trace.last()?);
     let (middle, time) = match end.1.time - middle.1.time {
         0.0 => (trace.get(begun)?, end.1.time - trace.get(begun)?.1.time),
         time => (middle, time),
