@@ -19,11 +19,13 @@ const GROWTH: u32 = 8;
 /// The same of settling and compaction without growth.
 const PREPARATION: u32 = 3;
 /// Share of the main loop that a rehearsal goes on to, if that takes no more than [`LOOP`] times as long: a bed that rests at first may flow
-/// once a wall has turned far enough. Where walls move, [`MOVED`] times: a ship comes into the ice bit by bit.
+/// once a wall has turned far enough. Where walls move or grains flow, [`MOVED`] times: a ship comes into the ice bit by bit.
 const SEEN: f64 = 0.2;
+/// The same of grains that come in and go out: those that fall in at the top come late, and are the fastest.
+const FLOWN: f64 = 2.0 / 3.0;
 const LOOP: u32 = 5;
 const MOVED: u32 = 20;
-/// Share of the moments of a main loop with moving walls after which its pace is that of the rest: grains flow by then.
+/// Share of the moments of a main loop with moving walls or flow after which its pace is that of the rest: grains flow by then.
 const LATE: f64 = 0.75;
 /// Time between two looks at the stage of a rehearsal.
 const LOOK: Duration = Duration::from_millis(100);
@@ -63,9 +65,10 @@ pub fn rehearse(
     let (interrupt, trace) = Interrupt::traced();
     let (ended, over) = mpsc::channel::<()>();
     let (watched, followed) = (interrupt.clone(), trace.clone());
-    let seen = SEEN * job.end;
+    let flows = job.grains.as_ref().is_some_and(|g| g.flow.is_some());
+    let seen = if flows { FLOWN } else { SEEN } * job.end;
     let grows = job.grains.as_ref().is_some_and(|g| !g.groups.growths.is_empty());
-    let moves = job.grains.as_ref().is_some_and(|g| g.walls.others.iter().any(|w| w.moves()));
+    let moves = flows || job.grains.as_ref().is_some_and(|g| g.walls.others.iter().any(|w| w.moves()));
     let begun = Instant::now();
     let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));
     let timer = thread::spawn(move || {
