@@ -196,3 +196,27 @@ impl Drop for Folder {
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A loop whose last quarter costs three times as much a simulated second as the rest, after settling that does not count.
+    #[test]
+    fn the_pace_is_that_of_the_moments_from_a_share_on() {
+        let begun = Instant::now();
+        let at = |stage: &str, clock: f64, time: f64| {
+            let moment = Moment { stage: stage.into(), step: 0, time };
+            (begun + Duration::from_secs_f64(clock), moment)
+        };
+        let settling = (0..4).map(|k| at(SETTLING, 7.0 * f64::from(k), f64::from(k)));
+        let running = (0..=8).map(|k| {
+            let k = f64::from(k);
+            at(RUN, 30.0 + k + 2.0 * (k - 6.0).max(0.0), k)
+        });
+        let trace: Vec<_> = settling.chain(running).collect();
+        let found = [0.5, LATE].map(|share| pace(&trace, share).unwrap());
+        assert!((found[0] - 2.0).abs() < 1e-9 && (found[1] - 3.0).abs() < 1e-9, "{found:?}");
+        assert!(pace(&trace[..4], LATE).is_none() && pace(&trace[..5], LATE).is_none());
+    }
+}
