@@ -304,11 +304,14 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
             id += 1;
         }
         if let Shape::Polyhedron(it) = view.model.shape(body) {
-            let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
-            let (scale, (points, polygons)) = (view.model.scale(body), it.outline());
-            let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
-            let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
-            push(&mut frame, (id, WallKind::Stone), &points, &polygons);
+            if view.state.present(body) {
+                let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
+                let (scale, (points, polygons)) = (view.model.scale(body), it.outline());
+                let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
+                let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
+                push(&mut frame, (id, WallKind::Stone), &points, &polygons);
+            }
+            // A stone keeps its number while others come and go.
             id += 1;
         }
     }

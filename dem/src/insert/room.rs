@@ -1,7 +1,7 @@
 //! Room in a box: random places where a sphere touches nothing that is there, for grains that come in during a run.
 //!
 //! A clump on its way in stands for its bounding sphere; what is there counts with its own spheres, boxes, planes, walls
-//! and the external surface. Across periodic borders images count.
+//! and the external surface, polyhedra and disks with their bounding spheres. Across periodic borders images count.
 
 use super::scatter::Grid;
 use crate::base::Vec3;
@@ -56,12 +56,18 @@ impl<'a> Room<'a> {
                     continue;
                 }
                 let (centre, reach) = (xyz(&block.centre[k]), block.centre[k][3]);
-                if model.bodies.kind(body) == Kind::Solid {
+                let solid = model.bodies.kind(body) == Kind::Solid;
+                if solid && !model.shape(body).dilated() {
                     boxes.push((centre, block.rotation[k].orientation, model.half(body)));
                     continue;
                 }
                 let back = model.wrap(&centre) - centre;
                 if !images.iter().any(|way| meets(&(centre + back + way), reach)) {
+                    continue;
+                }
+                if solid {
+                    let all = images.iter().map(|way| centre + back + way);
+                    near.extend(all.filter(|x| meets(x, reach)).map(|x| (x, reach)));
                     continue;
                 }
                 for (x, r) in state.spheres(model, body) {

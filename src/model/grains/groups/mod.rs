@@ -68,15 +68,8 @@ fn add(
     part: &mut GroupsPart,
     bonds: &mut BondPart,
 ) -> Result<(), Failure> {
-    for (shape, found, expected) in [
-        (GrainShape::Bonded, "\"bonded\"", "no inlet for bonded stones"),
-        (GrainShape::Polyhedron, "\"polyhedron\"", "no inlet for polyhedra"),
-        (GrainShape::Disk, "\"disk\"", "no inlet for disks"),
-    ] {
-        let waits = group.inlet.is_some() || (shape != GrainShape::Bonded && waits(group));
-        if waits && group.shape == shape {
-            return Err(group.error("shape", found, expected).into());
-        }
+    if group.inlet.is_some() && group.shape == GrainShape::Bonded {
+        return Err(group.error("shape", "\"bonded\"", "no inlet for bonded stones").into());
     }
     let waits = waits(group);
     if sources(group).into_iter().filter(|s| *s).count() != 1 && !waits {
