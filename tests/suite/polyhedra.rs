@@ -1,7 +1,8 @@
-//! Polyhedra on a solid, through the program: what a small track scene finds, and what is refused.
+//! Polyhedra through the program: poured and tamped, through inlets and outlets, on a solid under a sleeper, and what is refused.
 
 use super::determinism::same_bits;
 use super::support::{Folder, json, repository, run};
+use std::path::PathBuf;
 
 /// A few stones that settle, some more that are poured on them, and a plate that presses.
 const POURED: &str = r#"title = "Polyhedra poured and tamped"
@@ -94,13 +95,19 @@ end = "10 ms"
 frames = 1
 "#;
 
+/// A folder with a scene of stones of the shipped library.
+fn written(name: &str, text: &str) -> (Folder, PathBuf) {
+    let folder = Folder::new(name);
+    let library = repository().join("inputs/data/polyhedra.toml");
+    let scene = folder.write("scene.toml", &text.replace("LIBRARY", &library.display().to_string()));
+    (folder, scene)
+}
+
 /// Polyhedra wait for a stage of pouring, come to rest on others, and are pressed by a plate: the accounts close, and each stage leaves the bed
 /// denser.
 #[test]
 fn polyhedra_are_poured_and_tamped() {
-    let folder = Folder::new("polyhedra_poured");
-    let library = repository().join("inputs/data/polyhedra.toml");
-    let scene = folder.write("scene.toml", &POURED.replace("LIBRARY", &library.display().to_string()));
+    let (folder, scene) = written("polyhedra_poured", POURED);
     run(&scene, &folder.join("out"), &[]).good();
     let summary = json(&folder.join("out/summary.json"));
     assert_eq!(summary["verdict"]["outcome"], "passed");
@@ -201,13 +208,11 @@ frames = 2
 history_interval = "0.1 s"
 "#;
 
-/// Polyhedra and disks come in where they touch nothing, go, and come in again: more of them come in than there are, none sinks into another (that would
+/// Polyhedra and disks come in where they touch nothing, go, and come in again: more of them come in than there are, none is put into another (that would
 /// show in the account of energy), and the same bits come out on three threads.
 #[test]
 fn polyhedra_and_disks_come_and_go() {
-    let folder = Folder::new("polyhedra_belt");
-    let library = repository().join("inputs/data/polyhedra.toml");
-    let scene = folder.write("scene.toml", &BELT.replace("LIBRARY", &library.display().to_string()));
+    let (_folder, scene) = written("polyhedra_belt", BELT);
     let results = same_bits(&scene, &[], &["history.csv", "frames/walls_00002.vtp"]);
     let summary = json(&results.join("1/summary.json"));
     let number = |path: &str| summary.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN);

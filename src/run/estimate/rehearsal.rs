@@ -39,7 +39,7 @@ pub struct Rehearsal {
     pub whole: bool,
     /// Seconds in the stage that it was stopped in.
     pub seconds: f64,
-    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on, with moving walls in the
+    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on, with moving walls or flow in the
     /// last quarter; none where it had not begun.
     pub reached: Option<(f64, f64)>,
     /// Seconds of a simulated second of the compaction that it was stopped in; none where that was not so.

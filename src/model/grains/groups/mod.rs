@@ -161,7 +161,7 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
             "aspect",
             group.aspect.is_some(),
             disks && shapes,
-            "`shape = \"disk\"` and `fill`, `region` or `packing`",
+            "`shape = \"disk\"` and `fill`, `region`, `packing` or an `inlet` alone",
         ),
         ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of stones"),
         ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
