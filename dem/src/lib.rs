@@ -34,7 +34,7 @@ pub use bodies::input::BodyInput;
 pub use engine::back_end::BackEnd;
 pub use engine::{input, model, state, step, timestep, work};
 pub use insert::flow;
-pub use law::material;
+pub use law::{material, scarring};
 pub use shape::plane::{Plane, PlaneMotion};
 pub use spatial::{bvh, detect, distance, sheet, surface};
 
@@ -42,6 +42,7 @@ pub use body_force::{BodyForce, DragArea, Measured, Orbit, Water, Wave, WaveErro
 pub use error::{ModelError, Partner, StepError};
 pub use input::{AppliedForce, LocalDamping, ModelInput, SearchSkin, TimeStep};
 pub use law::material::{Material, PairOverride};
+pub use law::scarring::Scarring;
 pub use model::Model;
 pub use shape::Shape;
 pub use state::State;

@@ -99,6 +99,16 @@ fn wall(findings: &mut Findings, k: usize, w: &Wall) {
         findings.weigh_some(key("servo.area"), s.area, Usual::new(1e-6, 1000.0, "m2"));
         findings.weigh(key("servo.max_speed"), s.max_speed.si, Usual::new(1e-6, 20.0, "m/s"));
     }
+    if let Some(s) = &w.scarring {
+        findings.weigh(key("scarring.strength"), s.strength.si, Usual::new(0.5e6, 100e6, "Pa"));
+        findings.weigh_some(key("scarring.drag"), s.drag, Usual::or_zero(0.2, 10.0, ""));
+        findings.weigh_some(
+            key("scarring.density"),
+            s.density.map(|d| d.si),
+            Usual::or_zero(800.0, 2600.0, "kg/m3"),
+        );
+        findings.weigh_some(key("scarring.friction"), s.friction.map(|f| f[1]), Usual::or_zero(0.2, 3.0, ""));
+    }
     if let Some(b) = &w.body {
         findings.weigh(key("body.mass"), b.mass.si, Usual::new(1e-6, 1e8, "kg"));
         if let Some(m) = &b.mount {

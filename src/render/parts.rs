@@ -50,8 +50,14 @@ impl Limits {
             .as_ref()
             .zip(run.skin.as_ref())
             .map(|(values, skin)| skin.shown(values, wanted.solid.as_deref().is_some_and(of_elements)));
+        let stones: Option<Vec<f64>> = moment
+            .walls
+            .as_ref()
+            .zip(moment.stone_values.as_ref())
+            .map(|(walls, values)| walls.of_stones(values).collect());
+        let grains = moment.grain_values.as_deref().and_then(ends);
         Limits {
-            grains: moment.grain_values.as_deref().and_then(ends),
+            grains: union(grains, stones.as_deref().and_then(ends)),
             chains: forces.as_deref().and_then(ends),
             solid: of_skin.as_deref().and_then(ends),
         }
@@ -221,9 +227,19 @@ impl<'a> Parts<'a> {
         }
         self.boxed(low, high);
         self.bed = (low.x <= high.x).then_some([low, high]);
-        let Some(values) = &moment.grain_values else { return };
+        self.grain_legend(moment, field, (range, table));
+    }
+
+    /// The legend of what grains are coloured by.
+    fn grain_legend(&mut self, moment: &Moment, field: &str, (range, table): ([f64; 2], Vec<Colour>)) {
+        let stones = moment.walls.as_ref().zip(moment.stone_values.as_ref());
+        let stones = stones.into_iter().flat_map(|(walls, values)| walls.of_stones(values));
+        let values: Vec<f64> = moment.grain_values.iter().flatten().copied().chain(stones).collect();
+        if values.is_empty() {
+            return;
+        }
         let (label, unit) = labels::grains(field);
-        let key = match field.as_str() {
+        let key = match field {
             "part" => {
                 let mut groups: Vec<usize> = values.iter().map(|v| *v as usize).collect();
                 groups.sort_unstable();

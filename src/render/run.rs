@@ -57,8 +57,10 @@ pub struct Moment {
     pub grain_values: Option<Vec<f64>>,
     /// Force chains.
     pub chains: Option<Chains>,
-    /// Walls, sleepers, rails.
+    /// Walls, sleepers, rails, grains with faces.
     pub walls: Option<Walls>,
+    /// One number per triangle of these, of grains with faces.
+    pub stone_values: Option<Vec<f64>>,
     /// Displacement of the nodes of the mesh, three numbers each [m].
     pub displacement: Option<Vec<f64>>,
     /// One number per node of the mesh, or per element.
@@ -81,6 +83,13 @@ impl Run {
                 grain_fields.retain(|f| f != "piece");
             }
             grain_fields.extend(own);
+        }
+        if let Some(file) = first(series::Part::Walls) {
+            for field in Walls::open(file)?.fields() {
+                if !grain_fields.contains(&field) {
+                    grain_fields.push(field);
+                }
+            }
         }
         let mut skin = None;
         if let Some(file) = first(series::Part::Solid) {
@@ -240,6 +249,10 @@ impl Run {
         let open = |wanted: bool, part| if wanted { file(part) } else { None };
         let chains = open(wanted.chains, series::Part::Chains).map(Chains::open).transpose()?;
         let walls = open(wanted.walls, series::Part::Walls).map(Walls::open).transpose()?;
+        let stone_values = match (&walls, &wanted.grains) {
+            (Some(walls), Some(field)) => walls.field(field)?,
+            _ => None,
+        };
         let (mut displacement, mut solid_values) = (None, None);
         if let (Some(field), Some(skin), Some(file)) = (&wanted.solid, &self.skin, file(series::Part::Solid))
         {
@@ -259,7 +272,7 @@ impl Run {
             };
             displacement = Some(u);
         }
-        Ok(Moment { grains, grain_values, chains, walls, displacement, solid_values })
+        Ok(Moment { grains, grain_values, chains, walls, stone_values, displacement, solid_values })
     }
 
     /// One number per grain; `None` for a constant colour.

@@ -59,6 +59,9 @@ pub struct Walls {
     pub id: Vec<u32>,
     /// [`WallKind`] of each triangle.
     pub kind: Vec<u8>,
+    /// Polygon that each triangle is of.
+    polygon: Vec<u32>,
+    arrays: Arrays,
 }
 
 impl Walls {
@@ -82,13 +85,14 @@ impl Walls {
             let found = format!("{} corners of {} polygons", corners.len(), ends.len());
             return Err(ReadError::whole(file, "Polys", found, "points of the file for each").into());
         }
-        let mut walls =
-            Walls { points, triangles: Vec::new(), edges: Vec::new(), id: Vec::new(), kind: Vec::new() };
+        let (triangles, edges, polygon) = (Vec::new(), Vec::new(), Vec::new());
+        let mut walls = Walls { points, triangles, edges, id: Vec::new(), kind: Vec::new(), polygon, arrays };
         let mut begin = 0;
         for (p, end) in ends.iter().enumerate() {
             let polygon = &corners[begin as usize..*end as usize];
             for k in 1..polygon.len().saturating_sub(1) {
                 walls.triangles.extend([polygon[0], polygon[k], polygon[k + 1]]);
+                walls.polygon.push(p as u32);
                 walls.id.push(ids[p]);
                 walls.kind.push(kinds.get(p).map_or(1, |k| *k as u8));
             }
@@ -98,6 +102,33 @@ impl Walls {
             begin = *end;
         }
         Ok(walls)
+    }
+
+    /// Names of the fields that grains with faces can be coloured by; vectors by their length.
+    pub fn fields(&self) -> Vec<String> {
+        let names = self.arrays.names("CellData").filter(|(name, _)| !["id", "kind"].contains(name));
+        names.map(|(name, _)| if name == "velocity" { "speed".into() } else { name.to_string() }).collect()
+    }
+
+    /// One number per triangle: of a vector its length; `None` where there is no such field.
+    ///
+    /// # Errors
+    /// The field is damaged.
+    pub fn field(&self, name: &str) -> Result<Option<Vec<f64>>, Failure> {
+        let stored = if name == "speed" { "velocity" } else { name };
+        let Some(components) = self.arrays.components("CellData", stored) else { return Ok(None) };
+        let values = self.arrays.values("CellData", stored)?;
+        let of = |p: &u32| {
+            let own = &values[components * *p as usize..][..components];
+            if components == 1 { own[0] } else { own.iter().map(|v| v * v).sum::<f64>().sqrt() }
+        };
+        Ok(Some(self.polygon.iter().map(of).collect()))
+    }
+
+    /// Values of the triangles of grains with faces.
+    pub fn of_stones<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let stone = |(_, kind): &(&f64, &u8)| **kind == WallKind::Stone as u8;
+        values.iter().zip(&self.kind).filter(stone).map(|(v, _)| *v)
     }
 }
 

@@ -111,17 +111,22 @@ pub fn write(
         return Ok(writers.frame(&frame)?);
     };
     // Computed once for all that is shown of them.
-    let any = writers.show(Part::Grains) || writers.show(Part::Chains);
+    let stones = writers.show(Part::Walls) && has_faces(view);
+    let any = stones || writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
-    let spheres = writers.show(Part::Grains).then(|| spheres(view, &contacts, extra));
+    let bodies = (stones || writers.show(Part::Grains)).then(|| BodyFields::of(view, &contacts));
+    let spheres = writers.show(Part::Grains).then(|| bodies.as_ref().map(|b| spheres(view, b, extra)));
     let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {
-        let mut walls = walls(view, part);
+        let (mut walls, of) = walls(view, part);
         draw(&mut walls);
+        if let Some(fields) = bodies.as_ref().filter(|_| stones) {
+            walls.grains = fields.of_polygons(view, &of, walls.polygons.len(), extra);
+        }
         walls
     });
     Ok(writers.frame(&Frame {
-        grains: spheres.as_ref(),
+        grains: spheres.flatten().as_ref(),
         chains: chains.as_ref(),
         walls: walls.as_ref(),
         ..frame
@@ -157,16 +162,66 @@ fn kind(partner: &dem::Partner) -> u32 {
 /// Kind of a chain that is a bond; its normal force is negative where it pulls.
 const BOND: u32 = 5;
 
+/// What frames show of bodies, by number.
+struct BodyFields {
+    stress: Vec<[f64; 6]>,
+    neighbours: Vec<u32>,
+    force: Vec<dem::Vec3>,
+    fragments: Vec<u32>,
+}
+
+impl BodyFields {
+    fn of(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord]) -> BodyFields {
+        BodyFields {
+            stress: dem::measure::mean_stress_of(view.model, view.state, contacts),
+            neighbours: dem::measure::neighbours(view.model, contacts),
+            force: dem::measure::contact_forces_of(view.model, view.state, contacts),
+            fragments: dem::measure::fragments(view.model, view.state).of,
+        }
+    }
+
+    fn mean_stress(&self, body: usize) -> f64 {
+        (self.stress[body][0] + self.stress[body][1] + self.stress[body][2]) / 3.0
+    }
+
+    /// The same for each of `count` polygons, of which the first belong to the bodies `of`; zero for those that belong to none.
+    fn of_polygons(
+        &self,
+        view: GrainsView<'_>,
+        of: &[u32],
+        count: usize,
+        more: &[&'static str],
+    ) -> Vec<(&'static str, Extra)> {
+        let GrainsView { model, state } = view;
+        let all: Vec<u32> = of.iter().copied().chain(std::iter::repeat(NO_BODY)).take(count).collect();
+        let body = |b: &u32| (*b != NO_BODY).then_some(*b as usize);
+        let vectors = |f: &dyn Fn(usize) -> dem::Vec3| {
+            Extra::Vectors(all.iter().map(|b| body(b).map_or([0.0; 3], |b| f(b).into())).collect())
+        };
+        let counts =
+            |f: &dyn Fn(usize) -> u32| Extra::Counts(all.iter().map(|b| body(b).map_or(0, f)).collect());
+        let stress = all.iter().map(|b| body(b).map_or(0.0, |b| self.mean_stress(b)));
+        let mut fields = vec![
+            ("velocity", vectors(&|b| state.velocity(b))),
+            ("spin", vectors(&|b| state.spin(b))),
+            ("part", counts(&|b| model.part(b))),
+            ("mean_stress", Extra::Numbers(stress.collect())),
+            ("force", vectors(&|b| self.force[b])),
+            ("coordination", counts(&|b| self.neighbours[b])),
+            ("fragment", counts(&|b| self.fragments[b])),
+        ];
+        fields.extend(more.iter().map(|name| (*name, extra(name, view, &all, &self.force))));
+        fields
+    }
+}
+
+/// Whether there are grains with faces.
+fn has_faces(view: GrainsView<'_>) -> bool {
+    (0..view.model.body_count()).any(|b| matches!(view.model.shape(b), Shape::Polyhedron(_)))
+}
+
 /// The grains: one point per sphere.
-fn spheres(
-    view: GrainsView<'_>,
-    contacts: &[dem::measure::ContactRecord],
-    extra: &[&'static str],
-) -> GrainFrame {
-    let stress = dem::measure::mean_stress_of(view.model, view.state, contacts);
-    let neighbours = dem::measure::neighbours(view.model, contacts);
-    let force = dem::measure::contact_forces_of(view.model, view.state, contacts);
-    let fragments = dem::measure::fragments(view.model, view.state).of;
+fn spheres(view: GrainsView<'_>, fields: &BodyFields, extra: &[&'static str]) -> GrainFrame {
     let mut frame = GrainFrame::default();
     for body in (0..view.model.body_count()).filter(|&b| view.state.present(b)) {
         let q = view.state.orientation(view.model, body);
@@ -180,25 +235,28 @@ fn spheres(
             frame.orientation.push([q.w, q.i, q.j, q.k]);
             frame.id.push(body as u32);
             frame.part.push(view.model.part(body));
-            frame.mean_stress.push((stress[body][0] + stress[body][1] + stress[body][2]) / 3.0);
-            frame.force.push(force[body].into());
-            frame.coordination.push(neighbours[body]);
-            frame.fragment.push(fragments[body]);
+            frame.mean_stress.push(fields.mean_stress(body));
+            frame.force.push(fields.force[body].into());
+            frame.coordination.push(fields.neighbours[body]);
+            frame.fragment.push(fields.fragments[body]);
         }
     }
-    frame.extra = extra.iter().map(|name| (*name, self::extra(name, view, &frame.id, &force))).collect();
+    frame.extra =
+        extra.iter().map(|name| (*name, self::extra(name, view, &frame.id, &fields.force))).collect();
     frame
 }
 
-/// A field that not every frame has, for the spheres of the bodies `id`; `force` is that of contacts and bonds on each body.
+/// A field that not every frame has, for items of the bodies `id`, zero for those of none; `force` is that of contacts and bonds on each body.
 fn extra(name: &str, view: GrainsView<'_>, id: &[u32], force: &[dem::Vec3]) -> Extra {
     let GrainsView { model, state } = view;
-    let vectors =
-        |of: &dyn Fn(usize) -> dem::Vec3| Extra::Vectors(id.iter().map(|b| of(*b as usize).into()).collect());
+    let body = |b: &u32| (*b != NO_BODY).then_some(*b as usize);
+    let vectors = |of: &dyn Fn(usize) -> dem::Vec3| {
+        Extra::Vectors(id.iter().map(|b| body(b).map_or([0.0; 3], |b| of(b).into())).collect())
+    };
     let counts = |of: &dyn Fn(&Break) -> bool| {
         let mut count = vec![0; model.body_count()];
         state.breaks().iter().filter(|b| of(b)).flat_map(|b| b.bodies).for_each(|b| count[b as usize] += 1);
-        Extra::Counts(id.iter().map(|b| count[*b as usize]).collect())
+        Extra::Counts(id.iter().map(|b| body(b).map_or(0, |b| count[b])).collect())
     };
     match name {
         "displacement" => {
@@ -274,9 +332,10 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
     frame
 }
 
-/// Walls and sleepers as polygons. Planes, which have no end, are shown as squares as wide as the grains.
-fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
-    let mut frame = WallFrame::default();
+/// Walls, sleepers and grains with faces as polygons, and the body of each polygon where it is such a grain. Planes, which have no end, are
+/// shown as squares as wide as the grains.
+fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
+    let (mut frame, mut of) = (WallFrame::default(), Vec::new());
     let mut add = |id, points: &[dem::Vec3], polygons: &[&[u32]]| {
         push(&mut frame, (id, WallKind::Plane), points, polygons);
     };
@@ -309,13 +368,15 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> WallFrame {
                 let (scale, (points, polygons)) = (view.model.scale(body), it.outline());
                 let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
                 let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
+                of.resize(frame.polygons.len(), NO_BODY);
                 push(&mut frame, (id, WallKind::Stone), &points, &polygons);
+                of.resize(frame.polygons.len(), body as u32);
             }
             // A stone keeps its number while others come and go.
             id += 1;
         }
     }
-    frame
+    (frame, of)
 }
 
 /// Adds polygons of one wall.

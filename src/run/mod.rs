@@ -315,6 +315,7 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.warnings.extend(part.groups.remarks.iter().cloned());
         summary.sources.extend(part.materials.sources());
         summary.sources.extend(part.body_forces().map(|f| f.source()));
+        summary.sources.extend(part.scarred().then_some(trackbed_dem::scarring::SOURCE));
     }
     Ok(())
 }

@@ -2,7 +2,8 @@
 
 use super::track::HeldMotion;
 use super::units::{
-    Angle, Dashpot, Force, Frequency, Length, Mass, Quantity, Spin, Stiffness, Stress, Time, Velocity,
+    Angle, Dashpot, Density, Force, Frequency, Length, Mass, Quantity, Spin, Stiffness, Stress, Time,
+    Velocity,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -56,6 +57,8 @@ pub struct Wall {
     pub servo: Option<Servo>,
     /// Makes a wall other than a plane a rigid body.
     pub body: Option<Body>,
+    /// Makes `triangles` or a `mesh` ground that rocks scar.
+    pub scarring: Option<Scarring>,
     /// Write the force of the grains on the wall, its moment and the wall's displacement to `history.csv`.
     #[serde(default)]
     pub record: bool,
@@ -163,4 +166,22 @@ pub struct Mount {
     pub damping: Option<[Quantity<Dashpot>; 3]>,
     /// Shares of critical damping, in place of `damping`.
     pub damping_ratio: Option<[f64; 3]>,
+}
+
+/// Ground that polyhedra and disks scar: soil over hard ground.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scarring {
+    /// Mechanical strength of the soil [Pa].
+    pub strength: Quantity<Stress>,
+    /// Drag coefficient of the soil; default 2.5.
+    pub drag: Option<f64>,
+    /// Density of the soil [kg/m³]; default 1700.
+    pub density: Option<Quantity<Density>>,
+    /// Friction coefficient at first and after a long slide; default 0.55 and 2.
+    pub friction: Option<[f64; 2]>,
+    /// How fast friction grows with the way that a rock slides [1/m]; default 3.
+    pub growth: Option<f64>,
+    /// How fast that way is forgotten after the contact [1/s]; default 185.
+    pub decay: Option<f64>,
 }

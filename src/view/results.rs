@@ -5,7 +5,7 @@
 //! | `scene` | title, times, parts, fields, origin, size: JSON in `meta` |
 //! | `grains`, `solid` | what holds for all frames |
 //! | `grains/7`, `chains/7`, `walls/7`, `solid/7` | frame 7 |
-//! | `grains/7/speed`, `solid/7/stress_zz` | a field of frame 7 |
+//! | `grains/7/speed`, `walls/7/speed`, `solid/7/stress_zz` | a field of frame 7, of walls that of grains with faces |
 //! | `table/history` | a table |
 
 use std::path::{Path, PathBuf};
@@ -38,6 +38,7 @@ struct Common {
     bounds: [[f64; 3]; 2],
     bodies: Option<Bodies>,
     grain_fields: Vec<String>,
+    stone_fields: Vec<String>,
     skin: Option<Skin>,
     solid_fields: Vec<String>,
 }
@@ -53,6 +54,12 @@ impl Common {
             bounds.extend(file.bounds());
             bodies = Some(file.bodies);
         }
+        let mut stone_fields = Vec::new();
+        if let Some(file) = first(Part::Walls) {
+            stone_fields = Walls::open(file)?.fields();
+            let more = stone_fields.iter().filter(|f| !grain_fields.contains(f)).cloned().collect::<Vec<_>>();
+            grain_fields.extend(more);
+        }
         let skin = first(Part::Solid).map(Skin::open).transpose()?;
         bounds.extend(skin.as_ref().map(Skin::bounds));
         let solid_fields = first(Part::Solid).map(fields).transpose()?.unwrap_or_default();
@@ -61,7 +68,7 @@ impl Common {
         };
         let bounds = bounds.into_iter().reduce(whole).unwrap_or([[-1.0; 3], [1.0; 3]]);
         let origin = [0, 1, 2].map(|k| 0.5 * (bounds[0][k] + bounds[1][k]));
-        Ok(Common { origin, bounds, bodies, grain_fields, skin, solid_fields })
+        Ok(Common { origin, bounds, bodies, grain_fields, stone_fields, skin, solid_fields })
     }
 }
 
@@ -121,6 +128,10 @@ impl Results {
         let Some(number) = number else { return Ok(self.whole(part, common)) };
         let frame = number.parse::<usize>().ok().and_then(|k| self.frames.get(k));
         let Some(file) = frame.and_then(|frame| frame.file(part)) else { return Ok(None) };
+        if let (Part::Walls, Some(field)) = (part, field) {
+            let values = Walls::open(file)?.field(field)?;
+            return Ok(values.map(|values| solid::field(&values, self.coding)));
+        }
         self.frame(file, part, field, common).map(Some)
     }
 
@@ -210,6 +221,7 @@ impl Results {
                 let fields = match part {
                     Part::Grains => &common.grain_fields[..],
                     Part::Solid => &common.solid_fields[..],
+                    Part::Walls => &common.stone_fields[..],
                     _ => &[],
                 };
                 names.extend(fields.iter().map(|field| format!("{word}/{k}/{field}")));

@@ -76,9 +76,11 @@ pub struct GrainFrame {
 /// A field of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Extra {
-    /// Three numbers for each sphere.
+    /// Three numbers for each item.
     Vectors(Vec<[f64; 3]>),
-    /// A whole number for each sphere.
+    /// A number for each item.
+    Numbers(Vec<f64>),
+    /// A whole number for each item.
     Counts(Vec<u32>),
 }
 
@@ -113,6 +115,9 @@ pub struct WallFrame {
     pub id: Vec<u32>,
     /// What each polygon is part of, a [`WallKind`] as its number. Shape `[polygons]`.
     pub kind: Vec<u32>,
+    /// Fields of grains with faces by name, as those of [`GrainFrame`], for each polygon; zero for those of other things. None without such
+    /// grains.
+    pub grains: Vec<(&'static str, Extra)>,
 }
 
 /// What a polygon of a [`WallFrame`] is part of.

@@ -66,7 +66,7 @@ impl Writer for VtkFrames {
         }
         if let Some(walls) = frame.walls.filter(|walls| !walls.polygons.is_empty()) {
             let name = name("walls", "vtp");
-            vtp::write_walls(&self.dir.join(&name), walls)?;
+            vtp::write_walls(&self.dir.join(&name), walls, frame.fields)?;
             self.series.push(time, 3, "walls and sleeper", &name);
         }
         self.series.write()

@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::pvd::Series;
-use super::{ChainFrame, GrainFrame, SolidFrame, WallFrame, sample, vtp, vtu};
+use super::{ChainFrame, Extra, GrainFrame, SolidFrame, WallFrame, sample, vtp, vtu};
 use crate::mesh_tools;
 use crate::read::MeshFile;
 
@@ -116,8 +116,12 @@ fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
             polygons: vec![vec![0, 1, 2, 3], vec![0, 1, 4]],
             id: vec![0, 1],
             kind: vec![0, 2],
+            grains: vec![
+                ("velocity", Extra::Vectors(vec![[0.0; 3], [1.0, 2.0, 3.0]])),
+                ("part", Extra::Counts(vec![0, 7])),
+            ],
         };
-        vtp::write_walls(&path(&name("walls", "vtp")), &walls).unwrap();
+        vtp::write_walls(&path(&name("walls", "vtp")), &walls, Choice::default()).unwrap();
         for (part, kind, ending) in
             [(0, "solid", "vtu"), (1, "grains", "vtp"), (2, "chains", "vtp"), (3, "walls", "vtp")]
         {

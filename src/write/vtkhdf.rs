@@ -292,6 +292,7 @@ impl Series {
         ];
         fields.extend(frame.extra.iter().map(|(name, extra)| match extra {
             Extra::Vectors(values) => doubles(name, 3, values.as_flattened()),
+            Extra::Numbers(values) => doubles(name, 1, values),
             Extra::Counts(values) => ids(name, values),
         }));
         let count = frame.position.len();

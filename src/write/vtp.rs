@@ -27,14 +27,21 @@ pub fn write_grains(file: &Path, frame: &GrainFrame, choice: Choice<'_>) -> Resu
     fields.vector("force", frame.force.as_flattened())?;
     fields.ids("coordination", &frame.coordination)?;
     fields.ids("fragment", &frame.fragment)?;
-    for (name, extra) in &frame.extra {
+    more(&mut fields, &frame.extra)?;
+    let verts = Section::cells_in_order("Verts", count, 1);
+    write(file, &frame.position, fields, verts, ("NumberOfVerts", count))
+}
+
+/// Adds fields by name.
+fn more(fields: &mut Fields, extra: &[(&'static str, Extra)]) -> Result<(), WriteError> {
+    for (name, extra) in extra {
         match extra {
             Extra::Vectors(values) => fields.vector(name, values.as_flattened())?,
+            Extra::Numbers(values) => fields.scalar(name, values)?,
             Extra::Counts(values) => fields.ids(name, values)?,
         }
     }
-    let verts = Section::cells_in_order("Verts", count, 1);
-    write(file, &frame.position, fields, verts, ("NumberOfVerts", count))
+    Ok(())
 }
 
 /// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`, numbers `a`, `b` of
@@ -59,11 +66,11 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     write(file, frame.ends.as_flattened(), fields, lines, ("NumberOfLines", count))
 }
 
-/// Writes the walls: cell data `id`, `kind`.
+/// Writes the walls: cell data `id`, `kind`, and those of grains with faces, as far as they are chosen.
 ///
 /// # Errors
 /// As [`write_grains`]; a polygon of fewer than three corners or with a corner that does not exist.
-pub fn write_walls(file: &Path, frame: &WallFrame) -> Result<(), WriteError> {
+pub fn write_walls(file: &Path, frame: &WallFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     for (at, polygon) in frame.polygons.iter().enumerate() {
         if polygon.len() < 3 {
             let message = format!("polygon {at} has {} corners, expected 3 or more", polygon.len());
@@ -74,9 +81,10 @@ pub fn write_walls(file: &Path, frame: &WallFrame) -> Result<(), WriteError> {
             return Err(WriteError::format(file, message));
         }
     }
-    let mut fields = Fields::of_cells(file, frame.polygons.len());
+    let mut fields = Fields::of_cells(file, frame.polygons.len()).only(choice);
     fields.ids("id", &frame.id)?;
     fields.ids("kind", &frame.kind)?;
+    more(&mut fields, &frame.grains)?;
     let connectivity = frame.polygons.iter().flatten().map(|c| u64::from(*c));
     let ends = frame.polygons.iter().scan(0, |end, polygon| {
         *end += polygon.len() as u64;
@@ -151,12 +159,17 @@ mod tests {
         let dir = folder("vtp_walls");
         let file = dir.join("walls.vtp");
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let frame =
-            WallFrame { points: points.clone(), polygons: vec![vec![0, 1, 3]], id: vec![0], kind: vec![0] };
-        let error = write_walls(&file, &frame).unwrap_err();
+        let frame = WallFrame {
+            points: points.clone(),
+            polygons: vec![vec![0, 1, 3]],
+            id: vec![0],
+            kind: vec![0],
+            grains: Vec::new(),
+        };
+        let error = write_walls(&file, &frame, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("polygon 0 names point 3, expected below 3"), "{error}");
-        let frame = WallFrame { points, polygons: vec![vec![0, 1]], id: vec![0], kind: vec![0] };
-        let error = write_walls(&file, &frame).unwrap_err();
+        let frame = WallFrame { polygons: vec![vec![0, 1]], ..frame };
+        let error = write_walls(&file, &frame, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("polygon 0 has 2 corners"), "{error}");
         assert!(!file.exists());
         std::fs::remove_dir_all(&dir).unwrap();

@@ -42,7 +42,8 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
         partners: vec![[0, 1]; 1],
     };
     let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let walls = WallFrame { points, polygons: vec![vec![0, 1, 2]], id: vec![0], kind: vec![0] };
+    let walls =
+        WallFrame { points, polygons: vec![vec![0, 1, 2]], id: vec![0], kind: vec![0], grains: Vec::new() };
     act(&Frame {
         number,
         time: 0.1 * number as f64,

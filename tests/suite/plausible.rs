@@ -25,6 +25,7 @@ const TRAIN: &str = "inputs/track/train/scene.toml";
 const DRUM: &str = "inputs/grains/drum.toml";
 const GRAINS: &str = "inputs/grains/box.toml";
 const SHAKEN: &str = "inputs/ice/vibration.toml";
+const SCARRED: &str = "inputs/geo/chant-sura/scene.toml";
 const WIND: &str = "inputs/verify/wind.toml";
 
 /// Scene, override, key that must be named, whether it cannot be meant.
@@ -57,6 +58,10 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (SHAKEN, "walls.0.body.mount.frequency=[1500, 1.5, 0]", "walls.0.body.mount.frequency", false),
     (SHAKEN, "walls.0.body.mount.damping_ratio=[0.03, 300, 0]", "walls.0.body.mount.damping_ratio", true),
     (SHAKEN, "walls.0.body.mount={ stiffness = [\"20 N/m\", 0, 0] }", "walls.0.body.mount.stiffness", false),
+    (SCARRED, "walls.0.scarring.strength=15", "walls.0.scarring.strength", true),
+    (SCARRED, "walls.0.scarring.drag=250", "walls.0.scarring.drag", false),
+    (SCARRED, "walls.0.scarring.density=1.7", "walls.0.scarring.density", true),
+    (SCARRED, "walls.0.scarring.friction=[0.5, 55]", "walls.0.scarring.friction", false),
     (SERVO, "walls.2.servo.pressure=\"20000 MPa\"", "walls.2.servo.pressure", true),
     (SERVO, "walls.2.servo.area=78539", "walls.2.servo.area", true),
     (SERVO, "walls.2.servo.max_speed=\"200 m/s\"", "walls.2.servo.max_speed", false),

@@ -1,7 +1,8 @@
 //! Polyhedra through the program: poured and tamped, through inlets and outlets, on a solid under a sleeper, and what is refused.
 
 use super::determinism::same_bits;
-use super::support::{Folder, json, repository, run};
+use super::scenes::vtk;
+use super::support::{Folder, json, repository, run, trackbed};
 use std::path::PathBuf;
 
 /// A few stones that settle, some more that are poured on them, and a plate that presses.
@@ -119,6 +120,115 @@ fn polyhedra_are_poured_and_tamped() {
         assert!(porosity("porosity_after") < porosity("porosity_before"), "{stage}");
     }
     assert!(summary["energy"]["relative_error"].as_f64().unwrap().abs() < 1e-3);
+}
+
+/// Two stones that fly past a plane, in two groups.
+const FLYING: &str = r#"title = "Two stones fly"
+gravity = [0, 0, 0]
+
+[[material]]
+name = "stone"
+density = 2650
+stiffness = "3 MN/m"
+friction = 0.6
+restitution = 0.4
+
+[[grains]]
+name = "slow"
+shape = "polyhedron"
+library = "LIBRARY"
+material = "stone"
+packing = "slow.csv"
+velocity = [1.0, 2.0, 2.0]
+spin = [0.0, 0.0, 5.0]
+
+[[grains]]
+name = "fast"
+shape = "polyhedron"
+library = "LIBRARY"
+material = "stone"
+packing = "fast.csv"
+velocity = [0.0, 0.0, 9.0]
+
+[[walls]]
+kind = "plane"
+point = [0.0, 0.0, -1.0]
+normal = [0.0, 0.0, 1.0]
+material = "stone"
+
+[time]
+end = "1 ms"
+
+[output]
+frames = 1
+"#;
+
+/// Frames have the fields of grains with faces on their polygons, zero on those of walls; pictures are coloured by them; a choice of fields holds for them.
+#[test]
+fn frames_have_the_fields_of_polyhedra() {
+    let (folder, scene) = written("polyhedra_fields", FLYING);
+    for (name, x) in [("slow.csv", -0.1), ("fast.csv", 0.1)] {
+        folder.write(name, &format!("{x}, 0, 0, 1, 0, 0, 0, 0.03, 0\n"));
+    }
+    let out = folder.join("out");
+    run(&scene, &out, &[]).good();
+    let (_, _, cells) = vtk(&out.join("frames/walls_00000.vtp"));
+    let field =
+        |name: &str| cells.get(name).unwrap_or_else(|| panic!("no {name} in {:?}", cells.keys())).clone();
+    let (kind, part, velocity, spin) = (field("kind"), field("part"), field("velocity"), field("spin"));
+    assert_eq!(
+        (velocity.0, spin.0, field("force").0, field("mean_stress").0, field("coordination").0),
+        (3, 3, 3, 1, 1)
+    );
+    let mut seen = [0; 3];
+    for (k, own) in kind.1.iter().enumerate() {
+        let apart = |of: &(usize, Vec<f64>), own: [f64; 3]| {
+            (0..3).map(|d| (of.1[3 * k + d] - own[d]).abs()).fold(0.0, f64::max)
+        };
+        let expected = match (*own as u32, part.1[k] as u32) {
+            (4, 0) => ([1.0, 2.0, 2.0], [0.0, 0.0, 5.0], 0),
+            (4, 1) => ([0.0, 0.0, 9.0], [0.0; 3], 1),
+            _ => ([0.0; 3], [0.0; 3], 2),
+        };
+        seen[expected.2] += 1;
+        assert!(apart(&velocity, expected.0) < 1e-12 && apart(&spin, expected.1) < 1e-9, "polygon {k}");
+    }
+    assert!(seen[0] > 8 && seen[1] > 8 && seen[2] == 1, "{seen:?}");
+    // Speeds of 3 and 9 m/s are the ends of the colours: dark violet and yellow.
+    let picture = |more: &[&str]| {
+        let file = folder.join("picture.bmp");
+        let view = [
+            "--view",
+            "front",
+            "--hide",
+            "caption,axes,scale,legends,edges,boundary",
+            "--size",
+            "200x100",
+            "--force",
+        ];
+        let own = ["render", out.to_str().unwrap(), "--out", file.to_str().unwrap()];
+        trackbed(own.iter().chain(&view).chain(more)).good();
+        let pixels = super::render::files::Pixels::read(&file);
+        let of = |like: &dyn Fn([u8; 3]) -> bool| {
+            (0..200)
+                .flat_map(|x| (0..100).map(move |y| (x, y)))
+                .filter(|(x, y)| like(pixels.at(*x, *y)))
+                .count()
+        };
+        // Violet has hardly any green, yellow hardly any blue.
+        [of(&|[r, g, b]| g < r / 2 && g < b / 2), of(&|[r, g, b]| b < r / 2 && b < g / 2)]
+    };
+    let [plain, coloured] = [picture(&[]), picture(&["--field", "grains=speed"])];
+    let groups = picture(&["--field", "part"]);
+    println!("violet and yellow pixels: {plain:?}, by speed {coloured:?}, by group {groups:?}");
+    assert!(
+        plain == [0, 0] && coloured.iter().all(|n| *n > 100) && groups != plain,
+        "{plain:?} {coloured:?} {groups:?}"
+    );
+    run(&scene, &folder.join("few"), &["output.fields=[\"spin\"]"]).good();
+    let (_, _, few) = vtk(&folder.join("few/frames/walls_00001.vtp"));
+    let names: Vec<_> = few.keys().map(String::as_str).collect();
+    assert_eq!(names, ["id", "kind", "part", "spin"]);
 }
 
 /// A small bed of polyhedra on the main job's mesh, pressed by its sleeper, under one quick cycle: the accounts

@@ -1,6 +1,6 @@
 //! `trackbed render`: pixels of scenes whose picture is known, the same bytes on any number of threads, videos, refusals.
 
-mod files;
+pub(super) mod files;
 
 use super::support::{Folder, trackbed};
 use files::{Pixels, chains, grains, series, solid};

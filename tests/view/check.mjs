@@ -6,7 +6,7 @@ import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import { View, launch, open, serve } from './browser.mjs';
 import { check, expect, sum } from './expect.mjs';
 import { onPlayer } from './player.mjs';
@@ -58,6 +58,30 @@ try {
     await view.page.context().close();
   });
   await other.stop();
+
+  const flight = path.join(dir, 'flight');
+  const plates = fileURLToPath(new URL('../../inputs/geo/chant-sura/scene.toml', import.meta.url));
+  execFileSync(program, ['run', plates, '--out', flight, '--quiet', '--set', 'time.end=0.01', '--set', 'output.frames=2']);
+  const third = await serve(program, flight);
+  await check('faces', 'grains with faces have the colours of their fields', async () => {
+    const view = new View(await open(browser, third.address, faults));
+    const plain = await view.hash();
+    await view.select('grains-colour', 'speed');
+    const [legend] = (await view.state()).legends;
+    // The four groups fly at 17.0 to 19.3 m/s at the start.
+    expect(legend?.title === 'Stones: Speed' && legend.range[0] > 16.9 && legend.range[1] < 19.4, JSON.stringify(legend));
+    const speed = await view.hash();
+    await view.select('grains-colour', 'part');
+    const groups = await view.hash();
+    const names = (await view.state()).legends[0].swatches.map((s) => s[1]);
+    expect(names.join() === 'group 0,group 1,group 2,group 3', names.join());
+    await view.set({ 'grains.show': false });
+    const hidden = await view.hash();
+    expect(new Set([plain, speed, groups, hidden]).size === 4, 'pictures are alike');
+    await view.page.context().close();
+    return `${legend.range.map((v) => v.toFixed(2)).join(' to ')} m/s, ${names.length} groups`;
+  });
+  await third.stop();
   await check('faults', 'no errors of scripts, no requests to elsewhere', () => {
     expect(faults.length === 0, faults.join('; '));
   });

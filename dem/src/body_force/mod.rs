@@ -14,6 +14,7 @@
 mod disk;
 mod four;
 mod skin;
+mod soil;
 mod water;
 mod wind;
 mod work;
@@ -85,9 +86,9 @@ impl BodyForce {
     }
 }
 
-/// Surfaces of all shapes, where one of the forces asks for them.
-pub(crate) fn skins(forces: &[BodyForce], shapes: &[Shape]) -> Vec<Skin> {
-    if forces.iter().any(|f| matches!(f, BodyForce::Water(_))) {
+/// Surfaces of all shapes, where one of the forces asks for them, or ground that is scarred.
+pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Vec<Skin> {
+    if scarred || forces.iter().any(|f| matches!(f, BodyForce::Water(_))) {
         shapes.iter().map(Skin::of).collect()
     } else {
         Vec::new()
@@ -103,6 +104,9 @@ impl ForceWork {
         self.added.clear();
         for force in forces {
             force.act(&seen, self);
+        }
+        if !seen.scars.is_empty() {
+            soil::act(&seen, self);
         }
         for (k, added) in self.added.iter().enumerate().filter(|(_, added)| **added > 0.0) {
             let mass = seen.bodies.get(block.bodies[k] as usize).mass;

@@ -10,6 +10,7 @@ use crate::bodies::sums::Sums;
 use crate::bodies::table::Bodies;
 use crate::lanes::Simd;
 use crate::lanes::record::xyz;
+use crate::law::scarring::Scar;
 
 /// What a body force sees of the bodies of a block.
 pub(crate) struct Seen<'a> {
@@ -27,6 +28,8 @@ pub(crate) struct Seen<'a> {
     pub time: f64,
     /// Length of the kick [s].
     pub kick: f64,
+    /// What each body does to ground that is scarred, by number; empty where no ground is.
+    pub scars: &'a [Scar],
 }
 
 /// A body force: adds its forces [N] on the bodies of a block, at their centres, and the torques about them [N m].

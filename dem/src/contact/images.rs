@@ -39,7 +39,7 @@ pub(crate) fn images(
             continue;
         };
         let (ma, mb) = (mine.motion(a, &g.point), other.motion(c, &(g.point - way)));
-        let f = single::between(laws, materials, &g, (&ma, &mb), 1.0, history, dt);
+        let f = single::between(laws, materials, None, &g, (&ma, &mb), 1.0, history, dt);
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         out.couple += way.cross(&f.force) * dt;

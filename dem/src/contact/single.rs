@@ -30,10 +30,11 @@ pub(crate) struct PairForce {
 }
 
 /// The force between bodies that move as `a` and `b` at the contact point, of the given materials, over a step `dt` [s]. `share`:
-/// contacts of the two that carry their mass together.
+/// contacts of the two that carry their mass together; `friction`: a coefficient in place of that of the law.
 pub(crate) fn between(
     laws: &Laws,
     materials: [u32; 2],
+    friction: Option<f64>,
     geometry: &ContactGeometry,
     (a, b): (&PointMotion, &PointMotion),
     share: f64,
@@ -42,7 +43,7 @@ pub(crate) fn between(
 ) -> PairForce {
     let inverse_mass = (a.inverse_mass() + b.inverse_mass()) * share;
     let (velocity, spin) = (a.at_point() - b.at_point(), a.spin() - b.spin());
-    let f = evaluate(laws, materials, inverse_mass, geometry, &velocity, &spin, history, dt);
+    let f = evaluate(laws, materials, friction, inverse_mass, geometry, &velocity, &spin, history, dt);
     PairForce {
         force: f.force,
         torque_a: a.arm.cross(&f.force) + f.moment,
@@ -53,10 +54,11 @@ pub(crate) fn between(
     }
 }
 
-/// The law of a pair of materials for one contact: see [`ContactLaw::evaluate_one`].
+/// The law of a pair of materials for one contact: see [`ContactLaw::evaluate_one`]. `friction`: a coefficient in place of its own.
 pub(crate) fn evaluate(
     laws: &Laws,
     [a, b]: [u32; 2],
+    friction: Option<f64>,
     inverse_mass: f64,
     geometry: &ContactGeometry,
     velocity: &Vec3,
@@ -64,7 +66,13 @@ pub(crate) fn evaluate(
     history: &mut History,
     dt: f64,
 ) -> ContactForce {
-    with_law!(laws, laws => laws.get(a, b).evaluate_one(inverse_mass, geometry, velocity, spin, history, dt))
+    with_law!(laws, laws => match friction {
+        None => laws.get(a, b).evaluate_one(inverse_mass, geometry, velocity, spin, history, dt),
+        Some(it) => {
+            let law = laws.get(a, b).with_friction(it);
+            law.evaluate_one(inverse_mass, geometry, velocity, spin, history, dt)
+        }
+    })
 }
 
 /// Ends a contact, if it had begun: returns the energy left in its springs [J].

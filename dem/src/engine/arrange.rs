@@ -36,6 +36,8 @@ impl Work {
             planes: Vec::new(),
             walls: Vec::new(),
             sheet: Vec::new(),
+            ground: Vec::new(),
+            heights: Vec::new(),
             material: None,
             plane_material: common(model.planes.iter().map(|p| p.material as u32)),
             parallel: model.sphere_count() >= PARALLEL,
@@ -59,7 +61,7 @@ impl Work {
         for ((members, w), block) in self.members.iter_mut().zip(&mut self.blocks).zip(&state.blocks) {
             members.arrange(&model.bodies, &model.shapes, block);
             w.tally.sums = Vec::new();
-            if !model.body_forces.is_empty() {
+            if model.acts_on_bodies() {
                 w.body_forces.arrange(block, |b| model.volume(b));
             }
             w.patches.turning = model.laws.rolls_among(&place::materials(block), &model.patch_materials);

@@ -1,5 +1,6 @@
 //! Scratch of one block.
 
+use crate::base::Vec3;
 use crate::base::held::held;
 use crate::bodies::sums::Tally;
 use crate::body_force::ForceWork;
@@ -38,6 +39,18 @@ pub(crate) struct BlockWork {
     pub patches: PatchWork,
     pub bonds: ListWork,
     pub body_forces: ForceWork,
+}
+
+/// What a body has of ground that it scars (`scarring.rs`).
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Ground {
+    pub touches: bool,
+    pub cuts: bool,
+    /// The plane of the surface: its upward unit normal, and the height of the body's centre above it [m].
+    pub plane: Option<(Vec3, f64)>,
+    /// Whether that is beneath the centre.
+    pub beneath: bool,
+    pub wall: usize,
 }
 
 impl BlockWork {

@@ -268,6 +268,7 @@ pub(crate) fn now<'a>(
         walls: Walls { patches: &model.patches, walls },
         sheet: model.sheet_at(sheet),
         periodic: model.periodic.as_ref(),
+        scars: &state.scars,
     }
 }
 

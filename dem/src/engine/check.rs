@@ -310,6 +310,19 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     Ok(())
 }
 
+/// Refuses what ground that is scarred cannot be combined with.
+pub(crate) fn scarring(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelError> {
+    let Some(wall) = input.walls.iter().position(|w| w.scarring.is_some()) else { return Ok(()) };
+    let error = |problem| Err(ModelError::Wall { wall: format!("wall {wall}"), problem });
+    if bodies.iter().any(|b| !matches!(input.shapes[b.shape], Shape::Polyhedron(_))) {
+        return error("only dilated polyhedra and disks scar the ground");
+    }
+    if input.gravity.norm() == 0.0 {
+        return error("bodies scar the ground downwards, and without gravity there is no down");
+    }
+    Ok(())
+}
+
 /// Refuses what adhesion cannot be combined with.
 pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
     let Some(index) = input.contacts.iter().position(|c| c.adhesion.is_some_and(|w| w > 0.0)) else {

@@ -18,6 +18,7 @@ pub(crate) mod order;
 pub(crate) mod periodic;
 pub(crate) mod place;
 mod probe;
+pub(crate) mod scarring;
 pub(crate) mod start;
 pub mod state;
 pub mod step;

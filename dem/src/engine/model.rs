@@ -40,6 +40,8 @@ pub struct Model {
     pub(crate) gravity: Vec3,
     pub(crate) damping: f64,
     pub(crate) body_forces: Vec<BodyForce>,
+    /// Whether bodies scar the ground.
+    pub(crate) scarred: bool,
     /// Surfaces of the shapes, where body forces ask for them.
     pub(crate) skins: Vec<Skin>,
     pub(crate) skin: f64,
@@ -110,6 +112,7 @@ impl Model {
         let bodies = Bodies::new(&input.bodies, &input.shapes, &input.materials)?;
         let laws = Laws::new(&input.materials, &input.contacts);
         let given: Vec<WallInput> = input.all_walls().collect();
+        let scarred = given.iter().any(|w| w.scarring.is_some());
         let mut walls = Walls::new(&given, input.triangles.len())?;
         let faces = bodies.iter().any(|b| input.shapes[b.shape].dilated());
         let patches = if faces { walls.patchwork(&given) } else { Vec::new() };
@@ -121,6 +124,7 @@ impl Model {
             SearchSkin::Distance(distance) => distance,
         };
         check::adhesion(&input)?;
+        check::scarring(&bodies, &input)?;
         check::polyhedra(&bodies, &input, &laws)?;
         super::check_periodic::check(&input, &bodies, &patches, skin)?;
         let periodic = Periodic::new(&input.periodic);
@@ -160,7 +164,8 @@ impl Model {
             expected,
             gravity: input.gravity,
             damping: input.damping.map_or(0.0, |d| d.factor),
-            skins: body_force::skins(&input.body_forces, &input.shapes),
+            skins: body_force::skins(&input.body_forces, scarred, &input.shapes),
+            scarred,
             body_forces: input.body_forces,
             shapes: input.shapes,
             skin,
@@ -206,6 +211,11 @@ impl Model {
     #[inline]
     pub(crate) fn body(&self, body: usize) -> Body {
         self.bodies.get(body)
+    }
+
+    /// Whether there are body forces, or drag of ground that is scarred.
+    pub(crate) fn acts_on_bodies(&self) -> bool {
+        self.scarred || !self.body_forces.is_empty()
     }
 
     /// Number of bodies.

@@ -86,7 +86,7 @@ fn approach(model: &Model, state: &State, work: &Work) -> f64 {
 }
 
 fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S, approach: f64) {
-    let State { blocks, lists, cross, planes, walls, near, .. } = &mut *state;
+    let State { blocks, lists, cross, planes, walls, near, scars, .. } = &mut *state;
     let (blocks, near, planes) = (&*blocks, *near, &*planes);
     let walls = model.walls.placed(walls);
     let Work { members, blocks: works, merging: pool, parallel, walls: standing, sheet, .. } = &mut *work;
@@ -101,6 +101,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         walls: Walls { patches: &model.patches, walls: standing },
         sheet: model.sheet_at(sheet),
         periodic: model.periodic.as_ref(),
+        scars,
     };
 
     let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {

@@ -9,6 +9,7 @@ use crate::base::ledger::Ledger;
 use crate::bodies::block::Rotation;
 use crate::bond::BondState;
 use crate::integrate::pace::Pace;
+use crate::law::scarring::Scar;
 use crate::shape::plane::PlaneMotion;
 
 /// The leapfrog's velocity half a step of `dt` [s] before a moment at which the body moves at `velocity` [m/s], free to fall.
@@ -40,6 +41,7 @@ impl State {
             planes: model.planes.iter().map(plane).collect(),
             walls: model.walls.start(&model.gravity, model.dt()),
             sheet: model.sheet.rest.clone(),
+            scars: vec![Scar::default(); if model.scarred { model.bodies.len() } else { 0 }],
             near: 0.1 * model.skin,
             drift: 0.0,
             wall_drift: 0.0,

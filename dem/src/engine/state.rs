@@ -14,6 +14,7 @@ use crate::bond::{BondList, BondState};
 use crate::engine::model::Model;
 use crate::integrate::pace::Pace;
 use crate::lanes::record::{set_xyz, xyz};
+use crate::law::scarring::Scar;
 use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
 use crate::pairs::patches::PatchList;
@@ -59,6 +60,8 @@ pub struct State {
     pub(crate) walls: Vec<WallState>,
     /// Place and velocity of each corner of the external surface in the last step, where bodies with faces may touch it.
     pub(crate) sheet: Vec<[Vec3; 2]>,
+    /// What each body does to ground that is scarred, by number; empty where no ground is.
+    pub(crate) scars: Vec<Scar>,
     /// Reach of the near list beyond touch [m], how much of it motion has used up, and the steps it has lasted.
     pub(crate) near: f64,
     pub(crate) drift: f64,
@@ -121,6 +124,9 @@ impl State {
                 self.places[body as usize] = [b as u32, k as u32];
             }
         }
+        // What comes in again has not been in the ground.
+        let absent = self.scars.iter_mut().zip(&self.places).filter(|(_, place)| **place == NOWHERE);
+        absent.for_each(|(scar, _)| *scar = Scar::default());
     }
 
     fn place(&self, body: usize) -> (&Block, usize) {

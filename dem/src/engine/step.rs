@@ -7,7 +7,7 @@ use super::model::Model;
 use super::state::State;
 use super::threads::{self, Bodies, Lists, One};
 use super::work::Work;
-use super::{applied, neighbours, order, walls};
+use super::{applied, neighbours, order, scarring, walls};
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
@@ -24,6 +24,7 @@ use crate::contact::prefetch::Prefetch;
 use crate::contact::single::Setting;
 use crate::contact::{dispatch, images, planes};
 use crate::integrate::leapfrog::{self, Drive};
+use crate::law::scarring::Scar;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
 use crate::spatial::patchwork;
 use crate::spatial::surface::Surface;
@@ -73,6 +74,9 @@ pub fn step<S: Surface>(
         let State { blocks, bonds, .. } = &mut *state;
         bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
     }
+    if model.scarred {
+        scarring::update(model, state, work);
+    }
     planes::now(&model.planes, &state.planes, &mut work.planes);
     contacts_and_motion(model, state, work, surface);
     collect(model, state, work, surface.max_speed())
@@ -104,7 +108,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let dt = pace.kick();
     let setting = Setting { laws: &model.laws, simd: work.simd, dt };
     let material = work.material;
-    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, .. } = state;
+    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, scars, .. } = state;
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let triangles = model.sheet_at(&work.sheet);
@@ -125,6 +129,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
                 walls: patchwork,
                 sheet: triangles,
                 periodic: model.periodic.as_ref(),
+                scars,
             };
             kind::forces(&setting, &now, b, pairs, out);
         }
@@ -147,6 +152,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
             pace,
         },
         time: *time,
+        scars,
         gone: *drift + *wall_drift,
     };
     let (applied, keep) = (&**applied, work.keep_forces);
@@ -155,14 +161,14 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         shared.forces(b, &mut one, slots, next);
         let One { block, members, work, .. } = one;
         let BlockWork { tally, body_forces, .. } = work;
-        if !model.body_forces.is_empty() {
+        if model.acts_on_bodies() {
             let Tally { sums, ledger, .. } = &mut *tally;
             body_forces.act(&model.body_forces, shared.seen(block, members, sums), ledger);
             body_forces.add_to(sums);
         }
         let applied = applied::of_block(applied, b);
         leapfrog::advance(setting.simd, &shared.drive, block, members, tally, applied);
-        if !model.body_forces.is_empty() {
+        if model.acts_on_bodies() {
             body_forces.book(block, &mut tally.ledger, dt);
         }
         if !keep {
@@ -186,6 +192,7 @@ struct Shared<'a, S> {
     drive: Drive<'a>,
     /// Time of the places [s].
     time: f64,
+    scars: &'a [Scar],
     /// Bound on the way that anything has come towards anything since the near list was made [m].
     gone: f64,
 }
@@ -195,7 +202,8 @@ impl<S: Surface> Shared<'_, S> {
     fn seen<'b>(&'b self, block: &'b Block, members: &'b Members, sums: &'b [Sums]) -> Seen<'b> {
         let Model { bodies, skins, gravity, .. } = self.model;
         let Setting { simd, dt: kick, .. } = self.setting;
-        Seen { simd, block, members, bodies, skins, gravity: *gravity, sums, time: self.time, kick }
+        let (time, scars) = (self.time, self.scars);
+        Seen { simd, block, members, bodies, skins, gravity: *gravity, sums, time, kick, scars }
     }
 
     /// All forces on the bodies of a block; what other blocks left for it is in `slots`.

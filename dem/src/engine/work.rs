@@ -1,6 +1,6 @@
 //! Scratch of the step: never saved, made anew from a state at any time without changing a bit of what follows.
 
-use super::block_work::BlockWork;
+use super::block_work::{BlockWork, Ground};
 use super::state::State;
 use crate::base::Vec3;
 use crate::bodies::members::Members;
@@ -53,6 +53,10 @@ pub struct Work {
     pub(crate) planes: Vec<PlaneNow>,
     /// Walls of patches where they are, where bodies with faces may touch them.
     pub(crate) walls: Vec<WallNow>,
+    /// What each body of a block has of ground that is scarred.
+    pub(crate) ground: Vec<Ground>,
+    /// Scratch of cutting bodies.
+    pub(crate) heights: Vec<f64>,
     /// The external surface where it is, likewise.
     pub(crate) sheet: Vec<SheetFacet>,
     /// The material of all bodies and of all planes, where there is only one.

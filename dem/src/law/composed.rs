@@ -147,6 +147,10 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         }
     }
 
+    fn with_friction(&self, friction: f64) -> Self {
+        Composed { common: Common { friction, ..self.common }, ..*self }
+    }
+
     #[inline(always)]
     fn evaluate<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,

@@ -12,6 +12,9 @@ pub trait ContactLaw: Constants {
     /// Mixes the constants of two materials.
     fn mix(pair: &Pair<'_>) -> Self;
 
+    /// The same with another coefficient of friction.
+    fn with_friction(&self, friction: f64) -> Self;
+
     /// The forces of the contacts in the lanes `on`, over a step [s]. Advances their memory; what it does to the
     /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and with adhesion.
     fn evaluate<R: Real, const ROLL: bool>(

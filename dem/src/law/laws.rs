@@ -158,15 +158,21 @@ impl Laws {
         with_law!(self, t => t.get(a, b).stored(overlap, radius, history))
     }
 
-    /// Largest force of the tangential spring that friction holds [N], and the spring's stiffness [N/m].
+    /// Largest force of the tangential spring that friction holds [N], and the spring's stiffness [N/m]; `friction`: a coefficient in place of
+    /// that of the law.
     pub fn held_by_friction(
         &self,
         [a, b]: [u32; 2],
+        friction: Option<f64>,
         overlap: f64,
         radius: f64,
         history: &History,
     ) -> (f64, f64) {
-        with_law!(self, t => t.get(a, b).held_by_friction(overlap, radius, history))
+        with_law!(self, t => {
+            let law = t.get(a, b);
+            let law = friction.map_or(*law, |it| law.with_friction(it));
+            law.held_by_friction(overlap, radius, history)
+        })
     }
 
     /// How many materials there are.

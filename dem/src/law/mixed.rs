@@ -72,6 +72,10 @@ macro_rules! combinations {
                 [$(|pair: &Pair<'_>| Mixed::$row(ContactLaw::mix(pair))),+][number](pair)
             }
 
+            fn with_friction(&self, friction: f64) -> Mixed {
+                match self { $(Mixed::$row(own) => Mixed::$row(own.with_friction(friction))),+ }
+            }
+
             #[inline(always)]
             fn evaluate<R: $crate::lanes::Real, const ROLL: bool>(
                 law: &MixedLanes<R>,

@@ -23,6 +23,7 @@ mod mixed;
 pub mod normal;
 pub mod restitution;
 pub mod rough;
+pub mod scarring;
 pub(crate) mod slide;
 pub mod spring;
 pub mod table;

@@ -8,6 +8,7 @@ use crate::contact::single;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::record::{Record, xyz};
+use crate::law::scarring::Scar;
 use crate::law::{ContactForce, ContactGeometry, History};
 use crate::pairs::cross::{Cross, ImagePair};
 use crate::pairs::patches::PatchContact;
@@ -55,6 +56,7 @@ struct Snapshot<'a> {
     back: f64,
     /// The last step [s].
     last: f64,
+    scars: &'a [Scar],
 }
 
 impl<'a> Snapshot<'a> {
@@ -73,7 +75,7 @@ impl<'a> Snapshot<'a> {
             model.sheet.now(&state.sheet, back, &mut sheet);
         }
         let (planes, last) = (&state.planes[..], state.pace.last);
-        Snapshot { model, planes, walls, sheet, blocks, spheres, owners, back, last }
+        Snapshot { model, planes, walls, sheet, blocks, spheres, owners, back, last, scars: &state.scars }
     }
 }
 
@@ -125,6 +127,10 @@ impl Scene for Snapshot<'_> {
     fn borders(&self) -> Option<&Periodic> {
         self.model.periodic.as_ref()
     }
+
+    fn scars(&self) -> &[Scar] {
+        self.scars
+    }
 }
 
 fn move_back(block: &mut Block, back: f64) {
@@ -173,6 +179,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                     history,
                     spin: ma.spin() - mb.spin(),
                     materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
+                    friction: None,
                     shift,
                 });
             }
@@ -239,6 +246,7 @@ fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>))
             history: &r.history,
             spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
             materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
+            friction: None,
             shift: Vec3::zeros(),
         });
     });
@@ -260,6 +268,7 @@ fn planes(state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visit
                 history: &history,
                 spin: xyz(&block.spin[a]),
                 materials: [block.spin[a][3] as u32, plane.material],
+                friction: None,
                 shift: Vec3::zeros(),
             });
         }
@@ -293,6 +302,7 @@ fn patch(
             history: &pair.history,
             spin: xyz(&block.spin[a]) - partner.spin,
             materials: [block.spin[a][3] as u32, partner.material],
+            friction: None,
             shift: Vec3::zeros(),
         });
     }
@@ -306,6 +316,7 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
         let ContactForce { force, normal, .. } = single::evaluate(
             &model.laws,
             c.materials,
+            c.friction,
             c.inverse_mass,
             &c.geometry,
             &c.velocity,

@@ -115,7 +115,8 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
             let length = history.spring.norm();
             if length > before {
                 let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
-                let (force, stiffness) = model.laws.held_by_friction(c.materials, overlap, radius, &history);
+                let (force, stiffness) =
+                    model.laws.held_by_friction(c.materials, c.friction, overlap, radius, &history);
                 let most = if stiffness > 0.0 { before.max(force / stiffness) } else { 0.0 };
                 if length > most {
                     history.spring *= most / length;

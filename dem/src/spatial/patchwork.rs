@@ -61,6 +61,8 @@ pub(crate) struct WallNow {
     pub open: bool,
     /// Whether forces set its speed.
     pub driven: bool,
+    /// Whether it is ground that bodies scar.
+    pub scarred: bool,
 }
 
 /// Trees of the patches of each wall in its own frame. Walls move as rigid wholes: the trees never change.

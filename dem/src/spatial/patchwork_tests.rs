@@ -30,6 +30,7 @@ fn trees_of_walls_find_all_patches_where_the_walls_are() {
             inverse_mass: 0.0,
             open: false,
             driven: false,
+            scarred: false,
         });
     }
     let trees = Trees::new(&patches);

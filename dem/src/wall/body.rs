@@ -405,6 +405,7 @@ pub(crate) fn stand(
             let f = single::evaluate(
                 laws,
                 materials,
+                None,
                 body.inverse_mass,
                 &g,
                 &relative,

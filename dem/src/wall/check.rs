@@ -12,7 +12,8 @@ fn finite(v: &Vec3) -> bool {
 pub(crate) fn walls(input: &[WallInput], materials: usize) -> Result<(), ModelError> {
     for (index, wall) in input.iter().enumerate() {
         in_range("wall", index, "material", wall.material, materials)?;
-        if let Some(problem) = shape(&wall.shape).or_else(|| motion(wall)) {
+        let problem = shape(&wall.shape).or_else(|| motion(wall)).or_else(|| scarring(wall));
+        if let Some(problem) = problem {
             return Err(ModelError::Wall { wall: format!("wall {index}"), problem });
         }
     }
@@ -94,6 +95,14 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
         return mount(b);
     }
     None
+}
+
+fn scarring(wall: &WallInput) -> Option<&'static str> {
+    let scarring = wall.scarring.as_ref()?;
+    if !matches!(wall.shape, WallShape::Triangles { .. }) || wall.moves() {
+        return Some("ground that is scarred is made of triangles that stand still");
+    }
+    scarring.fault()
 }
 
 fn mount(body: &RigidBody) -> Option<&'static str> {

@@ -2,6 +2,7 @@
 
 use super::Servo;
 use crate::base::Vec3;
+use crate::law::scarring::Scarring;
 
 /// A wall made of patches.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct WallInput {
     pub servo: Option<Servo>,
     /// Makes a wall other than a plane a body that moves by the forces on it, in place of a prescribed motion.
     pub body: Option<RigidBody>,
+    /// Makes triangles that stand still ground that dilated polyhedra and disks scar.
+    pub scarring: Option<Scarring>,
 }
 
 /// Shape of a wall.
@@ -123,7 +126,7 @@ pub struct Mount {
 impl WallInput {
     /// A wall at rest.
     pub fn fixed(shape: WallShape, material: usize) -> WallInput {
-        WallInput { shape, material, motion: Motion::default(), servo: None, body: None }
+        WallInput { shape, material, motion: Motion::default(), servo: None, body: None, scarring: None }
     }
 
     /// A triangle surface that keeps its velocity.
@@ -142,7 +145,7 @@ impl WallInput {
 
     /// The same wall standing still where it starts.
     pub fn at_rest(&self) -> WallInput {
-        WallInput::fixed(self.shape.clone(), self.material)
+        WallInput { scarring: self.scarring, ..WallInput::fixed(self.shape.clone(), self.material) }
     }
 }
 

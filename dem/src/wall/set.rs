@@ -11,6 +11,7 @@ use super::triangulated::{self, SLACK, Triangle};
 use crate::base::Vec3;
 use crate::base::error::{ModelError, Partner};
 use crate::integrate::rotation;
+use crate::law::scarring::Scarring;
 use crate::shape::triangle::Region;
 use crate::spatial::bvh::Bvh;
 use crate::spatial::facet;
@@ -48,6 +49,7 @@ pub(crate) struct Wall {
     /// Point that moments refer to and that the wall turns about, at the start [m].
     pub centre: Vec3,
     pub servo: Option<Servo>,
+    pub scarring: Option<Scarring>,
     /// Largest damping ratio of contacts with grains.
     pub damping: f64,
     pub body: Option<Body>,
@@ -144,6 +146,7 @@ impl Walls {
             material: wall.material as u32,
             motion: wall.motion,
             centre,
+            scarring: wall.scarring,
             servo: wall.servo.clone().map(|s| Servo { direction: s.direction.normalize(), ..s }),
             damping: 0.0,
             body,
@@ -262,6 +265,7 @@ impl Walls {
                 inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
                 open: state.open,
                 driven: wall.servo.is_some(),
+                scarred: wall.scarring.is_some(),
             }
         }));
     }

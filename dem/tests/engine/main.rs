@@ -32,6 +32,7 @@ mod polyhedra_walls;
 mod refusals;
 mod rolling;
 mod round_walls;
+mod scarring;
 mod scene;
 mod seams;
 mod stability;

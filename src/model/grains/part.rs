@@ -96,6 +96,11 @@ impl GrainsPart {
         self.wind.into_iter().chain(self.water)
     }
 
+    /// Whether grains scar a wall.
+    pub fn scarred(&self) -> bool {
+        self.walls.others.iter().any(|w| w.scarring.is_some())
+    }
+
     /// The model in which filled grains settle: no sleeper, friction and damping of the deposition.
     pub fn deposition_input(&self, plan: &DepositionPlan) -> ModelInput {
         let contacts = self.materials.pairs_with(plan.friction);

@@ -55,6 +55,7 @@ pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
         (scene.grains.iter().any(|g| g.inlet.is_some()), "an inlet"),
         (!scene.outlet.is_empty(), "[[outlet]]"),
         (rail.is_some_and(|r| r.mass.is_some()), "a rail with mass"),
+        (scene.walls.iter().any(|w| w.scarring.is_some()), "`scarring`"),
         (scene.walls.iter().filter_map(|w| w.body.as_ref()).any(|b| b.mount.is_some()), "a `mount`"),
     ];
     match dynamic.into_iter().find(|(there, _)| *there) {

@@ -1,6 +1,7 @@
 //! The solid, walls, sleepers and rails.
 
-use super::super::draw::{Line, Look, Paint, Triangle, V3};
+use super::super::colours;
+use super::super::draw::{Colour, Line, Look, Paint, Triangle, V3};
 use super::super::labels;
 use super::super::options::{Clip, Part};
 use super::super::run::{Moment, of_elements};
@@ -9,6 +10,7 @@ use super::Parts;
 use super::plain;
 use crate::results::section::{Point, outlines, section};
 use crate::write::WallKind;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Colours of what has none from values, those of the viewer.
 const GROUND: &str = "9aa7b3";
@@ -22,6 +24,19 @@ const CONTOUR: f32 = 0.38;
 const MOST_EDGES: usize = 400;
 /// Number of bodies of the solid; walls follow.
 const SOLID_BODY: u32 = 0;
+
+/// Looks of the triangles of a part.
+struct Looks {
+    first: u16,
+    /// By the number of a group.
+    groups: BTreeMap<usize, u16>,
+}
+
+impl Looks {
+    fn of(&self, value: Option<f64>) -> u16 {
+        value.and_then(|v| self.groups.get(&(v as usize)).copied()).unwrap_or(self.first)
+    }
+}
 
 impl Parts<'_> {
     pub(super) fn solid(&mut self, moment: &Moment) {
@@ -149,6 +164,29 @@ impl Parts<'_> {
         self.scene.lines.extend(lines);
     }
 
+    /// How triangles of one part look: all alike, by a value, or by the number of a group.
+    fn looks(&mut self, values: Option<impl Iterator<Item = f64>>, colour: Colour, opacity: f32) -> Looks {
+        let mut add = |paint, relief| self.scene.look(Look { paint, opacity, relief });
+        let by_group = self.wanted.grains.as_deref() == Some("part");
+        match values {
+            None => Looks { first: add(Paint::Own(colour), 1.0), groups: BTreeMap::new() },
+            Some(values) if by_group => {
+                let numbers: BTreeSet<usize> = values.map(|v| v as usize).collect();
+                let one = |g: usize| (g, add(Paint::Own(colours::group(g)), 1.0));
+                let groups: BTreeMap<usize, u16> = numbers.into_iter().map(one).collect();
+                Looks { first: groups.first_key_value().map_or(0, |(_, look)| *look), groups }
+            }
+            Some(_) => {
+                let range = self.limits.grains.unwrap_or([0.0, 1.0]).map(|v| v as f32);
+                let paint = Paint::Map { table: self.table(Part::Grains), range, bands: 0 };
+                Looks {
+                    first: self.scene.look(Look { paint, opacity, relief: 1.0 }),
+                    groups: BTreeMap::new(),
+                }
+            }
+        }
+    }
+
     pub(super) fn walls(&mut self, moment: &Moment) {
         let Some(walls) = &moment.walls else { return };
         let is = |kind: u8, of: WallKind| kind == of as u8;
@@ -168,7 +206,9 @@ impl Parts<'_> {
                 continue;
             }
             let opacity = self.opacity(part, opacity);
-            let look = self.scene.look(Look { paint: Paint::Own(plain(colour)), opacity, relief: 1.0 });
+            let values = moment.stone_values.as_ref().filter(|_| part == Part::Grains);
+            let looks = self.looks(values.map(|v| chosen.iter().map(|t| v[*t])), plain(colour), opacity);
+            let look_of = |t: usize| looks.of(values.map(|v| v[t]));
             let at = |n: u32| self.near(&walls.points[3 * n as usize..3 * n as usize + 3]);
             let mut own = vec![false; walls.points.len() / 3];
             let triangles: Vec<Triangle> = chosen
@@ -176,11 +216,18 @@ impl Parts<'_> {
                 .map(|t| {
                     let n = [0, 1, 2].map(|c| walls.triangles[3 * t + c]);
                     n.iter().for_each(|n| own[*n as usize] = true);
-                    Triangle { corners: n.map(at), values: [0.0; 3], look, body: 1 + walls.id[*t] }
+                    let value = values.map_or(0.0, |v| v[*t] as f32);
+                    Triangle {
+                        corners: n.map(at),
+                        values: [value; 3],
+                        look: look_of(*t),
+                        body: 1 + walls.id[*t],
+                    }
                 })
                 .collect();
             let edges = walls.edges.chunks_exact(2).filter(|e| own[e[0] as usize]);
             let few = triangles.len() <= MOST_EDGES || part == Part::Track;
+            let look = looks.first;
             let lines = edges.filter(|_| few).map(|e| Line { ends: [at(e[0]), at(e[1])], look }).collect();
             self.cut(part, triangles, lines);
         }

@@ -209,8 +209,12 @@ export class App {
       if (state.chains.auto) [state.chains.min, state.chains.max] = this.chains.range;
     }
     if (has.includes('walls')) {
-      await this.once('walls', k, async () => this.walls.frame(await this.block(`walls/${k}`)));
-      this.walls.look(state.walls);
+      await this.once('walls', k, async () => {
+        this.walls.frame(await this.block(`walls/${k}`));
+        this.shown.stones = null;
+      });
+      await this.once('stones', chosen(state.grains), async () => this.paintStones(k));
+      this.walls.look(state.walls, state.grains);
     }
     if (has.includes('solid') && this.solidSkin) await this.updateSolid(k);
     if (state.view.projection !== stage.projection) stage.select(state.view.projection);
@@ -256,6 +260,26 @@ export class App {
       grains.spheres.opacity = look.opacity;
     });
     this.section();
+  }
+
+  /** Colours grains with faces as the others, within limits for both. */
+  async paintStones(k) {
+    const { state, walls, grains } = this;
+    const { colour, auto } = state.grains;
+    const block = walls.stones.length && this.meta.grainFields.includes(colour) ? await this.block(`walls/${k}/${colour}`) : null;
+    const values = block ? walls.ofStones(block.arrays.value) : null;
+    this.stoneValues = values;
+    if (!values) return walls.paint(null);
+    const own = grains.count && grains.values ? grains.range : [Infinity, -Infinity];
+    let range = [state.grains.min, state.grains.max];
+    if (auto) {
+      range = values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], own);
+      [state.grains.min, state.grains.max] = range;
+    }
+    grains.range = range;
+    grains.spheres.material.uniforms.range.value.set(...range);
+    walls.paint(values, range, state.grains, colour === 'part');
+    return null;
   }
 
   /** One number per body of a frame; null for a constant colour. */

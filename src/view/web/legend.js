@@ -7,15 +7,16 @@ const GROUP_COLOURS = ['#e69f00', '#56b4e9', '#009e73', '#f0e442', '#0072b2', '#
 export function legendsOf(app) {
   const { state, grains, chains, solid } = app;
   const list = [];
-  if (grains.group.visible && grains.count && state.grains.colour !== 'constant') {
+  const stones = state.grains.show ? app.stoneValues : null;
+  if ((grains.group.visible && grains.count || stones) && state.grains.colour !== 'constant') {
     const field = state.grains.colour;
-    if (field === 'piece') {
+    if (field === 'piece' && app.pieces?.length) {
       const [largest, ...others] = app.pieces;
       const swatches = [['#db1a1a', `largest: ${largest.bodies} of ${grains.count}`]];
       if (others.length) swatches.push(['#1a9933', `${others.length} other piece${others.length > 1 ? 's' : ''}`]);
       list.push({ part: 'grains', title: 'Pieces', unit: '', swatches });
     } else if (field === 'part') {
-      const groups = [...new Set(grains.values)].sort((a, b) => a - b).slice(0, 8);
+      const groups = [...new Set([...(grains.values ?? []), ...(stones ?? [])])].sort((a, b) => a - b).slice(0, 8);
       list.push({ part: 'grains', title: 'Groups', unit: '', swatches: groups.map((g) => [GROUP_COLOURS[g % 8], `group ${g}`]) });
     } else {
       const title = field === 'displacement' ? 'Displacement' : grainLabel(field);

@@ -148,7 +148,7 @@ async function ofFrames(files, all) {
     const { grains, chains, walls } = frame.files;
     if (grains) grainBlocks(grains, k, blocks, fields);
     if (chains) blocks.set(`chains/${k}`, { meta: {}, arrays: { ends: linked(chains, 'Lines'), ...chains.sections.CellData } });
-    if (walls) blocks.set(`walls/${k}`, wallBlock(walls));
+    if (walls) wallBlocks(walls, k, blocks, fields);
     delete frame.files;
   });
   return finish(blocks, files[0].name, frames, [...fields]);
@@ -200,20 +200,29 @@ function grainBlocks({ points, sections }, k, blocks, fields) {
   }
 }
 
-function wallBlock({ points, sections }) {
+function wallBlocks({ points, sections }, k, blocks, fields) {
   const { connectivity, offsets } = sections.Polys;
   const { id: ids, kind: kinds } = sections.CellData ?? {};
-  const [triangles, edges, id, kind] = [[], [], [], []];
+  const [triangles, edges, id, kind, of] = [[], [], [], [], []];
   offsets.forEach((end, p) => {
     const polygon = [...connectivity.subarray(p ? offsets[p - 1] : 0, end)];
-    for (let k = 1; k + 1 < polygon.length; k++) {
-      triangles.push(polygon[0], polygon[k], polygon[k + 1]);
+    for (let c = 1; c + 1 < polygon.length; c++) {
+      triangles.push(polygon[0], polygon[c], polygon[c + 1]);
+      of.push(p);
       id.push(ids?.[p] ?? 0);
       kind.push(kinds?.[p] ?? 1);
     }
-    polygon.forEach((corner, k) => edges.push(corner, polygon[(k + 1) % polygon.length]));
+    polygon.forEach((corner, c) => edges.push(corner, polygon[(c + 1) % polygon.length]));
   });
-  return { meta: {}, arrays: { points, triangles, edges, id, kind: Uint8Array.from(kind) } };
+  blocks.set(`walls/${k}`, { meta: {}, arrays: { points, triangles, edges, id, kind: Uint8Array.from(kind) } });
+  for (const [name, values] of Object.entries(sections.CellData ?? {})) {
+    if (['id', 'kind'].includes(name)) continue;
+    const width = values.length / offsets.length;
+    const value = Float32Array.from(of, (p) => (width === 1 ? values[p] : Math.hypot(...values.subarray(width * p, width * (p + 1)))));
+    const shown = name === 'velocity' ? 'speed' : name;
+    fields.add(shown);
+    blocks.set(`walls/${k}/${shown}`, { meta: {}, arrays: { value } });
+  }
 }
 
 const TYPES = { Float64: Float64Array, Float32: Float32Array, UInt32: Uint32Array, UInt8: Uint8Array, Int32: Int32Array };

@@ -1,10 +1,11 @@
 // Walls, sleepers and rails.
 import * as THREE from 'three';
-import { rgb } from 'colours';
+import { groupTexture, mapTexture, rgb } from 'colours';
 import { lineMaterial, surfaceMaterial } from 'shaders';
 
 /** Kinds as the program numbers them: their names, what is drawn in which order. */
 export const KINDS = ['planes', 'walls', 'sleepers', 'rails', 'stones'];
+const STONE = 4;
 
 export class Walls {
   constructor() {
@@ -43,18 +44,35 @@ export class Walls {
       fill(part.edges, lines);
       part.count = corners.length / 9;
     });
+    this.stones = Uint32Array.from(kind.keys()).filter((t) => kind[t] === STONE);
   }
 
-  /** `look`: planes and walls (boundary) and sleepers with rails, each shown or not, with colour and opacity. */
-  look(look) {
+  /** Values of the triangles of grains with faces, of those of all triangles. */
+  ofStones(values) { return Float32Array.from(this.stones, (t) => values[t]); }
+
+  /** Colours grains with faces by one number for each of their triangles; null: all alike. `palette`: numbers are groups. */
+  paint(values, range, look, palette) {
+    const { mesh } = this.parts[STONE];
+    const u = mesh.material.uniforms;
+    u.mode.value = values ? (palette ? 2 : 0) : 1;
+    if (!values) return;
+    u.map.value = palette ? groupTexture() : mapTexture(look.map);
+    u.range.value.set(...range);
+    const attribute = mesh.geometry.getAttribute('value');
+    values.forEach((v, t) => attribute.array.fill(v, 3 * t, 3 * t + 3));
+    attribute.needsUpdate = true;
+  }
+
+  /** `look`: planes and walls (boundary) and sleepers with rails, each shown or not, with colour and opacity; `grains`: that of grains. */
+  look(look, grains) {
     this.parts.forEach((part, p) => {
       const boundary = p < 2;
-      const own = boundary ? look.boundary : look.track;
+      const own = p === STONE ? grains : boundary ? look.boundary : look.track;
       part.mesh.visible = part.edges.visible = own.show && part.count > 0;
       // Triangulated walls would be hidden by their own edges.
       part.edges.visible &&= !(p === 1 && part.count > 400);
       const u = part.mesh.material.uniforms;
-      u.tint.value.set(...rgb(p === 3 ? look.rail : p === 4 ? look.stone : own.colour));
+      u.tint.value.set(...rgb(p === 3 ? look.rail : p === STONE ? look.stone : own.colour));
       u.opacity.value = own.opacity;
       const glass = own.opacity < 1;
       if (part.mesh.material.transparent !== glass) {

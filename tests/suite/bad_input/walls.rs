@@ -106,6 +106,39 @@ fn mounts_of_bodies() {
     }
 }
 
+/// Ground that is scarred, with more keys.
+fn ground(wall: &str, scarring: &str) -> String {
+    format!(
+        "kind = \"triangles\"\nvertices = [[0, 0, -1], [1, 0, -1], [0, 1, -1]]\ntriangles = [[0, 1, 2]]\n{wall}\nscarring = {{ {scarring} }}"
+    )
+}
+
+#[test]
+fn ground_that_is_scarred() {
+    for (keys, words) in [
+        ("strength = 0", "strength: found 0, expected a strength above 0"),
+        ("strength = 1e7, drag = -1", "drag: found -1, expected 0 or more"),
+        (
+            "strength = 1e7, friction = [0.5, 0.4]",
+            "friction: found [0.5, 0.4], expected two coefficients of 0 or more, the second not below the first",
+        ),
+        ("drag = 1", "strength: found nothing, expected a value for this key"),
+    ] {
+        let text = ground("", keys);
+        grains_scene().scene(PLANE, &text).refused(&format!("scene.toml:21: walls.0.scarring.{words}"));
+    }
+    grains_scene().scene(PLANE, &ground("velocity = [1, 0, 0]", "strength = 1e7")).refused(
+        "scene.toml:20: walls.0.velocity: found a value, expected no such key beside `scarring`: the ground stands still",
+    );
+    grains_scene().scene(PLANE, &format!("{PLANE}\nscarring = {{ strength = 1e7 }}")).refused(
+        "scene.toml:20: walls.0.scarring: found a value, expected no such key for this kind of wall: ground that is scarred is `triangles` or a `mesh`",
+    );
+    // The grains of this scene are spheres.
+    grains_scene().scene(PLANE, &ground("", "strength = 1e7")).refused(
+        "scene.toml:16: walls: found wall 0: only dilated polyhedra and disks scar the ground, expected walls that can be built",
+    );
+}
+
 #[test]
 fn mount_beside_a_factor_on_masses() {
     grains_scene()

@@ -21,7 +21,7 @@ mod sphere_box;
 
 pub(crate) use dilated::LENGTH;
 pub(crate) use pair::Visited;
-pub(crate) use pass::Kind;
+pub(crate) use pass::{Kind, OnGround};
 pub(crate) use scene::{Now, Placed, PlaneView, Scene, Search, SheetView};
 pub(crate) use side::Renamed;
 

@@ -82,6 +82,8 @@ pub(crate) struct Visited<'a> {
     pub spin: Vec3,
     /// Materials of the two.
     pub materials: [u32; 2],
+    /// Coefficient of friction, where it is not that of the materials.
+    pub friction: Option<f64>,
     /// From the partner to its touched image [m].
     pub shift: Vec3,
 }

@@ -11,6 +11,7 @@ use crate::bodies::sums::WallSum;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
 use crate::law::ContactGeometry;
+use crate::law::scarring::Scar;
 use crate::pairs::cross::SurfaceBook;
 use crate::pairs::list::{PairList, PairName, PointMemory};
 
@@ -64,6 +65,9 @@ pub(crate) trait Kind: Sync {
     /// Calls `f` for each contact of a block's list.
     fn visit(&self, scene: &dyn Scene, b: usize, list: &PairList, f: &mut dyn FnMut(&Visited<'_>));
 
+    /// Calls `f` for each pair of a block's list with ground that is scarred.
+    fn grounds(&self, now: &Now<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround));
+
     /// Calls `share` with number of the pair, block and place of each body that takes part in it, and whether it comes
     /// first.
     fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool));
@@ -79,6 +83,17 @@ pub(crate) trait Kind: Sync {
         list: &PairList,
         put: &mut dyn FnMut(usize, PairName, &[PointMemory]),
     );
+}
+
+/// A body and a patch of ground that is scarred.
+pub(crate) struct OnGround {
+    /// Place of the body in its block.
+    pub place: usize,
+    pub patch: u32,
+    /// Whether they touched in the last step, the ground lowered.
+    pub touches: bool,
+    /// Whether the body reaches through the patch where that is.
+    pub cuts: bool,
 }
 
 /// A kind of pair as a [`Kind`].
@@ -97,12 +112,35 @@ impl<K: PairKind> Of<K> {
             way = periodic.nearest(&K::First::middle(&first), &K::Second::middle(&second));
             K::Second::image(&mut second, &way);
         }
+        if let Some(scar) = Self::scar(scene, b, [i, other, j]) {
+            // The soil is gone where the body is: what it touches is a lower image of the ground.
+            way += scar.sunk;
+            K::Second::image(&mut second, &way);
+        }
         (first, second, way)
     }
 
+    /// What the first partner does to the second, where that is ground that is scarred.
+    #[inline(always)]
+    fn scar(scene: &(impl Scene + ?Sized), b: usize, [i, _, j]: PairName) -> Option<&Scar> {
+        let scars = scene.scars();
+        if scars.is_empty() {
+            return None;
+        }
+        K::Second::wall(scene, j).filter(|w| scene.walls().walls[*w].scarred)?;
+        K::First::body(scene, b, i).map(|k| &scars[scene.block(b).bodies[k] as usize])
+    }
+
+    /// Whether the partners may come within `reach` [m], the ground lowered or not.
     fn near(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
         let (first, second, _) = Self::partners(scene, b, name);
         self.0.near(&first, &second, reach)
+            || Self::scar(scene, b, name).is_some_and(|s| s.inside) && self.cuts(scene, b, name, reach)
+    }
+
+    /// Whether they may come within `reach` [m], the ground as it is.
+    fn cuts(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
+        self.0.near(&K::First::view(scene, b, name[0]), &K::Second::view(scene, b, name[2]), reach)
     }
 
     /// Whether the points of two pairs share the mass.
@@ -132,7 +170,9 @@ impl<K: PairKind> Kind for Of<K> {
         K::First::own(search, b, |i| {
             let first = K::First::view(now, b, i);
             let still = K::First::still(now, b, i);
-            let bounds = grown(K::First::bounds(&first), reach);
+            let scar = |k| now.scars.get(now.block(b).bodies[k] as usize);
+            let deep = K::First::body(now, b, i).and_then(scar).map_or(0.0, |s| s.sunk.norm());
+            let bounds = grown(K::First::bounds(&first), reach + deep);
             K::Second::around(search, b, bounds, row, |other, j| {
                 // Of two partners that could both come first the earlier one does.
                 let turned = K::Second::body(now, other as usize, j).is_some() && [other, j] <= [b as u32, i];
@@ -220,9 +260,22 @@ impl<K: PairKind> Kind for Of<K> {
                     history: &memory.unwrap_or(&PointMemory::FRESH).history,
                     spin: own.spin() - its.spin(),
                     materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],
+                    friction: Self::scar(scene, b, list.name(k)).map(|s| s.friction),
                     shift: *way,
                 });
             }
+        }
+    }
+
+    fn grounds(&self, now: &Now<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround)) {
+        for k in 0..list.len() {
+            let name @ [i, _, patch] = list.name(k);
+            if Self::scar(now, b, name).is_none() {
+                continue;
+            }
+            let Some(place) = K::First::body(now, b, i) else { continue };
+            let touches = !list.points(k).is_empty();
+            f(&OnGround { place, patch, touches, cuts: self.cuts(now, b, name, 0.0) });
         }
     }
 
@@ -335,7 +388,9 @@ impl<K: PairKind> Of<K> {
             (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
         *books.friction += weigh(setting, materials, g, memory, weight);
         let ends = (&own, &its);
-        let f = single::between(setting.laws, materials, g, ends, share, &mut memory.history, setting.dt);
+        let friction = Self::scar(now, b, [i, other as u32, j]).map(|s| s.friction);
+        let history = &mut memory.history;
+        let f = single::between(setting.laws, materials, friction, g, ends, share, history, setting.dt);
         let force = f.force * weight;
         sums[0] += force;
         let couple = touch.couple * force.dot(&g.normal);

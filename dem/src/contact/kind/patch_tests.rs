@@ -29,6 +29,7 @@ impl Wall {
             inverse_mass: 0.0,
             open: false,
             driven: false,
+            scarred: false,
         };
         Wall { patches, now }
     }

@@ -5,6 +5,7 @@ use crate::bodies::block::Block;
 use crate::bodies::members::Members;
 use crate::bodies::part::Part;
 use crate::lanes::record::{Record, xyz};
+use crate::law::scarring::Scar;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::{Plane, PlaneMotion};
@@ -124,6 +125,9 @@ pub(crate) trait Scene {
     fn sheet(&self) -> SheetView<'_>;
 
     fn borders(&self) -> Option<&Periodic>;
+
+    /// What each body does to ground that is scarred, by number; empty where no ground is.
+    fn scars(&self) -> &[Scar];
 }
 
 /// Triangles of the external surface, and what they are of.
@@ -156,6 +160,7 @@ pub(crate) struct Now<'a> {
     pub walls: Walls<'a>,
     pub sheet: SheetView<'a>,
     pub periodic: Option<&'a Periodic>,
+    pub scars: &'a [Scar],
 }
 
 impl Scene for Now<'_> {
@@ -212,6 +217,11 @@ impl Scene for Now<'_> {
     #[inline(always)]
     fn borders(&self) -> Option<&Periodic> {
         self.periodic
+    }
+
+    #[inline(always)]
+    fn scars(&self) -> &[Scar] {
+        self.scars
     }
 }
 

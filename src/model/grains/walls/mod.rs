@@ -1,6 +1,7 @@
 //! `[[walls]]` resolved.
 
 mod motion;
+mod scarring;
 mod shape;
 
 use super::check::find;
@@ -8,6 +9,7 @@ use crate::failure::Failure;
 use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{Scene, Table};
 use motion::{body, motion, servo};
+use scarring::scarring;
 use shape::shape;
 use trackbed_dem::{Plane, WallInput, WallShape};
 
@@ -75,6 +77,7 @@ pub(super) fn is_plain(wall: &Wall) -> bool {
         && wall.oscillation.is_none()
         && wall.servo.is_none()
         && wall.body.is_none()
+        && wall.scarring.is_none()
         && !wall.record
 }
 
@@ -108,11 +111,11 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
         return Ok(());
     }
     let servo = servo(wall)?;
-    let body = body(wall)?;
+    let (body, scarring) = (body(wall)?, scarring(wall)?);
     part.names.push(name.clone());
     if wall.record {
         part.recorded.push(Recorded { name, wall: part.others.len() });
     }
-    part.others.push(WallInput { shape, material, motion, servo, body });
+    part.others.push(WallInput { shape, material, motion, servo, body, scarring });
     Ok(())
 }

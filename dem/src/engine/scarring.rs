@@ -1,0 +1,138 @@
+//! Bodies in ground that they scar (`law/scarring.rs`): when each comes into the soil and leaves it, how deep it sinks, what area drags.
+//!
+//! A body is in the soil as long as it reaches through the surface. The surface over which its area is cut is the plane of the triangle
+//! beneath its centre, or else of the nearest one that it reaches through.
+
+use super::block_work::Ground;
+use super::candidates;
+use super::model::Model;
+use super::state::State;
+use super::work::Work;
+use crate::base::Vec3;
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::contact::kind::{KINDS, OnGround};
+use crate::lanes::record::xyz;
+use crate::law::scarring::{Scar, Scarring};
+use crate::spatial::facet::Facet;
+use crate::spatial::patchwork::Form;
+
+/// Follows every body for the next step.
+pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
+    let down = model.gravity.normalize();
+    let mut heights = std::mem::take(&mut work.heights);
+    for b in 0..state.blocks.len() {
+        let mut ground = std::mem::take(&mut work.ground);
+        ground.clear();
+        ground.resize(state.blocks[b].bodies.len(), Ground::default());
+        let now = candidates::now(model, state, &work.members, (&work.walls, &work.sheet));
+        for (kind, list) in KINDS.iter().zip(&state.cross[b].kinds) {
+            kind.grounds(&now, b, list, &mut |on: &OnGround| {
+                let patch = &model.patches[on.patch as usize];
+                if let Form::Facet(facet) = &patch.form {
+                    let centre = xyz(&state.blocks[b].centre[on.place]);
+                    ground[on.place].see(on, facet, patch.wall as usize, &centre, &down);
+                }
+            });
+        }
+        let State { blocks, scars, stale, pace, .. } = &mut *state;
+        for (k, own) in ground.iter().enumerate() {
+            let scar = &mut scars[blocks[b].bodies[k] as usize];
+            let body = Body { model, block: &blocks[b], members: &work.members[b], k, down: &down };
+            let before = scar.inside;
+            body.follow(scar, own, pace.kick(), &mut heights);
+            // Ground that was out of reach comes within it as the body sinks.
+            *stale |= scar.inside != before;
+        }
+        work.ground = ground;
+    }
+    work.heights = heights;
+}
+
+impl Ground {
+    /// Takes note of a patch near the body.
+    fn see(&mut self, on: &OnGround, facet: &Facet, wall: usize, centre: &Vec3, down: &Vec3) {
+        self.touches |= on.touches;
+        self.cuts |= on.cuts;
+        let normal = if facet.normal.dot(down) > 0.0 { -facet.normal } else { facet.normal };
+        let height = normal.dot(&(centre - facet.corners[0]));
+        let beneath = beneath(facet, centre, down);
+        let nearer = self.plane.is_none_or(|(_, known)| height.abs() < known.abs());
+        if beneath && !self.beneath || beneath == self.beneath && nearer && (beneath || on.cuts) {
+            (self.plane, self.beneath, self.wall) = (Some((normal, height)), beneath, wall);
+        }
+    }
+}
+
+/// Whether a vertical line through a point meets a triangle.
+fn beneath(facet: &Facet, x: &Vec3, down: &Vec3) -> bool {
+    let slope = facet.normal.dot(down);
+    if slope == 0.0 {
+        return false;
+    }
+    let foot = x + down * (facet.normal.dot(&(facet.corners[0] - x)) / slope);
+    facet.edges.iter().zip(&facet.corners).all(|(edge, corner)| edge.side.dot(&(foot - corner)) <= 0.0)
+}
+
+/// A body of a block.
+struct Body<'a> {
+    model: &'a Model,
+    block: &'a Block,
+    members: &'a Members,
+    k: usize,
+    down: &'a Vec3,
+}
+
+impl Body<'_> {
+    /// Brings what it does to the ground up to date, for a step of `dt` [s].
+    fn follow(&self, scar: &mut Scar, ground: &Ground, dt: f64, heights: &mut Vec<f64>) {
+        let law = self.model.walls.walls[ground.wall].scarring;
+        let Some((law, (normal, height))) = law.zip(ground.plane).filter(|_| self.inside(scar, ground))
+        else {
+            // Out of the soil: nothing but the way that friction has grown with stays, and that fades.
+            let law = self.model.walls.walls.iter().find_map(|w| w.scarring);
+            let way = law.map_or(0.0, |law| law.way(scar.way, false, 0.0, dt));
+            let way = if way > FORGOTTEN { way } else { 0.0 };
+            let friction = law.map_or(0.0, |law| law.friction(way));
+            *scar = Scar { way, friction, ..Scar::default() };
+            return;
+        };
+        let velocity = xyz(&self.block.velocity[self.k]);
+        let speed = velocity.norm();
+        if !scar.inside {
+            let mass = self.model.mass(self.block.bodies[self.k] as usize);
+            scar.inside = true;
+            scar.sunk = self.down * law.depth(mass, velocity.dot(self.down));
+        }
+        scar.way = law.way(scar.way, ground.touches, speed, dt);
+        scar.friction = law.friction(scar.way);
+        scar.resistance = if speed > 0.0 {
+            self.resistance(&law, (&normal, height), &(velocity / speed), heights)
+        } else {
+            0.0
+        };
+    }
+
+    fn inside(&self, scar: &Scar, ground: &Ground) -> bool {
+        let sunk = ground.beneath && ground.plane.is_some_and(|(_, height)| height < 0.0);
+        ground.cuts || scar.inside && sunk
+    }
+
+    /// Drag over the square of its speed: that of its part below the surface, as seen along its way [kg/m].
+    fn resistance(
+        &self,
+        law: &Scarring,
+        (normal, height): (&Vec3, f64),
+        along: &Vec3,
+        heights: &mut Vec<f64>,
+    ) -> f64 {
+        let (shape, scale) = self.members.solids[self.k];
+        let turn = &self.block.rotation[self.k].orientation;
+        let [up, along] = [normal, along].map(|x| turn.inverse_transform_vector(x));
+        let below = self.model.skins[shape as usize].below(&up, -height / scale, &along, heights);
+        law.resistance(below.seen * scale * scale)
+    }
+}
+
+/// A way below which friction has forgotten that it has grown [m].
+const FORGOTTEN: f64 = 1e-12;
