@@ -6,6 +6,7 @@
 
 mod arrays;
 mod back_end;
+mod bodies;
 mod layout;
 mod machine;
 mod scope;
