@@ -26,7 +26,12 @@ fn a_device_refuses_by_name() {
     let stones = stones.replace("\"granite.toml", &format!("\"{inputs}/ballast/granite.toml"));
     let cases: [(&str, &str, &[&str], &str); 4] = [
         ("device_solid", COUPLED, &[], "solids are not"),
-        ("device_wall", GRAINS, &[cylinder], "walls other than planes are not"),
+        (
+            "device_wall",
+            GRAINS,
+            &[cylinder],
+            "walls other than triangles and planes of steady velocity are not",
+        ),
         ("device_wind", GRAINS, &["wind={ drag = 0.9 }"], "body forces other than gravity are not"),
         ("device_stones", &stones, &[], "boxes and polyhedra are not"),
     ];

@@ -6,6 +6,7 @@
 
 use super::bodies::Spheres;
 use super::layout::{LISTS, List, What, entry};
+use super::walls::{Kept, Pairs};
 use crate::bond::BondList;
 use crate::bond::debonded::DebondedPair;
 use crate::bond::kernel;
@@ -32,21 +33,29 @@ pub(super) struct Memory {
     pub spring: Vec<[f64; 4]>,
     pub turn: Vec<[f64; 4]>,
     pub bonds: Vec<[f64; 4]>,
+    /// Of pairs of spheres and triangles.
+    pub kept: Kept,
 }
 
 impl Memory {
-    /// Zeros for so many contacts and bonds.
-    pub fn zeros(contacts: usize, bonds: usize) -> Memory {
+    /// Zeros for so many contacts, pairs of spheres and triangles among them, and bonds.
+    pub fn zeros(contacts: usize, pairs: usize, bonds: usize) -> Memory {
         let zero = [0.0; 4];
-        Memory { spring: vec![zero; contacts], turn: vec![zero; contacts], bonds: vec![zero; 2 * bonds] }
+        Memory {
+            spring: vec![zero; contacts],
+            turn: vec![zero; contacts],
+            bonds: vec![zero; 2 * bonds],
+            kept: Kept::zeros(pairs),
+        }
     }
 
     /// That of a state.
     pub fn of(state: &State) -> Memory {
         let mut out = Memory::default();
+        let Memory { spring, turn, bonds, kept } = &mut out;
         let mut add = |h: History| {
-            out.spring.push([h.spring.x, h.spring.y, h.spring.z, h.rate]);
-            out.turn.push(h.turn);
+            spring.push([h.spring.x, h.spring.y, h.spring.z, h.rate]);
+            turn.push(h.turn);
         };
         state.cross.iter().for_each(|c| c.spheres.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.pairs.iter().for_each(|(_, h)| add(h)));
@@ -54,9 +63,10 @@ impl Memory {
         for list in bond_lists(state).iter().flatten() {
             list.debonded.iter().for_each(|pair| add(pair.history));
             for kernel::Memory { shear, turn } in list.iter().map(|e| e.memory) {
-                out.bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
+                bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
             }
         }
+        state.lists.iter().for_each(|l| kept.add(&l.walls, &mut add));
         out
     }
 
@@ -78,6 +88,12 @@ impl Memory {
                 list.set(k, &Entry { memory, ..list.get(k) });
                 bond += 2;
             }
+        }
+        let mut pair = 0;
+        for lists in &mut state.lists {
+            let count = lists.walls.pairs.len();
+            self.kept.put(&mut lists.walls, pair, |k| self.history(at + pair + k, true));
+            pair += count;
         }
     }
 
@@ -110,6 +126,8 @@ pub(super) struct Lists {
     pub bond_constants: Vec<[f64; kernel::COUNT]>,
     /// Overlap of each debonded pair that does not count.
     pub reference: Vec<f64>,
+    /// Pairs of spheres and triangles, at the end of the contacts.
+    pub pairs: Pairs,
     /// Number of blocks.
     blocks: usize,
 }
@@ -130,6 +148,11 @@ impl Lists {
         for ((debonded, bonds), lists) in places.zip(bond_lists(state)) {
             out.bonds(model, debonded, bonds, &lists);
         }
+        for (b, lists) in state.lists.iter().enumerate() {
+            out.ranges[b][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
+            out.pairs.add(b, lists, spheres);
+        }
+        out.ranges[blocks][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
         out.enter(state, work, spheres);
         out
     }
@@ -188,7 +211,7 @@ impl Lists {
     }
 
     /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
-    /// and within, contacts within, planes.
+    /// and within, contacts within, planes, triangles.
     fn enter(&mut self, state: &State, work: &Work, spheres: &Spheres) {
         let mut all: Vec<(u32, u32)> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
         let mut put =
@@ -235,6 +258,10 @@ impl Lists {
                 }
             }
         }
+        for (group, &first) in self.pairs.groups.iter().enumerate() {
+            put(spheres.owner(self.pairs.ends[first as usize][0]), What::Walls, group as u32, false);
+        }
+        self.pairs.groups.push(self.pairs.ends.len() as u32);
         self.sort(&all);
     }
 

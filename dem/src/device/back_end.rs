@@ -2,13 +2,15 @@
 
 use super::arrays::{Lists, Memory};
 use super::bodies::{Constants, Motion, Spheres};
-use super::layout::{Booked, Count, Features, HELD_WIDTH, List, Number, Slot};
+use super::layout::{Booked, Count, Features, HELD_WIDTH, List, Number, Slot, WALL_BOOKED};
 use super::machine::{Call, Machine};
 use super::scope::{self, Unsupported};
 use super::text;
+use super::walls::{Triangles, placed};
 use crate::base::Vec3;
 use crate::base::error::StepError;
 use crate::base::ledger::Ledger;
+use crate::bodies::sums::WallSum;
 use crate::contact::planes;
 use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
@@ -38,13 +40,16 @@ pub struct Device<M> {
     books: Vec<f64>,
     /// Whether the device is ahead of the state.
     ahead: bool,
-    /// Contacts and bonds on the device.
+    /// Contacts, pairs of spheres and triangles among them, and bonds on the device.
     contacts: usize,
+    pairs: usize,
     bonds: usize,
+    /// Whether the next step is the engine's to make.
+    orphans: bool,
 }
 
 /// Arrays that change places after each step.
-const PAIRS: [(Slot, Slot); 9] = [
+const PAIRS: [(Slot, Slot); 11] = [
     (Slot::OldX, Slot::NewX),
     (Slot::OldV, Slot::NewV),
     (Slot::OldW, Slot::NewW),
@@ -54,6 +59,8 @@ const PAIRS: [(Slot, Slot); 9] = [
     (Slot::OldSpheres, Slot::NewSpheres),
     (Slot::OldOrientation, Slot::NewOrientation),
     (Slot::OldMomentum, Slot::NewMomentum),
+    (Slot::OldSpare, Slot::NewSpare),
+    (Slot::OldTouch, Slot::NewTouch),
 ];
 
 impl<M: Machine> Device<M> {
@@ -80,10 +87,17 @@ impl<M: Machine> Device<M> {
             books: Vec::new(),
             ahead: false,
             contacts: 0,
+            pairs: 0,
             bonds: 0,
+            orphans: false,
         };
         let law = text::law_constants(&model.laws, materials);
-        device.put(Slot::Law, &law).map_err(|e| failed(state, e))?;
+        let Triangles { shapes, names } = Triangles::of(model);
+        let constants = device
+            .put(Slot::Law, &law)
+            .and_then(|()| device.put(Slot::Shapes, shapes.as_flattened()))
+            .and_then(|()| device.put_counts(Slot::Patches, names.as_flattened()));
+        constants.map_err(|e| failed(state, e))?;
         device.take_over(model, state).map_err(|e| failed(state, e))?;
         Ok(device)
     }
@@ -175,28 +189,34 @@ impl<M: Machine> Device<M> {
         let lists = Lists::of(model, state, &self.work, &self.spheres);
         let memory = Memory::of(state);
         let last = state.blocks.len();
-        let (count, bonds) = (lists.ends.len(), lists.bond_ends.len());
-        (self.contacts, self.bonds) = (count, bonds);
+        let (pairs, bonds) = (lists.pairs.ends.len(), lists.bond_ends.len());
+        let count = lists.ends.len() + pairs;
+        (self.contacts, self.pairs, self.bonds, self.orphans) = (count, pairs, bonds, lists.pairs.orphans);
         let planes = lists.from(List::Planes, 0);
         let debonded = lists.from(List::CrossDebonded, 0);
         self.call.count(Count::FirstPlane, planes as usize);
         self.call.count(Count::FirstDebonded, debonded as usize);
-        let counts: [(Slot, &[u32]); 5] = [
+        self.call.count(Count::FirstPatch, lists.ends.len());
+        let counts: [(Slot, &[u32]); 7] = [
             (Slot::Ends, lists.ends.as_flattened()),
             (Slot::Start, &lists.start),
             (Slot::Entries, &lists.entries),
             (Slot::Ranges, lists.ranges.as_flattened()),
             (Slot::BondEnds, lists.bond_ends.as_flattened()),
+            (Slot::PatchPairs, lists.pairs.ends.as_flattened()),
+            (Slot::Groups, &lists.pairs.groups),
         ];
         for (slot, list) in counts {
             self.put_counts(slot, list)?;
         }
-        let numbers: [(Slot, &[f64]); 5] = [
+        let numbers: [(Slot, &[f64]); 7] = [
             (Slot::OldMemory, memory.spring.as_flattened()),
             (Slot::OldTurn, if self.features.roll { memory.turn.as_flattened() } else { &[] }),
             (Slot::OldBonds, memory.bonds.as_flattened()),
             (Slot::BondConstants, lists.bond_constants.as_flattened()),
             (Slot::Reference, &lists.reference),
+            (Slot::OldSpare, &memory.kept.spare),
+            (Slot::OldTouch, memory.kept.touch.as_flattened().as_flattened()),
         ];
         for (slot, list) in numbers {
             self.put(slot, list)?;
@@ -209,6 +229,10 @@ impl<M: Machine> Device<M> {
             (Slot::Spent, 2 * count),
             (Slot::Walls, 8 * with_planes),
             (Slot::Power, bonds),
+            (Slot::NewSpare, pairs),
+            (Slot::NewTouch, 12 * pairs),
+            (Slot::Ended, pairs),
+            (Slot::Action, 8 * pairs),
         ];
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
@@ -225,7 +249,7 @@ impl<M: Machine> Device<M> {
     fn bring_back(&mut self, state: &mut State) -> Result<(), String> {
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let mut motion = Motion::zeros(n, self.features.clumps);
-        let mut memory = Memory::zeros(self.contacts, self.bonds);
+        let mut memory = Memory::zeros(self.contacts, self.pairs, self.bonds);
         let lists = [
             (Slot::OldX, &mut motion.x),
             (Slot::OldV, &mut motion.v),
@@ -240,6 +264,10 @@ impl<M: Machine> Device<M> {
             }
             self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
         }
+        let kept = &mut memory.kept;
+        self.machine.get(self.call.buffers[Slot::OldSpare as usize], &mut kept.spare)?;
+        let touch = kept.touch.as_flattened_mut().as_flattened_mut();
+        self.machine.get(self.call.buffers[Slot::OldTouch as usize], touch)?;
         if self.features.clumps {
             let lists =
                 [(Slot::OldOrientation, &mut motion.orientation), (Slot::OldMomentum, &mut motion.momentum)];
@@ -267,6 +295,9 @@ impl<M: Machine> Device<M> {
             self.fetch(state)?;
             neighbours::update(model, state, &mut self.work, &NoSurface);
             self.take_lists(model, state).map_err(|e| failed(state, e))?;
+        }
+        if self.orphans {
+            return self.by_processor(model, state, applied);
         }
         let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
         if failed_there {
@@ -300,6 +331,10 @@ impl<M: Machine> Device<M> {
         planes::now(&model.planes, &state.planes, &mut self.work.planes);
         let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
         self.put(Slot::Planes, planes.as_flattened())?;
+        if self.features.walls > 0 {
+            self.put(Slot::WallNow, placed(model, state).as_flattened())?;
+            self.call.number(Number::Gone, state.drift + state.wall_drift);
+        }
         let pace = state.pace;
         self.call.number(Number::Step, pace.kick());
         self.call.number(Number::Way, pace.dt);
@@ -349,6 +384,16 @@ impl<M: Machine> Device<M> {
                 book_held(ledger, of(Booked::Held), dt, f.damped);
             }
             tally.failure = None;
+            if f.walls > 0 {
+                let q = of(Booked::Patches);
+                ledger.dissipated_dashpot += q[0];
+                ledger.dissipated_friction += q[1];
+                let sum =
+                    |q: &[f64]| WallSum { force: vector(q, 0), moment: vector(q, 3), ..WallSum::default() };
+                let sums = &mut self.work.blocks[b].patches.wall_sums;
+                sums.clear();
+                sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
+            }
             if f.bonds {
                 let q = of(Booked::Bonds);
                 let lists = [&mut self.work.bonds.cross[b], &mut self.work.blocks[b].bonds];

@@ -66,6 +66,21 @@ table! {
         Target = "TARGET": "const four",
         /// What planes did in each of their contacts: power and force; moment about the origin.
         Walls = "WALLS": "four",
+        /// Numbers and names of each triangle of walls, and where the walls are (`walls.rs`).
+        Shapes = "SHAPES": "const real",
+        Patches = "PATCHES": "const unsigned",
+        WallNow = "WALL_NOW": "const real",
+        /// Sphere and triangle of each pair; the first pair of each sphere that has any, and one past the last.
+        PatchPairs = "PATCH_PAIRS": "const ends",
+        Groups = "GROUPS": "const unsigned",
+        /// Way that is left of each pair, and what it remembers of its contact.
+        OldSpare = "OLD_SPARE": "const real",
+        NewSpare = "NEW_SPARE": "real",
+        OldTouch = "OLD_TOUCH": "const four",
+        NewTouch = "NEW_TOUCH": "four",
+        /// What the springs of a contact that ended had left, force on the body and moment about the centre of the wall, of each pair.
+        Ended = "ENDED": "real",
+        Action = "ACTION": "four",
         /// What local damping and fixed motions did to each body, where a model has them.
         HeldBy = "HELD_BY": "real",
         /// Bodies of each bond, its constants, what it remembers (shear, turn), and the power of its dashpots.
@@ -95,6 +110,8 @@ table! {
         GravityZ = "GRAVITY_Z",
         Damping = "DAMPING",
         Bound = "BOUND",
+        /// Bound on the way that anything has come towards anything since the near list was made.
+        Gone = "GONE",
         /// The last step, and the time since then: zero before the first.
         Last = "LAST",
         Since = "SINCE",
@@ -111,6 +128,8 @@ table! {
         FirstPlane = "FIRST_PLANE",
         /// The first contact of a debonded pair.
         FirstDebonded = "FIRST_DEBONDED",
+        /// The first contact of a sphere and a triangle.
+        FirstPatch = "FIRST_PATCH",
     }
 }
 
@@ -124,6 +143,8 @@ pub(super) enum What {
     /// A contact of spheres that may be members of clumps, and one of such a sphere with a plane.
     Members,
     MemberPlane,
+    /// The pairs of a sphere with triangles.
+    Walls,
 }
 
 /// The entry of a body: contact or bond `of`, of which it may be the `second`.
@@ -160,8 +181,10 @@ pub(super) enum List {
     /// Bonds across and within.
     CrossBonds,
     OwnBonds,
+    /// Pairs of spheres and triangles.
+    Patches,
 }
-pub(super) const LISTS: usize = 8;
+pub(super) const LISTS: usize = 9;
 
 /// What a block books, part by part: how many numbers each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -176,17 +199,27 @@ pub(super) enum Booked {
     Bonds,
     /// What local damping and fixed motions did.
     Held,
+    /// What dashpots and friction took in contacts with triangles; force and moment of each wall.
+    Patches,
 }
 
 impl Booked {
-    const ALL: [(Booked, &str, usize); 5] = [
+    const ALL: [(Booked, &str, usize); 6] = [
         (Booked::Spheres, "SPHERES", 4),
         (Booked::Planes, "PLANES", 9),
         (Booked::Motion, "MOTION", 4),
         (Booked::Bonds, "BONDS", 6),
         (Booked::Held, "HELD", 21),
+        (Booked::Patches, "PATCHES", 2),
     ];
 }
+
+/// Numbers that a block books of each wall: force and moment.
+pub(super) const WALL_BOOKED: usize = 6;
+/// Numbers of a triangle and of a wall, and names of a triangle.
+pub(super) const SHAPE_WIDTH: usize = 25;
+pub(super) const WALL_WIDTH: usize = 19;
+pub(super) const PATCH_WIDTH: usize = 5;
 
 /// Numbers that a body keeps for local damping and fixed motions.
 pub(super) const HELD_WIDTH: usize = 21;
@@ -216,6 +249,8 @@ pub(super) struct Features {
     pub bonds: bool,
     /// Whether any body is a clump.
     pub clumps: bool,
+    /// Number of walls of triangles.
+    pub walls: usize,
 }
 
 impl Features {
@@ -229,11 +264,30 @@ impl Features {
         let mut from = 0;
         for (part, _, count) in Booked::ALL {
             let there = match part {
-                Booked::Spheres | Booked::Planes | Booked::Motion => true,
-                Booked::Bonds => self.bonds,
-                Booked::Held => self.held,
+                Booked::Spheres | Booked::Planes | Booked::Motion => count,
+                Booked::Bonds => {
+                    if self.bonds {
+                        count
+                    } else {
+                        0
+                    }
+                }
+                Booked::Held => {
+                    if self.held {
+                        count
+                    } else {
+                        0
+                    }
+                }
+                Booked::Patches => {
+                    if self.walls > 0 {
+                        count + WALL_BOOKED * self.walls
+                    } else {
+                        0
+                    }
+                }
             };
-            let to = from + if there { count } else { 0 };
+            let to = from + there;
             if part == of {
                 return from..to;
             }
@@ -281,6 +335,9 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("QUANTITIES", f.quantities()),
         ("LAW_WIDTH", f.law_width),
         ("HELD_WIDTH", HELD_WIDTH),
+        ("SHAPE_WIDTH", SHAPE_WIDTH),
+        ("WALL_WIDTH", WALL_WIDTH),
+        ("PATCH_WIDTH", PATCH_WIDTH),
         ("BOND_WIDTH", crate::bond::kernel::COUNT),
         ("ITERATIONS", crate::integrate::rotation::ITERATIONS),
     ];

@@ -12,6 +12,7 @@ mod machine;
 mod scope;
 mod tape;
 mod text;
+mod walls;
 
 pub use back_end::{Device, source};
 pub use layout::Arguments;

@@ -24,7 +24,9 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
     let all = [
         (bodies().any(about_some), "clumps that are free to turn about some axes only"),
         (any_solid, "boxes and polyhedra"),
-        (!model.walls.walls.is_empty(), "walls other than planes"),
+        (!model.walls.triangulated(), "walls other than triangles and planes of steady velocity"),
+        (model.walls.walls.iter().any(|w| w.servo.is_some()), "walls that a force drives"),
+        (model.walls.walls.iter().any(|w| w.body.is_some()), "walls that are bodies"),
         (model.surface_material.is_some(), "contacts with a solid"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
         (model.periodic.is_some(), "periodic borders"),

@@ -1,7 +1,7 @@
 //! The kernels that a device is given, compiled by the system's C compiler: every bit of the state is the engine's.
 
 use crate::c_machine::{CMachine, compiler_is_there};
-use crate::scene::{Random, plane, sphere, stone};
+use crate::scene::{Random, cuboid, free, plane, sphere, stone};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::bond::{
     Bond, BondDamping, BondInput, Criterion, ParallelBond, ParallelStiffness, ShearStrength, within_gap,
@@ -13,7 +13,8 @@ use trackbed_dem::law::table;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
-    BackEnd, LocalDamping, Material, Model, ModelInput, Plane, Shape, State, Vec3, Work, step,
+    BackEnd, LocalDamping, Material, Model, ModelInput, Motion, Oscillation, Plane, Servo, Shape, State,
+    Vec3, WallInput, WallShape, Work, step,
 };
 
 const STEPS: usize = 1000;
@@ -262,6 +263,90 @@ fn clumps_that_turn_about_some_axes_are_refused() {
     );
 }
 
+/// A square of triangles, `n` to a side, around a middle; `height` along the normal of each vertex.
+fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMut() -> f64) -> WallShape {
+    let normal = sides[0].cross(&sides[1]).normalize();
+    let at = |k: u32| f64::from(k) / f64::from(n) - 0.5;
+    let all = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j)));
+    let vertices =
+        all.map(|(i, j)| middle + sides[0] * at(i) + sides[1] * at(j) + normal * height()).collect();
+    let corner = |i: u32, j: u32| j * (n + 1) + i;
+    let cells = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
+    let triangles = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    WallShape::Triangles { vertices, triangles: triangles.collect() }
+}
+
+/// The gas between walls of triangles in place of some planes: a rough floor that comes up, a flat lid that swings, a side that turns.
+fn between_triangles(mut input: ModelInput) -> ModelInput {
+    let (far, mut random) = (0.0206 * 11.0, Random::new(3));
+    let (middle, wide) = (0.5 * far, 1.6 * far);
+    input.planes.retain(|p| p.normal.x < 0.5 && p.normal.z.abs() < 0.5);
+    input.bodies.iter_mut().for_each(|b| b.velocity *= 2.0);
+    let [x, y, z] = [Vec3::x() * wide, Vec3::y() * wide, Vec3::z() * wide];
+    let floor = mesh(17, Vec3::new(middle, middle, -1.5e-3), [x, y], || 1.4e-3 * random.unit());
+    let lid = mesh(5, Vec3::new(middle, middle, 0.1915), [x, y], || 0.0);
+    let side = mesh(3, Vec3::new(-4e-3, middle, middle), [y, z], || 0.0);
+    let rising = Motion { velocity: Vec3::new(0.1, 0.0, 0.4), ..Motion::default() };
+    let swing = Oscillation { amplitude: Vec3::new(2e-4, 0.0, 4e-4), frequency: 300.0, phase: 0.3 };
+    let swinging = Motion { oscillation: Some(swing), ..Motion::default() };
+    let turning = Motion { angular_velocity: Vec3::new(0.5, 1.0, 0.8), ..Motion::default() };
+    for (k, (shape, motion)) in [(floor, rising), (lid, swinging), (side, turning)].into_iter().enumerate() {
+        input.walls.push(WallInput { motion, ..WallInput::fixed(shape, k % 2) });
+    }
+    input
+}
+
+#[test]
+fn walls_of_triangles() {
+    if compiler_is_there() {
+        let pairs: [(&str, ModelInput); 3] = [
+            ("triangles", gas([stone(), smooth()], Vec::new())),
+            (
+                "triangles, hertz, rolling",
+                gas([turning(elastic(stone())), turning(elastic(smooth()))], Vec::new()),
+            ),
+            ("triangles, clumps", with_clumps(gas([turning(stone()), smooth()], Vec::new()), |k| k % 3 != 1)),
+        ];
+        for (name, input) in pairs {
+            let state = same_bits(name, between_triangles(input));
+            let (force, moment) = state.wall_force(0);
+            println!(
+                "{} contacts with walls, {:.3} N, {:.4} N m",
+                state.wall_contact_count(),
+                force.norm(),
+                moment.norm()
+            );
+            assert!(state.wall_contact_count() > 20 && moment.norm() > 0.0);
+        }
+    }
+}
+
+/// What is no wall of triangles with a prescribed motion is refused by name.
+#[test]
+fn other_walls_are_refused() {
+    let far = Vec3::new(0.0, 0.0, -1.0);
+    let square = mesh(1, far, [Vec3::x(), Vec3::y()], || 0.0);
+    let sphere = WallShape::Sphere { centre: far, radius: 0.1 };
+    let held = Servo { direction: Vec3::z(), force: vec![[0.0, 10.0]], max_speed: 0.2, gain: 0.5 };
+    let driven = WallInput { servo: Some(held), ..WallInput::fixed(square, 0) };
+    let block = cuboid(far, Vec3::repeat(0.1));
+    let moving = WallInput { body: Some(free(1.0)), ..WallInput::fixed(block, 0) };
+    for (wall, words) in [
+        (WallInput::fixed(sphere, 0), "walls other than triangles and planes of steady velocity"),
+        (driven, "walls that a force drives"),
+        (moving, "walls that are bodies"),
+    ] {
+        let mut input = gas([stone(), smooth()], Vec::new());
+        input.walls.push(wall);
+        let why =
+            source(&Model::new(input).expect("a good input")).expect_err("not for a device").to_string();
+        assert_eq!(why, format!("{words} are not computed on a device, only on the processor"));
+    }
+}
+
 /// A block of bonded spheres, pressed and torn by the planes that shut in on it, in which bonds break and broken pairs part.
 fn bonded(kind: Bond, material: Material) -> ModelInput {
     let mut input = gas([material, smooth()], Vec::new());
@@ -341,11 +426,16 @@ fn a_changed_operation_is_seen() {
         let mut clumps = with_clumps(spheres.clone(), |k| k % 3 != 1);
         clumps.damping = Some(LocalDamping { factor: 0.3 });
         let few = with_clumps(spheres.clone(), in_a_corner);
+        let walls = between_triangles(spheres.clone());
         for (input, from, to) in [
             (&spheres, "x.w - ", "1.0000000000000002 * x.w - "),
             (&spheres, "lane[0] + lane[1]", "lane[0] + lane[2]"),
             (&clumps, "if (!more) break;", "if (n == 1) break;"),
             (&clumps, "HELD_WIDTH * (g + lane) + 3", "HELD_WIDTH * (g + lane) + 4"),
+            (&walls, "keep_deepest(found, n);", ""),
+            (&walls, "ENDED[before[m]] = ", "ENDED[before[m]] = 0.0 * "),
+            (&walls, "past[nearest].alive = 0;", ""),
+            (&walls, "turned = numbers[a] > numbers[b]", "turned = numbers[a] < numbers[b]"),
             (&few, " sphere_contact(p, c, second, x, v, w, &s)", " (void)second"),
         ] {
             let change = |text: String| {

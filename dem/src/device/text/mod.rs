@@ -4,6 +4,7 @@
 mod bonds;
 mod clumps;
 mod motion;
+mod patches;
 mod planes;
 mod record;
 mod spheres;
@@ -29,6 +30,7 @@ pub(super) fn features(model: &Model) -> Features {
         held: damped || fixed,
         bonds: !model.bonds.is_empty(),
         clumps: model.clumps,
+        walls: model.walls.walls.len(),
     }
 }
 
@@ -42,6 +44,9 @@ fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) ->
     if f.clumps {
         all.push(clumps::contacts::<L, ROLL>(&law));
         all.push(clumps::motion(f));
+    }
+    if f.walls > 0 {
+        all.push(patches::part::<L, ROLL>(&law));
     }
     all.push(motion::part(f));
     if f.held {
