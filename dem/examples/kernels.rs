@@ -6,6 +6,7 @@
 use std::path::Path;
 use trackbed_dem::bond::{Bond, BondDamping, BondInput, ContactPoint};
 use trackbed_dem::law::table;
+use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, Shape, Vec3, device};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -18,7 +19,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let yielding = Material { normal: table::normal_named("walton_braun"), ..spring };
     for (name, material) in [("linear", spring), ("rough", rough), ("hertz", elastic), ("several", yielding)]
     {
-        for turning in [false, true] {
+        for (suffix, turning, clumps) in
+            [("", false, false), ("_with_all", true, false), ("_clumps", true, true)]
+        {
             let mut material = material;
             let mut input =
                 ModelInput { shapes: vec![Shape::Sphere { radius: 0.01 }], ..ModelInput::default() };
@@ -31,22 +34,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let position = Vec3::new(0.0, 0.0, 0.02);
             input.bodies = vec![BodyInput::default(), BodyInput { position, ..BodyInput::default() }];
             if turning {
-                let tension_limit = f64::INFINITY;
-                input.bond_kinds = vec![Bond::ContactPoint(ContactPoint {
-                    normal: 1e5,
-                    shear: 1e5,
-                    tension_limit,
-                    shear_limit: tension_limit,
-                    damping: BondDamping::None,
-                    contact: false,
-                })];
-                input.bonds = vec![BondInput::new(0, 1, 0)];
+                bonded(&mut input);
+            }
+            if clumps {
+                let two = [([0.0, 0.0, 0.0], 0.01), ([0.01, 0.0, 0.0], 0.01)];
+                input.shapes.push(Shape::Clump(Clump::from_spheres(&two)?));
+                let position = Vec3::new(0.0, 0.0, 0.06);
+                input.bodies.push(BodyInput { shape: 1, position, ..BodyInput::default() });
             }
             let text = device::source(&Model::new(input)?)?;
-            let file = format!("{name}{}.cu", if turning { "_with_all" } else { "" });
+            let file = format!("{name}{suffix}.cu");
             std::fs::write(Path::new(&folder).join(&file), &text)?;
             println!("{file}: {} bytes", text.len());
         }
     }
     Ok(())
+}
+
+/// Bonds the first two bodies.
+fn bonded(input: &mut ModelInput) {
+    let tension_limit = f64::INFINITY;
+    input.bond_kinds = vec![Bond::ContactPoint(ContactPoint {
+        normal: 1e5,
+        shear: 1e5,
+        tension_limit,
+        shear_limit: tension_limit,
+        damping: BondDamping::None,
+        contact: false,
+    })];
+    input.bonds = vec![BondInput::new(0, 1, 0)];
 }

@@ -20,15 +20,20 @@ fn on_device(name: &str, text: &str, set: &[&str]) -> (Outcome, bool) {
 fn a_device_refuses_by_name() {
     let cylinder =
         "walls=[{ kind = \"cylinder\", base = [0, 0, -1], radius = 1, height = 3, material = \"stone\" }]";
-    let clumps = fs::read_to_string(repository().join("inputs/grains/gradation.toml")).unwrap();
     let inputs = repository().join("inputs").display().to_string();
-    let clumps = clumps.replace("\"../", &format!("\"{inputs}/"));
-    let clumps = clumps.replace("\"stones.toml", &format!("\"{inputs}/grains/stones.toml"));
+    let stones = fs::read_to_string(repository().join("inputs/ballast/box-polyhedra.toml")).unwrap();
+    let stones = stones.replace("\"../", &format!("\"{inputs}/"));
+    let stones = stones.replace("\"granite.toml", &format!("\"{inputs}/ballast/granite.toml"));
     let cases: [(&str, &str, &[&str], &str); 4] = [
         ("device_solid", COUPLED, &[], "solids are not"),
-        ("device_wall", GRAINS, &[cylinder], "walls other than planes are not"),
+        (
+            "device_wall",
+            GRAINS,
+            &[cylinder],
+            "walls other than triangles and planes of steady velocity are not",
+        ),
         ("device_wind", GRAINS, &["wind={ drag = 0.9 }"], "body forces other than gravity are not"),
-        ("device_clump", &clumps, &[], "clumps are not"),
+        ("device_stones", &stones, &[], "boxes and polyhedra are not"),
     ];
     for (name, text, set, words) in cases {
         let (outcome, written) = on_device(name, text, set);

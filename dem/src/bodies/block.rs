@@ -2,7 +2,9 @@
 
 use crate::base::Vec3;
 use crate::base::held::held;
+use crate::lanes::V3;
 use crate::lanes::record::{Record, xyz};
+use crate::lanes::turn::{self, Turn};
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +20,8 @@ pub(crate) struct Rotation {
 /// World angular velocity from the angular momentum.
 #[inline(always)]
 pub(crate) fn spin_of(rotation: &Rotation, inertia: &Vec3) -> Vec3 {
-    rotation.orientation
-        * rotation.orientation.inverse_transform_vector(&rotation.momentum).component_div(inertia)
+    let (q, momentum) = (Turn::of(&rotation.orientation), V3::from_vec(&rotation.momentum));
+    turn::spin(q, momentum, V3::from_vec(inertia)).to_vec()
 }
 
 /// Neighbouring bodies: arrays of equal length, in block order.

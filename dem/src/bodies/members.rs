@@ -4,7 +4,9 @@ use super::block::Block;
 use super::table::{Bodies, Kind, for_members};
 use crate::base::Vec3;
 use crate::base::held::held;
+use crate::lanes::V3;
 use crate::lanes::record::{Record, xyz};
+use crate::lanes::turn::{Turn, placed};
 use crate::shape::Shape;
 use nalgebra::UnitQuaternion;
 
@@ -140,11 +142,10 @@ impl Members {
     /// Puts the spheres of a body where its centre and orientation say.
     #[inline(always)]
     pub fn place_spheres(&mut self, k: usize, centre: &Record, orientation: &UnitQuaternion<f64>) {
-        let x = xyz(centre);
-        let turn = orientation.to_rotation_matrix();
+        let (x, columns) = (V3::from_vec(&xyz(centre)), Turn::of(orientation).columns());
         for s in self.first[k] as usize..self.first[k + 1] as usize {
             let local = &self.local[s];
-            let p = x + turn * xyz(local);
+            let p = placed(columns, x, V3::from_vec(&xyz(local)));
             self.spheres[s] = Record([p.x, p.y, p.z, local[3]]);
         }
     }

@@ -4,7 +4,7 @@ use super::group_memory::{Mix, four};
 use crate::base::Vec3;
 use crate::bodies::block::Block;
 use crate::lanes::record::{Record, xyz};
-use crate::lanes::{Kernel, Pack, V3};
+use crate::lanes::{Kernel, Pack, Real, V3};
 use crate::law::{ContactLaw, History, LawInput, LawOutput, Memory, PairTable};
 
 /// A contact of a sphere with a patch: what the law needs, and in the same places what it gives.
@@ -88,6 +88,57 @@ impl PatchForce {
     }
 }
 
+/// Spheres and the patches that they touch, by lane, as the law of their contact needs them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch<R> {
+    /// From the centre of the body to the contact point.
+    pub arm: V3<R>,
+    pub overlap: R,
+    pub radius: R,
+    pub normal: V3<R>,
+    /// Velocity and spin of the body; velocity of the wall at the point, and its spin.
+    pub body: (V3<R>, V3<R>),
+    pub wall: (V3<R>, V3<R>),
+    /// Sum of both inverse masses.
+    pub inverse_mass: R,
+}
+
+/// Force on the body, the torque about its centre, the part of that that is a moment of its own, and what it took.
+pub(crate) struct Forces<R> {
+    pub force: V3<R>,
+    pub torque: V3<R>,
+    pub moment: V3<R>,
+    pub dashpot: R,
+    pub friction: R,
+}
+
+/// Forces of the contacts in the lanes `on`, over a step [s]; advances their memory.
+#[inline(always)]
+pub(crate) fn acting<L: ContactLaw, R: Real, const ROLL: bool>(
+    law: &L::Lanes<R>,
+    t: &Touch<R>,
+    memory: &mut Memory<R>,
+    on: R::Mask,
+    step: R,
+) -> Forces<R> {
+    let ((velocity, spin), (wall, wall_spin)) = (t.body, t.wall);
+    let input = LawInput {
+        inverse_mass: t.inverse_mass,
+        radius: t.radius,
+        overlap: t.overlap,
+        normal: t.normal,
+        velocity: velocity + spin.cross(t.arm) - wall,
+        spin: spin - wall_spin,
+    };
+    let LawOutput { force, moment, dashpot, friction, .. } =
+        L::evaluate::<R, ROLL>(law, &input, memory, on, step);
+    let mut torque = t.arm.cross(force);
+    if ROLL {
+        torque = torque + moment;
+    }
+    Forces { force, torque, moment, dashpot, friction }
+}
+
 /// Evaluates the law for all contacts of a block with patches.
 pub(crate) struct PatchLaw<'a, L, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
@@ -118,14 +169,14 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
             let [wx, wy, wz, own] = R::columns(R::rows(|l| &block.spin[body(l)]));
             let [ux, uy, uz, wall_inverse_mass] = R::columns(R::rows(|l| &of(l).velocity));
             let [ox, oy, oz, other] = R::columns(R::rows(|l| &of(l).spin));
-            let spin = V3::new(wx, wy, wz);
-            let touch = LawInput {
-                inverse_mass: inverse_mass + wall_inverse_mass,
-                radius,
+            let touch = Touch {
+                arm,
                 overlap,
+                radius,
                 normal: V3::new(nx, ny, nz),
-                velocity: V3::new(vx, vy, vz) + spin.cross(arm) - V3::new(ux, uy, uz),
-                spin: spin - V3::new(ox, oy, oz),
+                body: (V3::new(vx, vy, vz), V3::new(wx, wy, wz)),
+                wall: (V3::new(ux, uy, uz), V3::new(ox, oy, oz)),
+                inverse_mass: inverse_mass + wall_inverse_mass,
             };
             let [sx, sy, sz, rate] = R::columns(R::rows(|l| &of(l).memory));
             let mut memory = Memory { spring: V3::new(sx, sy, sz), rate, roll: V3::zero(), twist: R::zero() };
@@ -133,12 +184,9 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
                 let [rx, ry, rz, twist] = R::columns(R::rows(|l| &of(l).turn));
                 (memory.roll, memory.twist) = (V3::new(rx, ry, rz), twist);
             }
-            let LawOutput { force, moment, dashpot, friction, .. } =
-                L::evaluate::<R, ROLL>(&mix.of(own, other), &touch, &mut memory, on, R::splat(dt));
-            let mut torque = arm.cross(force);
-            if ROLL {
-                torque = torque + moment;
-            }
+            let law = mix.of(own, other);
+            let Forces { force, torque, moment, dashpot, friction } =
+                acting::<L, R, ROLL>(&law, &touch, &mut memory, on, R::splat(dt));
             let results = R::records(four(force, dashpot), four(torque, friction));
             let springs = R::records(four(memory.spring, memory.rate), four(memory.roll, memory.twist));
             let moments = R::records(four(moment, radius), four(V3::zero(), R::zero()));

@@ -29,6 +29,7 @@ use crate::bodies::block::Block;
 use crate::bodies::members::Members;
 use crate::bodies::sums::{Tally, WallSum};
 use crate::lanes::record::xyz;
+use crate::lanes::{Real, V3};
 use crate::law::{ContactGeometry, History};
 use crate::pairs::patches::{PatchContact, PatchList, PatchPair};
 use crate::spatial::surface::{Feature, PatchPoint, Surface, SurfaceContact};
@@ -74,6 +75,39 @@ pub(crate) struct PatchTouch {
     pub counts: bool,
 }
 
+/// How far the centre of a sphere is from the closest point of a patch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gap<R> {
+    offset: V3<R>,
+    along: R,
+    pub distance: R,
+}
+
+impl<R: Real> Gap<R> {
+    /// `offset`: of the centre; `straight`: the point is inside a patch, whose normal is exact.
+    #[inline(always)]
+    pub fn new(offset: V3<R>, outward: V3<R>, straight: R::Mask) -> Gap<R> {
+        let along = offset.dot(outward);
+        Gap { offset, along, distance: R::select(straight, along.abs(), offset.norm2().sqrt()) }
+    }
+
+    /// Normal and overlap of the contact of a sphere of radius `r`.
+    #[inline(always)]
+    pub fn contact(&self, outward: V3<R>, r: R, straight: R::Mask, behind: R::Mask) -> (V3<R>, R) {
+        let &Gap { offset, along, distance } = self;
+        let apart = R::zero().lt(distance);
+        let inward = along.lt(R::zero()) & !behind;
+        let mut normal = V3::select(inward, -outward, outward);
+        if R::any(!straight) {
+            let away = V3::select(behind, -offset, offset);
+            let away = V3::new(away.x / distance, away.y / distance, away.z / distance);
+            normal = V3::select(straight, normal, away);
+        }
+        let overlap = R::select(behind, r + distance, r - distance);
+        (V3::select(apart, normal, outward), R::select(apart, overlap, r))
+    }
+}
+
 /// Finds which of the patches `pairs` (all of one sphere at `x`) count; `gone` is the bound on the way that anything
 /// has come towards anything since the near list was made. Results are appended to `out`.
 #[inline]
@@ -105,7 +139,8 @@ fn touches<S: Surface>(
         let along = offset.dot(&outward);
         let behind = along < 0.0 && surface.one_sided_patch(pair.patch);
         let straight = sharp && closest.feature == Feature::Face;
-        let distance = if straight { along.abs() } else { offset.norm() };
+        let gap = Gap::new(V3::from_vec(&offset), V3::from_vec(&outward), straight);
+        let distance = gap.distance;
         if distance >= r && !(behind && straight) {
             // Found as far only now. Beyond a sharp edge the bound stated less, and the next step looks again; a smooth
             // patch has stated its true distance.
@@ -113,13 +148,8 @@ fn touches<S: Surface>(
             continue;
         }
         pair.spare = -1.0;
-        let (normal, overlap) = match (distance > 0.0, behind) {
-            (false, _) => (outward, r),
-            (true, false) if straight => (if along < 0.0 { -outward } else { outward }, r - distance),
-            (true, true) if straight => (outward, r + distance),
-            (true, false) => (offset / distance, r - distance),
-            (true, true) => (-offset / distance, r + distance),
-        };
+        let (normal, overlap) = gap.contact(V3::from_vec(&outward), r, straight, behind);
+        let normal = normal.to_vec();
         let geometry = ContactGeometry { point, normal, overlap, radius: r };
         out.push(PatchTouch { patch: pair.patch, closest, geometry, behind, counts: true });
     }
@@ -134,10 +164,63 @@ fn touches<S: Surface>(
     keep_deepest(out);
 }
 
+/// Within this of each other points of a sphere's contacts are one [m].
+#[inline(always)]
+pub(crate) fn tolerance<R: Real>(radius: R) -> R {
+    R::splat(SAME) * radius
+}
+
+/// Whether two points are one to a sphere.
+#[inline(always)]
+pub(crate) fn one_point<R: Real>(a: V3<R>, b: V3<R>, radius: R) -> R::Mask {
+    (a - b).norm2().sqrt().le(tolerance(radius))
+}
+
+/// Whether the normals of two contacts tell that they are one contact with a smooth surface.
+#[inline(always)]
+pub(crate) fn alike<R: Real>(a: V3<R>, b: V3<R>) -> R::Mask {
+    a.dot(b).gt(R::splat(SMOOTH))
+}
+
+/// Whether a contact that begins, given by normal and point, may take the memory of one that ends; and how far that is away.
+#[inline(always)]
+pub(crate) fn may_follow<R: Real>(new: (V3<R>, V3<R>), old: (V3<R>, V3<R>), radius: R) -> (R::Mask, R) {
+    let away = (old.1 - new.1).norm2().sqrt();
+    (old.0.dot(new.0).gt(R::splat(SIMILAR)) & away.lt(R::splat(0.5) * radius), away)
+}
+
+/// Whether a sphere has passed to the other side of a patch: a two-sided wall pushes back from whichever side the centre is on, so that
+/// a flipped normal there means it. `old`: normal and side before.
+#[inline(always)]
+pub(crate) fn passed<R: Real>(normal: V3<R>, side: R, old: (V3<R>, R)) -> R::Mask {
+    old.0.dot(normal).lt(R::splat(-0.5)) & (old.1 * side).le(R::zero())
+}
+
+/// A sphere above the inside of a patch.
+pub(crate) struct Rest<R: Real> {
+    pub normal: V3<R>,
+    pub overlap: R,
+    /// Cosine between the contact's and the patch's own normal.
+    pub side: R,
+    /// Whether nothing else can count.
+    pub stays: R::Mask,
+}
+
+/// How a sphere of radius `r` rests on a patch where the centre is `offset` from its foot: nothing moves so far in a step that it could
+/// have passed.
+#[inline(always)]
+pub(crate) fn rest<R: Real>(offset: V3<R>, outward: V3<R>, r: R) -> Rest<R> {
+    let along = offset.dot(outward);
+    let distance = along.abs();
+    let normal = V3::select(along.lt(R::zero()), -outward, outward);
+    let stays = distance.lt(r) & (R::splat(SMOOTH) * r).lt(distance);
+    Rest { normal, overlap: r - distance, side: normal.dot(outward), stays }
+}
+
 /// Decides which of several touches count: see the head of this file.
 #[inline(always)]
 fn count_once<S: Surface>(surface: &S, r: f64, out: &mut [PatchTouch]) {
-    let tolerance = SAME * r;
+    let same = |a: &Vec3, b: &Vec3| one_point(V3::from_vec(a), V3::from_vec(b), r);
     for k in 0..out.len() {
         let point = out[k].geometry.point;
         let rank = |k: usize, t: &PatchTouch| match t.closest.feature {
@@ -152,12 +235,12 @@ fn count_once<S: Surface>(surface: &S, r: f64, out: &mut [PatchTouch]) {
             if m == k {
                 continue;
             }
-            if (other.geometry.point - point).norm() <= tolerance {
+            if same(&other.geometry.point, &point) {
                 shared = true;
                 counts &= own < rank(m, other);
-            } else if on_rim && surface.clearance(other.patch, point.into()) <= tolerance {
+            } else if on_rim && surface.clearance(other.patch, point.into()) <= tolerance(r) {
                 let nearest = surface.closest_point(other.patch, point.into(), other.closest.local);
-                counts &= (Vec3::from(nearest.point) - point).norm() > tolerance;
+                counts &= !same(&Vec3::from(nearest.point), &point);
             }
         }
         // Behind the outer rim of a one-sided surface is beside it, not below it.
@@ -181,15 +264,8 @@ fn resting<S: Surface>(
         return None;
     }
     let [point, outward, velocity] = surface.foot(old.patch, [x.x, x.y, x.z])?;
-    let along = (x - point).dot(&outward);
-    let distance = along.abs();
-    let normal = if along < 0.0 { -outward } else { outward };
-    // Nothing moves so far in a step that it could have passed.
-    if distance >= r || distance <= SMOOTH * r {
-        return None;
-    }
-    let side = normal.dot(&outward);
-    Some(PatchContact { point, normal, velocity, overlap: r - distance, side, ..*old })
+    let Rest { normal, overlap, side, stays } = rest(V3::from_vec(&(x - point)), V3::from_vec(&outward), r);
+    stays.then(|| PatchContact { point, normal: normal.to_vec(), velocity, overlap, side, ..*old })
 }
 
 /// Of contacts whose normals differ little keeps the deepest, the first of equals.
@@ -203,8 +279,8 @@ fn keep_deepest(found: &mut [PatchTouch]) {
         last = (found[k].geometry.overlap, k);
         let normal = found[k].geometry.normal;
         for m in 0..found.len() {
-            if found[m].counts && after(last, m, &found[m]) && normal.dot(&found[m].geometry.normal) > SMOOTH
-            {
+            let other = V3::from_vec(&found[m].geometry.normal);
+            if found[m].counts && after(last, m, &found[m]) && alike(V3::from_vec(&normal), other) {
                 found[m].counts = false;
             }
         }
@@ -327,10 +403,8 @@ fn find<S: Surface>(
 fn go_on<S: Surface>(surface: &S, contact: &mut PatchContact, t: &PatchTouch, r: f64) -> Option<(f64, f64)> {
     let g = &t.geometry;
     let side = g.normal.dot(&Vec3::from(t.closest.normal));
-    // A two-sided wall pushes back from whichever side the centre is on: a flipped normal on the other side of
-    // the patch means it passed.
-    let passed =
-        !contact.history.is_fresh() && contact.normal.dot(&g.normal) < -0.5 && contact.side * side <= 0.0;
+    let old = (V3::from_vec(&contact.normal), contact.side);
+    let passed = !contact.history.is_fresh() && passed(V3::from_vec(&g.normal), side, old);
     let overlap = if passed { 2.0 * r - g.overlap } else { g.overlap };
     let bound = if surface.one_sided() { 2.0 * r } else { r };
     contact.point = g.point;
@@ -423,11 +497,14 @@ fn begin(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchConta
 /// Contacts that begin take the memory of contacts that end nearby with a similar normal.
 fn hand_over(now: &mut [PatchContact], before: &mut [PatchContact], r: f64) {
     for contact in now.iter_mut().filter(|c| c.history.is_fresh()) {
+        let of = V3::from_vec;
+        let new = (of(&contact.normal), of(&contact.point));
         let nearest = before
             .iter_mut()
-            .filter(|old| !old.history.is_fresh() && old.normal.dot(&contact.normal) > SIMILAR)
-            .map(|old| ((old.point - contact.point).norm(), old))
-            .filter(|(distance, _)| *distance < 0.5 * r)
+            .filter(|old| !old.history.is_fresh())
+            .map(|old| (may_follow(new, (of(&old.normal), of(&old.point)), r), old))
+            .filter(|((may, _), _)| *may)
+            .map(|((_, distance), old)| (distance, old))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((_, old)) = nearest {
             contact.history = std::mem::replace(&mut old.history, History::NONE);

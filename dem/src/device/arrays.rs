@@ -1,11 +1,12 @@
-//! A state as the flat arrays that a device keeps, and back.
+//! Contacts and bonds of a state as the flat arrays that a device keeps, and back.
 //!
-//! Bodies lie block by block, contacts list by list: across blocks, within them, with planes, of debonded pairs across and within, each
+//! Contacts lie list by list: across blocks, within them, with planes, of debonded pairs across and within, each
 //! block by block; so do bonds, across and within. Each body has what it takes part in as entries, in the order in which the engine adds
 //! it up.
 
-use super::layout::{LISTS, List, What};
-use crate::bodies::members::Members;
+use super::bodies::Spheres;
+use super::layout::{LISTS, List, What, entry};
+use super::walls::{Kept, Pairs};
 use crate::bond::BondList;
 use crate::bond::debonded::DebondedPair;
 use crate::bond::kernel;
@@ -16,72 +17,6 @@ use crate::engine::work::Work;
 use crate::lanes::V3;
 use crate::law::History;
 use crate::pairs::groups::Groups;
-
-/// Motion of all bodies: position and radius, velocity and inverse mass, spin and material.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
-    pub x: Vec<[f64; 4]>,
-    pub v: Vec<[f64; 4]>,
-    pub w: Vec<[f64; 4]>,
-}
-
-impl Motion {
-    /// That of a state.
-    pub fn of(state: &State) -> Motion {
-        let mut out = Motion::default();
-        for block in &state.blocks {
-            out.x.extend(block.centre.iter().map(|r| r.0));
-            out.v.extend(block.velocity.iter().map(|r| r.0));
-            out.w.extend(block.spin.iter().map(|r| r.0));
-        }
-        out
-    }
-
-    /// Puts it into a state with the same bodies in the same order.
-    pub fn put(&self, state: &mut State) {
-        let mut at = 0;
-        for block in &mut state.blocks {
-            let n = block.bodies.len();
-            let lists =
-                [(&mut block.centre, &self.x), (&mut block.velocity, &self.v), (&mut block.spin, &self.w)];
-            for (to, from) in lists {
-                to.iter_mut().zip(&from[at..at + n]).for_each(|(to, from)| to.0 = *from);
-            }
-            at += n;
-        }
-    }
-}
-
-/// Constants of all bodies.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Constants {
-    /// Zero for bodies that move four at a time, else 1 and twice the bits of fixed motions.
-    pub single: Vec<u32>,
-    /// Mass and moment of inertia.
-    pub inertia: Vec<[f64; 2]>,
-}
-
-impl Constants {
-    pub fn of(model: &Model, state: &State, work: &Work) -> Constants {
-        let mut out = Constants::default();
-        for (block, members) in state.blocks.iter().zip(&work.members) {
-            let n = block.bodies.len();
-            for (k, &body) in block.bodies.iter().enumerate() {
-                let fixed = members.fixed.get(k).copied().unwrap_or(0);
-                let body = model.body(body as usize);
-                out.single.push(if by_four(members, k, n) { 0 } else { 1 | u32::from(fixed) << 1 });
-                out.inertia.push([body.mass, body.inertia.x]);
-            }
-        }
-        out
-    }
-}
-
-/// Whether body k of n moves with the others of its group of four (see `integrate/leapfrog.rs`).
-fn by_four(members: &Members, k: usize, n: usize) -> bool {
-    let group = k - k % 4;
-    group + 4 <= n && (members.plain() || members.all_free(group))
-}
 
 /// Lists of bonds across blocks, then within.
 fn bond_lists(state: &State) -> [Vec<&BondList>; 2] {
@@ -98,21 +33,29 @@ pub(super) struct Memory {
     pub spring: Vec<[f64; 4]>,
     pub turn: Vec<[f64; 4]>,
     pub bonds: Vec<[f64; 4]>,
+    /// Of pairs of spheres and triangles.
+    pub kept: Kept,
 }
 
 impl Memory {
-    /// Zeros for so many contacts and bonds.
-    pub fn zeros(contacts: usize, bonds: usize) -> Memory {
+    /// Zeros for so many contacts, pairs of spheres and triangles among them, and bonds.
+    pub fn zeros(contacts: usize, pairs: usize, bonds: usize) -> Memory {
         let zero = [0.0; 4];
-        Memory { spring: vec![zero; contacts], turn: vec![zero; contacts], bonds: vec![zero; 2 * bonds] }
+        Memory {
+            spring: vec![zero; contacts],
+            turn: vec![zero; contacts],
+            bonds: vec![zero; 2 * bonds],
+            kept: Kept::zeros(pairs),
+        }
     }
 
     /// That of a state.
     pub fn of(state: &State) -> Memory {
         let mut out = Memory::default();
+        let Memory { spring, turn, bonds, kept } = &mut out;
         let mut add = |h: History| {
-            out.spring.push([h.spring.x, h.spring.y, h.spring.z, h.rate]);
-            out.turn.push(h.turn);
+            spring.push([h.spring.x, h.spring.y, h.spring.z, h.rate]);
+            turn.push(h.turn);
         };
         state.cross.iter().for_each(|c| c.spheres.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.pairs.iter().for_each(|(_, h)| add(h)));
@@ -120,9 +63,10 @@ impl Memory {
         for list in bond_lists(state).iter().flatten() {
             list.debonded.iter().for_each(|pair| add(pair.history));
             for kernel::Memory { shear, turn } in list.iter().map(|e| e.memory) {
-                out.bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
+                bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
             }
         }
+        state.lists.iter().for_each(|l| kept.add(&l.walls, &mut add));
         out
     }
 
@@ -144,6 +88,12 @@ impl Memory {
                 list.set(k, &Entry { memory, ..list.get(k) });
                 bond += 2;
             }
+        }
+        let mut pair = 0;
+        for lists in &mut state.lists {
+            let count = lists.walls.pairs.len();
+            self.kept.put(&mut lists.walls, pair, |k| self.history(at + pair + k, true));
+            pair += count;
         }
     }
 
@@ -176,12 +126,14 @@ pub(super) struct Lists {
     pub bond_constants: Vec<[f64; kernel::COUNT]>,
     /// Overlap of each debonded pair that does not count.
     pub reference: Vec<f64>,
+    /// Pairs of spheres and triangles, at the end of the contacts.
+    pub pairs: Pairs,
     /// Number of blocks.
     blocks: usize,
 }
 
 impl Lists {
-    pub fn of(model: &Model, state: &State, work: &Work) -> Lists {
+    pub fn of(model: &Model, state: &State, work: &Work, spheres: &Spheres) -> Lists {
         let blocks = state.blocks.len();
         let mut out = Lists { ranges: vec![[0; LISTS]; blocks + 1], blocks, ..Lists::default() };
         let mut first = 0;
@@ -190,13 +142,18 @@ impl Lists {
             first += block.bodies.len() as u32;
         }
         out.ranges[blocks][0] = first;
-        out.contacts(state);
+        out.contacts(state, work, spheres);
         let places =
             [List::CrossDebonded, List::OwnDebonded].into_iter().zip([List::CrossBonds, List::OwnBonds]);
         for ((debonded, bonds), lists) in places.zip(bond_lists(state)) {
             out.bonds(model, debonded, bonds, &lists);
         }
-        out.enter(state, work);
+        for (b, lists) in state.lists.iter().enumerate() {
+            out.ranges[b][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
+            out.pairs.add(b, lists, spheres);
+        }
+        out.ranges[blocks][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
+        out.enter(state, work, spheres);
         out
     }
 
@@ -210,28 +167,26 @@ impl Lists {
     }
 
     /// Contacts of spheres with spheres and planes.
-    fn contacts(&mut self, state: &State) {
+    fn contacts(&mut self, state: &State, work: &Work, spheres: &Spheres) {
         let mark =
             |out: &mut Lists, list: List, b: usize| out.ranges[b][list as usize] = out.ends.len() as u32;
         for (b, cross) in state.cross.iter().enumerate() {
             mark(self, List::Cross, b);
-            for ([i, to, j], _) in cross.spheres.iter() {
-                self.ends.push([self.body(b, i), self.body(to as usize, j)]);
-            }
+            let ends =
+                cross.spheres.iter().map(|([i, to, j], _)| [spheres.at(b, i), spheres.at(to as usize, j)]);
+            self.ends.extend(ends);
         }
         mark(self, List::Cross, self.blocks);
         for (b, lists) in state.lists.iter().enumerate() {
             mark(self, List::Own, b);
-            for ([i, j], _) in lists.pairs.iter() {
-                self.ends.push([self.body(b, i), self.body(b, j)]);
-            }
+            let name = |i: u32| if work.members[b].rigid { spheres.at(b, i) } else { self.ranges[b][0] + i };
+            self.ends.extend(lists.pairs.iter().map(|([i, j], _)| [name(i), name(j)]));
         }
         mark(self, List::Own, self.blocks);
         for (b, lists) in state.lists.iter().enumerate() {
             mark(self, List::Planes, b);
-            for ([i, plane], _) in lists.planes.iter() {
-                self.ends.push([self.body(b, i), plane]);
-            }
+            let name = |i: u32| if work.members[b].rigid { spheres.at(b, i) } else { self.ranges[b][0] + i };
+            self.ends.extend(lists.planes.iter().map(|([i, plane], _)| [name(i), plane]));
         }
         mark(self, List::Planes, self.blocks);
     }
@@ -256,22 +211,18 @@ impl Lists {
     }
 
     /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
-    /// and within, contacts within, planes.
-    fn enter(&mut self, state: &State, work: &Work) {
+    /// and within, contacts within, planes, triangles.
+    fn enter(&mut self, state: &State, work: &Work, spheres: &Spheres) {
         let mut all: Vec<(u32, u32)> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
-        let mut put = |body: u32, what: What, of: u32, second: bool| {
-            all.push((body, of << 3 | (what as u32) << 1 | u32::from(second)));
-        };
+        let mut put =
+            |body: u32, what: What, of: u32, second: bool| all.push((body, entry(what, of, second)));
+        // Across blocks the engine takes the formulas of clumps for all spheres, where there are clumps.
+        let across = if spheres.clumps { What::Members } else { What::Spheres };
         for (b, w) in work.blocks.iter().enumerate() {
             for share in &w.shares.list {
                 let from = share.block as usize;
                 let slot = (share.record() / work.cross[from].width) as u32;
-                put(
-                    self.body(b, share.place),
-                    What::Spheres,
-                    self.from(List::Cross, from) + slot,
-                    !share.first(),
-                );
+                put(self.body(b, share.place), across, self.from(List::Cross, from) + slot, !share.first());
             }
             for share in work.bonds.shares(b) {
                 let from = share.block as usize;
@@ -283,21 +234,34 @@ impl Lists {
                 put(self.body(b, share.place), what, of, !share.first);
             }
         }
-        let lists = [
-            (What::Bond, List::OwnBonds, &self.bond_ends),
-            (What::Debonded, List::OwnDebonded, &self.ends),
-            (What::Spheres, List::Own, &self.ends),
-        ];
-        for (what, list, ends) in lists {
+        let bonds =
+            [(What::Bond, List::OwnBonds, &self.bond_ends), (What::Debonded, List::OwnDebonded, &self.ends)];
+        for (what, list, ends) in bonds {
             for of in self.from(list, 0)..self.from(list, self.blocks) {
                 let [i, j] = ends[of as usize];
                 put(i, what, of, false);
                 put(j, what, of, true);
             }
         }
-        for of in self.from(List::Planes, 0)..self.from(List::Planes, self.blocks) {
-            put(self.ends[of as usize][0], What::Plane, of, false);
+        let within =
+            [(List::Own, What::Spheres, What::Members), (List::Planes, What::Plane, What::MemberPlane)];
+        for (list, single, member) in within {
+            for (b, members) in work.members.iter().enumerate() {
+                let what = if members.rigid { member } else { single };
+                let body = |end: u32| if members.rigid { spheres.owner(end) } else { end };
+                for of in self.from(list, b)..self.from(list, b + 1) {
+                    let [i, j] = self.ends[of as usize];
+                    put(body(i), what, of, false);
+                    if list == List::Own {
+                        put(body(j), what, of, true);
+                    }
+                }
+            }
         }
+        for (group, &first) in self.pairs.groups.iter().enumerate() {
+            put(spheres.owner(self.pairs.ends[first as usize][0]), What::Walls, group as u32, false);
+        }
+        self.pairs.groups.push(self.pairs.ends.len() as u32);
         self.sort(&all);
     }
 

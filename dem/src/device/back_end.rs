@@ -1,13 +1,16 @@
 //! The back end: what is handed to a device and back, and in which order its kernels run.
 
-use super::arrays::{Constants, Lists, Memory, Motion};
-use super::layout::{Count, Features, HELD_WIDTH, List, Number, QUANTITIES, Slot};
+use super::arrays::{Lists, Memory};
+use super::bodies::{Constants, Motion, Spheres};
+use super::layout::{Booked, Count, Features, HELD_WIDTH, List, Number, Slot, WALL_BOOKED};
 use super::machine::{Call, Machine};
 use super::scope::{self, Unsupported};
 use super::text;
+use super::walls::{Triangles, placed};
 use crate::base::Vec3;
 use crate::base::error::StepError;
 use crate::base::ledger::Ledger;
+use crate::bodies::sums::WallSum;
 use crate::contact::planes;
 use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
@@ -33,22 +36,31 @@ pub struct Device<M> {
     work: Work,
     call: Call,
     features: Features,
+    spheres: Spheres,
     books: Vec<f64>,
     /// Whether the device is ahead of the state.
     ahead: bool,
-    /// Contacts and bonds on the device.
+    /// Contacts, pairs of spheres and triangles among them, and bonds on the device.
     contacts: usize,
+    pairs: usize,
     bonds: usize,
+    /// Whether the next step is the engine's to make.
+    orphans: bool,
 }
 
 /// Arrays that change places after each step.
-const PAIRS: [(Slot, Slot); 6] = [
+const PAIRS: [(Slot, Slot); 11] = [
     (Slot::OldX, Slot::NewX),
     (Slot::OldV, Slot::NewV),
     (Slot::OldW, Slot::NewW),
     (Slot::OldMemory, Slot::NewMemory),
     (Slot::OldTurn, Slot::NewTurn),
     (Slot::OldBonds, Slot::NewBonds),
+    (Slot::OldSpheres, Slot::NewSpheres),
+    (Slot::OldOrientation, Slot::NewOrientation),
+    (Slot::OldMomentum, Slot::NewMomentum),
+    (Slot::OldSpare, Slot::NewSpare),
+    (Slot::OldTouch, Slot::NewTouch),
 ];
 
 impl<M: Machine> Device<M> {
@@ -71,13 +83,21 @@ impl<M: Machine> Device<M> {
             work,
             call,
             features: text::features(model),
+            spheres: Spheres::default(),
             books: Vec::new(),
             ahead: false,
             contacts: 0,
+            pairs: 0,
             bonds: 0,
+            orphans: false,
         };
         let law = text::law_constants(&model.laws, materials);
-        device.put(Slot::Law, &law).map_err(|e| failed(state, e))?;
+        let Triangles { shapes, names } = Triangles::of(model);
+        let constants = device
+            .put(Slot::Law, &law)
+            .and_then(|()| device.put(Slot::Shapes, shapes.as_flattened()))
+            .and_then(|()| device.put_counts(Slot::Patches, names.as_flattened()));
+        constants.map_err(|e| failed(state, e))?;
         device.take_over(model, state).map_err(|e| failed(state, e))?;
         Ok(device)
     }
@@ -109,7 +129,7 @@ impl<M: Machine> Device<M> {
     }
 
     fn take_over(&mut self, model: &Model, state: &State) -> Result<(), String> {
-        let motion = Motion::of(state);
+        let motion = Motion::of(state, self.features.clumps);
         let n = motion.x.len();
         self.call.count(Count::Bodies, n);
         self.call.count(Count::Blocks, state.blocks.len());
@@ -126,40 +146,77 @@ impl<M: Machine> Device<M> {
         self.reserve(Slot::HeldBy, if self.features.held { HELD_WIDTH * n } else { 0 })?;
         self.put_counts(Slot::Flags, &[0])?;
         let constants = Constants::of(model, state, &self.work);
-        self.put_counts(Slot::Single, &constants.single)?;
+        self.put_counts(Slot::Single, &constants.how)?;
         self.put(Slot::Constants, constants.inertia.as_flattened())?;
+        self.spheres = Spheres::of(model, state, &self.work);
+        if self.features.clumps {
+            self.take_clumps(&motion, &constants)?;
+        }
         self.take_lists(model, state)?;
         self.ahead = false;
         Ok(())
     }
 
+    /// Orientations, and the spheres that the bodies are made of.
+    fn take_clumps(&mut self, motion: &Motion, constants: &Constants) -> Result<(), String> {
+        let spheres = std::mem::take(&mut self.spheres);
+        let numbers: [(Slot, &[[f64; 4]]); 6] = [
+            (Slot::OldOrientation, &motion.orientation),
+            (Slot::OldMomentum, &motion.momentum),
+            (Slot::Moments, &constants.moments),
+            (Slot::Target, &constants.target),
+            (Slot::OldSpheres, &spheres.world),
+            (Slot::Local, &spheres.local),
+        ];
+        for (slot, list) in numbers {
+            self.put(slot, list.as_flattened())?;
+        }
+        self.put_counts(Slot::FirstSphere, &spheres.first)?;
+        self.put_counts(Slot::Owner, &spheres.owner)?;
+        let (bodies, count) = (motion.x.len(), spheres.world.len());
+        // Where they are is kept by the device alone from now on.
+        self.spheres = Spheres { local: Vec::new(), world: Vec::new(), ..spheres };
+        for (slot, count) in
+            [(Slot::NewOrientation, bodies), (Slot::NewMomentum, bodies), (Slot::NewSpheres, count)]
+        {
+            self.reserve(slot, 4 * count)?;
+        }
+        Ok(())
+    }
+
     /// The near list, bonds, and the memory of both.
     fn take_lists(&mut self, model: &Model, state: &State) -> Result<(), String> {
-        let lists = Lists::of(model, state, &self.work);
+        let lists = Lists::of(model, state, &self.work, &self.spheres);
         let memory = Memory::of(state);
         let last = state.blocks.len();
-        let (count, bonds) = (lists.ends.len(), lists.bond_ends.len());
-        (self.contacts, self.bonds) = (count, bonds);
+        let (pairs, bonds) = (lists.pairs.ends.len(), lists.bond_ends.len());
+        let count = lists.ends.len() + pairs;
+        (self.contacts, self.pairs, self.bonds, self.orphans) = (count, pairs, bonds, lists.pairs.orphans);
         let planes = lists.from(List::Planes, 0);
         let debonded = lists.from(List::CrossDebonded, 0);
         self.call.count(Count::FirstPlane, planes as usize);
         self.call.count(Count::FirstDebonded, debonded as usize);
-        let counts: [(Slot, &[u32]); 5] = [
+        self.call.count(Count::FirstPatch, lists.ends.len());
+        let counts: [(Slot, &[u32]); 7] = [
             (Slot::Ends, lists.ends.as_flattened()),
             (Slot::Start, &lists.start),
             (Slot::Entries, &lists.entries),
             (Slot::Ranges, lists.ranges.as_flattened()),
             (Slot::BondEnds, lists.bond_ends.as_flattened()),
+            (Slot::PatchPairs, lists.pairs.ends.as_flattened()),
+            (Slot::Groups, &lists.pairs.groups),
         ];
         for (slot, list) in counts {
             self.put_counts(slot, list)?;
         }
-        let numbers: [(Slot, &[f64]); 5] = [
+        let numbers: [(Slot, &[f64]); 7] = [
             (Slot::OldMemory, memory.spring.as_flattened()),
             (Slot::OldTurn, if self.features.roll { memory.turn.as_flattened() } else { &[] }),
             (Slot::OldBonds, memory.bonds.as_flattened()),
             (Slot::BondConstants, lists.bond_constants.as_flattened()),
             (Slot::Reference, &lists.reference),
+            (Slot::OldSpare, &memory.kept.spare),
+            (Slot::OldTouch, memory.kept.touch.as_flattened().as_flattened()),
         ];
         for (slot, list) in numbers {
             self.put(slot, list)?;
@@ -172,6 +229,10 @@ impl<M: Machine> Device<M> {
             (Slot::Spent, 2 * count),
             (Slot::Walls, 8 * with_planes),
             (Slot::Power, bonds),
+            (Slot::NewSpare, pairs),
+            (Slot::NewTouch, 12 * pairs),
+            (Slot::Ended, pairs),
+            (Slot::Action, 8 * pairs),
         ];
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
@@ -187,8 +248,8 @@ impl<M: Machine> Device<M> {
 
     fn bring_back(&mut self, state: &mut State) -> Result<(), String> {
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
-        let mut motion = Motion { x: vec![[0.0; 4]; n], v: vec![[0.0; 4]; n], w: vec![[0.0; 4]; n] };
-        let mut memory = Memory::zeros(self.contacts, self.bonds);
+        let mut motion = Motion::zeros(n, self.features.clumps);
+        let mut memory = Memory::zeros(self.contacts, self.pairs, self.bonds);
         let lists = [
             (Slot::OldX, &mut motion.x),
             (Slot::OldV, &mut motion.v),
@@ -203,7 +264,18 @@ impl<M: Machine> Device<M> {
             }
             self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
         }
-        motion.put(state);
+        let kept = &mut memory.kept;
+        self.machine.get(self.call.buffers[Slot::OldSpare as usize], &mut kept.spare)?;
+        let touch = kept.touch.as_flattened_mut().as_flattened_mut();
+        self.machine.get(self.call.buffers[Slot::OldTouch as usize], touch)?;
+        if self.features.clumps {
+            let lists =
+                [(Slot::OldOrientation, &mut motion.orientation), (Slot::OldMomentum, &mut motion.momentum)];
+            for (slot, list) in lists {
+                self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
+            }
+        }
+        motion.put(state, &mut self.work);
         memory.put(state);
         Ok(())
     }
@@ -223,6 +295,9 @@ impl<M: Machine> Device<M> {
             self.fetch(state)?;
             neighbours::update(model, state, &mut self.work, &NoSurface);
             self.take_lists(model, state).map_err(|e| failed(state, e))?;
+        }
+        if self.orphans {
+            return self.by_processor(model, state, applied);
         }
         let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
         if failed_there {
@@ -256,6 +331,10 @@ impl<M: Machine> Device<M> {
         planes::now(&model.planes, &state.planes, &mut self.work.planes);
         let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
         self.put(Slot::Planes, planes.as_flattened())?;
+        if self.features.walls > 0 {
+            self.put(Slot::WallNow, placed(model, state).as_flattened())?;
+            self.call.number(Number::Gone, state.drift + state.wall_drift);
+        }
         let pace = state.pace;
         self.call.number(Number::Step, pace.kick());
         self.call.number(Number::Way, pace.dt);
@@ -283,42 +362,58 @@ impl<M: Machine> Device<M> {
     fn book(&mut self, model: &Model, state: &State) {
         let dt = state.pace.kick();
         let impulse = model.gravity * dt;
-        for (b, q) in self.books.chunks_exact(self.features.quantities()).enumerate() {
-            let vector = |k: usize| Vec3::new(q[k], q[k + 1], q[k + 2]);
+        let f = &self.features;
+        for (b, all) in self.books.chunks_exact(f.quantities()).enumerate() {
+            let of = |part: Booked| &all[f.booked(part)];
+            let (spheres, planes, motion) = (of(Booked::Spheres), of(Booked::Planes), of(Booked::Motion));
             let cross = &mut self.work.cross[b];
             cross.clear_books();
-            (cross.dashpot, cross.friction) = (q[0], q[1]);
+            (cross.dashpot, cross.friction) = (spheres[0], spheres[1]);
             let tally = &mut self.work.blocks[b].tally;
             let ledger = &mut tally.ledger;
             *ledger = Ledger::default();
-            ledger.dissipated_dashpot = q[2] + q[4];
-            ledger.dissipated_friction = q[3] + q[5];
-            ledger.work_walls = q[6] * dt;
-            ledger.walls.linear = vector(7) * dt;
-            ledger.walls.angular = vector(10) * dt;
+            ledger.dissipated_dashpot = spheres[2] + planes[0];
+            ledger.dissipated_friction = spheres[3] + planes[1];
+            ledger.work_walls = planes[2] * dt;
+            ledger.walls.linear = vector(planes, 3) * dt;
+            ledger.walls.angular = vector(planes, 6) * dt;
             ledger.gravity.linear = impulse * self.work.members[b].mass_sum;
-            ledger.gravity.angular = vector(13).cross(&impulse);
-            tally.fastest = q[16].sqrt();
-            if self.features.held {
-                book_held(ledger, &q[self.features.held_at()..], dt, self.features.damped);
+            ledger.gravity.angular = vector(motion, 0).cross(&impulse);
+            tally.fastest = motion[3].sqrt();
+            if f.held {
+                book_held(ledger, of(Booked::Held), dt, f.damped);
             }
             tally.failure = None;
-            if self.features.bonds {
+            if f.walls > 0 {
+                let q = of(Booked::Patches);
+                ledger.dissipated_dashpot += q[0];
+                ledger.dissipated_friction += q[1];
+                let sum =
+                    |q: &[f64]| WallSum { force: vector(q, 0), moment: vector(q, 3), ..WallSum::default() };
+                let sums = &mut self.work.blocks[b].patches.wall_sums;
+                sums.clear();
+                sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
+            }
+            if f.bonds {
+                let q = of(Booked::Bonds);
                 let lists = [&mut self.work.bonds.cross[b], &mut self.work.blocks[b].bonds];
                 for (k, list) in lists.into_iter().enumerate() {
                     list.reset();
-                    list.power = q[QUANTITIES + k];
-                    let at = QUANTITIES + 2 + 2 * k;
-                    (list.dashpot, list.friction) = (q[at], q[at + 1]);
+                    list.power = q[k];
+                    (list.dashpot, list.friction) = (q[2 + 2 * k], q[3 + 2 * k]);
                 }
             }
         }
     }
 }
 
+fn vector(q: &[f64], k: usize) -> Vec3 {
+    Vec3::new(q[k], q[k + 1], q[k + 2])
+}
+
 /// Books local damping and fixed motions of a block.
 fn book_held(ledger: &mut Ledger, q: &[f64], kick: f64, damped: bool) {
-    let vector = |k: usize| Vec3::new(q[k], q[k + 1], q[k + 2]);
+    let vector = |k: usize| vector(q, k);
     ledger.work_constraints = q[7];
     (ledger.constraints.linear, ledger.constraints.angular) = (vector(8), vector(11));
     if damped {

@@ -1,6 +1,7 @@
 //! What the kernels are handed: places of arrays, numbers and counts, by the names that the text has for them.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 macro_rules! table {
     ($(#[$doc:meta])* $enum:ident { $($(#[$about:meta])* $entry:ident = $name:literal $(: $kind:literal)?),+ $(,)? }) => {
@@ -30,17 +31,17 @@ table! {
         NewW = "NEW_W": "four",
         NewMemory = "NEW_MEMORY": "four",
         NewTurn = "NEW_TURN": "four",
-        /// Bodies of each contact; the second of those with planes is the plane.
+        /// Bodies of each contact, spheres where clumps may be; the second of those with planes is the plane.
         Ends = "ENDS": "const ends",
         /// Where the entries of each body begin, and one past the last.
         Start = "START": "const unsigned",
-        /// Eight times a contact or bond; plus twice what it is ([`What`]), plus one where the body is the second.
+        /// Sixteen times a contact or bond; plus twice what it is ([`What`]), plus one where the body is the second.
         Entries = "ENTRIES": "const unsigned",
         /// Constants of the laws of each pair of materials.
         Law = "LAW": "const real",
         /// Unit normal and its product with a point; velocity and material.
         Planes = "PLANES": "const four",
-        /// Zero for bodies that move four at a time, else 1 and twice the bits of fixed motions.
+        /// How a body moves ([`How`]).
         Single = "SINGLE": "const unsigned",
         /// Mass and moment of inertia of each body.
         Constants = "CONSTANTS": "const two",
@@ -48,8 +49,38 @@ table! {
         Ranges = "RANGES": "const unsigned",
         /// What dashpots and friction took in each contact.
         Spent = "SPENT": "two",
+        /// Spheres of clumps and single ones: centre and radius, the body of each, the first of each body and one past the last, and
+        /// where they lie in the frames of their bodies.
+        OldSpheres = "OLD_SPHERES": "const four",
+        NewSpheres = "NEW_SPHERES": "four",
+        Owner = "OWNER": "const unsigned",
+        FirstSphere = "FIRST_SPHERE": "const unsigned",
+        Local = "LOCAL": "const four",
+        /// Of each body in a model with clumps: orientation; angular momentum; principal moments and bounding radius, which is
+        /// zero of spheres; the spin that fixed rotations keep.
+        OldOrientation = "OLD_ORIENTATION": "const four",
+        NewOrientation = "NEW_ORIENTATION": "four",
+        OldMomentum = "OLD_MOMENTUM": "const four",
+        NewMomentum = "NEW_MOMENTUM": "four",
+        Moments = "MOMENTS": "const four",
+        Target = "TARGET": "const four",
         /// What planes did in each of their contacts: power and force; moment about the origin.
         Walls = "WALLS": "four",
+        /// Numbers and names of each triangle of walls, and where the walls are (`walls.rs`).
+        Shapes = "SHAPES": "const real",
+        Patches = "PATCHES": "const unsigned",
+        WallNow = "WALL_NOW": "const real",
+        /// Sphere and triangle of each pair; the first pair of each sphere that has any, and one past the last.
+        PatchPairs = "PATCH_PAIRS": "const ends",
+        Groups = "GROUPS": "const unsigned",
+        /// Way that is left of each pair, and what it remembers of its contact.
+        OldSpare = "OLD_SPARE": "const real",
+        NewSpare = "NEW_SPARE": "real",
+        OldTouch = "OLD_TOUCH": "const four",
+        NewTouch = "NEW_TOUCH": "four",
+        /// What the springs of a contact that ended had left, force on the body and moment about the centre of the wall, of each pair.
+        Ended = "ENDED": "real",
+        Action = "ACTION": "four",
         /// What local damping and fixed motions did to each body, where a model has them.
         HeldBy = "HELD_BY": "real",
         /// Bodies of each bond, its constants, what it remembers (shear, turn), and the power of its dashpots.
@@ -79,6 +110,8 @@ table! {
         GravityZ = "GRAVITY_Z",
         Damping = "DAMPING",
         Bound = "BOUND",
+        /// Bound on the way that anything has come towards anything since the near list was made.
+        Gone = "GONE",
         /// The last step, and the time since then: zero before the first.
         Last = "LAST",
         Since = "SINCE",
@@ -95,16 +128,44 @@ table! {
         FirstPlane = "FIRST_PLANE",
         /// The first contact of a debonded pair.
         FirstDebonded = "FIRST_DEBONDED",
+        /// The first contact of a sphere and a triangle.
+        FirstPatch = "FIRST_PATCH",
     }
 }
 
-/// What an entry of a body is.
+/// What an entry of a body is: at most eight kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Spheres,
     Plane,
     Bond,
     Debonded,
+    /// A contact of spheres that may be members of clumps, and one of such a sphere with a plane.
+    Members,
+    MemberPlane,
+    /// The pairs of a sphere with triangles.
+    Walls,
+}
+
+/// The entry of a body: contact or bond `of`, of which it may be the `second`.
+pub(super) fn entry(what: What, of: u32, second: bool) -> u32 {
+    of << 4 | (what as u32) << 1 | u32::from(second)
+}
+
+/// How a body moves: by itself, with bits of fixed motions; turning, as clumps do and all of a group of four with one; in a block with
+/// orientations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct How;
+
+impl How {
+    pub const SINGLE: u32 = 1;
+    pub const TURNS: u32 = 1 << 7;
+    pub const ORIENTED: u32 = 1 << 8;
+
+    /// Bits of fixed motions of a body that moves by itself.
+    pub fn fixed(bits: u8) -> u32 {
+        u32::from(bits) << 1
+    }
 }
 
 /// Lists of a block.
@@ -120,14 +181,47 @@ pub(super) enum List {
     /// Bonds across and within.
     CrossBonds,
     OwnBonds,
+    /// Pairs of spheres and triangles.
+    Patches,
 }
-pub(super) const LISTS: usize = 8;
+pub(super) const LISTS: usize = 9;
 
-/// Numbers that a block books, and those for bonds, for local damping and fixed motions beside them.
-pub(super) const QUANTITIES: usize = 17;
-pub(super) const BOND_QUANTITIES: usize = 6;
-pub(super) const HELD_QUANTITIES: usize = 21;
-/// Numbers that a body keeps for these.
+/// What a block books, part by part: how many numbers each, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Booked {
+    /// What dashpots and friction took in contacts of spheres with other blocks, then within.
+    Spheres,
+    /// The same of contacts with planes; power, force and moment of what the planes did.
+    Planes,
+    /// Mass times position, and the largest square of a speed.
+    Motion,
+    /// Power of bonds across and within; what dashpots and friction took in contacts of debonded pairs across and within.
+    Bonds,
+    /// What local damping and fixed motions did.
+    Held,
+    /// What dashpots and friction took in contacts with triangles; force and moment of each wall.
+    Patches,
+}
+
+impl Booked {
+    const ALL: [(Booked, &str, usize); 6] = [
+        (Booked::Spheres, "SPHERES", 4),
+        (Booked::Planes, "PLANES", 9),
+        (Booked::Motion, "MOTION", 4),
+        (Booked::Bonds, "BONDS", 6),
+        (Booked::Held, "HELD", 21),
+        (Booked::Patches, "PATCHES", 2),
+    ];
+}
+
+/// Numbers that a block books of each wall: force and moment.
+pub(super) const WALL_BOOKED: usize = 6;
+/// Numbers of a triangle and of a wall, and names of a triangle.
+pub(super) const SHAPE_WIDTH: usize = 25;
+pub(super) const WALL_WIDTH: usize = 19;
+pub(super) const PATCH_WIDTH: usize = 5;
+
+/// Numbers that a body keeps for local damping and fixed motions.
 pub(super) const HELD_WIDTH: usize = 21;
 
 /// Arguments of a launch, as the text declares them.
@@ -153,17 +247,69 @@ pub(super) struct Features {
     pub damped: bool,
     pub held: bool,
     pub bonds: bool,
+    /// Whether any body is a clump.
+    pub clumps: bool,
+    /// Number of walls of triangles.
+    pub walls: usize,
 }
 
 impl Features {
     /// Numbers that a block books.
     pub fn quantities(&self) -> usize {
-        self.held_at() + if self.held { HELD_QUANTITIES } else { 0 }
+        Booked::ALL.iter().map(|(part, ..)| self.booked(*part).len()).sum()
     }
 
-    /// Where those for local damping and fixed motions begin; those for bonds lie before them.
-    pub fn held_at(&self) -> usize {
-        QUANTITIES + if self.bonds { BOND_QUANTITIES } else { 0 }
+    /// Where the numbers of a part lie among them; nowhere where a model has none.
+    pub fn booked(&self, of: Booked) -> Range<usize> {
+        let mut from = 0;
+        for (part, _, count) in Booked::ALL {
+            let there = match part {
+                Booked::Spheres | Booked::Planes | Booked::Motion => count,
+                Booked::Bonds => {
+                    if self.bonds {
+                        count
+                    } else {
+                        0
+                    }
+                }
+                Booked::Held => {
+                    if self.held {
+                        count
+                    } else {
+                        0
+                    }
+                }
+                Booked::Patches => {
+                    if self.walls > 0 {
+                        count + WALL_BOOKED * self.walls
+                    } else {
+                        0
+                    }
+                }
+            };
+            let to = from + there;
+            if part == of {
+                return from..to;
+            }
+            from = to;
+        }
+        from..from
+    }
+
+    /// The lines of C that sum a number `q` of a block up, by the function of its part.
+    pub fn books(&self) -> String {
+        let mut out = String::new();
+        for (part, name, _) in Booked::ALL {
+            let Range { start, end } = self.booked(part);
+            if start < end {
+                let name = name.to_lowercase();
+                _ = writeln!(
+                    out,
+                    "    if (q >= {start}u && q < {end}u) x = {name}_books(p, from, to, q - {start}u);"
+                );
+            }
+        }
+        out
     }
 }
 
@@ -187,17 +333,33 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
     let sizes = [
         ("LISTS", LISTS),
         ("QUANTITIES", f.quantities()),
-        ("BONDS_BOOKED", QUANTITIES),
-        ("HELD_BOOKED", f.held_at()),
         ("LAW_WIDTH", f.law_width),
         ("HELD_WIDTH", HELD_WIDTH),
+        ("SHAPE_WIDTH", SHAPE_WIDTH),
+        ("WALL_WIDTH", WALL_WIDTH),
+        ("PATCH_WIDTH", PATCH_WIDTH),
         ("BOND_WIDTH", crate::bond::kernel::COUNT),
+        ("ITERATIONS", crate::integrate::rotation::ITERATIONS),
     ];
     for (name, value) in sizes {
         _ = writeln!(out, "#define {name} {value}u");
     }
-    for (name, on) in [("ROLL", f.roll), ("HELD", f.held), ("BONDS", f.bonds)] {
+    for (name, on) in [("ROLL", f.roll), ("HELD", f.held), ("CLUMPS", f.clumps)] {
         _ = writeln!(out, "#define {name} {}", u32::from(on));
+    }
+    let how = if f.clumps {
+        let bit = |of: u32| format!("((SINGLE[i] & {of}u) != 0)");
+        [
+            "((SINGLE[i] & 1u) == 0)".into(),
+            "(SINGLE[i] >> 1 & 63u)".into(),
+            bit(How::TURNS),
+            bit(How::ORIENTED),
+        ]
+    } else {
+        ["(SINGLE[i] == 0)".into(), "(SINGLE[i] >> 1)".into(), "0".to_string(), "0".to_string()]
+    };
+    for (name, test) in ["BY_FOUR", "FIXED", "TURNS", "ORIENTED"].into_iter().zip(how) {
+        _ = writeln!(out, "#define {name}(i) {test}");
     }
     _ = writeln!(out, "#define FRESH {fresh}");
     out

@@ -6,11 +6,13 @@
 
 mod arrays;
 mod back_end;
+mod bodies;
 mod layout;
 mod machine;
 mod scope;
 mod tape;
 mod text;
+mod walls;
 
 pub use back_end::{Device, source};
 pub use layout::Arguments;

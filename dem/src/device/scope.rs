@@ -15,14 +15,18 @@ pub struct Unsupported(pub &'static str);
 pub fn check(model: &Model) -> Result<(), Unsupported> {
     let shape = |k: usize| model.shape(k);
     let bodies = || 0..model.body_count();
-    let (any_clump, any_solid) = (
-        bodies().any(|k| matches!(shape(k), Shape::Clump(_))),
-        bodies().any(|k| matches!(shape(k), Shape::Box { .. } | Shape::Polyhedron(_))),
-    );
+    let any_solid = bodies().any(|k| matches!(shape(k), Shape::Box { .. } | Shape::Polyhedron(_)));
+    // Those about some axes take the solution of a system of equations.
+    let about_some = |k: usize| {
+        let fixed = model.body(k).fixed >> 3;
+        matches!(shape(k), Shape::Clump(_)) && fixed != 0 && fixed != 7
+    };
     let all = [
-        (any_clump, "clumps"),
+        (bodies().any(about_some), "clumps that are free to turn about some axes only"),
         (any_solid, "boxes and polyhedra"),
-        (!model.walls.walls.is_empty(), "walls other than planes"),
+        (!model.walls.triangulated(), "walls other than triangles and planes of steady velocity"),
+        (model.walls.walls.iter().any(|w| w.servo.is_some()), "walls that a force drives"),
+        (model.walls.walls.iter().any(|w| w.body.is_some()), "walls that are bodies"),
         (model.surface_material.is_some(), "contacts with a solid"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
         (model.periodic.is_some(), "periodic borders"),

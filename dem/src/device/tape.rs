@@ -250,7 +250,7 @@ impl Results {
         }
     }
 
-    /// The lines of C that these results need of this thread's tape.
+    /// The block of C that these results need of this thread's tape.
     pub fn text(&self) -> String {
         TAPE.with_borrow(|t| {
             let mut live = vec![false; t.ops.len()];
@@ -260,7 +260,7 @@ impl Results {
                     t.ops[k].operands().into_iter().flatten().for_each(|a| live[a as usize] = true);
                 }
             }
-            let mut out = String::new();
+            let mut out = String::from("    {\n");
             for (k, op) in t.ops.iter().enumerate().filter(|(k, _)| live[*k]) {
                 if let Some(expression) = t.expression(op) {
                     let kind = if op.is_truth() { "int" } else { "real" };
@@ -270,6 +270,7 @@ impl Results {
             for (to, k) in &self.0 {
                 _ = writeln!(out, "    {to} = {};", t.operand(*k));
             }
+            out.push_str("    }\n");
             out
         })
     }

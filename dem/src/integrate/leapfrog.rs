@@ -13,7 +13,8 @@
 
 use super::kick::{Push, Single, kick_free, kick_single, resist, turn_of_sphere};
 use super::pace::Pace;
-use super::rotation::{self, Turn};
+use super::rotation;
+use super::turning::{self, Among, Rigid};
 use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
@@ -22,6 +23,7 @@ use crate::bodies::members::Members;
 use crate::bodies::sums::{Sums as BodySums, Tally};
 use crate::bodies::table::{Bodies, Kind};
 use crate::lanes::record::{set_xyz, xyz};
+use crate::lanes::turn::Turn;
 use crate::lanes::{self, Four, Kernel, Pack, Real, Simd, V3};
 use nalgebra::UnitQuaternion;
 
@@ -300,6 +302,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
     };
     let [a, b, c, d] = [0, 1, 2, 3].map(|l| &rotation[l].momentum);
     let (mx, my, mz) = lane(a, b, c, d);
+    let (mx, my, mz) = (R::load(&mx), R::load(&my), R::load(&mz));
     let (ix, iy, iz) = lane(&inertia[0], &inertia[1], &inertia[2], &inertia[3]);
     let inertia = V3::new(R::load(&ix), R::load(&iy), R::load(&iz));
     let reach =
@@ -307,40 +310,31 @@ fn turn_four<R: Four, const DAMPED: bool>(
     let [tx, ty, tz, _] = R::transpose(torque);
     let [wx, wy, wz, material] =
         R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
-    let impulse = V3::new(tx, ty, tz) * R::splat(pace.kick());
+    let kick = R::splat(pace.kick());
+    let torque = V3::new(tx, ty, tz);
     let sphere = !R::zero().lt(reach);
-    let before = V3::new(wx, wy, wz);
-    let momentum = V3::new(R::load(&mx), R::load(&my), R::load(&mz)) + impulse;
     let [qi, qj, qk, qw] = R::transpose([
         R::load(&rotation[0].orientation.coords.data.0[0]),
         R::load(&rotation[1].orientation.coords.data.0[0]),
         R::load(&rotation[2].orientation.coords.data.0[0]),
         R::load(&rotation[3].orientation.coords.data.0[0]),
     ]);
-    let old = Turn { v: V3::new(qi, qj, qk), s: qw };
-    let new = rotation::free(old, momentum, inertia, pace.dt);
-    let local = new.back(momentum);
-    let rate = new.apply(V3::new(local.x / inertia.x, local.y / inertia.y, local.z / inertia.z));
+    let orientation = Turn { v: V3::new(qi, qj, qk), s: qw };
+    let (momentum, before) = (V3::new(mx, my, mz), V3::new(wx, wy, wz));
+    let body = Rigid { orientation, momentum, spin: before, inertia };
     // A single sphere keeps its orientation; its momentum is not used.
+    let momentum = turning::kicked(&body, torque, kick);
+    let new = rotation::free(orientation, momentum, inertia, R::splat(pace.dt));
+    let mut held = V3::zero();
     if DAMPED {
-        // The spin after the kick, before the turn.
-        let local = old.back(momentum);
-        let kicked = old.apply(V3::new(local.x / inertia.x, local.y / inertia.y, local.z / inertia.z));
-        let kicked = V3::select(
-            sphere,
-            before + V3::new(impulse.x / inertia.x, impulse.y / inertia.x, impulse.z / inertia.x),
-            kicked,
-        );
         let [sx, sy, sz, _] = R::transpose(stop);
-        let stop = V3::new(sx, sy, sz);
-        sums.power = sums.power + stop.dot(before + kicked) * R::splat(0.5);
+        held = V3::new(sx, sy, sz);
     }
-    let rate = V3::select(
-        sphere,
-        before + V3::new(impulse.x / inertia.x, impulse.y / inertia.x, impulse.z / inertia.x),
-        rate,
-    );
-    let turn = Turn { v: V3::select(sphere, old.v, new.v), s: R::select(sphere, old.s, new.s) };
+    let Among { orientation: turn, spin: rate, power } =
+        turning::among::<R, DAMPED>(&body, sphere, (torque * kick, held), momentum, new);
+    if DAMPED {
+        sums.power = sums.power + power;
+    }
     let spins = R::transpose([rate.x, rate.y, rate.z, material]);
     let turns = R::transpose([turn.v.x, turn.v.y, turn.v.z, turn.s]);
     let (mx, my, mz) = (momentum.x.array(), momentum.y.array(), momentum.z.array());
@@ -350,8 +344,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
         r.momentum = Vec3::new(mx[l], my[l], mz[l]);
         r.orientation = UnitQuaternion::new_unchecked(turns[l].array().into());
     }
-    let speed = speed2.sqrt() + rate.norm2().sqrt() * reach;
-    speed * speed
+    turning::fastest2(speed2, rate, reach)
 }
 
 /// Puts the spheres of four bodies from `body` on where centres and orientations say, as many at a time as there are groups of lanes.
@@ -365,14 +358,12 @@ fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
         P::Quad::load(quaternion(2)),
         P::Quad::load(quaternion(3)),
     ]);
-    let (two, zero) = (P::Quad::splat(2.0), P::Quad::zero());
-    let (ii, jj, kk, ss) = (i * i, j * j, k * k, s * s);
-    let (ij, ik, jk) = (i * j * two, i * k * two, j * k * two);
-    let (si, sj, sk) = (s * i * two, s * j * two, s * k * two);
+    let zero = P::Quad::zero();
+    let [x, y, z] = Turn { v: V3::new(i, j, k), s }.columns();
     // Columns of the matrix of each body.
-    let x = P::Quad::transpose([ss + ii - jj - kk, sk + ij, ik - sj, zero]);
-    let y = P::Quad::transpose([ij - sk, ss - ii + jj - kk, si + jk, zero]);
-    let z = P::Quad::transpose([sj + ik, jk - si, ss - ii - jj + kk, zero]);
+    let x = P::Quad::transpose([x.x, x.y, x.z, zero]);
+    let y = P::Quad::transpose([y.x, y.y, y.z, zero]);
+    let z = P::Quad::transpose([z.x, z.y, z.z, zero]);
     let radius = P::zero().lt(P::record(&[0.0, 0.0, 0.0, 1.0]));
     for l in 0..4 {
         let (x, y, z) = (P::twice(x[l]), P::twice(y[l]), P::twice(z[l]));
@@ -461,8 +452,7 @@ fn general<const RIGID: bool>(
         ledger.local_damping.add(&x, &(damping * kick));
         ledger.local_damping.angular += damping_torque * kick;
     }
-    let speed = v1.norm() + xyz(&block.spin[k]).norm() * reach;
-    speed * speed
+    turning::fastest2(V3::from_vec(&v1).norm2(), V3::from_vec(&xyz(&block.spin[k])), reach)
 }
 
 /// Kicks and turns a clump or a box; returns the mean spin of the kick.
@@ -479,25 +469,30 @@ fn rotate(
     let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
     let w0 = xyz(&block.spin[k]);
     let r = &mut block.rotation[k];
-    let before = *r;
-    r.momentum += torque * kick;
-    let kicked = spin_of(r, inertia);
-    if fixed == 0 {
-        r.orientation = rotation::free_one(&r.orientation, &r.momentum, inertia, dt);
-        let spin = spin_of(r, inertia);
-        set_xyz(&mut block.spin[k], &spin);
-        return (w0 + kicked) * 0.5;
-    }
-    let kicked = hold(r, inertia, &kicked, &drive.bodies.spin(block.bodies[k] as usize), fixed);
-    r.orientation = rotation::steady(&r.orientation, &kicked, dt);
-    let local = r.orientation.inverse_transform_vector(&kicked);
-    r.momentum = r.orientation * local.component_mul(inertia);
-    let mean = (w0 + kicked) * 0.5;
-    ledger.constraints.angular += r.momentum - before.momentum - torque * kick;
-    ledger.work_constraints +=
-        0.5 * (r.momentum.dot(&kicked) - before.momentum.dot(&w0)) - torque.dot(&mean) * kick;
-    set_xyz(&mut block.spin[k], &kicked);
-    mean
+    let of = V3::from_vec;
+    let body = Rigid {
+        orientation: Turn::of(&r.orientation),
+        momentum: of(&r.momentum),
+        spin: of(&w0),
+        inertia: of(inertia),
+    };
+    let momentum = turning::kicked(&body, of(torque), kick);
+    let turned = if fixed == 0 {
+        let new = rotation::free(body.orientation, momentum, body.inertia, dt);
+        turning::alone(&body, momentum, new)
+    } else {
+        let pushed = Rotation { orientation: r.orientation, momentum: momentum.to_vec() };
+        let kicked = spin_of(&pushed, inertia);
+        let target = drive.bodies.spin(block.bodies[k] as usize);
+        let kicked = hold(&pushed, inertia, &kicked, &target, fixed);
+        let (turned, impulse, work) = turning::held(&body, of(torque), of(&kicked), kick, dt);
+        ledger.constraints.angular += impulse.to_vec();
+        ledger.work_constraints += work;
+        turned
+    };
+    *r = Rotation { orientation: turned.orientation.quaternion(), momentum: turned.momentum.to_vec() };
+    set_xyz(&mut block.spin[k], &turned.spin.to_vec());
+    turned.mean.to_vec()
 }
 
 /// Spin after the impulse about the fixed axes that gives it the components `target` there.

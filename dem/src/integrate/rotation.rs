@@ -12,62 +12,80 @@
 //! points, each gaining a factor of about ω dt.
 
 use crate::base::Vec3;
+use crate::lanes::turn::Turn;
 use crate::lanes::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Most iterations; reached only when ω dt is of the order of one, where results have no meaning anyway.
-const ITERATIONS: usize = 60;
+pub(crate) const ITERATIONS: usize = 60;
 
-/// Rotations in lanes: vector and scalar part of unit quaternions.
+/// The implicit equation of free rotation, whose solution is c = ω dt/2.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn<R> {
-    pub v: V3<R>,
-    pub s: R,
+pub(crate) struct Midpoint<R> {
+    /// Momentum in the body frame at the start.
+    pub start: V3<R>,
+    /// dt/2 over the principal moments.
+    pub half: V3<R>,
 }
 
-impl<R: Real> Turn<R> {
-    /// The vector turned.
+impl<R: Real> Midpoint<R> {
     #[inline(always)]
-    pub fn apply(self, x: V3<R>) -> V3<R> {
-        let t = self.v.cross(x) * R::splat(2.0);
-        x + t * self.s + self.v.cross(t)
+    pub fn new(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: R) -> Midpoint<R> {
+        let h = R::splat(0.5) * dt;
+        let half = V3::new(h / inertia.x, h / inertia.y, h / inertia.z);
+        Midpoint { start: orientation.back(momentum), half }
     }
 
-    /// The vector turned back.
+    /// Where iterations begin.
     #[inline(always)]
-    pub fn back(self, x: V3<R>) -> V3<R> {
-        let t = x.cross(self.v) * R::splat(2.0);
-        x + t * self.s + t.cross(self.v)
+    pub fn guess(&self) -> V3<R> {
+        let Midpoint { start, half } = self;
+        V3::new(start.x * half.x, start.y * half.y, start.z * half.z)
     }
-}
 
-/// Orientation after free rotation over `dt` with world angular momentum `momentum` and principal moments `inertia`.
-#[inline(always)]
-pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: f64) -> Turn<R> {
-    let start = orientation.back(momentum);
-    let h = R::splat(0.5 * dt);
-    let half = V3::new(h / inertia.x, h / inertia.y, h / inertia.z);
-    // c = ω dt/2; the mid momentum solves Π + c × Π = Π₀.
-    let mut c = V3::new(start.x * half.x, start.y * half.y, start.z * half.z);
-    let one = R::splat(1.0);
-    // Record that have converged stay as they are, so that none depends on its neighbours.
-    let mut open = one.equals(one);
-    for _ in 0..ITERATIONS {
+    /// One iteration, and whether another is needed: the mid momentum solves Π + c × Π = Π₀.
+    #[inline(always)]
+    pub fn iterate(&self, c: V3<R>) -> (V3<R>, R::Mask) {
+        let Midpoint { start, half } = *self;
+        let one = R::splat(1.0);
         let c2 = c.norm2();
         let mid = (start - c.cross(start) + c * c.dot(start)) * (one / (one + c2));
         let next = V3::new(mid.x * half.x, mid.y * half.y, mid.z * half.z);
         let change = (next - c).norm2();
-        c = V3::select(open, next, c);
-        open = open & (R::splat(1e-33) * c2).lt(change);
-        if !R::any(open) {
-            break;
-        }
+        (next, (R::splat(1e-33) * c2).lt(change))
     }
-    // q ∘ (1, c), normalised.
+
+    #[inline(always)]
+    fn solve(&self) -> V3<R> {
+        let mut c = self.guess();
+        let one = R::splat(1.0);
+        // Record that have converged stay as they are, so that none depends on its neighbours.
+        let mut open = one.equals(one);
+        for _ in 0..ITERATIONS {
+            let (next, more) = self.iterate(c);
+            c = V3::select(open, next, c);
+            open = open & more;
+            if !R::any(open) {
+                break;
+            }
+        }
+        c
+    }
+}
+
+/// q ∘ (1, c), normalised.
+#[inline(always)]
+pub(crate) fn turned<R: Real>(orientation: Turn<R>, c: V3<R>) -> Turn<R> {
     let Turn { v, s } = orientation;
     let (vector, scalar) = (v + c * s + v.cross(c), s - v.dot(c));
-    let scale = one / (vector.norm2() + scalar * scalar).sqrt();
+    let scale = R::splat(1.0) / (vector.norm2() + scalar * scalar).sqrt();
     Turn { v: vector * scale, s: scalar * scale }
+}
+
+/// Orientation after free rotation over `dt` with world angular momentum `momentum` and principal moments `inertia`.
+#[inline(always)]
+pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: R) -> Turn<R> {
+    turned(orientation, Midpoint::new(orientation, momentum, inertia, dt).solve())
 }
 
 /// As `free`, for one body.
@@ -77,15 +95,26 @@ pub fn free_one(
     inertia: &Vec3,
     dt: f64,
 ) -> UnitQuaternion<f64> {
-    let q = Turn { v: V3::new(orientation.i, orientation.j, orientation.k), s: orientation.w };
-    let Turn { v, s } = free(q, V3::from_vec(momentum), V3::from_vec(inertia), dt);
-    UnitQuaternion::new_unchecked(Quaternion::new(s, v.x, v.y, v.z))
+    free(Turn::of(orientation), V3::from_vec(momentum), V3::from_vec(inertia), dt).quaternion()
 }
 
 /// Orientation after turning over `dt` with a constant world spin, of the same order.
+#[inline(always)]
+pub(crate) fn steadily<R: Real>(q: Turn<R>, spin: V3<R>, dt: R) -> Turn<R> {
+    let (one, V3 { x: i, y: j, z: k }) = (R::splat(1.0), spin * (R::splat(0.5) * dt));
+    let Turn { v, s } = q;
+    let scalar = one * s - i * v.x - j * v.y - k * v.z;
+    let x = one * v.x + i * s + j * v.z - k * v.y;
+    let y = one * v.y - i * v.z + j * s + k * v.x;
+    let z = one * v.z + i * v.y - j * v.x + k * s;
+    let norm = ((x * x + z * z) + (y * y + scalar * scalar)).sqrt();
+    Turn { v: V3::new(x / norm, y / norm, z / norm), s: scalar / norm }
+}
+
+/// As `steadily`, for one body.
 #[inline]
 pub fn steady(orientation: &UnitQuaternion<f64>, spin: &Vec3, dt: f64) -> UnitQuaternion<f64> {
-    normalised(Quaternion::from_parts(1.0, spin * (0.5 * dt)) * orientation.quaternion())
+    steadily(Turn::of(orientation), V3::from_vec(spin), dt).quaternion()
 }
 
 /// The turn by the angle |v| [rad] about v.
@@ -130,6 +159,18 @@ mod tests {
 
     fn spin(q: &UnitQuaternion<f64>, momentum: &Vec3, inertia: &Vec3) -> Vec3 {
         q * q.inverse_transform_vector(momentum).component_div(inertia)
+    }
+
+    /// What is written over any kind of number has the bits of nalgebra's products, which results have always had.
+    #[test]
+    fn steady_turns_have_the_bits_of_nalgebra() {
+        for k in 0..1000_i32 {
+            let x = |i: i32| libm::sin(f64::from(7 * k + i) * 1.7);
+            let q = UnitQuaternion::new_normalize(Quaternion::new(x(0), x(1), x(2), x(3)));
+            let spin = Vec3::new(x(4), x(5), x(6));
+            let product = normalised(Quaternion::from_parts(1.0, spin * (0.5 * 1e-3)) * q.quaternion());
+            assert_eq!(steady(&q, &spin, 1e-3), product);
+        }
     }
 
     /// Energy and momentum of an asymmetric top, turning near its unstable axis, over a million steps.

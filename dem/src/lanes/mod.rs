@@ -19,6 +19,7 @@ mod portable;
 mod prefetch;
 mod real;
 pub(crate) mod record;
+pub(crate) mod turn;
 mod vector;
 mod wide;
 #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]

@@ -2,6 +2,7 @@
 //! of the plane by signed products, so that no root and no tolerance is needed).
 
 use crate::base::Vec3;
+use crate::lanes::{Real, V3};
 
 /// Where on the triangle a point lies. Edge k joins vertices k and k + 1 (mod 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,39 +15,81 @@ pub enum Region {
     Vertex(usize),
 }
 
+/// Signed products that tell the regions of the plane of a triangle apart.
+struct Products<R> {
+    d: [R; 6],
+    va: R,
+    vb: R,
+    vc: R,
+}
+
+impl<R: Real> Products<R> {
+    #[inline(always)]
+    fn new(a: V3<R>, b: V3<R>, c: V3<R>, p: V3<R>) -> Products<R> {
+        let (ab, ac) = (b - a, c - a);
+        let (ap, bp, cp) = (p - a, p - b, p - c);
+        let d = [ab.dot(ap), ac.dot(ap), ab.dot(bp), ac.dot(bp), ab.dot(cp), ac.dot(cp)];
+        let [d1, d2, d3, d4, d5, d6] = d;
+        Products { d, va: d3 * d6 - d5 * d4, vb: d5 * d2 - d1 * d6, vc: d1 * d4 - d3 * d2 }
+    }
+
+    /// The region: 0 the inside, 1 to 3 vertices, 4 to 6 edges.
+    #[inline(always)]
+    fn region(&self) -> R {
+        let ([d1, d2, d3, d4, d5, d6], zero) = (self.d, R::zero());
+        let code = |k: u8| R::splat(f64::from(k));
+        let edge_1 = R::select(self.va.le(zero) & d3.le(d4) & d6.le(d5), code(5), zero);
+        let edge_2 = R::select(self.vb.le(zero) & zero.le(d2) & d6.le(zero), code(6), edge_1);
+        let vertex_2 = R::select(zero.le(d6) & d5.le(d6), code(3), edge_2);
+        let edge_0 = R::select(self.vc.le(zero) & zero.le(d1) & d3.le(zero), code(4), vertex_2);
+        let vertex_1 = R::select(zero.le(d3) & d4.le(d3), code(2), edge_0);
+        R::select(d1.le(zero) & d2.le(zero), code(1), vertex_1)
+    }
+}
+
+/// The part of triangle `abc` that is closest to `p`: 0 the inside, 1 to 3 vertices, 4 to 6 edges.
+#[inline(always)]
+pub(crate) fn region<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, p: V3<R>) -> R {
+    Products::new(a, b, c, p).region()
+}
+
+/// The same in words.
+#[inline(always)]
+fn named(region: f64) -> Region {
+    match region as usize {
+        0 => Region::Face,
+        k @ 1..=3 => Region::Vertex(k - 1),
+        k => Region::Edge(k - 4),
+    }
+}
+
+/// The part of triangle `abc` that is closest to `p`.
+#[inline]
+pub(crate) fn region_of(a: &Vec3, b: &Vec3, c: &Vec3, p: &Vec3) -> Region {
+    let of = V3::from_vec;
+    named(region(of(a), of(b), of(c), of(p)))
+}
+
 /// The point of triangle `abc` closest to `p`, as weights of b and c, with its region.
 #[inline]
 pub fn closest_point(a: &Vec3, b: &Vec3, c: &Vec3, p: &Vec3) -> ([f64; 2], Region) {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return ([0.0, 0.0], Region::Vertex(0));
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return ([1.0, 0.0], Region::Vertex(1));
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return ([d1 / (d1 - d3), 0.0], Region::Edge(0));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return ([0.0, 1.0], Region::Vertex(2));
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return ([0.0, d2 / (d2 - d6)], Region::Edge(2));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return ([1.0 - w, w], Region::Edge(1));
-    }
-    let s = 1.0 / (va + vb + vc);
-    ([vb * s, vc * s], Region::Face)
+    let of = V3::from_vec;
+    let products = Products::new(of(a), of(b), of(c), of(p));
+    let ([d1, d2, d3, d4, d5, d6], region) = (products.d, named(products.region()));
+    let weights = match region {
+        Region::Vertex(k) => [f64::from(u8::from(k == 1)), f64::from(u8::from(k == 2))],
+        Region::Edge(0) => [d1 / (d1 - d3), 0.0],
+        Region::Edge(1) => {
+            let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+            [1.0 - w, w]
+        }
+        Region::Edge(_) => [0.0, d2 / (d2 - d6)],
+        Region::Face => {
+            let s = 1.0 / (products.va + products.vb + products.vc);
+            [products.vb * s, products.vc * s]
+        }
+    };
+    (weights, region)
 }
 
 #[cfg(test)]

@@ -198,6 +198,19 @@ impl Walls {
         self.entries.is_empty()
     }
 
+    /// Whether all patches are triangles.
+    pub(crate) fn triangulated(&self) -> bool {
+        self.rounds.is_empty()
+    }
+
+    /// Walls of triangles, triangle by triangle: the wall, a number that those in one plane share, and the triangle.
+    pub(crate) fn triangles(&self) -> impl Iterator<Item = (u32, u32, &Triangle)> {
+        self.entries.iter().filter_map(|entry| match entry.kind {
+            Kind::Triangle(t) => Some((entry.wall, entry.flat, &self.triangles[t as usize])),
+            Kind::Round(_) => None,
+        })
+    }
+
     /// Wall of a patch.
     #[inline]
     pub(crate) fn wall_of(&self, patch: u32) -> usize {

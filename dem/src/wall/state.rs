@@ -1,6 +1,8 @@
 //! Where walls are and how they move.
 
 use crate::base::Vec3;
+use crate::lanes::turn::Turn;
+use crate::lanes::{Real, V3};
 use crate::law::History;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
@@ -39,29 +41,93 @@ pub(crate) struct WallState {
     pub feet: Vec<Foot>,
 }
 
+/// Place and motion of a wall as formulas need them; see [`WallState`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<R: Real> {
+    /// Centre at the start.
+    pub centre: V3<R>,
+    pub offset: V3<R>,
+    pub orientation: Turn<R>,
+    pub turned: R::Mask,
+    pub velocity: V3<R>,
+    pub spin: V3<R>,
+}
+
+impl<R: Real> Place<R> {
+    /// A world point in the frame of the wall.
+    #[inline(always)]
+    pub fn to_local(self, x: V3<R>) -> V3<R> {
+        let back = x - self.offset;
+        if !R::any(self.turned) {
+            return back;
+        }
+        let turned = self.orientation.inverse().times(back - self.centre) + self.centre;
+        V3::select(self.turned, turned, back)
+    }
+
+    /// A point of the wall's frame in the world.
+    #[inline(always)]
+    pub fn to_world(self, x: V3<R>) -> V3<R> {
+        let moved = x + self.offset;
+        if !R::any(self.turned) {
+            return moved;
+        }
+        let turned = self.orientation.times(x - self.centre) + self.centre + self.offset;
+        V3::select(self.turned, turned, moved)
+    }
+
+    /// A direction of the wall's frame in the world.
+    #[inline(always)]
+    pub fn turn(self, v: V3<R>) -> V3<R> {
+        if !R::any(self.turned) {
+            return v;
+        }
+        V3::select(self.turned, self.orientation.times(v), v)
+    }
+
+    /// Velocity of the wall's point at `x` [m/s].
+    #[inline(always)]
+    pub fn velocity_at(self, x: V3<R>) -> V3<R> {
+        self.velocity + self.spin.cross(x - self.centre - self.offset)
+    }
+}
+
 impl WallState {
+    /// As formulas need it; `centre`: that of the wall at the start.
+    #[inline(always)]
+    fn place(&self, centre: &Vec3) -> Place<f64> {
+        let of = V3::from_vec;
+        Place {
+            centre: of(centre),
+            offset: of(&self.offset),
+            orientation: Turn::of(&self.orientation),
+            turned: self.turned,
+            velocity: of(&self.velocity),
+            spin: of(&self.spin),
+        }
+    }
+
     /// A world point in the frame of the wall, whose centre was at `centre` at the start.
     #[inline(always)]
     pub fn to_local(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        let back = x - self.offset;
-        if self.turned { self.orientation.inverse_transform_vector(&(back - centre)) + centre } else { back }
+        self.place(centre).to_local(V3::from_vec(x)).to_vec()
     }
 
     /// A point of the wall's frame in the world.
     #[inline(always)]
     pub fn to_world(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        if self.turned { self.orientation * (x - centre) + centre + self.offset } else { x + self.offset }
+        self.place(centre).to_world(V3::from_vec(x)).to_vec()
     }
 
     /// A direction of the wall's frame in the world.
     #[inline(always)]
     pub fn turn(&self, v: &Vec3) -> Vec3 {
-        if self.turned { self.orientation * v } else { *v }
+        self.place(&Vec3::zeros()).turn(V3::from_vec(v)).to_vec()
     }
 
     /// Velocity of the wall's point at `x` [m/s].
     #[inline(always)]
     pub fn velocity_at(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.velocity + self.spin.cross(&(x - centre - self.offset))
+        self.place(centre).velocity_at(V3::from_vec(x)).to_vec()
     }
 }

@@ -9,7 +9,7 @@
 
 use crate::base::Vec3;
 use crate::base::error::ModelError;
-use crate::lanes;
+use crate::lanes::{self, Real, V3};
 use crate::shape::triangle::{self, Region};
 use crate::spatial::bvh::Aabb;
 
@@ -34,9 +34,43 @@ pub(crate) struct Triangle {
     pub vertices: [u32; 3],
 }
 
+/// Unit normal and level of a plane.
+pub(crate) type Level<R> = [R; 4];
+
 #[inline(always)]
-fn height(plane: &[f64; 4], x: &Vec3) -> f64 {
+fn height<R: Real>(plane: &Level<R>, x: V3<R>) -> R {
     plane[0] * x.x + plane[1] * x.y + plane[2] * x.z - plane[3]
+}
+
+/// A lower bound of the distance from a triangle to `x`: from its height above the plane and outside the edges.
+#[inline(always)]
+pub(crate) fn clearance<R: Real>(plane: &Level<R>, rims: &[Level<R>; 3], x: V3<R>) -> R {
+    let up = height(plane, x);
+    let [a, b, c] = rims;
+    let out = R::zero().max(height(a, x)).max(height(b, x)).max(height(c, x));
+    (up * up + out * out).sqrt() * R::splat(1.0 - SLACK)
+}
+
+/// Whether the edges tell that `x` stands above the inside.
+#[inline(always)]
+pub(crate) fn inside<R: Real>([a, b, c]: &[Level<R>; 3], x: V3<R>) -> R::Mask {
+    let below = R::zero();
+    height(a, x).le(below) & height(b, x).le(below) & height(c, x).le(below)
+}
+
+/// Where `x` stands on a plane.
+#[inline(always)]
+pub(crate) fn foot<R: Real>(plane: &Level<R>, x: V3<R>) -> V3<R> {
+    x - V3::new(plane[0], plane[1], plane[2]) * height(plane, x)
+}
+
+/// The point of the edge from `a` to `b` that is closest to `x`.
+#[inline(always)]
+pub(crate) fn on_edge<R: Real>(a: V3<R>, b: V3<R>, x: V3<R>) -> V3<R> {
+    let (along, zero, one) = (b - a, R::zero(), R::splat(1.0));
+    let share = (x - a).dot(along) / along.norm2();
+    let share = R::select(share.lt(zero), zero, R::select(share.gt(one), one, share));
+    a + along * share
 }
 
 impl Triangle {
@@ -51,6 +85,15 @@ impl Triangle {
         self.plane.map(f64::to_bits)
     }
 
+    /// Plane, planes of the edges, corners.
+    pub fn numbers(&self) -> [f64; 25] {
+        let corners = self.corners.iter().flat_map(|c| c.iter());
+        let all = self.plane.iter().chain(self.rims.as_flattened()).chain(corners);
+        let mut out = [0.0; 25];
+        out.iter_mut().zip(all).for_each(|(to, x)| *to = *x);
+        out
+    }
+
     /// Has the processor fetch the lines that a contact inside it needs.
     #[inline(always)]
     pub fn fetch(&self) {
@@ -61,16 +104,14 @@ impl Triangle {
     /// A lower bound of the distance to `x`: from its height above the plane and outside the edges.
     #[inline(always)]
     pub fn clearance(&self, x: &Vec3) -> f64 {
-        let up = height(&self.plane, x);
-        let out = self.rims.iter().map(|rim| height(rim, x)).fold(0.0, f64::max);
-        (up * up + out * out).sqrt() * (1.0 - SLACK)
+        clearance(&self.plane, &self.rims, V3::from_vec(x))
     }
 
     /// Where `x` stands above the inside, if the edges tell that it does.
     #[inline(always)]
     pub fn foot(&self, x: &Vec3) -> Option<Vec3> {
-        let inside = self.rims.iter().all(|rim| height(rim, x) <= 0.0);
-        inside.then(|| x - self.normal() * height(&self.plane, x))
+        let x = V3::from_vec(x);
+        inside(&self.rims, x).then(|| foot(&self.plane, x).to_vec())
     }
 
     /// Closest point, and where on the triangle it lies.
@@ -86,9 +127,10 @@ impl Triangle {
     #[inline(never)]
     fn beside(&self, x: &Vec3) -> (Vec3, Region) {
         let [a, b, c] = &self.corners;
-        let (_, region) = triangle::closest_point(a, b, c, x);
+        let region = triangle::region_of(a, b, c, x);
+        let of = V3::from_vec;
         let point = match region {
-            Region::Face => x - self.normal() * height(&self.plane, x),
+            Region::Face => foot(&self.plane, of(x)).to_vec(),
             Region::Vertex(k) => self.corners[k],
             // From the lower vertex, so that both triangles of an edge find the same bits.
             Region::Edge(k) => {
@@ -98,8 +140,7 @@ impl Triangle {
                 } else {
                     (second, first)
                 };
-                let (p, along) = (self.corners[first], self.corners[second] - self.corners[first]);
-                p + along * ((x - p).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
+                on_edge(of(&self.corners[first]), of(&self.corners[second]), of(x)).to_vec()
             }
         };
         (point, region)
@@ -216,7 +257,8 @@ fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Ve
                 let from = edges.partition_point(|e| e.0 < side);
                 for &(_, next) in edges[from..].iter().take_while(|e| e.0 == side) {
                     let next = next as usize;
-                    let flat = |v: u32| height(&plane, &vertices[v as usize]).abs() <= COPLANAR * size;
+                    let flat =
+                        |v: u32| height(&plane, V3::from_vec(&vertices[v as usize])).abs() <= COPLANAR * size;
                     if planes[next].is_none() && triangles[next].iter().all(|&v| flat(v)) {
                         planes[next] = Some(plane);
                         open.push(next);

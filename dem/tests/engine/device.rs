@@ -1,7 +1,8 @@
 //! The kernels that a device is given, compiled by the system's C compiler: every bit of the state is the engine's.
 
 use crate::c_machine::{CMachine, compiler_is_there};
-use crate::scene::{Random, plane, sphere, stone};
+use crate::scene::{Random, cuboid, free, plane, sphere, stone};
+use nalgebra::UnitQuaternion;
 use trackbed_dem::bond::{
     Bond, BondDamping, BondInput, Criterion, ParallelBond, ParallelStiffness, ShearStrength, within_gap,
 };
@@ -9,9 +10,11 @@ use trackbed_dem::device::{Device, source};
 use trackbed_dem::law::damping::Damping;
 use trackbed_dem::law::material::{LawName, PairOverride};
 use trackbed_dem::law::table;
+use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
-    BackEnd, LocalDamping, Material, Model, ModelInput, Plane, Shape, State, Vec3, Work, step,
+    BackEnd, LocalDamping, Material, Model, ModelInput, Motion, Oscillation, Plane, Servo, Shape, State,
+    Vec3, WallInput, WallShape, Work, step,
 };
 
 const STEPS: usize = 1000;
@@ -102,7 +105,8 @@ fn compare(
 fn explain(model: &Model, ours: &State, theirs: &State) {
     let motion = |s: &State, b: usize| [s.position(b), s.velocity(b), s.spin(b)];
     let other = (0..model.body_count()).filter(|&b| motion(ours, b) != motion(theirs, b)).count();
-    println!("{other} bodies move otherwise; ledgers: {:?}\n{:?}", ours.ledger, theirs.ledger);
+    let same = if ours.ledger == theirs.ledger { "the same" } else { "different" };
+    println!("{other} bodies move otherwise, the ledger is {same}");
 }
 
 fn same_bits(name: &str, input: ModelInput) -> State {
@@ -185,6 +189,164 @@ fn local_damping_and_fixed_motions() {
     }
 }
 
+/// The gas, with clumps of two sizes in place of the spheres that `which` picks.
+fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) -> ModelInput {
+    let three = [([0.0, 0.0, 0.0], 0.006), ([0.0035, 0.001, 0.0], 0.005), ([-0.003, 0.002, 0.002], 0.0045)];
+    let two = [([0.003, 0.0, 0.0], 0.0055), ([-0.003, 0.001, 0.0], 0.005)];
+    for spheres in [&three[..], &two[..]] {
+        input.shapes.push(Shape::Clump(Clump::from_spheres(spheres).expect("one piece")));
+    }
+    let mut random = Random::new(11);
+    for (k, body) in input.bodies.iter_mut().enumerate().filter(|(k, _)| which(*k)) {
+        body.shape = 1 + k % 2;
+        // They are smaller, and steps are shorter: all the faster they come together.
+        body.velocity *= 8.0;
+        body.spin *= 8.0;
+        body.orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
+    }
+    input
+}
+
+/// Whether a body of the gas is one of the few in a corner.
+fn in_a_corner(k: usize) -> bool {
+    [k % 11, k / 11 % 11, k / 121].iter().all(|n| *n < 3)
+}
+
+/// How far a body has turned at most [rad].
+fn largest_turn(state: &State, input: &ModelInput) -> f64 {
+    let model = Model::new(input.clone()).expect("a good input");
+    let turned = |k: usize| state.orientation(&model, k).angle_to(&input.bodies[k].orientation);
+    (0..input.bodies.len()).map(turned).fold(0.0, f64::max)
+}
+
+#[test]
+fn clumps() {
+    if compiler_is_there() {
+        let all = with_clumps(gas([stone(), smooth()], Vec::new()), |_| true);
+        let state = same_bits("clumps", all.clone());
+        let turn = largest_turn(&state, &all);
+        println!("a clump has turned by {turn:.2} rad");
+        assert!(turn > 0.3);
+        same_bits("clumps among spheres", with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 == 1));
+        // Blocks without a clump, in a model with some: contacts across blocks have the formulas of clumps, those within do not.
+        same_bits("few clumps", with_clumps(gas([stone(), smooth()], Vec::new()), in_a_corner));
+        let elastic = [turning(elastic(stone())), turning(elastic(smooth()))];
+        same_bits("clumps, hertz, rolling", with_clumps(gas(elastic, Vec::new()), |k| k % 2 == 1));
+    }
+}
+
+#[test]
+fn clumps_with_local_damping_and_fixed_motions() {
+    if compiler_is_there() {
+        let mut input = with_clumps(gas([turning(stone()), smooth()], Vec::new()), |k| k % 3 != 1);
+        input.damping = Some(LocalDamping { factor: 0.3 });
+        same_bits("clumps, local damping", input.clone());
+        for (k, body) in input.bodies.iter_mut().enumerate().filter(|(k, _)| k % 37 == 0) {
+            body.fixed = std::array::from_fn(|d| [56, 7, 63, 2, 57][k / 37 % 5] >> d & 1 == 1);
+        }
+        same_bits("clumps, fixed motions, local damping", input.clone());
+        input.damping = None;
+        same_bits("clumps, fixed motions", input);
+    }
+}
+
+/// A rotation that is fixed about some axes only is refused by name.
+#[test]
+fn clumps_that_turn_about_some_axes_are_refused() {
+    let mut input = with_clumps(gas([stone(), smooth()], Vec::new()), |k| k == 5);
+    input.bodies[5].fixed[3] = true;
+    let model = Model::new(input).expect("a good input");
+    let why = source(&model).expect_err("not for a device").to_string();
+    assert_eq!(
+        why,
+        "clumps that are free to turn about some axes only are not computed on a device, only on the processor"
+    );
+}
+
+/// A square of triangles, `n` to a side, around a middle; `height` along the normal of each vertex.
+fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMut() -> f64) -> WallShape {
+    let normal = sides[0].cross(&sides[1]).normalize();
+    let at = |k: u32| f64::from(k) / f64::from(n) - 0.5;
+    let all = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j)));
+    let vertices =
+        all.map(|(i, j)| middle + sides[0] * at(i) + sides[1] * at(j) + normal * height()).collect();
+    let corner = |i: u32, j: u32| j * (n + 1) + i;
+    let cells = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
+    let triangles = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    WallShape::Triangles { vertices, triangles: triangles.collect() }
+}
+
+/// The gas between walls of triangles in place of some planes: a rough floor that comes up, a flat lid that swings, a side that turns.
+fn between_triangles(mut input: ModelInput) -> ModelInput {
+    let (far, mut random) = (0.0206 * 11.0, Random::new(3));
+    let (middle, wide) = (0.5 * far, 1.6 * far);
+    input.planes.retain(|p| p.normal.x < 0.5 && p.normal.z.abs() < 0.5);
+    input.bodies.iter_mut().for_each(|b| b.velocity *= 2.0);
+    let [x, y, z] = [Vec3::x() * wide, Vec3::y() * wide, Vec3::z() * wide];
+    let floor = mesh(17, Vec3::new(middle, middle, -1.5e-3), [x, y], || 1.4e-3 * random.unit());
+    let lid = mesh(5, Vec3::new(middle, middle, 0.1915), [x, y], || 0.0);
+    let side = mesh(3, Vec3::new(-4e-3, middle, middle), [y, z], || 0.0);
+    let rising = Motion { velocity: Vec3::new(0.1, 0.0, 0.4), ..Motion::default() };
+    let swing = Oscillation { amplitude: Vec3::new(2e-4, 0.0, 4e-4), frequency: 300.0, phase: 0.3 };
+    let swinging = Motion { oscillation: Some(swing), ..Motion::default() };
+    let turning = Motion { angular_velocity: Vec3::new(0.5, 1.0, 0.8), ..Motion::default() };
+    for (k, (shape, motion)) in [(floor, rising), (lid, swinging), (side, turning)].into_iter().enumerate() {
+        input.walls.push(WallInput { motion, ..WallInput::fixed(shape, k % 2) });
+    }
+    input
+}
+
+#[test]
+fn walls_of_triangles() {
+    if compiler_is_there() {
+        let pairs: [(&str, ModelInput); 3] = [
+            ("triangles", gas([stone(), smooth()], Vec::new())),
+            (
+                "triangles, hertz, rolling",
+                gas([turning(elastic(stone())), turning(elastic(smooth()))], Vec::new()),
+            ),
+            ("triangles, clumps", with_clumps(gas([turning(stone()), smooth()], Vec::new()), |k| k % 3 != 1)),
+        ];
+        for (name, input) in pairs {
+            let state = same_bits(name, between_triangles(input));
+            let (force, moment) = state.wall_force(0);
+            println!(
+                "{} contacts with walls, {:.3} N, {:.4} N m",
+                state.wall_contact_count(),
+                force.norm(),
+                moment.norm()
+            );
+            assert!(state.wall_contact_count() > 20 && moment.norm() > 0.0);
+        }
+    }
+}
+
+/// What is no wall of triangles with a prescribed motion is refused by name.
+#[test]
+fn other_walls_are_refused() {
+    let far = Vec3::new(0.0, 0.0, -1.0);
+    let square = mesh(1, far, [Vec3::x(), Vec3::y()], || 0.0);
+    let sphere = WallShape::Sphere { centre: far, radius: 0.1 };
+    let held = Servo { direction: Vec3::z(), force: vec![[0.0, 10.0]], max_speed: 0.2, gain: 0.5 };
+    let driven = WallInput { servo: Some(held), ..WallInput::fixed(square, 0) };
+    let block = cuboid(far, Vec3::repeat(0.1));
+    let moving = WallInput { body: Some(free(1.0)), ..WallInput::fixed(block, 0) };
+    for (wall, words) in [
+        (WallInput::fixed(sphere, 0), "walls other than triangles and planes of steady velocity"),
+        (driven, "walls that a force drives"),
+        (moving, "walls that are bodies"),
+    ] {
+        let mut input = gas([stone(), smooth()], Vec::new());
+        input.walls.push(wall);
+        let why =
+            source(&Model::new(input).expect("a good input")).expect_err("not for a device").to_string();
+        assert_eq!(why, format!("{words} are not computed on a device, only on the processor"));
+    }
+}
+
 /// A block of bonded spheres, pressed and torn by the planes that shut in on it, in which bonds break and broken pairs part.
 fn bonded(kind: Bond, material: Material) -> ModelInput {
     let mut input = gas([material, smooth()], Vec::new());
@@ -220,6 +382,10 @@ fn bonds_that_break() {
             println!("{bonds} bonds, {left} left, {:?} broken by tension and shear", state.broken_bonds());
             assert!(left < bonds - 20 && left > bonds / 4, "{left} of {bonds} bonds are left");
         }
+        let mut input = bonded(Bond::Parallel(parallel), stone());
+        input.bonds.retain(|b| b.a % 4 != 0 && b.b % 4 != 0);
+        input.bodies.iter_mut().for_each(|b| b.velocity *= 8.0);
+        same_bits("bonded spheres and clumps", with_clumps(input, |k| k % 4 == 0));
     }
 }
 
@@ -256,14 +422,27 @@ fn a_failing_step_says_what_the_engine_says() {
 #[test]
 fn a_changed_operation_is_seen() {
     if compiler_is_there() {
-        for (from, to) in
-            [("x.w - ", "1.0000000000000002 * x.w - "), ("lane[0] + lane[1]", "lane[0] + lane[2]")]
-        {
+        let spheres = gas([stone(), smooth()], Vec::new());
+        let mut clumps = with_clumps(spheres.clone(), |k| k % 3 != 1);
+        clumps.damping = Some(LocalDamping { factor: 0.3 });
+        let few = with_clumps(spheres.clone(), in_a_corner);
+        let walls = between_triangles(spheres.clone());
+        for (input, from, to) in [
+            (&spheres, "x.w - ", "1.0000000000000002 * x.w - "),
+            (&spheres, "lane[0] + lane[1]", "lane[0] + lane[2]"),
+            (&clumps, "if (!more) break;", "if (n == 1) break;"),
+            (&clumps, "HELD_WIDTH * (g + lane) + 3", "HELD_WIDTH * (g + lane) + 4"),
+            (&walls, "keep_deepest(found, n);", ""),
+            (&walls, "ENDED[before[m]] = ", "ENDED[before[m]] = 0.0 * "),
+            (&walls, "past[nearest].alive = 0;", ""),
+            (&walls, "turned = numbers[a] > numbers[b]", "turned = numbers[a] < numbers[b]"),
+            (&few, " sphere_contact(p, c, second, x, v, w, &s)", " (void)second"),
+        ] {
             let change = |text: String| {
                 assert!(text.contains(from), "{from}");
                 text.replacen(from, to, 1)
             };
-            let (differs, ..) = compare(gas([stone(), smooth()], Vec::new()), 300, change);
+            let (differs, ..) = compare(input.clone(), STEPS, change);
             println!("{from} -> {to}: {differs:?}");
             assert!(differs.is_some(), "{from} -> {to}");
         }

@@ -1,0 +1,180 @@
+//! The bodies of a state as the flat arrays that a device keeps, and back: block by block.
+
+use super::layout::How;
+use crate::Vec3;
+use crate::bodies::block::Rotation;
+use crate::bodies::members::Members;
+use crate::bodies::table::Kind;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::lanes::V3;
+use crate::lanes::turn::Turn;
+
+/// Motion of all bodies: position and radius, velocity and inverse mass, spin and material; in models with clumps orientation and
+/// angular momentum too.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion {
+    pub x: Vec<[f64; 4]>,
+    pub v: Vec<[f64; 4]>,
+    pub w: Vec<[f64; 4]>,
+    pub orientation: Vec<[f64; 4]>,
+    pub momentum: Vec<[f64; 4]>,
+}
+
+impl Motion {
+    /// Zeros for so many bodies.
+    pub fn zeros(bodies: usize, clumps: bool) -> Motion {
+        let zeros = |n: usize| vec![[0.0; 4]; n];
+        let turning = if clumps { bodies } else { 0 };
+        Motion {
+            x: zeros(bodies),
+            v: zeros(bodies),
+            w: zeros(bodies),
+            orientation: zeros(turning),
+            momentum: zeros(turning),
+        }
+    }
+
+    /// That of a state.
+    pub fn of(state: &State, clumps: bool) -> Motion {
+        let mut out = Motion::default();
+        for block in &state.blocks {
+            out.x.extend(block.centre.iter().map(|r| r.0));
+            out.v.extend(block.velocity.iter().map(|r| r.0));
+            out.w.extend(block.spin.iter().map(|r| r.0));
+            if clumps {
+                let none = Rotation { orientation: Default::default(), momentum: Vec3::zeros() };
+                for k in 0..block.bodies.len() {
+                    let Rotation { orientation: q, momentum: l } = block.rotation.get(k).unwrap_or(&none);
+                    out.orientation.push([q.i, q.j, q.k, q.w]);
+                    out.momentum.push([l.x, l.y, l.z, 0.0]);
+                }
+            }
+        }
+        out
+    }
+
+    /// Puts it into a state with the same bodies in the same order, and their spheres into `work`.
+    pub fn put(&self, state: &mut State, work: &mut Work) {
+        let mut at = 0;
+        for (block, members) in state.blocks.iter_mut().zip(&mut work.members) {
+            let n = block.bodies.len();
+            let lists =
+                [(&mut block.centre, &self.x), (&mut block.velocity, &self.v), (&mut block.spin, &self.w)];
+            for (to, from) in lists {
+                to.iter_mut().zip(&from[at..at + n]).for_each(|(to, from)| to.0 = *from);
+            }
+            let turns = self.orientation.iter().zip(&self.momentum).skip(at);
+            for (to, ([i, j, k, s], [x, y, z, _])) in block.rotation.iter_mut().zip(turns) {
+                to.orientation = Turn { v: V3::new(*i, *j, *k), s: *s }.quaternion();
+                to.momentum = Vec3::new(*x, *y, *z);
+            }
+            if members.rigid {
+                (0..n).for_each(|k| {
+                    members.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);
+                });
+            }
+            at += n;
+        }
+    }
+}
+
+/// Constants of all bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Constants {
+    /// How each moves ([`How`]).
+    pub how: Vec<u32>,
+    /// Mass and moment of inertia.
+    pub inertia: Vec<[f64; 2]>,
+    /// In models with clumps: principal moments and bounding radius, and the spin that a fixed rotation keeps.
+    pub moments: Vec<[f64; 4]>,
+    pub target: Vec<[f64; 4]>,
+}
+
+impl Constants {
+    pub fn of(model: &Model, state: &State, work: &Work) -> Constants {
+        let mut out = Constants::default();
+        for (block, members) in state.blocks.iter().zip(&work.members) {
+            let n = block.bodies.len();
+            for (k, &body) in block.bodies.iter().enumerate() {
+                let fixed = members.fixed.get(k).copied().unwrap_or(0);
+                let number = body as usize;
+                let body = model.body(number);
+                let by_four = by_four(members, k, n);
+                let group = if by_four { k - k % 4..k - k % 4 + 4 } else { k..k + 1 };
+                let turns = members.rigid && members.kind[group].contains(&Kind::Clump);
+                let single = if by_four { 0 } else { How::SINGLE | How::fixed(fixed) };
+                let bit = |on: bool, of: u32| if on { of } else { 0 };
+                out.how.push(single | bit(turns, How::TURNS) | bit(members.rigid, How::ORIENTED));
+                out.inertia.push([body.mass, body.inertia.x]);
+                if model.clumps {
+                    let (i, reach) =
+                        (body.inertia, if body.kind == Kind::Sphere { 0.0 } else { body.radius });
+                    let spin = model.bodies.spin(number);
+                    out.moments.push([i.x, i.y, i.z, reach]);
+                    out.target.push([spin.x, spin.y, spin.z, 0.0]);
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Whether body k of n moves with the others of its group of four (see `integrate/leapfrog.rs`).
+fn by_four(members: &Members, k: usize, n: usize) -> bool {
+    let group = k - k % 4;
+    group + 4 <= n && (members.plain() || members.all_free(group))
+}
+
+/// The spheres of all bodies, where any body is a clump; else spheres are bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spheres {
+    /// Whether any body is a clump.
+    pub clumps: bool,
+    /// First sphere of each block.
+    pub base: Vec<u32>,
+    /// First sphere of each body, and one past the last.
+    pub first: Vec<u32>,
+    /// Body of each sphere; its centre in the frame of that and radius; the same in the world.
+    pub owner: Vec<u32>,
+    pub local: Vec<[f64; 4]>,
+    pub world: Vec<[f64; 4]>,
+}
+
+impl Spheres {
+    pub fn of(model: &Model, state: &State, work: &Work) -> Spheres {
+        let mut out = Spheres { clumps: model.clumps, ..Spheres::default() };
+        let mut bodies = 0;
+        for (block, members) in state.blocks.iter().zip(&work.members) {
+            out.base.push(if model.clumps { out.owner.len() as u32 } else { bodies });
+            if model.clumps {
+                out.world.extend(members.spheres(block).iter().map(|r| r.0));
+                if members.rigid {
+                    let first = out.owner.len() as u32;
+                    out.first.extend(members.first[..block.bodies.len()].iter().map(|k| first + k));
+                    out.owner.extend(members.owner.iter().map(|k| bodies + k));
+                    out.local.extend(members.local.iter().map(|r| r.0));
+                } else {
+                    let own = bodies..bodies + block.bodies.len() as u32;
+                    out.first.extend(own.clone().map(|k| out.owner.len() as u32 + k - bodies));
+                    out.owner.extend(own);
+                    out.local.extend(block.centre.iter().map(|r| [0.0, 0.0, 0.0, r[3]]));
+                }
+            }
+            bodies += block.bodies.len() as u32;
+        }
+        out.first.push(out.owner.len() as u32);
+        out
+    }
+
+    /// Number of a sphere of a block.
+    pub fn at(&self, block: usize, sphere: u32) -> u32 {
+        self.base[block] + sphere
+    }
+
+    /// Body of a sphere.
+    pub fn owner(&self, sphere: u32) -> u32 {
+        self.owner.get(sphere as usize).copied().unwrap_or(sphere)
+    }
+}

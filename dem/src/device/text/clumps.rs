@@ -1,0 +1,185 @@
+//! Clumps: contacts of their spheres, and their turns.
+
+use super::motion::{alone as single, moved, power, pushed, single_held};
+use super::record::{Part, memory};
+use super::{planes as plane, spheres};
+use crate::contact::{planes, sphere_pair};
+use crate::device::layout::{Features, What};
+use crate::device::tape::{self, Recorded, Results, Truth, input, vector};
+use crate::integrate::kick;
+use crate::integrate::rotation::{self, Midpoint};
+use crate::integrate::turning::{self, Rigid, Turned};
+use crate::lanes::turn::{Turn, placed};
+use crate::lanes::{Real, V3};
+use crate::law::ContactLaw;
+
+/// Contacts of their spheres.
+pub(super) fn contacts<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+    Part {
+        frame: include_str!("clump_contacts.c"),
+        formulas: vec![("MEMBERS", members::<L, ROLL>(law)), ("MEMBER_PLANE", member_plane::<L, ROLL>(law))],
+        entries: &[(What::Members, "member_contact"), (What::MemberPlane, "member_plane_contact")],
+    }
+}
+
+/// Their turns.
+pub(super) fn motion(f: &Features) -> Part {
+    let (midpoint, iterate) = half_turn();
+    let [kick, after] = if f.damped { among::<true>() } else { among::<false>() };
+    Part {
+        frame: include_str!("clumps.c"),
+        formulas: vec![
+            ("MIDPOINT", midpoint),
+            ("ITERATE", iterate),
+            ("AMONG_KICK", kick),
+            ("AMONG", after),
+            ("ALONE_KICK", alone_kick()),
+            ("ALONE", alone(f.held)),
+            ("ALONE_HELD", alone_held(f.held)),
+            ("PLACE", place()),
+        ],
+        entries: &[],
+    }
+}
+
+fn members<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+    tape::begin();
+    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
+    let offsets = (vector("xa") - vector("ca"), vector("xb") - vector("cb"));
+    let pair = sphere_pair::Pair { offsets, ..spheres::pair() };
+    let f = sphere_pair::forces::<L, Recorded, true, ROLL>(&law, &pair, &mut m, on, input("step"));
+    spheres::results::<ROLL>(&f, &m)
+}
+
+fn member_plane<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+    tape::begin();
+    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
+    let touch = planes::Touch { offset: vector("x") - vector("centre"), ..plane::touch() };
+    let f = planes::forces::<L, Recorded, true, ROLL>(&law, &touch, &mut m, on, input("step"));
+    plane::results::<ROLL>(&f, &m)
+}
+
+/// The orientation `name`.
+fn orientation(name: &str) -> Turn<Recorded> {
+    Turn { v: vector(name), s: input(format!("{name}.w")) }
+}
+
+fn put(out: &mut Results, orientation: Turn<Recorded>) {
+    out.vector("(*nq)", orientation.v);
+    out.number("(*nq).w", orientation.s);
+}
+
+/// The body before the kick.
+fn rigid() -> Rigid<Recorded> {
+    Rigid {
+        orientation: orientation("q"),
+        momentum: vector("l"),
+        spin: vector("w"),
+        inertia: vector("moments"),
+    }
+}
+
+/// How the iterations for the turn begin, and one of them.
+fn half_turn() -> (String, String) {
+    tape::begin();
+    let m = Midpoint::new(orientation("q"), vector("l"), vector("moments"), input("dt"));
+    let mut begin = Results::default();
+    begin.vector("start", m.start);
+    begin.vector("half", m.half);
+    begin.vector("c", m.guess());
+    let begin = begin.text();
+    tape::begin();
+    let (next, more) = Midpoint { start: vector("start"), half: vector("half") }.iterate(vector("c"));
+    let mut one = Results::default();
+    one.vector("next", next);
+    one.truth("more", more);
+    (begin, one.text())
+}
+
+/// The orientation that the iterations lead to.
+fn new() -> Turn<Recorded> {
+    rotation::turned(orientation("q"), vector("c"))
+}
+
+fn among<const DAMPED: bool>() -> [String; 2] {
+    // Torque and the part of it that is local damping.
+    let torques = || {
+        let (torque, spin, damping) = (vector("s.torque"), vector("w"), input("damping"));
+        let stop = |torque, spin| kick::resist(torque, spin, damping);
+        let stop = V3::new(stop(torque.x, spin.x), stop(torque.y, spin.y), stop(torque.z, spin.z));
+        if DAMPED { (torque + stop, stop) } else { (torque, V3::zero()) }
+    };
+    tape::begin();
+    let mut begin = Results::default();
+    begin.vector("(*nl)", turning::kicked(&rigid(), torques().0, input("kick")));
+    let begin = begin.text();
+    tape::begin();
+    let (body, (torque, stop)) = (rigid(), torques());
+    let sphere = !Recorded::zero().lt(input("moments.w"));
+    let impulse = torque * input("kick");
+    let turned = turning::among::<Recorded, DAMPED>(&body, sphere, (impulse, stop), vector("(*nl)"), new());
+    let (velocity, held) = pushed::<DAMPED>();
+    let mut out = Results::default();
+    out.vector("(*nv)", velocity);
+    out.vector("(*nx)", moved(velocity));
+    out.vector("(*nw)", turned.spin);
+    put(&mut out, turned.orientation);
+    out.number("*speed2", turning::fastest2(velocity.norm2(), turned.spin, input("moments.w")));
+    if DAMPED {
+        let of_turn = V3::new(turned.power, Recorded::zero(), Recorded::zero());
+        let power = power(held, vector("v"), velocity);
+        out.row("held", &[power, of_turn, held, stop, vector("x").cross(held)]);
+    }
+    [begin, out.text()]
+}
+
+fn alone_kick() -> String {
+    tape::begin();
+    let k = kick::kick_single(&single(), input("kick"));
+    let mut out = Results::default();
+    out.vector("(*nl)", turning::kicked(&rigid(), k.torque, input("kick")));
+    out.text()
+}
+
+/// The results of a body that moves by itself, given how it has turned and what a fixed rotation does.
+fn alone_results(
+    k: &kick::Kicked<Recorded>,
+    turned: &Turned<Recorded>,
+    fixed: Option<(V3<Recorded>, Recorded)>,
+    held: bool,
+) -> String {
+    let mut out = Results::default();
+    out.vector("(*nv)", k.velocity);
+    out.vector("(*nx)", moved(k.velocity));
+    out.vector("(*nw)", turned.spin);
+    out.vector("(*nl)", turned.momentum);
+    put(&mut out, turned.orientation);
+    out.number("*speed2", turning::fastest2(k.velocity.norm2(), turned.spin, input("moments.w")));
+    if held {
+        let (impulse, work) = fixed.unwrap_or((V3::zero(), Recorded::zero()));
+        single_held(&mut out, &single(), k, (turned.mean, impulse, work));
+    }
+    out.text()
+}
+
+fn alone(held: bool) -> String {
+    tape::begin();
+    let k = kick::kick_single(&single(), input("kick"));
+    let turned = turning::alone(&rigid(), vector("(*nl)"), new());
+    alone_results(&k, &turned, None, held)
+}
+
+fn alone_held(held: bool) -> String {
+    tape::begin();
+    let k = kick::kick_single(&single(), input("kick"));
+    let (turned, impulse, work) =
+        turning::held(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
+    alone_results(&k, &turned, Some((impulse, work)), held)
+}
+
+fn place() -> String {
+    tape::begin();
+    let mut out = Results::default();
+    out.vector("sphere", placed(orientation("q").columns(), vector("x"), vector("local")));
+    out.text()
+}

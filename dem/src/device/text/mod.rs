@@ -1,0 +1,103 @@
+//! The text of the kernels of a model: frames of C (`*.c`) around the engine's own formulas, recorded. A file here is a part: one kind of
+//! force or motion, with the C beside it.
+
+mod bonds;
+mod clumps;
+mod motion;
+mod patches;
+mod planes;
+mod record;
+mod spheres;
+
+use super::layout::{self, Features};
+use super::tape::{self, Recorded};
+use crate::engine::model::Model;
+use crate::law::{ContactLaw, FRESH, Laws, PairTable, with_law};
+use record::Part;
+
+/// The frame; lines that begin with `//@` are to be replaced.
+const FRAME: &str = include_str!("frame.c");
+
+/// What the text for a model is for.
+pub(super) fn features(model: &Model) -> Features {
+    let damped = model.damping != 0.0;
+    let fixed = (0..model.body_count()).any(|k| model.body(k).fixed != 0);
+    let law_width = with_law!(&model.laws, table => constants(table, 1).len());
+    Features {
+        law_width,
+        roll: model.laws.rolls(),
+        damped,
+        held: damped || fixed,
+        bonds: !model.bonds.is_empty(),
+        clumps: model.clumps,
+        walls: model.walls.walls.len(),
+    }
+}
+
+/// The parts that a model needs, in the order of the sums and of what they call.
+fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) -> Vec<Part> {
+    let law = || record::law(table);
+    let mut all = vec![spheres::part::<L, ROLL>(&law), planes::part::<L, ROLL>(&law)];
+    if f.bonds {
+        all.push(bonds::part::<L, ROLL>(&law));
+    }
+    if f.clumps {
+        all.push(clumps::contacts::<L, ROLL>(&law));
+        all.push(clumps::motion(f));
+    }
+    if f.walls > 0 {
+        all.push(patches::part::<L, ROLL>(&law));
+    }
+    all.push(motion::part(f));
+    if f.held {
+        all.push(motion::books());
+    }
+    all
+}
+
+/// The text for the laws of a model.
+pub(super) fn text(laws: &Laws, f: &Features) -> String {
+    let parts = with_law!(laws, table => if f.roll { parts::<_, true>(table, f) } else { parts::<_, false>(table, f) });
+    let filled = |frame: &str, formulas: &[(&str, String)]| {
+        let with = |text: String, (name, part): &(&str, String)| text.replace(&format!("//@{name}\n"), part);
+        formulas.iter().fold(frame.to_string(), with)
+    };
+    let bodies: Vec<String> = parts.iter().map(|p| filled(p.frame, &p.formulas) + "\n").collect();
+    let formulas = [
+        ("LAYOUT", layout::declarations(f, &tape::literal(FRESH))),
+        (
+            "LEFT",
+            with_law!(laws, table => if f.roll { record::left::<_, true>(table) } else { record::left::<_, false>(table) }),
+        ),
+        ("PARTS", bodies.concat()),
+        ("ENTRIES", entries(&parts)),
+        ("BOOKS", f.books()),
+    ];
+    filled(FRAME, &formulas)
+}
+
+/// The lines of C that hand an entry to the function of its part.
+fn entries(parts: &[Part]) -> String {
+    let tests = parts.iter().flat_map(|p| p.entries).map(|(what, function)| {
+        format!("if (what == {}u) {function}(p, c, second, x, v, w, &s);\n", *what as u32)
+    });
+    format!("        {}", tests.collect::<Vec<_>>().join("        else "))
+}
+
+/// Constants of the law of each pair of `materials`, in the order in which the text fetches them.
+pub(super) fn constants<L: ContactLaw>(table: &PairTable<L>, materials: u32) -> Vec<f64> {
+    let mut out = Vec::new();
+    for a in 0..materials {
+        for b in 0..materials {
+            tape::begin();
+            _ = L::mixed::<Recorded>([table.get(a, b); 8], tape::value);
+            out.extend(tape::values());
+        }
+    }
+    out
+}
+
+/// As [`constants`], of whatever laws a model has.
+pub(super) fn law_constants(laws: &Laws, materials: u32) -> Vec<f64> {
+    with_law!(laws, table => constants(table, materials))
+}

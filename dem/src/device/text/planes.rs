@@ -1,0 +1,76 @@
+//! Contacts of single spheres with planes.
+
+use super::record::{Part, keep, memory};
+use crate::contact::planes;
+use crate::device::layout::What;
+use crate::device::tape::{self, Recorded, Results, input, vector};
+use crate::lanes::{Real, V3};
+use crate::law::{ContactLaw, Memory};
+
+pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+    Part {
+        frame: include_str!("planes.c"),
+        formulas: vec![("PLANE_TOUCHES", touches()), ("PLANE", forces::<L, ROLL>(law))],
+        entries: &[(What::Plane, "plane_contact")],
+    }
+}
+
+/// How far the centre of a sphere `x` is above a plane `face`.
+pub(super) fn height() -> Recorded {
+    vector("x").dot(vector("face")) - input("face.w")
+}
+
+/// A single sphere and a plane that it touches.
+pub(super) fn touch() -> planes::Touch<Recorded> {
+    planes::Touch {
+        position: vector("x"),
+        offset: V3::zero(),
+        radius: input("x.w"),
+        normal: vector("face"),
+        height: height(),
+        velocity: vector("v"),
+        inverse_mass: input("v.w"),
+        spin: vector("w"),
+        wall: vector("motion"),
+    }
+}
+
+fn touches() -> String {
+    tape::begin();
+    let mut out = Results::default();
+    out.truth("on", height().lt(input("x.w")));
+    out.text()
+}
+
+fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+    tape::begin();
+    let (law, mut m, on) = (law(), memory(), tape::Truth::Known(true));
+    let f = planes::forces::<L, Recorded, false, ROLL>(&law, &touch(), &mut m, on, input("step"));
+    results::<ROLL>(&f, &m)
+}
+
+/// The lines that put down what a contact with a plane does.
+pub(super) fn results<const ROLL: bool>(f: &planes::Forces<Recorded>, m: &Memory<Recorded>) -> String {
+    let mut out = Results::default();
+    out.vector("o->force", f.force);
+    out.vector("o->torque_a", f.torque);
+    keep::<ROLL>(&mut out, m, f.dashpot, f.friction, f.deep);
+    // Power and force, then the moment about the origin: in the order in which they are booked.
+    let [fx, fy, fz] = f.force.array();
+    let [ax, ay, az] = f.about_origin.array();
+    let zero = Recorded::zero();
+    let names = [
+        "wall[0].x",
+        "wall[0].y",
+        "wall[0].z",
+        "wall[0].w",
+        "wall[1].x",
+        "wall[1].y",
+        "wall[1].z",
+        "wall[1].w",
+    ];
+    for (name, x) in names.into_iter().zip([f.power, fx, fy, fz, ax, ay, az, zero]) {
+        out.number(name, x);
+    }
+    out.text()
+}

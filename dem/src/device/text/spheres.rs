@@ -1,0 +1,57 @@
+//! Contacts of single spheres.
+
+use super::record::{Part, keep, memory};
+use crate::contact::sphere_pair;
+use crate::device::layout::What;
+use crate::device::tape::{self, Recorded, Results, input, vector};
+use crate::lanes::{Real, V3};
+use crate::law::{ContactLaw, Memory};
+
+pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+    Part {
+        frame: include_str!("spheres.c"),
+        formulas: vec![("SPHERES_TOUCH", touch()), ("SPHERES", forces::<L, ROLL>(law))],
+        entries: &[(What::Spheres, "sphere_contact")],
+    }
+}
+
+/// Two single spheres with the names `xa`, `va`, `wa` and `xb`, `vb`, `wb`.
+pub(super) fn pair() -> sphere_pair::Pair<Recorded> {
+    let between = vector("xa") - vector("xb");
+    let radius = input("xa.w");
+    sphere_pair::Pair {
+        between,
+        distance2: between.norm2(),
+        reach: radius + input("xb.w"),
+        radius,
+        velocity: vector("va") - vector("vb"),
+        inverse_mass: input("va.w") + input("vb.w"),
+        spins: (vector("wa"), vector("wb")),
+        offsets: (V3::zero(), V3::zero()),
+    }
+}
+
+fn touch() -> String {
+    tape::begin();
+    let p = pair();
+    let mut out = Results::default();
+    out.truth("on", p.distance2.lt(p.reach * p.reach));
+    out.text()
+}
+
+fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+    tape::begin();
+    let (law, mut m, on) = (law(), memory(), tape::Truth::Known(true));
+    let f = sphere_pair::forces::<L, Recorded, false, ROLL>(&law, &pair(), &mut m, on, input("step"));
+    results::<ROLL>(&f, &m)
+}
+
+/// The lines that put down what a contact of two spheres does.
+pub(super) fn results<const ROLL: bool>(f: &sphere_pair::Forces<Recorded>, m: &Memory<Recorded>) -> String {
+    let mut out = Results::default();
+    out.vector("o->force", f.force);
+    out.vector("o->torque_a", f.torque_a);
+    out.vector("o->torque_b", f.torque_b);
+    keep::<ROLL>(&mut out, m, f.dashpot, f.friction, f.deep);
+    out.text()
+}

@@ -1,0 +1,117 @@
+//! Rotations over any kind of number.
+
+use super::{Real, V3};
+use nalgebra::{Quaternion, UnitQuaternion};
+
+/// Rotations in lanes: vector and scalar part of unit quaternions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn<R> {
+    pub v: V3<R>,
+    pub s: R,
+}
+
+impl<R: Real> Turn<R> {
+    /// The vector turned.
+    #[inline(always)]
+    pub fn apply(self, x: V3<R>) -> V3<R> {
+        let t = self.v.cross(x) * R::splat(2.0);
+        x + t * self.s + self.v.cross(t)
+    }
+
+    /// The vector turned back.
+    #[inline(always)]
+    pub fn back(self, x: V3<R>) -> V3<R> {
+        let t = x.cross(self.v) * R::splat(2.0);
+        x + t * self.s + t.cross(self.v)
+    }
+
+    /// The vector turned, with the bits of nalgebra's product: what bodies that move by themselves have always had.
+    #[inline(always)]
+    pub fn times(self, x: V3<R>) -> V3<R> {
+        let t = self.v.cross(x) * R::splat(2.0);
+        t * self.s + self.v.cross(t) + x
+    }
+
+    /// The turn back.
+    #[inline(always)]
+    pub fn inverse(self) -> Turn<R> {
+        Turn { v: -self.v, s: self.s }
+    }
+
+    /// Columns of the matrix.
+    #[inline(always)]
+    pub fn columns(self) -> [V3<R>; 3] {
+        let Turn { v: V3 { x: i, y: j, z: k }, s } = self;
+        let two = R::splat(2.0);
+        let (ii, jj, kk, ss) = (i * i, j * j, k * k, s * s);
+        let (ij, ik, jk) = (i * j * two, i * k * two, j * k * two);
+        let (si, sj, sk) = (s * i * two, s * j * two, s * k * two);
+        [
+            V3::new(ss + ii - jj - kk, sk + ij, ik - sj),
+            V3::new(ij - sk, ss - ii + jj - kk, si + jk),
+            V3::new(sj + ik, jk - si, ss - ii - jj + kk),
+        ]
+    }
+}
+
+impl Turn<f64> {
+    /// From the crate's rotations.
+    #[inline(always)]
+    pub fn of(q: &UnitQuaternion<f64>) -> Turn<f64> {
+        Turn { v: V3::new(q.i, q.j, q.k), s: q.w }
+    }
+
+    /// To the crate's rotations.
+    #[inline(always)]
+    pub fn quaternion(self) -> UnitQuaternion<f64> {
+        UnitQuaternion::new_unchecked(Quaternion::new(self.s, self.v.x, self.v.y, self.v.z))
+    }
+}
+
+/// Where a body with its centre at `centre` and the matrix of these columns has a point of its own frame.
+#[inline(always)]
+pub(crate) fn placed<R: Real>([x, y, z]: [V3<R>; 3], centre: V3<R>, local: V3<R>) -> V3<R> {
+    centre + ((x * local.x + y * local.y) + z * local.z)
+}
+
+/// Component by component, over principal moments.
+#[inline(always)]
+pub(crate) fn over<R: Real>(a: V3<R>, inertia: V3<R>) -> V3<R> {
+    V3::new(a.x / inertia.x, a.y / inertia.y, a.z / inertia.z)
+}
+
+/// World spin of a body with this orientation and world angular momentum.
+#[inline(always)]
+pub(crate) fn spin<R: Real>(q: Turn<R>, momentum: V3<R>, inertia: V3<R>) -> V3<R> {
+    q.times(over(q.inverse().times(momentum), inertia))
+}
+
+/// World angular momentum of a body with this orientation and world spin.
+#[inline(always)]
+pub(crate) fn momentum<R: Real>(q: Turn<R>, spin: V3<R>, inertia: V3<R>) -> V3<R> {
+    let local = q.inverse().times(spin);
+    q.times(V3::new(local.x * inertia.x, local.y * inertia.y, local.z * inertia.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Vec3;
+
+    /// What is written over any kind of number has the bits of nalgebra's products, which results have always had.
+    #[test]
+    fn the_bits_are_those_of_nalgebra() {
+        for k in 0..1000_i32 {
+            let x = |i: i32| libm::sin(f64::from(7 * k + i) * 1.7);
+            let vector = |i: i32| Vec3::new(x(i), x(i + 1), x(i + 2));
+            let q = UnitQuaternion::new_normalize(Quaternion::new(x(0), x(1), x(2), x(3)));
+            let (a, b, inertia) = (vector(4), vector(7), vector(10).map(|i| 1.5 + i));
+            let (turn, of) = (Turn::of(&q), V3::from_vec);
+            let local = q.inverse_transform_vector(&a);
+            let found = spin(turn, of(&a), of(&inertia)).to_vec();
+            assert_eq!(found, q * local.component_div(&inertia));
+            assert_eq!(momentum(turn, of(&a), of(&inertia)).to_vec(), q * local.component_mul(&inertia));
+            assert_eq!(placed(turn.columns(), of(&a), of(&b)).to_vec(), a + q.to_rotation_matrix() * b);
+        }
+    }
+}
