@@ -7,6 +7,7 @@ use crate::base::held::held;
 use crate::lanes::record::{Record, xyz};
 use crate::shape::Shape;
 use nalgebra::UnitQuaternion;
+use std::ops::Range;
 
 /// Constants of a block's bodies, and its spheres where they are. A block of single spheres keeps next to nothing.
 #[derive(Clone, Debug, Default)]
@@ -112,6 +113,11 @@ impl Members {
     #[inline(always)]
     pub fn body(&self, sphere: u32) -> u32 {
         self.owner.get(sphere as usize).copied().unwrap_or(sphere)
+    }
+
+    /// The spheres of a body.
+    pub fn of_body(&self, k: usize) -> Range<u32> {
+        if self.rigid { self.first[k]..self.first[k + 1] } else { k as u32..k as u32 + 1 }
     }
 
     /// Number of a sphere within its body.

@@ -73,7 +73,6 @@ pub fn step<S: Surface>(
         let State { blocks, bonds, .. } = &mut *state;
         bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
     }
-    planes::now(&model.planes, &state.planes, &mut work.planes);
     contacts_and_motion(model, state, work, surface);
     collect(model, state, work, surface.max_speed())
 }
@@ -99,7 +98,13 @@ fn sheet<S: Surface>(
 }
 
 /// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
-fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+pub(crate) fn contacts_and_motion<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+) {
+    planes::now(&model.planes, &state.planes, &mut work.planes);
     let (pace, parallel) = (state.pace, work.parallel);
     let dt = pace.kick();
     let setting = Setting { laws: &model.laws, simd: work.simd, dt };
@@ -171,7 +176,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     };
     let threads = if parallel { rayon::current_num_threads() } else { 1 };
     let lists = Lists { blocks, members, lists, works, cross, slots };
-    threads::through(threads, lists, beyond, between, within);
+    threads::through(threads, &work.own, lists, beyond, between, within);
 }
 
 /// What all blocks share in a step.
