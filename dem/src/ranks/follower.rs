@@ -17,10 +17,7 @@ const FIRST: usize = 0;
 ///
 /// # Errors
 /// A rank is lost.
-pub fn serve<L: Link>(
-    mut link: L,
-    mut make: impl FnMut(&[u8]) -> Result<Model, String>,
-) -> Result<(), Lost> {
+pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, String>) -> Result<(), Lost> {
     loop {
         let mut message = Vec::new();
         link.receive(FIRST, &mut message)?;
@@ -84,8 +81,7 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
                 rank.out = Vec::new();
             }
             Some(Order::Take) => {
-                let (taken, partition) =
-                    parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+                let (taken, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
                 state = taken;
                 rank.message = Vec::new();
                 rank.take_over(model, &state, partition)?;

@@ -12,9 +12,10 @@ pub(super) type Bounds = [Vec3; 2];
 /// Box around the bodies of a block.
 pub(super) fn bounds(block: &Block) -> Bounds {
     let nothing = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
-    block.centre.iter().fold(nothing, |[lo, hi], p| {
-        [lo.inf(&xyz(p).add_scalar(-p[3])), hi.sup(&xyz(p).add_scalar(p[3]))]
-    })
+    block
+        .centre
+        .iter()
+        .fold(nothing, |[lo, hi], p| [lo.inf(&xyz(p).add_scalar(-p[3])), hi.sup(&xyz(p).add_scalar(p[3]))])
 }
 
 fn meet(a: &Bounds, b: &Bounds, reach: f64) -> bool {
