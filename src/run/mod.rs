@@ -19,10 +19,13 @@ mod hash;
 mod initial;
 mod lock;
 mod memory;
+#[cfg(feature = "mpi")]
+pub mod mpi;
 mod occupied;
 mod origin;
 mod packing;
 mod plastic;
+mod ranks;
 mod record;
 mod recorder;
 mod run_file;
@@ -43,6 +46,7 @@ pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, methods, parse_size, size};
 pub(crate) use origin::{default_folder, quoted, scene_hash};
+pub use ranks::{Ranked, follow};
 pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
@@ -80,6 +84,8 @@ pub struct Options {
     pub memory: Option<u64>,
     /// Where the steps of grains alone are computed.
     pub device: Place,
+    /// The ranks that share the steps of grains alone with this process, if there are any.
+    pub ranks: Ranked,
     /// Go on from the last checkpoint in the folder of the results.
     pub resume: bool,
     /// Folder of a finished run from whose end this one goes on.
@@ -151,6 +157,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             from::check(&job, &document, source)?;
         }
         device::check(options.device, &job)?;
+        ranks::check(&options.ranks, options.device, &job)?;
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
         if loaded.is_none() && !options.force && !own {
@@ -177,6 +184,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             verbosity: options.verbosity,
             memory: options.memory,
             device: options.device,
+            ranks: &options.ranks,
             prepared: Cell::new(false),
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),

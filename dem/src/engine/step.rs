@@ -68,11 +68,6 @@ pub fn step<S: Surface>(
         sheet(model, state, work, surface)?;
     }
     neighbours::update(model, state, work, surface);
-    if !model.bonds.is_empty() {
-        let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
-        let State { blocks, bonds, .. } = &mut *state;
-        bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
-    }
     contacts_and_motion(model, state, work, surface);
     collect(model, state, work, surface.max_speed())
 }
@@ -104,6 +99,11 @@ pub(crate) fn contacts_and_motion<S: Surface>(
     work: &mut Work,
     surface: &S,
 ) {
+    if !model.bonds.is_empty() {
+        let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
+        let State { blocks, bonds, .. } = &mut *state;
+        bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
+    }
     planes::now(&model.planes, &state.planes, &mut work.planes);
     let (pace, parallel) = (state.pace, work.parallel);
     let dt = pace.kick();

@@ -4,6 +4,7 @@ use super::code::{put, take};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
 use crate::bodies::sums::WallSum;
+use crate::bond::pass::{Broken, ListWork};
 use crate::engine::work::Work;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -21,8 +22,44 @@ struct Book {
     wall_sums: u32,
 }
 
-/// Puts the books of blocks into a message.
-pub(super) fn write(work: &Work, own: Range<usize>, out: &mut Vec<u8>) {
+/// What a list of bonds books; bonds that broke follow.
+#[derive(Serialize, Deserialize)]
+struct BondBook {
+    power: f64,
+    dashpot: f64,
+    friction: f64,
+    failure: Option<Failure>,
+    broken: u32,
+}
+
+fn write_bonds(w: &ListWork, out: &mut Vec<u8>) {
+    let &ListWork { power, dashpot, friction, failure, .. } = w;
+    put(out, &BondBook { power, dashpot, friction, failure, broken: w.broken.len() as u32 });
+    w.broken.iter().for_each(|broken| put(out, broken));
+}
+
+fn read_bonds(w: &mut ListWork, rest: &mut &[u8]) -> Option<()> {
+    let book: BondBook = take(rest)?;
+    w.reset();
+    (w.power, w.dashpot, w.friction, w.failure) = (book.power, book.dashpot, book.friction, book.failure);
+    for _ in 0..book.broken {
+        w.broken.push(take::<Broken>(rest)?);
+    }
+    Some(())
+}
+
+/// Whether a bond broke in this step.
+pub(super) fn any_broken(work: &Work) -> bool {
+    let lists = work.blocks.iter().map(|w| &w.bonds).chain(&work.bonds.cross);
+    lists.into_iter().any(|list| !list.broken.is_empty())
+}
+
+/// Puts the books of blocks into a message; `bonds`: of their bonds too.
+pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u8>) {
+    for b in own.clone().filter(|_| bonds) {
+        write_bonds(&work.blocks[b].bonds, out);
+        write_bonds(&work.bonds.cross[b], out);
+    }
     for (w, cross) in work.blocks[own.clone()].iter().zip(&work.cross[own]) {
         let (tally, walls) = (&w.tally, &w.patches.wall_sums);
         let book = Book {
@@ -40,7 +77,11 @@ pub(super) fn write(work: &Work, own: Range<usize>, out: &mut Vec<u8>) {
 }
 
 /// Reads them; `None` where the message is not what it should be.
-pub(super) fn read(work: &mut Work, own: Range<usize>, rest: &mut &[u8]) -> Option<()> {
+pub(super) fn read(work: &mut Work, own: Range<usize>, bonds: bool, rest: &mut &[u8]) -> Option<()> {
+    for b in own.clone().filter(|_| bonds) {
+        read_bonds(&mut work.blocks[b].bonds, rest)?;
+        read_bonds(&mut work.bonds.cross[b], rest)?;
+    }
     for (w, cross) in work.blocks[own.clone()].iter_mut().zip(&mut work.cross[own]) {
         let book: Book = take(rest)?;
         cross.clear_books();

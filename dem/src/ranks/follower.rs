@@ -111,7 +111,7 @@ fn step<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State, now: &Now
     }
     rank.advance(model, state)?;
     rank.out.clear();
-    books::write(&rank.work, rank.work.own.clone(), &mut rank.out);
+    books::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
     rank.send(Kind::Books, FIRST)?;
     rank.await_ghosts(state)
 }

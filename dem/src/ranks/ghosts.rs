@@ -28,12 +28,24 @@ pub(super) fn of_lists(state: &State, work: &Work, own: &Range<usize>) -> Vec<Pl
             need.extend(partner(work, own, [b as u32, i], [block, j]));
         }
     }
+    bonded(state, own, &mut need);
     sorted(need)
 }
 
-/// The same of candidates.
-pub(super) fn of_candidates(work: &Work, own: &Range<usize>) -> Vec<Place> {
+/// The same of bonds, and of pairs that were bonded.
+fn bonded(state: &State, own: &Range<usize>, need: &mut Vec<Place>) {
+    for (b, list) in state.bonds.cross.iter().enumerate() {
+        let bonds = list.iter().map(|e| (e.i, e.block, e.j));
+        for (i, block, j) in bonds.chain(list.debonded.iter().map(|r| (r.i, r.block, r.j))) {
+            need.extend(other(own, [b as u32, i], [block, j]));
+        }
+    }
+}
+
+/// The same of candidates and bonds.
+pub(super) fn of_candidates(state: &State, work: &Work, own: &Range<usize>) -> Vec<Place> {
     let mut need = Vec::new();
+    bonded(state, own, &mut need);
     for (b, w) in work.blocks.iter().enumerate().take(own.end) {
         for &[i, block, j] in &w.candidates.cross {
             need.extend(partner(work, own, [b as u32, i], [block, j]));
@@ -44,11 +56,15 @@ pub(super) fn of_candidates(work: &Work, own: &Range<usize>) -> Vec<Place> {
 
 /// The body of the one of two spheres that lies in another rank's block, if one does.
 fn partner(work: &Work, own: &Range<usize>, a: Place, b: Place) -> Option<Place> {
-    let body = |[block, sphere]: Place| [block, work.members[block as usize].body(sphere)];
+    other(own, a, b).map(|[block, sphere]| [block, work.members[block as usize].body(sphere)])
+}
+
+/// The one of two that lies in another rank's block while the other does not, if one does.
+fn other(own: &Range<usize>, a: Place, b: Place) -> Option<Place> {
     let there = |[block, _]: Place| !own.contains(&(block as usize));
     match (there(a), there(b)) {
-        (true, false) => Some(body(a)),
-        (false, true) => Some(body(b)),
+        (true, false) => Some(a),
+        (false, true) => Some(b),
         _ => None,
     }
 }

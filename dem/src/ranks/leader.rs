@@ -14,7 +14,7 @@ use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{applied, neighbours, order, step};
+use crate::engine::{applied, bonds, neighbours, order, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
 /// Steps on several ranks, of which this is the first. A state that they have taken over is whole again after
@@ -23,6 +23,10 @@ pub struct Ranks<L: Link> {
     rank: Rank<L>,
     /// Whether the other ranks are ahead of the state.
     ahead: bool,
+    /// Whether the state has what only other ranks compute.
+    whole: bool,
+    /// Whether bonds have broken whose spheres have not separated yet.
+    debonded: bool,
     /// What all ranks have sent up to the last download.
     traffic: Traffic,
 }
@@ -37,6 +41,8 @@ impl<L: Link> Ranks<L> {
         let mut ranks = Ranks {
             rank: Rank::new(link, Work::new(model, state)),
             ahead: false,
+            whole: true,
+            debonded: false,
             traffic: Traffic::default(),
         };
         ranks.introduce(model, description).and_then(|()| ranks.deal_out(model, state)).map_err(at(time))?;
@@ -83,7 +89,7 @@ impl<L: Link> Ranks<L> {
         rank.take_over(model, state, partition)?;
         // A message of the size of a state is rare.
         (rank.out, rank.message) = (Vec::new(), Vec::new());
-        self.ahead = false;
+        (self.ahead, self.whole, self.debonded) = (false, true, bonds::any_debonded(state));
         Ok(())
     }
 
@@ -109,6 +115,7 @@ impl<L: Link> Ranks<L> {
         }
         self.traffic.add(&rank.traffic);
         rank.message = Vec::new();
+        self.whole = true;
         Ok(())
     }
 
@@ -129,6 +136,11 @@ impl<L: Link> Ranks<L> {
             self.fetch(state).map_err(&lost)?;
         }
         applied::place(model, state, applied, &mut self.rank.work.applied)?;
+        if std::mem::take(&mut self.whole) {
+            parcel::restrict(state, &self.rank.work.own);
+            bonds::arrange(model, state, &mut self.rank.work);
+        }
+        let bonded = !model.bonds.is_empty();
         let renew = neighbours::due(state);
         if renew {
             neighbours::adapt(model, state);
@@ -149,12 +161,24 @@ impl<L: Link> Ranks<L> {
             for other in rank.others() {
                 rank.link.receive(other, &mut rank.message)?;
                 let part = rank.partition.of_rank(other);
-                let read = books::read(&mut rank.work, part, &mut &rank.message[..]);
+                let read = books::read(&mut rank.work, part, bonded, &mut &rank.message[..]);
                 read.ok_or(Lost::garbled(other))?;
             }
             Ok(())
         };
         make().map_err(&lost)?;
+        // What a break leaves behind is settled on the whole state, and handed to all anew.
+        let look = self.debonded && state.steps.is_multiple_of(bonds::LOOKS);
+        if bonded && (look || books::any_broken(&self.rank.work)) {
+            self.fetch(state).map_err(&lost)?;
+            bonds::arrange(model, state, &mut self.rank.work);
+            let before = bonds::parted(state);
+            step::collect(model, state, &mut self.rank.work, 0.0)?;
+            return match bonds::parted(state) == before {
+                true => Ok(()),
+                false => self.deal_out(model, state).map_err(&lost),
+            };
+        }
         if !applied.is_empty() {
             self.fetch(state).map_err(&lost)?;
         }
@@ -222,12 +246,17 @@ impl<L: Link> BackEnd for Ranks<L> {
 
 impl<L: Link> Drop for Ranks<L> {
     fn drop(&mut self) {
-        let rank = &mut self.rank;
-        for other in rank.others() {
-            rank.out.clear();
-            put(&mut rank.out, &Order::End);
-            // One that is lost needs no order.
-            _ = rank.send(Kind::Order, other);
-        }
+        dismiss(&mut self.rank.link);
+    }
+}
+
+/// Lets all other ranks end that [`serve`](super::serve) this one, where [`Ranks`] does not do so.
+pub fn dismiss(link: &mut impl Link) {
+    let mut end = Vec::new();
+    put(&mut end, &Order::End);
+    let own = link.rank();
+    for other in (0..link.size()).filter(|&other| other != own) {
+        // One that is lost needs no order.
+        _ = link.send(other, &end);
     }
 }

@@ -21,6 +21,24 @@ pub trait Link: Send {
     fn receive(&mut self, from: usize, message: &mut Vec<u8>) -> Result<(), Lost>;
 }
 
+impl Link for Box<dyn Link> {
+    fn rank(&self) -> usize {
+        (**self).rank()
+    }
+
+    fn size(&self) -> usize {
+        (**self).size()
+    }
+
+    fn send(&mut self, to: usize, message: &[u8]) -> Result<(), Lost> {
+        (**self).send(to, message)
+    }
+
+    fn receive(&mut self, from: usize, message: &mut Vec<u8>) -> Result<(), Lost> {
+        (**self).receive(from, message)
+    }
+}
+
 /// A rank that does not respond any more.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("rank {rank} is lost: {problem}")]

@@ -32,7 +32,7 @@ mod scope;
 mod traffic;
 
 pub use follower::serve;
-pub use leader::Ranks;
+pub use leader::{Ranks, dismiss};
 pub use link::{Link, Lost};
 pub use local::{Local, local};
 pub use scope::{Unsupported, check};

@@ -35,6 +35,8 @@ pub(super) struct Now {
     near: f64,
     drift: f64,
     wall_drift: f64,
+    /// Whether bonds have made no step yet.
+    fresh: bool,
     /// Whether the near list is made anew.
     pub renew: bool,
 }
@@ -51,7 +53,8 @@ struct Force {
 /// Writes the order to make a step, with the motion of planes and walls and the applied forces.
 pub(super) fn write_step(state: &State, renew: bool, applied: &[Applied], out: &mut Vec<u8>) {
     let &State { time, pace, near, drift, wall_drift, .. } = state;
-    put(out, &Order::Step(Now { time, pace, near, drift, wall_drift, renew }));
+    let fresh = state.bonds.fresh;
+    put(out, &Order::Step(Now { time, pace, near, drift, wall_drift, fresh, renew }));
     state.planes.iter().for_each(|plane| put(out, plane));
     put(out, &state.walls);
     put(out, &(applied.len() as u32));
@@ -68,7 +71,7 @@ pub(super) fn read_step(
     rest: &mut &[u8],
 ) -> Option<()> {
     (state.time, state.pace, state.near) = (now.time, now.pace, now.near);
-    (state.drift, state.wall_drift) = (now.drift, now.wall_drift);
+    (state.drift, state.wall_drift, state.bonds.fresh) = (now.drift, now.wall_drift, now.fresh);
     for plane in &mut state.planes {
         *plane = take::<PlaneMotion>(rest)?;
     }

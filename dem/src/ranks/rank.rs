@@ -161,7 +161,7 @@ impl<L: Link> Rank<L> {
             self.work.halo.extend(places);
         }
         candidates::search(model, state, &mut self.work, &NoSurface);
-        let need = ghosts::of_candidates(&self.work, &self.work.own);
+        let need = ghosts::of_candidates(state, &self.work, &self.work.own);
         self.agree(&need)
     }
 }

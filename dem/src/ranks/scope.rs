@@ -15,7 +15,6 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
     let all = [
         (model.solids, "boxes and polyhedra"),
         (model.surface_material.is_some(), "contacts with a solid"),
-        (!model.bonds.is_empty(), "bonds"),
         (model.periodic.is_some(), "periodic borders"),
     ];
     match all.into_iter().find(|(there, _)| *there) {
