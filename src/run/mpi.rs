@@ -164,6 +164,9 @@ impl World {
     }
 }
 
+/// A message on its way.
+type Sent = Request<'static, [u8], StaticScope>;
+
 /// Messages by MPI.
 struct Mpi {
     world: SimpleCommunicator,
@@ -173,7 +176,7 @@ struct Mpi {
     /// Looks for a message before others are let in.
     looks: u32,
     /// Messages on their way, and room for the next ones.
-    sent: VecDeque<(Request<'static, [u8], StaticScope>, Vec<u8>)>,
+    sent: VecDeque<(Sent, Vec<u8>)>,
     spare: Vec<Vec<u8>>,
 }
 

@@ -2,7 +2,6 @@
 //! follow, each with its part of the grains.
 
 use super::device::Place;
-use super::stages::{GrainsState, planes};
 use super::thread_pool;
 use crate::failure::Failure;
 use crate::model::{self, Job};
@@ -49,11 +48,11 @@ impl Ranked {
         self.0.as_ref().map_or(1, |waiting| waiting.size)
     }
 
-    /// The ranks, for grains from which they make their model.
-    pub fn share(&self, grains: &GrainsState) -> Sharing<'_> {
+    /// The ranks, for a model of these bodies, with planes where packing has left them [m].
+    pub fn share(&self, bodies: &[dem::BodyInput], planes: &[dem::Vec3]) -> Sharing<'_> {
         let description = match &self.0 {
             None => Vec::new(),
-            Some(_) => postcard::to_stdvec(&(&grains.bodies, planes(&grains.part))).unwrap_or_default(),
+            Some(_) => postcard::to_stdvec(&(bodies, planes)).unwrap_or_default(),
         };
         Sharing { ranks: self, description }
     }

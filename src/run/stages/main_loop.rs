@@ -2,7 +2,7 @@
 
 use super::coupling_remarks::{fallen, late, unconverged};
 use super::solid_loop::solid_alone;
-use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps};
+use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps, planes};
 use super::{solid_remarks, statics, time_loop};
 use crate::failure::Failure;
 use crate::message;
@@ -64,7 +64,8 @@ impl Stage for MainLoop {
 }
 
 fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> {
-    let sharing = run.ranks.share(state.grains.as_ref().expect("a run with grains"));
+    let grains = state.grains.as_ref().expect("a run with grains");
+    let sharing = run.ranks.share(&grains.bodies, &planes(&grains.part));
     let model = state.grain_model(run)?;
     let interval = run.job.output.history_interval;
     let mut resumed = state.loaded.take();

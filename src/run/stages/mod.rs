@@ -22,7 +22,7 @@ mod time_loop;
 
 pub use carried::Carried;
 pub use compaction::{COMPACTED, longest};
-pub use stage::{GrainTime, GrainsState, RUN, RunState, SETTLING, Stage, planes, reached};
+pub use stage::{GrainTime, RUN, RunState, SETTLING, Stage, reached};
 
 use crate::model::Job;
 use crate::model::grains::{self, GrainsPart, Preview};
