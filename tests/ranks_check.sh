@@ -66,17 +66,18 @@ EOF
 same() { diff -r -x summary.json -x log.txt -x run.json "$1" "$2" >differences || fail "$1 and $2 differ: $(head -3 differences)"; }
 
 "$trackbed" run scene.toml --out alone --quiet --threads 1
-for n in 1 2 3 4; do
+for n in ${RANKS-1 2 3 4}; do
     ranks "$n" "$trackbed" run scene.toml --out "ranks_$n" --quiet 2>"said_$n" || fail "$n ranks: $(cat "said_$n")"
     same alone "ranks_$n"
     echo "$n ranks: the same $(find "ranks_$n" -type f | wc -l) files as without MPI, the state at the end included"
 done
 
-# The process of a rank, of those that mpirun (first argument) has started.
+# The process of a rank of the run into a folder.
 process() {
-    for p in $(pgrep -P "$1"); do
+    for p in $(pgrep -f -- "--out $1\b"); do
         tr '\0' '\n' <"/proc/$p/environ" 2>/dev/null | grep -qx "OMPI_COMM_WORLD_RANK=$2" && echo "$p"
     done
+    true
 }
 
 for victim in 2 0; do
@@ -86,11 +87,11 @@ for victim in 2 0; do
     for _ in $(seq 600); do [ -e "$out/checkpoint/a.checkpoint" ] && break; sleep 0.1; done
     [ -e "$out/checkpoint/a.checkpoint" ] || fail "no checkpoint"
     sleep 0.3
-    kill -9 "$(process "$started" "$victim")"
+    kill -9 "$(process "$out" "$victim")"
     code=0
     wait "$started" || code=$?
     [ "$code" != 0 ] || fail "exit code 0 after rank $victim was killed"
-    pgrep -f "$folder/$out" && fail "a rank is left"
+    pgrep -f -- "--out $out\b" && fail "a rank is left"
     said=$(grep -c "rank $victim is lost" "said_$out" || true)
     [ "$said" = 1 ] || fail "rank $victim was killed; said $said times so: $(cat "said_$out")"
     echo "rank $victim killed: exit code $code; $(grep "rank $victim is lost" "said_$out")"

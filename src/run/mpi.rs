@@ -14,7 +14,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use trackbed_dem::ranks::{Link, Lost};
 
@@ -37,8 +37,12 @@ const NAME: usize = 64;
 pub struct World {
     universe: Option<Universe>,
     peers: Arc<Vec<Peer>>,
-    lost: Arc<AtomicBool>,
+    /// Once a rank is lost, the first that is left.
+    lost: Arc<AtomicUsize>,
 }
+
+/// Nobody.
+const NONE: usize = usize::MAX;
 
 /// The process of a rank.
 #[derive(Clone, Debug)]
@@ -80,7 +84,7 @@ pub fn join() -> Result<Option<World>, Failure> {
     Ok((peers.len() > 1).then(|| World {
         universe: Some(universe),
         peers: Arc::new(peers),
-        lost: Arc::default(),
+        lost: Arc::new(AtomicUsize::new(NONE)),
     }))
 }
 
@@ -137,7 +141,7 @@ impl World {
             }
             follow(link).map_err(|lost| self.without(rank, &lost, out))
         };
-        if self.lost.load(Ordering::Relaxed) {
+        if self.lost.load(Ordering::Relaxed) != NONE {
             // The end of MPI would wait for those that are lost.
             std::mem::forget(self.universe.take());
         }
@@ -151,10 +155,9 @@ impl World {
         self.peers.iter().filter(|peer| peer.here).count() > usize::try_from(processors).unwrap_or(1)
     }
 
-    /// What a rank says that goes on without another: nothing, unless nobody else is there to say it.
+    /// What a rank says that goes on without another: nothing, unless the first rank is lost and this is the first that is left.
     fn without(&self, rank: usize, lost: &Lost, out: &Path) -> Failure {
-        let first = self.peers[..rank].iter().all(Peer::has_ended);
-        if !first {
+        if lost.rank != 0 || self.lost.load(Ordering::Relaxed) != rank {
             std::process::exit(1);
         }
         let folder = quoted(out);
@@ -172,7 +175,7 @@ struct Mpi {
     world: SimpleCommunicator,
     rank: usize,
     peers: Arc<Vec<Peer>>,
-    lost: Arc<AtomicBool>,
+    lost: Arc<AtomicUsize>,
     /// Looks for a message before others are let in.
     looks: u32,
     /// Messages on their way, and room for the next ones.
@@ -207,9 +210,12 @@ impl Mpi {
 
     /// A rank whose process has ended.
     fn look_for_lost(&self) -> Result<(), Lost> {
-        let ended = self.peers.iter().position(Peer::has_ended);
-        let Some(rank) = ended else { return Ok(()) };
-        self.lost.store(true, Ordering::Relaxed);
+        let ended: Vec<bool> = self.peers.iter().map(Peer::has_ended).collect();
+        // The first rank ends once it has said that another is lost.
+        let others = ended.iter().skip(1).position(|ended| *ended).map(|k| k + 1);
+        let Some(rank) = others.or(ended[0].then_some(0)) else { return Ok(()) };
+        let left = ended.iter().position(|ended| !ended).unwrap_or(self.rank);
+        self.lost.store(left, Ordering::Relaxed);
         let Peer { machine, process, .. } = &self.peers[rank];
         Err(Lost { rank, problem: format!("its process {process} on {machine} has ended") })
     }
@@ -279,7 +285,7 @@ impl Drop for Mpi {
     fn drop(&mut self) {
         let begun = Instant::now();
         while !self.sent.is_empty()
-            && !self.lost.load(Ordering::Relaxed)
+            && self.lost.load(Ordering::Relaxed) == NONE
             && begun.elapsed() < Duration::from_secs(5)
         {
             self.settle();

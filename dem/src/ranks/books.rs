@@ -12,7 +12,6 @@ use std::ops::Range;
 /// What a block books; of walls what follows.
 #[derive(Serialize, Deserialize)]
 struct Book {
-    ledger: Ledger,
     fastest: f64,
     failure: Option<Failure>,
     /// Of its contacts with later blocks.
@@ -20,6 +19,42 @@ struct Book {
     friction: f64,
     failure_across: Option<Failure>,
     wall_sums: u32,
+}
+
+/// Numbers of a ledger as a message has them, at most.
+const LEDGER: usize = 128;
+
+/// Puts a ledger into a message: most of its numbers are zero, and only said to be. (Minus zero is not.)
+fn put_ledger(out: &mut Vec<u8>, ledger: &Ledger) {
+    let mut room = [0; 8 * LEDGER];
+    let count = words(ledger, &mut room);
+    for eight in room.as_chunks::<8>().0[..count].chunks(8) {
+        let mask = eight.iter().rev().fold(0_u8, |mask, word| 2 * mask + u8::from(*word != [0; 8]));
+        out.push(mask);
+        eight.iter().filter(|word| **word != [0; 8]).for_each(|word| out.extend_from_slice(word));
+    }
+}
+
+/// Writes a ledger; the number of words of eight bytes that it takes.
+fn words(ledger: &Ledger, room: &mut [u8]) -> usize {
+    postcard::to_slice(ledger, room).expect("a ledger is so many numbers").len().div_ceil(8)
+}
+
+/// Reads it.
+fn take_ledger(rest: &mut &[u8]) -> Option<Ledger> {
+    let mut room = [0; 8 * LEDGER];
+    let count = words(&Ledger::default(), &mut room);
+    for eight in room.as_chunks_mut::<8>().0[..count].chunks_mut(8) {
+        let (mask, left) = rest.split_first()?;
+        *rest = left;
+        for (k, word) in eight.iter_mut().enumerate() {
+            if mask >> k & 1 == 1 {
+                let (number, left) = rest.split_first_chunk::<8>()?;
+                (*word, *rest) = (*number, left);
+            }
+        }
+    }
+    take(&mut &room[..])
 }
 
 /// What a list of bonds books; bonds that broke follow.
@@ -63,7 +98,6 @@ pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u
     for (w, cross) in work.blocks[own.clone()].iter().zip(&work.cross[own]) {
         let (tally, walls) = (&w.tally, &w.patches.wall_sums);
         let book = Book {
-            ledger: tally.ledger,
             fastest: tally.fastest,
             failure: tally.failure,
             dashpot: cross.dashpot,
@@ -72,6 +106,7 @@ pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u
             wall_sums: walls.len() as u32,
         };
         put(out, &book);
+        put_ledger(out, &tally.ledger);
         walls.iter().for_each(|sum| put(out, sum));
     }
 }
@@ -87,7 +122,7 @@ pub(super) fn read(work: &mut Work, own: Range<usize>, bonds: bool, rest: &mut &
         cross.clear_books();
         (cross.dashpot, cross.friction, cross.failure) = (book.dashpot, book.friction, book.failure_across);
         let tally = &mut w.tally;
-        (tally.ledger, tally.fastest, tally.failure) = (book.ledger, book.fastest, book.failure);
+        (tally.ledger, tally.fastest, tally.failure) = (take_ledger(rest)?, book.fastest, book.failure);
         w.patches.wall_sums.clear();
         for _ in 0..book.wall_sums {
             w.patches.wall_sums.push(take::<WallSum>(rest)?);

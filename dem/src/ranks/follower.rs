@@ -81,8 +81,8 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
                 rank.out = Vec::new();
             }
             Some(Order::Take) => {
-                let (taken, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
-                state = taken;
+                let (fresh, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+                state = fresh;
                 rank.message = Vec::new();
                 rank.take_over(model, &state, partition)?;
             }
