@@ -56,7 +56,7 @@ fn main() {
         }
         alone(|| {
             let mut ranks = Ranks::new(first, &model, &state, &[]).expect("ranks");
-            let mut advance = |ranks: &mut Ranks<_>, state: &mut State| {
+            let advance = |ranks: &mut Ranks<_>, state: &mut State| {
                 ranks.step(&model, state, &NoSurface, &[]).expect("a good step");
             };
             // Lists have settled then.

@@ -36,6 +36,7 @@ pub(crate) mod stages;
 mod structures;
 mod summary;
 mod system;
+mod threads;
 mod track_output;
 mod wall_output;
 
@@ -50,6 +51,8 @@ pub use ranks::{Ranked, follow};
 pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
+
+pub(crate) use threads::thread_pool;
 
 pub use crate::progress::Verbosity;
 
@@ -67,9 +70,6 @@ use run_file::Source;
 use stages::{Carried, RUN, RunState};
 use std::cell::{Cell, OnceCell};
 use std::path::{Path, PathBuf};
-
-/// Most threads: more than the largest machines have.
-const MOST_THREADS: usize = 1024;
 
 /// How to run a scene.
 #[derive(Clone, Debug, Default)]
@@ -325,16 +325,4 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.sources.extend(part.body_forces().map(|f| f.source()));
     }
     Ok(())
-}
-
-/// The pool that a run works in: as many threads as asked for, with stacks deep enough for recursive elimination.
-pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    if let Some(threads) = threads.filter(|n| !(1..=MOST_THREADS).contains(n)) {
-        return Err(Failure::Input(format!("--threads: found {threads}, expected 1 to {MOST_THREADS}")));
-    }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .stack_size(16 << 20)
-        .build()
-        .map_err(|e| Failure::Other(e.to_string()))
 }

@@ -1,10 +1,11 @@
 //! Ranks that `mpirun` has started, by rsmpi.
 //!
 //! A rank that waits looks whether the processes of the others on its machine are still there: MPI itself only waits. `mpirun` ends all
-//! ranks about a second after it has found one dead, with SIGTERM first; that second is for the sentence that says which.
+//! ranks soon after it has found one dead, OpenMPI 4.1 within some 0.1 s: the sentence that says which comes at once.
 
-use super::quoted;
+use super::origin::quoted;
 use crate::failure::Failure;
+use crate::message;
 use ::mpi::environment::Universe;
 use ::mpi::request::{Request, StaticScope};
 use ::mpi::topology::SimpleCommunicator;
@@ -14,7 +15,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use trackbed_dem::ranks::{Link, Lost};
 
@@ -28,7 +29,10 @@ const AWAKE: Duration = Duration::from_millis(20);
 const NAP: Duration = Duration::from_micros(100);
 
 /// Time between two looks at the processes of others.
-const WATCH: Duration = Duration::from_millis(100);
+const WATCH: Duration = Duration::from_millis(20);
+
+/// Longest time that a rank waits for the first to say which is lost.
+const PARTING: Duration = Duration::from_secs(2);
 
 /// Bytes of the name of a machine that ranks compare.
 const NAME: usize = 64;
@@ -37,12 +41,9 @@ const NAME: usize = 64;
 pub struct World {
     universe: Option<Universe>,
     peers: Arc<Vec<Peer>>,
-    /// Once a rank is lost, the first that is left.
-    lost: Arc<AtomicUsize>,
+    /// Whether a rank is lost.
+    lost: Arc<AtomicBool>,
 }
-
-/// Nobody.
-const NONE: usize = usize::MAX;
 
 /// The process of a rank.
 #[derive(Clone, Debug)]
@@ -84,7 +85,7 @@ pub fn join() -> Result<Option<World>, Failure> {
     Ok((peers.len() > 1).then(|| World {
         universe: Some(universe),
         peers: Arc::new(peers),
-        lost: Arc::new(AtomicUsize::new(NONE)),
+        lost: Arc::default(),
     }))
 }
 
@@ -113,7 +114,7 @@ impl World {
     /// Has the first rank `lead` and all others `follow`; `out` is the folder of the results.
     ///
     /// # Errors
-    /// What the first rank says; of the others the first that is left, where the first rank is lost.
+    /// What the first rank says; the others say nothing. Where a rank is lost, all processes end here.
     pub fn share(
         mut self,
         lead: impl FnOnce(Box<dyn Link>) -> Result<(), Failure>,
@@ -128,6 +129,7 @@ impl World {
             rank,
             peers: self.peers.clone(),
             lost: self.lost.clone(),
+            out: quoted(out),
             looks: if self.crowded() { 1 } else { LOOKS },
             sent: VecDeque::new(),
             spare: Vec::new(),
@@ -139,12 +141,19 @@ impl World {
             for signal in [SIGTERM, SIGINT, SIGHUP] {
                 _ = signal_hook::flag::register(signal, Arc::default());
             }
-            follow(link).map_err(|lost| self.without(rank, &lost, out))
+            follow(link).map_err(|lost| Failure::Other(lost.to_string()))
         };
-        if self.lost.load(Ordering::Relaxed) != NONE {
-            // The end of MPI would wait for those that are lost.
-            std::mem::forget(self.universe.take());
+        // It is said already which rank is lost; the end of MPI would wait for it.
+        let lost = self.lost.load(Ordering::Relaxed);
+        if outcome.is_err() && (rank > 0 || lost) {
+            // The first rank must not take this one for lost.
+            let begun = Instant::now();
+            while lost && rank > 0 && !self.peers[0].has_ended() && begun.elapsed() < PARTING {
+                std::thread::sleep(WATCH);
+            }
+            std::process::exit(1);
         }
+        drop(self.universe.take());
         outcome
     }
 
@@ -153,17 +162,6 @@ impl World {
         // SAFETY: the call reads a number of the system's.
         let processors = unsafe { libc::sysconf(libc::_SC_NPROCESSORS_ONLN) };
         self.peers.iter().filter(|peer| peer.here).count() > usize::try_from(processors).unwrap_or(1)
-    }
-
-    /// What a rank says that goes on without another: nothing, unless the first rank is lost and this is the first that is left.
-    fn without(&self, rank: usize, lost: &Lost, out: &Path) -> Failure {
-        if lost.rank != 0 || self.lost.load(Ordering::Relaxed) != rank {
-            std::process::exit(1);
-        }
-        let folder = quoted(out);
-        Failure::Other(format!(
-            "{lost}; the last checkpoint, if there is one, is kept in {folder}: go on with --resume --out {folder}"
-        ))
     }
 }
 
@@ -175,7 +173,9 @@ struct Mpi {
     world: SimpleCommunicator,
     rank: usize,
     peers: Arc<Vec<Peer>>,
-    lost: Arc<AtomicUsize>,
+    lost: Arc<AtomicBool>,
+    /// Folder of the results.
+    out: String,
     /// Looks for a message before others are let in.
     looks: u32,
     /// Messages on their way, and room for the next ones.
@@ -208,16 +208,22 @@ impl Mpi {
         self.sent.push_back((request, room));
     }
 
-    /// A rank whose process has ended.
+    /// A rank whose process has ended. The first rank says so, or if that has ended the first that is left.
     fn look_for_lost(&self) -> Result<(), Lost> {
         let ended: Vec<bool> = self.peers.iter().map(Peer::has_ended).collect();
         // The first rank ends once it has said that another is lost.
         let others = ended.iter().skip(1).position(|ended| *ended).map(|k| k + 1);
         let Some(rank) = others.or(ended[0].then_some(0)) else { return Ok(()) };
-        let left = ended.iter().position(|ended| !ended).unwrap_or(self.rank);
-        self.lost.store(left, Ordering::Relaxed);
         let Peer { machine, process, .. } = &self.peers[rank];
-        Err(Lost { rank, problem: format!("its process {process} on {machine} has ended") })
+        let lost = Lost { rank, problem: format!("its process {process} on {machine} has ended") };
+        let speaker = if rank == 0 { ended.iter().position(|ended| !ended) } else { Some(0) };
+        if !self.lost.swap(true, Ordering::Relaxed) && speaker == Some(self.rank) {
+            let folder = &self.out;
+            message::error(&format!(
+                "{lost}; the last checkpoint, if there is one, is kept in {folder}: go on with --resume --out {folder}"
+            ));
+        }
+        Err(lost)
     }
 
     /// Waits for the next piece of a message and appends it; its length.
@@ -285,7 +291,7 @@ impl Drop for Mpi {
     fn drop(&mut self) {
         let begun = Instant::now();
         while !self.sent.is_empty()
-            && self.lost.load(Ordering::Relaxed) == NONE
+            && !self.lost.load(Ordering::Relaxed)
             && begun.elapsed() < Duration::from_secs(5)
         {
             self.settle();

@@ -2,7 +2,7 @@
 //! follow, each with its part of the grains.
 
 use super::device::Place;
-use super::thread_pool;
+use super::threads::thread_pool;
 use crate::failure::Failure;
 use crate::model::{self, Job};
 use crate::scene::Document;

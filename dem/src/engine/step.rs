@@ -68,7 +68,7 @@ pub fn step<S: Surface>(
         sheet(model, state, work, surface)?;
     }
     neighbours::update(model, state, work, surface);
-    contacts_and_motion(model, state, work, surface);
+    advance(model, state, work, surface);
     collect(model, state, work, surface.max_speed())
 }
 
@@ -92,19 +92,19 @@ fn sheet<S: Surface>(
     Ok(())
 }
 
-/// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
-pub(crate) fn contacts_and_motion<S: Surface>(
-    model: &Model,
-    state: &mut State,
-    work: &mut Work,
-    surface: &S,
-) {
+/// Forces on the bodies of the blocks that are this process's own, and their motion by a step; the near list is good.
+pub(crate) fn advance<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     if !model.bonds.is_empty() {
         let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
         let State { blocks, bonds, .. } = &mut *state;
         bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
     }
     planes::now(&model.planes, &state.planes, &mut work.planes);
+    contacts_and_motion(model, state, work, surface);
+}
+
+/// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
+fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let (pace, parallel) = (state.pace, work.parallel);
     let dt = pace.kick();
     let setting = Setting { laws: &model.laws, simd: work.simd, dt };

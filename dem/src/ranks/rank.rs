@@ -104,7 +104,7 @@ impl<L: Link> Rank<L> {
 
     /// Moves the blocks of this rank by a step, and has others know where their ghosts are.
     pub fn advance(&mut self, model: &Model, state: &mut State) -> Result<(), Lost> {
-        step::contacts_and_motion(model, state, &mut self.work, &NoSurface);
+        step::advance(model, state, &mut self.work, &NoSurface);
         for rank in self.others() {
             if !self.ghosts.to[rank].is_empty() {
                 self.out.clear();
