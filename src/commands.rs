@@ -71,13 +71,35 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     print(&String::from_utf8_lossy(&text))
 }
 
+/// Runs a scene in this process.
+#[cfg(not(feature = "mpi"))]
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
+    lead(args, run::Ranked::default())
+}
+
+/// Runs a scene in this process, or shared among those that `mpirun` has started.
+#[cfg(feature = "mpi")]
+fn run_scene(args: RunArgs) -> Result<(), Failure> {
+    let Some(world) = run::mpi::join()? else { return lead(args, run::Ranked::default()) };
+    let (scene, set, out) = (args.scene.clone(), args.set.clone(), args.out.clone());
+    // Ranks are as many as the processors: each has one thread unless more are requested.
+    let args = RunArgs { threads: args.threads.or(Some(1)), ..args };
+    let threads = args.threads;
+    world.share(
+        |link| lead(args, run::Ranked::first(link)),
+        |link| run::follow(&scene, &set, threads, link),
+        &out.unwrap_or_else(|| run::default_folder(&scene, &set)),
+    )
+}
+
+fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
     let memory = memory(args.memory.as_deref())?;
     let verbosity = args.verbosity();
     let options = run::Options {
         out: args.out,
         threads: args.threads,
         device: args.device,
+        ranks,
         set: args.set,
         memory,
         resume: args.resume,

@@ -35,6 +35,7 @@ mod suite {
     mod polyhedra;
     mod rail;
     mod random_runs;
+    mod ranks;
     mod render;
     mod report;
     mod runout;

@@ -7,7 +7,7 @@
 //! (several numbers at a time), `shape`, `spatial` (trees, cells, surfaces, how two shapes touch), `law` (laws of
 //! contact), `bodies` (arrays of motion), `pairs` (storage of contacts), `contact` (the loops over contacts),
 //! `integrate`, `body_force`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `stability` (the step that contacts
-//! allow), `insert`, `device` (steps computed elsewhere).
+//! allow), `insert`, `device` (steps computed elsewhere), `ranks` (steps computed by several processes).
 
 mod base;
 mod bodies;
@@ -22,6 +22,7 @@ pub mod lanes;
 pub mod law;
 pub mod measure;
 mod pairs;
+pub mod ranks;
 pub mod shape;
 mod spatial;
 pub mod stability;

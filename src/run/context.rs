@@ -5,6 +5,7 @@ use super::companion::Accompanied;
 use super::device::Place;
 use super::folder;
 use super::origin::quoted;
+use super::ranks::Ranked;
 use super::run_file::{self, RunFile, Source};
 use crate::failure::Failure;
 use crate::message;
@@ -30,6 +31,8 @@ pub struct Run<'a> {
     pub memory: Option<u64>,
     /// Where the steps of the grains are computed in the main loop.
     pub device: Place,
+    /// The ranks that share these steps, if there are any.
+    pub ranks: &'a Ranked,
     /// Whether the folder is cleared of earlier results and holds those of this run.
     pub prepared: Cell<bool>,
     /// Where checkpoints go.

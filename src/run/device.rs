@@ -6,6 +6,7 @@ use crate::message;
 use crate::model::Job;
 use trackbed_dem as dem;
 use trackbed_dem::device::{self, Device};
+use trackbed_dem::ranks::{Link, Ranks, Traffic};
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_dem::{AppliedForce, BackEnd, StepError};
 
@@ -45,6 +46,8 @@ pub enum Steps {
     Processor(Box<dem::Work>),
     /// A device.
     Device(Box<Device<Cuda>>),
+    /// Several ranks, of which this process is the first.
+    Ranks(Box<Ranks<Box<dyn Link>>>),
 }
 
 impl Steps {
@@ -65,6 +68,38 @@ impl Steps {
         let device = Device::new(machine, model, state).map_err(|e| refused(e.to_string()))?;
         Ok(Steps::Device(Box::new(device)))
     }
+
+    /// On several ranks, which make the model from `description` and take the state over.
+    ///
+    /// # Errors
+    /// A rank is lost, or cannot make the model.
+    pub fn ranks(
+        link: Box<dyn Link>,
+        model: &dem::Model,
+        state: &dem::State,
+        description: &[u8],
+    ) -> Result<Steps, Failure> {
+        message::note(&format!("the steps of the run proper are shared among {} ranks", link.size()));
+        let ranks = Ranks::new(link, model, state, description).map_err(failed)?;
+        Ok(Steps::Ranks(Box::new(ranks)))
+    }
+
+    /// Whether the state is stepped elsewhere, so that changes of it must be handed over.
+    pub fn elsewhere(&self) -> bool {
+        !matches!(self, Steps::Processor(_))
+    }
+
+    /// What ranks have sent each other, if the steps are shared among several.
+    pub fn traffic(&self) -> Option<&Traffic> {
+        if let Steps::Ranks(ranks) = self { Some(ranks.traffic()) } else { None }
+    }
+}
+
+/// Why a step of grains failed, in words.
+pub fn failed(error: StepError) -> Failure {
+    let text = format!("grains: {error}");
+    // A rank that is lost says nothing of the numbers.
+    if matches!(error, StepError::Rank { .. }) { Failure::Other(text) } else { Failure::Numerical(text) }
 }
 
 impl BackEnd for Steps {
@@ -72,6 +107,7 @@ impl BackEnd for Steps {
         match self {
             Steps::Processor(work) => work.upload(model, state),
             Steps::Device(device) => device.upload(model, state),
+            Steps::Ranks(ranks) => ranks.upload(model, state),
         }
     }
 
@@ -85,6 +121,7 @@ impl BackEnd for Steps {
         match self {
             Steps::Processor(work) => work.step(model, state, surface, applied),
             Steps::Device(device) => device.step(model, state, surface, applied),
+            Steps::Ranks(ranks) => ranks.step(model, state, surface, applied),
         }
     }
 
@@ -92,6 +129,7 @@ impl BackEnd for Steps {
         match self {
             Steps::Processor(work) => work.download(model, state),
             Steps::Device(device) => device.download(model, state),
+            Steps::Ranks(ranks) => ranks.download(model, state),
         }
     }
 
@@ -99,6 +137,7 @@ impl BackEnd for Steps {
         match self {
             Steps::Processor(work) => BackEnd::surface_contacts(&**work),
             Steps::Device(device) => device.surface_contacts(),
+            Steps::Ranks(ranks) => ranks.surface_contacts(),
         }
     }
 }

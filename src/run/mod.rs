@@ -19,10 +19,13 @@ mod hash;
 mod initial;
 mod lock;
 mod memory;
+#[cfg(feature = "mpi")]
+pub mod mpi;
 mod occupied;
 mod origin;
 mod packing;
 mod plastic;
+mod ranks;
 mod record;
 mod recorder;
 mod run_file;
@@ -33,6 +36,7 @@ pub(crate) mod stages;
 mod structures;
 mod summary;
 mod system;
+mod threads;
 mod track_output;
 mod wall_output;
 
@@ -43,9 +47,12 @@ pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, methods, parse_size, size};
 pub(crate) use origin::{default_folder, quoted, scene_hash};
+pub use ranks::{Ranked, follow};
 pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
+
+pub(crate) use threads::thread_pool;
 
 pub use crate::progress::Verbosity;
 
@@ -64,9 +71,6 @@ use stages::{Carried, RUN, RunState};
 use std::cell::{Cell, OnceCell};
 use std::path::{Path, PathBuf};
 
-/// Most threads: more than the largest machines have.
-const MOST_THREADS: usize = 1024;
-
 /// How to run a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -80,6 +84,8 @@ pub struct Options {
     pub memory: Option<u64>,
     /// Where the steps of grains alone are computed.
     pub device: Place,
+    /// The ranks that share the steps of grains alone with this process, if there are any.
+    pub ranks: Ranked,
     /// Go on from the last checkpoint in the folder of the results.
     pub resume: bool,
     /// Folder of a finished run from whose end this one goes on.
@@ -151,6 +157,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             from::check(&job, &document, source)?;
         }
         device::check(options.device, &job)?;
+        ranks::check(&options.ranks, options.device, &job)?;
         let findings = weigh(&document, &parsed, &job, options)?;
         let mut lock = Lock::take(&dir)?;
         if loaded.is_none() && !options.force && !own {
@@ -177,6 +184,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             verbosity: options.verbosity,
             memory: options.memory,
             device: options.device,
+            ranks: &options.ranks,
             prepared: Cell::new(false),
             checkpoints: CheckpointStore::new(slots, interrupt, interval, command),
             continued: loaded.as_ref().is_some_and(|l| l.moment.stage == RUN),
@@ -318,16 +326,4 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.sources.extend(part.scarred().then_some(trackbed_dem::scarring::SOURCE));
     }
     Ok(())
-}
-
-/// The pool that a run works in: as many threads as asked for, with stacks deep enough for recursive elimination.
-pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    if let Some(threads) = threads.filter(|n| !(1..=MOST_THREADS).contains(n)) {
-        return Err(Failure::Input(format!("--threads: found {threads}, expected 1 to {MOST_THREADS}")));
-    }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .stack_size(16 << 20)
-        .build()
-        .map_err(|e| Failure::Other(e.to_string()))
 }

@@ -1,5 +1,6 @@
 //! What can go wrong, with the body, pair and time it happened at.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Why a model cannot be built.
@@ -158,7 +159,7 @@ pub enum ModelError {
 }
 
 /// One side of a contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partner {
     /// A body (index).
     Body(usize),
@@ -250,6 +251,16 @@ pub enum StepError {
         /// Time [s].
         time: f64,
         /// What went wrong.
+        problem: String,
+    },
+    /// A rank that computes a part of the steps does not respond, or cannot.
+    #[error("at t = {time} s rank {rank} is lost: {problem}")]
+    Rank {
+        /// Time [s].
+        time: f64,
+        /// Number of the rank.
+        rank: usize,
+        /// What is known.
         problem: String,
     },
     /// An applied force names no body, or is not finite.

@@ -1,9 +1,10 @@
 //! What a block of bodies may meet that ends a run.
 
 use super::error::Partner;
+use serde::{Deserialize, Serialize};
 
 /// A failure that a block met.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) enum Failure {
     Overlap { body: u32, partner: Partner, overlap: f64, bound: f64 },
     Speed { body: u32, speed: f64, bound: f64 },

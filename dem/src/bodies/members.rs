@@ -9,6 +9,7 @@ use crate::lanes::record::{Record, xyz};
 use crate::lanes::turn::{Turn, placed};
 use crate::shape::Shape;
 use nalgebra::UnitQuaternion;
+use std::ops::Range;
 
 /// Constants of a block's bodies, and its spheres where they are. A block of single spheres keeps next to nothing.
 #[derive(Clone, Debug, Default)]
@@ -114,6 +115,11 @@ impl Members {
     #[inline(always)]
     pub fn body(&self, sphere: u32) -> u32 {
         self.owner.get(sphere as usize).copied().unwrap_or(sphere)
+    }
+
+    /// The spheres of a body.
+    pub fn of_body(&self, k: usize) -> Range<u32> {
+        if self.rigid { self.first[k]..self.first[k + 1] } else { k as u32..k as u32 + 1 }
     }
 
     /// Number of a sphere within its body.

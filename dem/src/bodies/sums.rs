@@ -4,6 +4,7 @@ use crate::base::Vec3;
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
 use crate::lanes::record::Record;
+use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
 /// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
@@ -51,7 +52,7 @@ pub(crate) struct Tally {
 }
 
 /// What the grains felt from one wall in one step.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WallSum {
     /// Force on the grains [N] and its moment about the wall's centre [N m].
     pub force: Vec3,

@@ -15,6 +15,7 @@ use crate::lanes::record::Record;
 use crate::lanes::{self, Simd, V3};
 use crate::law::Laws;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// One body's share in a slot: of a bond, or of a debonded pair behind all bonds.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +27,7 @@ pub(crate) struct Share {
 }
 
 /// A bond that broke in this step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Broken {
     /// Position in its list.
     pub at: u32,

@@ -41,6 +41,8 @@ impl Work {
             material: None,
             plane_material: common(model.planes.iter().map(|p| p.material as u32)),
             parallel: model.sphere_count() >= PARALLEL,
+            own: 0..0,
+            halo: Vec::new(),
         };
         work.arrange(model, state);
         work
@@ -55,6 +57,8 @@ impl Work {
     /// Lays the constants out in the state's present order.
     pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
         self.searched.listed = false;
+        self.own = 0..state.blocks.len();
+        self.halo.clear();
         self.members.resize_with(state.blocks.len(), Members::default);
         self.blocks.resize_with(state.blocks.len(), Default::default);
         self.cross.resize_with(state.blocks.len(), CrossForces::default);

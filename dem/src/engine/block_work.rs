@@ -18,6 +18,8 @@ pub(crate) struct Candidates {
     pub reference: Reference,
     pub pairs: Vec<[u16; 2]>,
     pub cross: Vec<[u32; 3]>,
+    /// With spheres of earlier blocks that others search: block and sphere there, sphere here.
+    pub earlier: Vec<[u32; 3]>,
     /// Of each kind of pair; empty where a model has no bodies but those made of spheres.
     pub kinds: Vec<Vec<PairName>>,
     pub images: Vec<ImageName>,
@@ -59,6 +61,7 @@ impl BlockWork {
         let c = &self.candidates;
         let spheres = held(&c.pairs)
             + held(&c.cross)
+            + held(&c.earlier)
             + c.kinds.iter().map(held).sum::<usize>()
             + held(&c.images)
             + held(&c.planes);

@@ -237,13 +237,26 @@ fn part(
     pair
 }
 
+/// Steps between two looks of [`settle`] at which debonded pairs have separated.
+pub(crate) const LOOKS: u64 = debonded::EVERY;
+
+/// Whether there are debonded pairs.
+pub(crate) fn any_debonded(state: &State) -> bool {
+    let mut any = false;
+    state.each_debonded(|_, _| any = true);
+    any
+}
+
+/// Bonds broken so far, and debonded pairs.
+pub(crate) fn parted(state: &State) -> ((u64, u64), usize) {
+    let mut pairs = 0;
+    state.each_debonded(|_, _| pairs += 1);
+    (state.broken_bonds(), pairs)
+}
+
 /// Whether [`settle`] looks at which debonded pairs have separated, for which it needs their places and memory.
 pub(crate) fn looks_at_separation(state: &State) -> bool {
-    let mut any = false;
-    if state.steps.is_multiple_of(debonded::EVERY) {
-        state.each_debonded(|_, _| any = true);
-    }
-    any
+    state.steps.is_multiple_of(LOOKS) && any_debonded(state)
 }
 
 /// Hands pairs that have separated over to the ordinary contacts, at its time.

@@ -20,17 +20,22 @@ use crate::spatial::periodic::Space;
 use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
     super::bonds::hold(model, state, &mut work.held);
-    let Work { members, blocks: works, parallel, held, walls: standing, sheet, .. } = &mut *work;
-    let all = All::new(model, state, members, held);
+    let Work { members, blocks: works, parallel, held, walls: standing, sheet, own, halo, .. } = &mut *work;
+    let all = All::new(model, state, members, held, (&*own, halo));
     let kinds =
         model.solids.then(|| Search::new(now(model, state, members, (standing, sheet)), &model.patch_trees));
     let walls = model.walls.placed(&state.walls);
     let one = |(b, w): (usize, &mut BlockWork)| {
         let c = &mut w.candidates;
+        if !all.own.contains(&b) {
+            c.cross.clear();
+            return;
+        }
         all.spheres(b, c);
         if let Some(kinds) = &kinds {
             c.kinds.resize_with(KINDS.len(), Vec::new);
@@ -51,9 +56,11 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     } else {
         works.iter_mut().enumerate().for_each(one);
     }
+    hand_back(works, own);
 
     // Corners of the boxes that hold bodies count as points that move.
-    for (own, (block, w)) in members.iter().zip(state.blocks.iter().zip(works)) {
+    for b in own.clone() {
+        let (own, block, w) = (&members[b], &state.blocks[b], &mut works[b]);
         for (k, half) in own.half.iter().enumerate() {
             let (x, q) = (xyz(&block.centre[k]), &block.rotation[k].orientation);
             (0..8).for_each(|c| w.candidates.reference.push(&(x + q * cuboid::corner(half, c))));
@@ -69,12 +76,26 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     searched.searches += 1;
 }
 
-/// All spheres of a state in cells; needed for the search only, which is rare: not kept.
+/// Files pairs with spheres of earlier blocks, which others search, with these blocks.
+fn hand_back(works: &mut [BlockWork], own: &Range<usize>) {
+    let (earlier, here) = works.split_at_mut(own.start);
+    for (b, w) in own.clone().zip(here) {
+        for &[block, i, j] in &w.candidates.earlier {
+            earlier[block as usize].candidates.cross.push([i, b as u32, j]);
+        }
+    }
+    earlier.iter_mut().for_each(|w| w.candidates.cross.sort_unstable());
+}
+
+/// All spheres of a state in cells, or of the blocks that are searched here and those of others near them; needed for the
+/// search only, which is rare: not kept.
 struct All<'a> {
     model: &'a Model,
     state: &'a State,
     members: &'a [Members],
     held: &'a Held,
+    /// The blocks that are searched.
+    own: &'a Range<usize>,
     points: Vec<Record>,
     /// Block and number there of each.
     names: Vec<[u32; 2]>,
@@ -87,23 +108,41 @@ struct All<'a> {
 }
 
 impl<'a> All<'a> {
-    fn new(model: &'a Model, state: &'a State, members: &'a [Members], held: &'a Held) -> All<'a> {
+    fn new(
+        model: &'a Model,
+        state: &'a State,
+        members: &'a [Members],
+        held: &'a Held,
+        (own, halo): (&'a Range<usize>, &[[u32; 2]]),
+    ) -> All<'a> {
         let (mut points, mut names, mut cells) = (Vec::new(), Vec::new(), Cells::default());
         let mut first = Vec::with_capacity(members.len());
-        for (b, (block, own)) in state.blocks.iter().zip(members).enumerate() {
+        let mut halo = halo.iter().peekable();
+        for (b, (block, there)) in state.blocks.iter().zip(members).enumerate() {
             first.push(points.len() as u32);
-            points.extend_from_slice(&own.spheres(block)[..own.count]);
-            names.extend((0..own.count as u32).map(|k| [b as u32, k]));
+            let mut put = |range: Range<u32>| {
+                points.extend_from_slice(&there.spheres(block)[range.start as usize..range.end as usize]);
+                names.extend(range.map(|k| [b as u32, k]));
+            };
+            if own.contains(&b) {
+                put(0..there.count as u32);
+            }
+            while let Some([_, place]) = halo.next_if(|[block, _]| *block == b as u32) {
+                put(there.of_body(*place as usize));
+            }
         }
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
         // Single spheres beside a sleeper, or a few clumps, would only pay for a second level.
-        let in_clumps: usize = members.iter().map(Members::in_clumps).sum();
+        let in_clumps: usize = members[own.clone()].iter().map(Members::in_clumps).sum();
         let by_bodies = space.is_none() && 2 * in_clumps > points.len();
-        let hulls = by_bodies.then(|| Hulls::new(members, &points, &first, model.skin));
+        let hulls = by_bodies.then(|| {
+            let body = |[block, sphere]: [u32; 2]| members[block as usize].body(sphere);
+            Hulls::new(&points, names.iter().map(|&name| (name[0], body(name))), members.len(), model.skin)
+        });
         if hulls.is_none() {
             cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
         }
-        All { model, state, members, held, points, names, first, cells, space, hulls }
+        All { model, state, members, held, own, points, names, first, cells, space, hulls }
     }
 
     /// The spheres of a block.
@@ -131,6 +170,7 @@ impl<'a> All<'a> {
     fn spheres(&self, b: usize, c: &mut Candidates) {
         c.pairs.clear();
         c.cross.clear();
+        c.earlier.clear();
         c.images.clear();
         c.planes.clear();
         c.reference.start(self.of_block(b).first());
@@ -165,6 +205,8 @@ impl<'a> All<'a> {
             let [block_j, j] = self.names[j as usize];
             if block_j == b as u32 {
                 c.pairs.push([i as u16, j as u16]);
+            } else if block_j < b as u32 {
+                c.earlier.push([block_j, j, i]);
             } else {
                 c.cross.push([i, block_j, j]);
             }
@@ -188,11 +230,13 @@ impl<'a> All<'a> {
     /// Later bodies whose hulls are near that of a body, in `near`.
     fn near_hulls(&self, hulls: &Hulls, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &hulls.around[body as usize]);
+        // Those of blocks before the first that is searched here are later to nobody.
+        let before = hulls.of_block(self.own.start).start;
         near.clear();
         hulls.cells.near(p, skin, |other| {
             let q = &hulls.around[other as usize];
             let reach = p[3] + q[3] + skin;
-            if other > body
+            if (other > body || other < before)
                 && (xyz(p) - xyz(q)).norm_squared() < reach * reach
                 && self.may_touch(me, self.body(hulls.spheres(other).start))
             {
@@ -237,10 +281,12 @@ impl<'a> All<'a> {
             });
         } else {
             let p = &self.points[global as usize];
+            // As for hulls.
+            let before = self.first.get(self.own.start).copied().unwrap_or(0);
             self.cells.near(p, skin, |j| {
                 let q = &self.points[j as usize];
                 let reach = p[3] + q[3] + skin;
-                if j > global && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
+                if (j > global || j < before) && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
                     let other = self.body(j);
                     if other != me && self.may_touch(me, other) {
                         row.push(j);

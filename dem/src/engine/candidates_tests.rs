@@ -46,7 +46,8 @@ fn hulls_find_what_spheres_find() {
         let state = State::new(&model);
         let mut work = Work::new(&model, &state);
         search(&model, &state, &mut work, &NoSurface);
-        let mut all = All::new(&model, &state, &work.members, &work.held);
+        let own = (&(0..state.blocks.len()), &[][..]);
+        let mut all = All::new(&model, &state, &work.members, &work.held, own);
         assert!(all.hulls.take().is_some());
         all.cells.build(&all.points, model.radii, model.skin);
         let mut count = 0;

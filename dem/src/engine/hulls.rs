@@ -2,7 +2,6 @@
 //! other and most of two bodies are apart.
 
 use crate::base::Vec3;
-use crate::bodies::members::Members;
 use crate::lanes::record::{Record, xyz};
 use crate::spatial::cells::Cells;
 use std::ops::Range;
@@ -20,32 +19,35 @@ pub(super) struct Hulls {
 }
 
 impl Hulls {
-    /// Around the bodies of `members`, whose spheres are `points`; those of each block begin at `first`. For searches that reach
-    /// `skin` beyond touch [m].
-    pub fn new(members: &[Members], points: &[Record], first: &[u32], skin: f64) -> Hulls {
+    /// Around the bodies that `points` are the spheres of, one after the other; `owners`: block and place of the body of each.
+    /// For searches that reach `skin` beyond touch [m], in so many blocks.
+    pub fn new(
+        points: &[Record],
+        owners: impl Iterator<Item = (u32, u32)>,
+        blocks: usize,
+        skin: f64,
+    ) -> Hulls {
         let mut hulls = Hulls {
             around: Vec::new(),
             cells: Cells::default(),
             first: Vec::new(),
-            blocks: Vec::with_capacity(members.len() + 1),
+            blocks: Vec::with_capacity(blocks + 1),
         };
-        let mut radii = (f64::INFINITY, 0.0_f64);
-        for (own, &start) in members.iter().zip(first) {
-            hulls.blocks.push(hulls.around.len() as u32);
-            let mut k = 0;
-            while k < own.count {
-                let body = own.body(k as u32);
-                let count = (k..own.count).take_while(|&j| own.body(j as u32) == body).count();
-                let begin = start as usize + k;
-                let sphere = around(&points[begin..begin + count]);
-                radii = (radii.0.min(sphere[3]), radii.1.max(sphere[3]));
-                hulls.around.push(sphere);
-                hulls.first.push(begin as u32);
-                k += count;
+        let mut last = None;
+        for (k, (block, place)) in owners.enumerate() {
+            if last != Some((block, place)) {
+                let body = hulls.first.len() as u32;
+                hulls.blocks.resize(block as usize + 1, body);
+                hulls.first.push(k as u32);
+                last = Some((block, place));
             }
         }
-        hulls.blocks.push(hulls.around.len() as u32);
+        hulls.blocks.resize(blocks + 1, hulls.first.len() as u32);
         hulls.first.push(points.len() as u32);
+        let spheres = hulls.first.windows(2).map(|w| w[0] as usize..w[1] as usize);
+        hulls.around = spheres.map(|spheres| around(&points[spheres])).collect();
+        let radii = hulls.around.iter().map(|s| s[3]);
+        let radii = radii.fold((f64::INFINITY, 0.0_f64), |(lo, hi), r| (lo.min(r), hi.max(r)));
         hulls.cells.build(&hulls.around, radii, skin);
         hulls
     }

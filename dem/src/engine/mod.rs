@@ -1,6 +1,6 @@
 //! Model, state, scratch, search and the step: the layer that composes the parts of all features.
 
-mod applied;
+pub(crate) mod applied;
 mod arrange;
 pub mod back_end;
 mod block_work;

@@ -24,11 +24,31 @@ use rayon::prelude::*;
 
 /// Makes the near list anew when it is due. `surface_speed` is the bound of the external surface [m/s].
 pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let due = used_up(state);
-    if !due && !state.stale {
+    if !due(state) {
         return;
     }
-    if due {
+    adapt(model, state);
+    work.searched.surface_drift += state.wall_drift;
+    let mut approach = if state.stale || !work.searched.listed {
+        f64::INFINITY
+    } else {
+        approach(model, state, work, moved2(state, work))
+    };
+    if too_far(model, state, approach) {
+        candidates::search(model, state, work, surface);
+        approach = 0.0;
+    }
+    renew(model, state, work, surface, approach);
+}
+
+/// Whether partners may have come together so far that candidates lack pairs of the near list.
+pub(crate) fn too_far(model: &Model, state: &State, approach: f64) -> bool {
+    approach + state.near > model.skin
+}
+
+/// Chooses the reach of a near list that is due.
+pub(crate) fn adapt(model: &Model, state: &mut State) {
+    if used_up(state) {
         // A reach that lasts for some ten steps costs least.
         if state.lasted < 6 {
             state.near = (1.5 * state.near).min(0.5 * model.skin);
@@ -36,13 +56,16 @@ pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
             state.near = (state.near / 1.2).max(0.02 * model.skin);
         }
     }
-    work.searched.surface_drift += state.wall_drift;
-    let mut approach =
-        if state.stale || !work.searched.listed { f64::INFINITY } else { approach(model, state, work) };
-    if approach + state.near > model.skin {
-        candidates::search(model, state, work, surface);
-        approach = 0.0;
-    }
+}
+
+/// Makes the near list from the candidates, after partners may have come together by `approach` since these were found [m].
+pub(crate) fn renew<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+    approach: f64,
+) {
     make(model, state, work, surface, approach);
     state.drift = 0.0;
     state.wall_drift = 0.0;
@@ -61,9 +84,10 @@ pub(crate) fn due(state: &State) -> bool {
     state.stale || used_up(state)
 }
 
-/// A bound on the way that any two partners have come together since the candidates were found [m].
-fn approach(model: &Model, state: &State, work: &Work) -> f64 {
-    let blocks = state.blocks.iter().zip(&work.members).zip(&work.blocks);
+/// A bound on the square of the way that any body has come since the candidates were found [m²].
+pub(crate) fn moved2(state: &State, work: &Work) -> f64 {
+    let own = work.own.clone();
+    let blocks = state.blocks[own.clone()].iter().zip(&work.members[own.clone()]).zip(&work.blocks[own]);
     let moved2 = blocks.map(|((block, members), w)| {
         let reference = &w.candidates.reference;
         let own = members.spheres(block);
@@ -78,7 +102,12 @@ fn approach(model: &Model, state: &State, work: &Work) -> f64 {
         }
         most
     });
-    let moved = moved2.fold(0.0, f64::max).sqrt();
+    moved2.fold(0.0, f64::max)
+}
+
+/// A bound on the way that any two partners have come together since the candidates were found [m]; `moved2`: of bodies [m²].
+pub(crate) fn approach(model: &Model, state: &State, work: &Work, moved2: f64) -> f64 {
+    let moved = moved2.sqrt();
     let planes = state.planes.iter().zip(&work.searched.planes);
     let wall = planes.map(|(m, x)| (m.offset - x).norm()).fold(work.searched.surface_drift, f64::max);
     let wall = wall.max(walls::way(model, state, &work.searched.walls));

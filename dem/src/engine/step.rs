@@ -69,16 +69,7 @@ pub fn step<S: Surface>(
         sheet(model, state, work, surface)?;
     }
     neighbours::update(model, state, work, surface);
-    if !model.bonds.is_empty() {
-        let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
-        let State { blocks, bonds, .. } = &mut *state;
-        bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
-    }
-    if model.scarred {
-        scarring::update(model, state, work);
-    }
-    planes::now(&model.planes, &state.planes, &mut work.planes);
-    contacts_and_motion(model, state, work, surface);
+    advance(model, state, work, surface);
     collect(model, state, work, surface.max_speed())
 }
 
@@ -100,6 +91,20 @@ fn sheet<S: Surface>(
     }
     model.sheet.now(&state.sheet, 0.0, &mut work.sheet);
     Ok(())
+}
+
+/// Forces on the bodies of the blocks that are this process's own, and their motion by a step; the near list is good.
+pub(crate) fn advance<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+    if !model.bonds.is_empty() {
+        let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
+        let State { blocks, bonds, .. } = &mut *state;
+        bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
+    }
+    if model.scarred {
+        scarring::update(model, state, work);
+    }
+    planes::now(&model.planes, &state.planes, &mut work.planes);
+    contacts_and_motion(model, state, work, surface);
 }
 
 /// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
@@ -177,7 +182,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     };
     let threads = if parallel { rayon::current_num_threads() } else { 1 };
     let lists = Lists { blocks, members, lists, works, cross, slots };
-    threads::through(threads, lists, beyond, between, within);
+    threads::through(threads, &work.own, lists, beyond, between, within);
 }
 
 /// What all blocks share in a step.

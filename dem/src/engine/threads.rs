@@ -63,31 +63,32 @@ pub(crate) struct One<'a> {
 /// The bodies of neighbouring blocks and their constants.
 pub(crate) type Bodies<'a> = (Part<'a, Block>, Part<'a, Members>);
 
-/// Goes through all blocks on so many threads. `between` computes a block's contacts with later ones, `within` all else;
-/// `beyond` is scratch.
+/// Goes through the blocks `own` of all on so many threads. `between` computes a block's contacts with later ones, `within` all
+/// else; `beyond` is scratch. Earlier blocks only have their contacts with these computed; none of them moves.
 pub(crate) fn through(
     threads: usize,
+    own: &Range<usize>,
     all: Lists<'_>,
     beyond: &mut Vec<CrossForces>,
     between: impl Fn(usize, Bodies<'_>, &mut Cross, &mut CrossForces) + Sync,
     within: impl Fn(usize, One<'_>, Slots<'_>, Prefetch<'_>) + Sync,
 ) {
     let count = all.blocks.len();
-    if threads == 1 {
+    if threads == 1 && own.len() == count {
         run(0, count, all, &[], &between, &within);
         return;
     }
 
     let bodies = (Part { first: 0, list: &*all.blocks }, Part { first: 0, list: &*all.members });
-    let lists = ends(count, threads).zip(all.cross.iter_mut().zip(&mut *all.slots)).enumerate();
-    let first = lists.filter(|(_, (end, (cross, _)))| cross.last_block() >= *end);
+    let lists = ends(own, threads).zip(all.cross.iter_mut().zip(&mut *all.slots)).enumerate();
+    let first = lists.filter(|(_, (end, (cross, _)))| reaches(cross, *end));
     share(threads, first, |(b, (_, (pairs, out)))| {
         dispatch::fetch(&bodies.0[b]);
         between(b, bodies, pairs, out);
     });
 
     beyond.resize_with(count, CrossForces::default);
-    exchange(threads, all.cross, all.slots, beyond);
+    exchange(threads, own, all.cross, all.slots, beyond);
     let there = &beyond[..];
     let mut rest = Lists {
         blocks: &mut *all.blocks,
@@ -97,12 +98,13 @@ pub(crate) fn through(
         cross: &mut *all.cross,
         slots: &mut *all.slots,
     };
-    let parts = runs(count, threads).map(move |run| (run.start, rest.split_off(run.len())));
-    share(threads, parts, |(first, lists)| run(first, count, lists, there, &between, &within));
-    exchange(threads, all.cross, all.slots, beyond);
+    rest.split_off(own.start);
+    let parts = runs(own, threads).map(move |run| (run.start, rest.split_off(run.len())));
+    share(threads, parts, |(first, lists)| run(first, own.len(), lists, there, &between, &within));
+    exchange(threads, own, all.cross, all.slots, beyond);
 }
 
-/// Goes through one run of the `count` blocks, which begins with block `first`.
+/// Goes through one run of `count` blocks, which begins with block `first`.
 fn run(
     first: usize,
     count: usize,
@@ -147,26 +149,39 @@ fn run(
     }
 }
 
-/// Runs of so many blocks for so many threads.
-fn runs(count: usize, threads: usize) -> impl Iterator<Item = Range<usize>> {
-    let mut at = 0;
+/// Runs of the blocks `own` for so many threads; one thread has one.
+fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>> + use<> {
+    let (mut at, end) = (own.start, own.end);
     std::iter::from_fn(move || {
-        let size = (count.saturating_sub(at) / (SHARE * threads)).max(1);
+        let left = end.saturating_sub(at);
+        let size = if threads == 1 { left } else { (left / (SHARE * threads)).max(1) };
         at += size;
-        (at <= count).then(|| at - size..at)
+        (left > 0).then(|| at - size..at)
     })
 }
 
-/// Of each block, where its run ends.
-fn ends(count: usize, threads: usize) -> impl Iterator<Item = usize> {
-    runs(count, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()))
+/// Of each block up to the last of `own`, where its run ends; of those before them zero.
+fn ends(own: &Range<usize>, threads: usize) -> impl Iterator<Item = usize> + use<> {
+    let runs = runs(own, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()));
+    std::iter::repeat_n(0, own.start).chain(runs)
+}
+
+/// Whether a block has contacts with blocks at or behind `end`, which is zero for blocks whose contacts all are such.
+fn reaches(cross: &Cross, end: usize) -> bool {
+    cross.last_block() >= end.max(1)
 }
 
 /// Exchanges the contacts of blocks that reach beyond their run.
-fn exchange(threads: usize, cross: &[Cross], slots: &mut [CrossForces], beyond: &mut [CrossForces]) {
+fn exchange(
+    threads: usize,
+    own: &Range<usize>,
+    cross: &[Cross],
+    slots: &mut [CrossForces],
+    beyond: &mut [CrossForces],
+) {
     let lists = cross.iter().zip(slots.iter_mut().zip(beyond));
-    for (end, (cross, (own, there))) in ends(cross.len(), threads).zip(lists) {
-        if cross.last_block() >= end {
+    for (end, (cross, (own, there))) in ends(own, threads).zip(lists) {
+        if reaches(cross, end) {
             std::mem::swap(own, there);
         }
     }

@@ -18,6 +18,7 @@ use crate::spatial::patchwork::WallNow;
 use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::SurfaceContact;
 use nalgebra::UnitQuaternion;
+use std::ops::Range;
 
 /// What the search knows: whether the candidates exist, and where walls were when they were found.
 #[derive(Clone, Debug, Default)]
@@ -64,6 +65,10 @@ pub struct Work {
     pub(crate) plane_material: Option<u32>,
     /// Whether blocks are shared among threads.
     pub(crate) parallel: bool,
+    /// The blocks that are searched and moved here: all, unless other ranks have the rest (see [`crate::ranks`]).
+    pub(crate) own: Range<usize>,
+    /// Bodies of other blocks that are known where they are (block, place), ascending.
+    pub(crate) halo: Vec<[u32; 2]>,
 }
 
 impl Work {

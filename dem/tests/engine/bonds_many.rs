@@ -179,7 +179,7 @@ fn bits(run: &mut Run) -> Vec<u64> {
     out
 }
 
-fn crash() -> ModelInput {
+pub fn crash() -> ModelInput {
     let kind = ParallelBond { damping: BondDamping::Fraction(0.1), ..cement() };
     ModelInput { time_step: TimeStep::Auto { fraction: 0.8 }, ..falling(14, kind, 3.0) }
 }

@@ -98,7 +98,7 @@ fn sorting_keeps_contacts() {
 }
 
 /// A turning mill of `n`³ grains with a swinging floor of triangles, a driven lid and a free block of triangles in it.
-fn mill(n: usize) -> ModelInput {
+pub fn mill(n: usize) -> ModelInput {
     let width = 0.021 * n as f64;
     let mut input = ModelInput {
         gravity: Vec3::new(0.0, 0.0, -9.81),

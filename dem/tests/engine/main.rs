@@ -29,6 +29,7 @@ mod physics_settling;
 mod physics_spheres;
 mod polyhedra;
 mod polyhedra_walls;
+mod ranks;
 mod refusals;
 mod rolling;
 mod round_walls;

@@ -2,11 +2,13 @@
 
 use super::coupling_remarks::{fallen, late, unconverged};
 use super::solid_loop::solid_alone;
-use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps};
+use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps, planes};
 use super::{solid_remarks, statics, time_loop};
 use crate::failure::Failure;
+use crate::message;
 use crate::model::Job;
 use crate::model::solid::Analysis;
+use crate::progress::Verbosity;
 use crate::run::context::Run;
 use crate::run::from::END;
 use crate::run::packing;
@@ -62,14 +64,16 @@ impl Stage for MainLoop {
 }
 
 fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> {
+    let grains = state.grains.as_ref().expect("a run with grains");
+    let sharing = run.ranks.share(&grains.bodies, &planes(&grains.part));
     let model = state.grain_model(run)?;
     let interval = run.job.output.history_interval;
     let mut resumed = state.loaded.take();
     let mut system = match &mut resumed {
-        Some(loaded) => GrainsSystem::resume(model, interval, loaded, run.device)?,
+        Some(loaded) => GrainsSystem::resume(model, interval, loaded, run.device, sharing)?,
         None => {
             let start = state.grains.as_ref().expect("a run with grains").start(&model)?;
-            let mut system = GrainsSystem::new(model, start, interval, run.device)?;
+            let mut system = GrainsSystem::new(model, start, interval, run.device, sharing)?;
             if let Some(carried) = state.grains.as_ref().and_then(|grains| grains.carried.as_ref()) {
                 let (model, state) = system.state_mut();
                 carried.remember(model, state);
@@ -83,6 +87,9 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     run.prepare()?;
     let grains = state.grains.as_ref().expect("a run with grains");
     time_loop::with_grains(run, &mut system, grains, resumed, &mut state.summary)?;
+    if run.verbosity == Verbosity::Verbose {
+        system.traffic().iter().for_each(|line| message::note(&format!("ranks: {line}")));
+    }
     state.summary.bed.packing = record_packing(run, &system, grains)?;
     if let Some(view) = system.grains() {
         state.summary.bed.runout = runout::record(run.dir, view, &grains.part)?;

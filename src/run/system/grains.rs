@@ -3,7 +3,8 @@
 use super::{Applied, GrainsView, System};
 use crate::failure::Failure;
 use crate::run::checkpoint::{Body, Loaded};
-use crate::run::device::{Place, Steps};
+use crate::run::device::{Place, Steps, failed};
+use crate::run::ranks::Sharing;
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
@@ -36,11 +37,12 @@ impl GrainsSystem {
         mut state: dem::State,
         interval: f64,
         place: Place,
+        sharing: Sharing<'_>,
     ) -> Result<GrainsSystem, Failure> {
         let mut work = dem::Work::new(&model, &state);
         dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
             .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
-        GrainsSystem::with(model, state, work, interval, place)
+        GrainsSystem::with(model, state, work, interval, (place, sharing))
     }
 
     /// The grains as a checkpoint has them; `interval` as in [`GrainsSystem::new`].
@@ -52,10 +54,11 @@ impl GrainsSystem {
         interval: f64,
         loaded: &mut Loaded,
         place: Place,
+        sharing: Sharing<'_>,
     ) -> Result<GrainsSystem, Failure> {
         let state = loaded.take()?;
         let work = dem::Work::new(&model, &state);
-        GrainsSystem::with(model, state, work, interval, place)
+        GrainsSystem::with(model, state, work, interval, (place, sharing))
     }
 
     fn with(
@@ -63,11 +66,15 @@ impl GrainsSystem {
         state: dem::State,
         work: dem::Work,
         interval: f64,
-        place: Place,
+        (place, sharing): (Place, Sharing<'_>),
     ) -> Result<GrainsSystem, Failure> {
-        let work = match place {
-            Place::Cpu => Steps::processor(work),
-            Place::Gpu => Steps::device(&model, &state)?,
+        let work = match (sharing.link(), place) {
+            (Some(link), _) => {
+                drop(work);
+                Steps::ranks(link, &model, &state, sharing.description())?
+            }
+            (None, Place::Cpu) => Steps::processor(work),
+            (None, Place::Gpu) => Steps::device(&model, &state)?,
         };
         let (window, applied) = (window(&model, interval), Vec::new());
         Ok(GrainsSystem { model, state, work, changed: false, applied, window })
@@ -79,6 +86,12 @@ impl GrainsSystem {
     pub fn state_mut(&mut self) -> (&dem::Model, &mut dem::State) {
         self.changed = true;
         (&self.model, &mut self.state)
+    }
+
+    /// What ranks have sent each other a step, in lines; none where there is one.
+    pub fn traffic(&self) -> Vec<String> {
+        let lines = self.work.traffic().map(|traffic| traffic.lines(self.state.steps_done()));
+        lines.unwrap_or_default()
     }
 
     /// Lets time and accounts begin anew.
@@ -124,9 +137,8 @@ impl System for GrainsSystem {
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
         let none = &dem::surface::NoSurface;
-        let failed = |e: dem::StepError| Failure::Numerical(format!("grains: {e}"));
         // The processor steps the state itself.
-        if std::mem::take(&mut self.changed) && matches!(self.work, Steps::Device(_)) {
+        if std::mem::take(&mut self.changed) && self.work.elsewhere() {
             self.work.upload(&self.model, &self.state).map_err(failed)?;
         }
         for _ in 0..dem::stability::divide(&self.model, &mut self.state, self.window, 1) {

@@ -1,0 +1,132 @@
+//! What blocks book in a step, sent to the first rank.
+
+use super::code::{put, take};
+use crate::base::failure::Failure;
+use crate::base::ledger::Ledger;
+use crate::bodies::sums::WallSum;
+use crate::bond::pass::{Broken, ListWork};
+use crate::engine::work::Work;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// What a block books; of walls what follows.
+#[derive(Serialize, Deserialize)]
+struct Book {
+    fastest: f64,
+    failure: Option<Failure>,
+    /// Of its contacts with later blocks.
+    dashpot: f64,
+    friction: f64,
+    failure_across: Option<Failure>,
+    wall_sums: u32,
+}
+
+/// Numbers of a ledger as a message has them, at most.
+const LEDGER: usize = 128;
+
+/// Puts a ledger into a message: most of its numbers are zero, and only said to be. (Minus zero is not.)
+fn put_ledger(out: &mut Vec<u8>, ledger: &Ledger) {
+    let mut room = [0; 8 * LEDGER];
+    let count = words(ledger, &mut room);
+    for eight in room.as_chunks::<8>().0[..count].chunks(8) {
+        let mask = eight.iter().rev().fold(0_u8, |mask, word| 2 * mask + u8::from(*word != [0; 8]));
+        out.push(mask);
+        eight.iter().filter(|word| **word != [0; 8]).for_each(|word| out.extend_from_slice(word));
+    }
+}
+
+/// Writes a ledger; the number of words of eight bytes that it takes.
+fn words(ledger: &Ledger, room: &mut [u8]) -> usize {
+    postcard::to_slice(ledger, room).expect("a ledger is so many numbers").len().div_ceil(8)
+}
+
+/// Reads it.
+fn take_ledger(rest: &mut &[u8]) -> Option<Ledger> {
+    let mut room = [0; 8 * LEDGER];
+    let count = words(&Ledger::default(), &mut room);
+    for eight in room.as_chunks_mut::<8>().0[..count].chunks_mut(8) {
+        let (mask, left) = rest.split_first()?;
+        *rest = left;
+        for (k, word) in eight.iter_mut().enumerate() {
+            if mask >> k & 1 == 1 {
+                let (number, left) = rest.split_first_chunk::<8>()?;
+                (*word, *rest) = (*number, left);
+            }
+        }
+    }
+    take(&mut &room[..])
+}
+
+/// What a list of bonds books; bonds that broke follow.
+#[derive(Serialize, Deserialize)]
+struct BondBook {
+    power: f64,
+    dashpot: f64,
+    friction: f64,
+    failure: Option<Failure>,
+    broken: u32,
+}
+
+fn write_bonds(w: &ListWork, out: &mut Vec<u8>) {
+    let &ListWork { power, dashpot, friction, failure, .. } = w;
+    put(out, &BondBook { power, dashpot, friction, failure, broken: w.broken.len() as u32 });
+    w.broken.iter().for_each(|broken| put(out, broken));
+}
+
+fn read_bonds(w: &mut ListWork, rest: &mut &[u8]) -> Option<()> {
+    let book: BondBook = take(rest)?;
+    w.reset();
+    (w.power, w.dashpot, w.friction, w.failure) = (book.power, book.dashpot, book.friction, book.failure);
+    for _ in 0..book.broken {
+        w.broken.push(take::<Broken>(rest)?);
+    }
+    Some(())
+}
+
+/// Whether a bond broke in this step.
+pub(super) fn any_broken(work: &Work) -> bool {
+    let lists = work.blocks.iter().map(|w| &w.bonds).chain(&work.bonds.cross);
+    lists.into_iter().any(|list| !list.broken.is_empty())
+}
+
+/// Puts the books of blocks into a message; `bonds`: of their bonds too.
+pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u8>) {
+    for b in own.clone().filter(|_| bonds) {
+        write_bonds(&work.blocks[b].bonds, out);
+        write_bonds(&work.bonds.cross[b], out);
+    }
+    for (w, cross) in work.blocks[own.clone()].iter().zip(&work.cross[own]) {
+        let (tally, walls) = (&w.tally, &w.patches.wall_sums);
+        let book = Book {
+            fastest: tally.fastest,
+            failure: tally.failure,
+            dashpot: cross.dashpot,
+            friction: cross.friction,
+            failure_across: cross.failure,
+            wall_sums: walls.len() as u32,
+        };
+        put(out, &book);
+        put_ledger(out, &tally.ledger);
+        walls.iter().for_each(|sum| put(out, sum));
+    }
+}
+
+/// Reads them; `None` where the message is not what it should be.
+pub(super) fn read(work: &mut Work, own: Range<usize>, bonds: bool, rest: &mut &[u8]) -> Option<()> {
+    for b in own.clone().filter(|_| bonds) {
+        read_bonds(&mut work.blocks[b].bonds, rest)?;
+        read_bonds(&mut work.bonds.cross[b], rest)?;
+    }
+    for (w, cross) in work.blocks[own.clone()].iter_mut().zip(&mut work.cross[own]) {
+        let book: Book = take(rest)?;
+        cross.clear_books();
+        (cross.dashpot, cross.friction, cross.failure) = (book.dashpot, book.friction, book.failure_across);
+        let tally = &mut w.tally;
+        (tally.ledger, tally.fastest, tally.failure) = (take_ledger(rest)?, book.fastest, book.failure);
+        w.patches.wall_sums.clear();
+        for _ in 0..book.wall_sums {
+            w.patches.wall_sums.push(take::<WallSum>(rest)?);
+        }
+    }
+    rest.is_empty().then_some(())
+}

@@ -1,0 +1,117 @@
+//! All ranks but the first: they do what that one says.
+
+use super::code::{put, put_numbers, take, take_numbers};
+use super::link::{Link, Lost};
+use super::orders::{self, Now, Order};
+use super::rank::Rank;
+use super::traffic::Kind;
+use super::{books, parcel};
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+
+/// The rank that leads.
+const FIRST: usize = 0;
+
+/// Serves the first rank until that has nothing left to do. `make` makes the model from its description, or says why not.
+///
+/// # Errors
+/// A rank is lost.
+pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, String>) -> Result<(), Lost> {
+    loop {
+        let mut message = Vec::new();
+        link.receive(FIRST, &mut message)?;
+        let rest = &mut &message[..];
+        match take(rest) {
+            Some(Order::Model { bodies, dt }) => {
+                let made = make(rest).and_then(|model| same(model, bodies, dt));
+                let mut out = Vec::new();
+                put(&mut out, made.as_ref().err().map_or("", |problem| problem.as_str()));
+                link.send(FIRST, &out)?;
+                if let Ok(model) = made {
+                    return follow(link, &model);
+                }
+            }
+            Some(Order::End) => return Ok(()),
+            _ => return Err(Lost::garbled(FIRST)),
+        }
+    }
+}
+
+/// The model, where it is that of the first rank as far as can be seen.
+fn same(model: Model, bodies: u64, dt: f64) -> Result<Model, String> {
+    if model.body_count() as u64 == bodies && model.dt() == dt {
+        return Ok(model);
+    }
+    Err(format!(
+        "it makes another model: {} bodies, step {} s; expected {bodies} bodies, step {dt} s",
+        model.body_count(),
+        model.dt()
+    ))
+}
+
+/// Takes a state over, and what follows.
+fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
+    let mut message = Vec::new();
+    link.receive(FIRST, &mut message)?;
+    let rest = &mut &message[..];
+    match take(rest) {
+        Some(Order::Take) => {}
+        Some(Order::End) => return Ok(()),
+        _ => return Err(Lost::garbled(FIRST)),
+    }
+    let (mut state, partition) = parcel::read(link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+    drop(message);
+    let mut rank = Rank::new(link, Work::new(model, &state));
+    rank.take_over(model, &state, partition)?;
+    loop {
+        rank.receive(FIRST)?;
+        let rest = &mut &rank.message[..];
+        match take(rest) {
+            Some(Order::Step(now)) => {
+                let read = orders::read_step(&mut state, &now, &mut rank.work.applied, rest);
+                read.ok_or(Lost::garbled(FIRST))?;
+                step(&mut rank, model, &mut state, &now)?;
+            }
+            Some(Order::Give) => {
+                rank.out.clear();
+                put(&mut rank.out, &rank.traffic);
+                parcel::write_back(&state, rank.work.own.clone(), &mut rank.out);
+                rank.send(Kind::State, FIRST)?;
+                rank.out = Vec::new();
+            }
+            Some(Order::Take) => {
+                let (fresh, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+                state = fresh;
+                rank.message = Vec::new();
+                rank.take_over(model, &state, partition)?;
+            }
+            Some(Order::End) => return Ok(()),
+            _ => return Err(Lost::garbled(FIRST)),
+        }
+    }
+}
+
+/// One step of this rank's blocks.
+fn step<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State, now: &Now) -> Result<(), Lost> {
+    if now.renew {
+        let moved2 = rank.moved2(state);
+        rank.boxes = rank.bounds(state).collect();
+        rank.out.clear();
+        put_numbers(&mut rank.out, [moved2]);
+        put(&mut rank.out, &rank.boxes);
+        rank.send(Kind::NearList, FIRST)?;
+        rank.receive(FIRST)?;
+        let rest = &mut &rank.message[..];
+        let [approach] = take_numbers(rest).ok_or(Lost::garbled(FIRST))?;
+        if !rest.is_empty() {
+            rank.boxes = take(rest).ok_or(Lost::garbled(FIRST))?;
+        }
+        rank.renew(model, state, approach)?;
+    }
+    rank.advance(model, state)?;
+    rank.out.clear();
+    books::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
+    rank.send(Kind::Books, FIRST)?;
+    rank.await_ghosts(state)
+}

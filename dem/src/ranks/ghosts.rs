@@ -1,0 +1,111 @@
+//! Bodies of other ranks that a rank's blocks may touch: who sends which to whom, and their motion after each step.
+
+use super::code::{put_numbers, take_numbers};
+use crate::bodies::block::Block;
+use crate::bodies::members::Members;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::lanes::record::Record;
+use nalgebra::{Quaternion, Unit};
+use std::ops::Range;
+
+/// Block and place of a body.
+pub(super) type Place = [u32; 2];
+
+/// By rank: the bodies that it is sent, and those that it sends.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ghosts {
+    pub to: Vec<Vec<Place>>,
+    pub from: Vec<Vec<Place>>,
+}
+
+/// Bodies of other blocks that the near lists of the blocks `own` name, ascending, each once.
+pub(super) fn of_lists(state: &State, work: &Work, own: &Range<usize>) -> Vec<Place> {
+    let mut need = Vec::new();
+    for (b, cross) in state.cross.iter().enumerate().take(own.end) {
+        for k in 0..cross.spheres.len() {
+            let [i, block, j] = cross.spheres.name(k);
+            need.extend(partner(work, own, [b as u32, i], [block, j]));
+        }
+    }
+    bonded(state, own, &mut need);
+    sorted(need)
+}
+
+/// The same of bonds, and of pairs that were bonded.
+fn bonded(state: &State, own: &Range<usize>, need: &mut Vec<Place>) {
+    for (b, list) in state.bonds.cross.iter().enumerate() {
+        let bonds = list.iter().map(|e| (e.i, e.block, e.j));
+        for (i, block, j) in bonds.chain(list.debonded.iter().map(|r| (r.i, r.block, r.j))) {
+            need.extend(other(own, [b as u32, i], [block, j]));
+        }
+    }
+}
+
+/// The same of candidates and bonds.
+pub(super) fn of_candidates(state: &State, work: &Work, own: &Range<usize>) -> Vec<Place> {
+    let mut need = Vec::new();
+    bonded(state, own, &mut need);
+    for (b, w) in work.blocks.iter().enumerate().take(own.end) {
+        for &[i, block, j] in &w.candidates.cross {
+            need.extend(partner(work, own, [b as u32, i], [block, j]));
+        }
+    }
+    sorted(need)
+}
+
+/// The body of the one of two spheres that lies in another rank's block, if one does.
+fn partner(work: &Work, own: &Range<usize>, a: Place, b: Place) -> Option<Place> {
+    other(own, a, b).map(|[block, sphere]| [block, work.members[block as usize].body(sphere)])
+}
+
+/// The one of two that lies in another rank's block while the other does not, if one does.
+fn other(own: &Range<usize>, a: Place, b: Place) -> Option<Place> {
+    let there = |[block, _]: Place| !own.contains(&(block as usize));
+    match (there(a), there(b)) {
+        (true, false) => Some(a),
+        (false, true) => Some(b),
+        _ => None,
+    }
+}
+
+fn sorted(mut places: Vec<Place>) -> Vec<Place> {
+    places.sort_unstable();
+    places.dedup();
+    places
+}
+
+/// Puts the motion of bodies into a message: of a sphere nine numbers, in blocks with other bodies their orientation too.
+pub(super) fn put_motion(blocks: &[Block], places: &[Place], out: &mut Vec<u8>) {
+    for &[b, k] in places {
+        let (block, k) = (&blocks[b as usize], k as usize);
+        for record in [&block.centre[k], &block.velocity[k], &block.spin[k]] {
+            put_numbers(out, record.0[..3].iter().copied());
+        }
+        if let Some(rotation) = block.rotation.get(k) {
+            put_numbers(out, rotation.orientation.coords.iter().copied());
+        }
+    }
+}
+
+/// Reads it at the other rank; `None` where the message is not what it should be.
+pub(super) fn take_motion(
+    blocks: &mut [Block],
+    members: &mut [Members],
+    places: &[Place],
+    rest: &mut &[u8],
+) -> Option<()> {
+    for &[b, k] in places {
+        let (block, k) = (&mut blocks[b as usize], k as usize);
+        for record in [&mut block.centre[k], &mut block.velocity[k], &mut block.spin[k]] {
+            let [x, y, z] = take_numbers(rest)?;
+            *record = Record([x, y, z, record.0[3]]);
+        }
+        if let Some(rotation) = block.rotation.get_mut(k) {
+            let [i, j, k_, w] = take_numbers(rest)?;
+            rotation.orientation = Unit::new_unchecked(Quaternion::new(w, i, j, k_));
+            members[b as usize].place_spheres(k, &block.centre[k], &rotation.orientation);
+        }
+    }
+    Some(())
+}

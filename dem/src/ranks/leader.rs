@@ -1,0 +1,262 @@
+//! The first rank: the back end of a run whose blocks are shared among ranks.
+
+use super::code::{put, put_numbers, take, take_numbers};
+use super::halo::Bounds;
+use super::link::{Link, Lost};
+use super::orders::{self, Order};
+use super::partition::Partition;
+use super::rank::Rank;
+use super::traffic::{Kind, Traffic};
+use super::{books, parcel};
+use crate::base::error::StepError;
+use crate::engine::back_end::BackEnd;
+use crate::engine::input::AppliedForce;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::engine::{applied, bonds, neighbours, order, step};
+use crate::spatial::surface::{Surface, SurfaceContact};
+
+/// Steps on several ranks, of which this is the first. A state that they have taken over is whole again after
+/// [`BackEnd::download`].
+pub struct Ranks<L: Link> {
+    rank: Rank<L>,
+    /// Whether the other ranks are ahead of the state.
+    ahead: bool,
+    /// Whether the state has what only other ranks compute.
+    whole: bool,
+    /// Whether bonds have broken whose spheres have not separated yet.
+    debonded: bool,
+    /// What all ranks have sent up to the last download.
+    traffic: Traffic,
+}
+
+impl<L: Link> Ranks<L> {
+    /// Shares a state among the ranks of `link`, each of which makes the model from `description`.
+    ///
+    /// # Errors
+    /// A rank is lost, or makes no such model.
+    pub fn new(link: L, model: &Model, state: &State, description: &[u8]) -> Result<Ranks<L>, StepError> {
+        let time = state.time;
+        let mut ranks = Ranks {
+            rank: Rank::new(link, Work::new(model, state)),
+            ahead: false,
+            whole: true,
+            debonded: false,
+            traffic: Traffic::default(),
+        };
+        ranks.introduce(model, description).and_then(|()| ranks.deal_out(model, state)).map_err(at(time))?;
+        Ok(ranks)
+    }
+
+    fn introduce(&mut self, model: &Model, description: &[u8]) -> Result<(), Lost> {
+        let rank = &mut self.rank;
+        for other in rank.others() {
+            rank.out.clear();
+            put(&mut rank.out, &Order::Model { bodies: model.body_count() as u64, dt: model.dt() });
+            rank.out.extend_from_slice(description);
+            rank.send(Kind::State, other)?;
+        }
+        for other in rank.others() {
+            rank.receive(other)?;
+            let problem: String = take(&mut &rank.message[..]).ok_or(Lost::garbled(other))?;
+            if !problem.is_empty() {
+                return Err(Lost { rank: other, problem });
+            }
+        }
+        Ok(())
+    }
+
+    /// What all ranks have sent up to the last download.
+    pub fn traffic(&self) -> &Traffic {
+        &self.traffic
+    }
+
+    /// How often candidates were searched and how often the near list was made from them.
+    pub fn rebuilds(&self) -> (u64, u64) {
+        self.rank.work.rebuilds()
+    }
+
+    fn deal_out(&mut self, model: &Model, state: &State) -> Result<(), Lost> {
+        let rank = &mut self.rank;
+        let partition = Partition::of(state, rank.link.size());
+        for other in rank.others() {
+            rank.out.clear();
+            put(&mut rank.out, &Order::Take);
+            parcel::write(state, &partition, other, &mut rank.out);
+            rank.send(Kind::State, other)?;
+        }
+        rank.take_over(model, state, partition)?;
+        // A message of the size of a state is rare.
+        (rank.out, rank.message) = (Vec::new(), Vec::new());
+        (self.ahead, self.whole, self.debonded) = (false, true, bonds::any_debonded(state));
+        Ok(())
+    }
+
+    /// Makes `state` whole.
+    fn fetch(&mut self, state: &mut State) -> Result<(), Lost> {
+        if !std::mem::take(&mut self.ahead) {
+            return Ok(());
+        }
+        let rank = &mut self.rank;
+        for other in rank.others() {
+            rank.out.clear();
+            put(&mut rank.out, &Order::Give);
+            rank.send(Kind::Order, other)?;
+        }
+        self.traffic = Traffic::default();
+        for other in rank.others() {
+            rank.link.receive(other, &mut rank.message)?;
+            let rest = &mut &rank.message[..];
+            let part = rank.partition.of_rank(other);
+            let sent: Traffic = take(rest).ok_or(Lost::garbled(other))?;
+            parcel::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
+            self.traffic.add(&sent);
+        }
+        self.traffic.add(&rank.traffic);
+        rank.message = Vec::new();
+        self.whole = true;
+        Ok(())
+    }
+
+    fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        applied: &[AppliedForce],
+    ) -> Result<(), StepError> {
+        let lost = at(state.time);
+        if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
+            self.fetch(state).map_err(&lost)?;
+            state.reorder(model);
+            self.deal_out(model, state).map_err(&lost)?;
+        }
+        if !applied.is_empty() {
+            // Their levers need the places of the bodies, here and where they were found.
+            self.fetch(state).map_err(&lost)?;
+        }
+        applied::place(model, state, applied, &mut self.rank.work.applied)?;
+        if std::mem::take(&mut self.whole) {
+            parcel::restrict(state, &self.rank.work.own);
+            bonds::arrange(model, state, &mut self.rank.work);
+        }
+        let bonded = !model.bonds.is_empty();
+        let renew = neighbours::due(state);
+        if renew {
+            neighbours::adapt(model, state);
+        }
+        let mut make = || {
+            let rank = &mut self.rank;
+            for other in rank.others() {
+                rank.out.clear();
+                orders::write_step(state, renew, &rank.work.applied, &mut rank.out);
+                rank.send(Kind::Order, other)?;
+            }
+            self.ahead = true;
+            if renew {
+                renew_near_list(rank, model, state)?;
+            }
+            rank.advance(model, state)?;
+            rank.await_ghosts(state)?;
+            for other in rank.others() {
+                rank.link.receive(other, &mut rank.message)?;
+                let part = rank.partition.of_rank(other);
+                let read = books::read(&mut rank.work, part, bonded, &mut &rank.message[..]);
+                read.ok_or(Lost::garbled(other))?;
+            }
+            Ok(())
+        };
+        make().map_err(&lost)?;
+        // What a break leaves behind is settled on the whole state, and handed to all anew.
+        let look = self.debonded && state.steps.is_multiple_of(bonds::LOOKS);
+        if bonded && (look || books::any_broken(&self.rank.work)) {
+            self.fetch(state).map_err(&lost)?;
+            bonds::arrange(model, state, &mut self.rank.work);
+            let before = bonds::parted(state);
+            step::collect(model, state, &mut self.rank.work, 0.0)?;
+            return match bonds::parted(state) == before {
+                true => Ok(()),
+                false => self.deal_out(model, state).map_err(&lost),
+            };
+        }
+        if !applied.is_empty() {
+            self.fetch(state).map_err(&lost)?;
+        }
+        step::collect(model, state, &mut self.rank.work, 0.0)
+    }
+}
+
+/// Has all ranks make their near lists, after a search where one of them needs it.
+fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State) -> Result<(), Lost> {
+    let mut moved2 = if state.stale { f64::INFINITY } else { rank.moved2(state) };
+    rank.boxes = rank.bounds(state).collect();
+    for other in rank.others() {
+        rank.receive(other)?;
+        let rest = &mut &rank.message[..];
+        let [theirs] = take_numbers(rest).ok_or(Lost::garbled(other))?;
+        moved2 = moved2.max(theirs);
+        let boxes: Vec<Bounds> = take(rest).ok_or(Lost::garbled(other))?;
+        rank.boxes.extend(boxes);
+    }
+    rank.work.searched.surface_drift += state.wall_drift;
+    let approach = match moved2 {
+        far if far.is_infinite() => far,
+        near => neighbours::approach(model, state, &rank.work, near),
+    };
+    for other in rank.others() {
+        rank.out.clear();
+        put_numbers(&mut rank.out, [approach]);
+        if neighbours::too_far(model, state, approach) {
+            put(&mut rank.out, &rank.boxes);
+        }
+        rank.send(Kind::NearList, other)?;
+    }
+    rank.renew(model, state, approach)
+}
+
+fn at(time: f64) -> impl Fn(Lost) -> StepError {
+    move |lost| StepError::Rank { time, rank: lost.rank, problem: lost.problem }
+}
+
+impl<L: Link> BackEnd for Ranks<L> {
+    fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
+        self.deal_out(model, state).map_err(at(state.time))
+    }
+
+    fn step<S: Surface>(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        surface: &S,
+        applied: &[AppliedForce],
+    ) -> Result<(), StepError> {
+        // A model with a material for such a surface is refused.
+        if surface.is_empty() { self.advance(model, state, applied) } else { Err(StepError::SurfaceMaterial) }
+    }
+
+    fn download(&mut self, _: &Model, state: &mut State) -> Result<(), StepError> {
+        let time = state.time;
+        self.fetch(state).map_err(at(time))
+    }
+
+    fn surface_contacts(&self) -> &[SurfaceContact] {
+        &[]
+    }
+}
+
+impl<L: Link> Drop for Ranks<L> {
+    fn drop(&mut self) {
+        dismiss(&mut self.rank.link);
+    }
+}
+
+/// Lets all other ranks end that [`serve`](super::serve) this one, where [`Ranks`] does not do so.
+pub fn dismiss(link: &mut impl Link) {
+    let mut end = Vec::new();
+    put(&mut end, &Order::End);
+    let own = link.rank();
+    for other in (0..link.size()).filter(|&other| other != own) {
+        // One that is lost needs no order.
+        _ = link.send(other, &end);
+    }
+}

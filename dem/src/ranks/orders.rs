@@ -1,0 +1,85 @@
+//! What the first rank has the others do.
+
+use super::code::{put, take};
+use crate::base::Vec3;
+use crate::engine::state::State;
+use crate::integrate::leapfrog::Applied;
+use crate::integrate::pace::Pace;
+use crate::shape::plane::PlaneMotion;
+use serde::{Deserialize, Serialize};
+
+/// An order; what it needs beside follows in its message, or in the next.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Order {
+    /// Make the model that is described.
+    Model {
+        /// Number of bodies, and the step that the model begins with [s].
+        bodies: u64,
+        dt: f64,
+    },
+    /// Take a part of the state over.
+    Take,
+    /// Make a step.
+    Step(Now),
+    /// Send back one's part of the state.
+    Give,
+    /// There is nothing left to do.
+    End,
+}
+
+/// What all blocks share in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Now {
+    time: f64,
+    pace: Pace,
+    near: f64,
+    drift: f64,
+    wall_drift: f64,
+    /// Whether bonds have made no step yet.
+    fresh: bool,
+    /// Whether the near list is made anew.
+    pub renew: bool,
+}
+
+/// A force on a body, as ranks are given it.
+#[derive(Serialize, Deserialize)]
+struct Force {
+    block: u32,
+    place: u32,
+    force: Vec3,
+    torque: Vec3,
+}
+
+/// Writes the order to make a step, with the motion of planes and walls and the applied forces.
+pub(super) fn write_step(state: &State, renew: bool, applied: &[Applied], out: &mut Vec<u8>) {
+    let &State { time, pace, near, drift, wall_drift, .. } = state;
+    let fresh = state.bonds.fresh;
+    put(out, &Order::Step(Now { time, pace, near, drift, wall_drift, fresh, renew }));
+    state.planes.iter().for_each(|plane| put(out, plane));
+    put(out, &state.walls);
+    put(out, &(applied.len() as u32));
+    for &Applied { block, place, force, torque } in applied {
+        put(out, &Force { block, place, force, torque });
+    }
+}
+
+/// Takes over what the order to make a step says; `None` where the message is not what it should be.
+pub(super) fn read_step(
+    state: &mut State,
+    now: &Now,
+    applied: &mut Vec<Applied>,
+    rest: &mut &[u8],
+) -> Option<()> {
+    (state.time, state.pace, state.near) = (now.time, now.pace, now.near);
+    (state.drift, state.wall_drift, state.bonds.fresh) = (now.drift, now.wall_drift, now.fresh);
+    for plane in &mut state.planes {
+        *plane = take::<PlaneMotion>(rest)?;
+    }
+    state.walls = take(rest)?;
+    applied.clear();
+    for _ in 0..take::<u32>(rest)? {
+        let Force { block, place, force, torque } = take(rest)?;
+        applied.push(Applied { block, place, force, torque });
+    }
+    Some(())
+}

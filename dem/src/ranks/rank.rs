@@ -1,0 +1,167 @@
+//! What every rank does: it searches and moves its own blocks, and exchanges ghosts.
+
+use super::code::{put, take};
+use super::ghosts::{self, Ghosts, Place};
+use super::halo::{self, Bounds};
+use super::link::{Link, Lost};
+use super::partition::Partition;
+use super::traffic::{Kind, Traffic};
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::engine::{candidates, neighbours, step};
+use crate::spatial::surface::NoSurface;
+
+/// One rank with its part of a state.
+pub(super) struct Rank<L> {
+    pub link: L,
+    pub work: Work,
+    pub partition: Partition,
+    ghosts: Ghosts,
+    /// Boxes of all blocks at a search.
+    pub boxes: Vec<Bounds>,
+    /// The message that is written, and the one that is read.
+    pub out: Vec<u8>,
+    pub message: Vec<u8>,
+    pub traffic: Traffic,
+}
+
+impl<L: Link> Rank<L> {
+    pub fn new(link: L, work: Work) -> Rank<L> {
+        Rank {
+            link,
+            work,
+            partition: Partition::default(),
+            ghosts: Ghosts::default(),
+            boxes: Vec::new(),
+            out: Vec::new(),
+            message: Vec::new(),
+            traffic: Traffic::default(),
+        }
+    }
+
+    /// All other ranks.
+    pub fn others(&self) -> impl Iterator<Item = usize> + use<L> {
+        let own = self.link.rank();
+        (0..self.link.size()).filter(move |&rank| rank != own)
+    }
+
+    /// Sends what was written.
+    pub fn send(&mut self, kind: Kind, to: usize) -> Result<(), Lost> {
+        self.traffic.count(kind, self.out.len());
+        self.link.send(to, &self.out)
+    }
+
+    /// Waits for a message.
+    pub fn receive(&mut self, from: usize) -> Result<(), Lost> {
+        self.link.receive(from, &mut self.message)
+    }
+
+    /// Takes a state over, of which the motion of all bodies is known.
+    pub fn take_over(&mut self, model: &Model, state: &State, partition: Partition) -> Result<(), Lost> {
+        self.partition = partition;
+        self.work.follow(model, state);
+        self.work.own = self.partition.of_rank(self.link.rank());
+        let need = ghosts::of_lists(state, &self.work, &self.work.own);
+        self.agree(&need)
+    }
+
+    /// Agrees with all others on who sends whom what; `need` are the ghosts of this rank.
+    fn agree(&mut self, need: &[Place]) -> Result<(), Lost> {
+        let size = self.link.size();
+        self.ghosts.from.resize_with(size, Vec::new);
+        self.ghosts.to.resize_with(size, Vec::new);
+        self.ghosts.from.iter_mut().for_each(Vec::clear);
+        for place in need {
+            self.ghosts.from[self.partition.owner(place[0])].push(*place);
+        }
+        self.traffic.ghosts = need.len() as u64;
+        for rank in self.others() {
+            self.out.clear();
+            put(&mut self.out, &self.ghosts.from[rank]);
+            self.send(Kind::Search, rank)?;
+        }
+        for rank in self.others() {
+            self.receive(rank)?;
+            self.ghosts.to[rank] = take(&mut &self.message[..]).ok_or(Lost::garbled(rank))?;
+        }
+        Ok(())
+    }
+
+    /// Waits for the motion of ghosts after a step.
+    pub fn await_ghosts(&mut self, state: &mut State) -> Result<(), Lost> {
+        for rank in self.others() {
+            if self.ghosts.from[rank].is_empty() {
+                continue;
+            }
+            self.link.receive(rank, &mut self.message)?;
+            let (places, rest) = (&self.ghosts.from[rank], &mut &self.message[..]);
+            let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, places, rest);
+            read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
+        }
+        Ok(())
+    }
+
+    /// Moves the blocks of this rank by a step, and has others know where their ghosts are.
+    pub fn advance(&mut self, model: &Model, state: &mut State) -> Result<(), Lost> {
+        step::advance(model, state, &mut self.work, &NoSurface);
+        for rank in self.others() {
+            if !self.ghosts.to[rank].is_empty() {
+                self.out.clear();
+                ghosts::put_motion(&state.blocks, &self.ghosts.to[rank], &mut self.out);
+                self.send(Kind::Ghosts, rank)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// How far bodies of this rank have come since the last search, squared [m²].
+    pub fn moved2(&self, state: &State) -> f64 {
+        if self.work.searched.listed { neighbours::moved2(state, &self.work) } else { f64::INFINITY }
+    }
+
+    /// Boxes around the blocks of this rank.
+    pub fn bounds(&self, state: &State) -> impl Iterator<Item = Bounds> {
+        state.blocks[self.work.own.clone()].iter().map(halo::bounds)
+    }
+
+    /// Makes the near list anew, after partners may have come together by `approach` since the last search [m]; after another
+    /// search where that is too far. Boxes of all blocks are known then.
+    pub fn renew(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
+        let mut approach = approach;
+        if neighbours::too_far(model, state, approach) {
+            self.search(model, state)?;
+            approach = 0.0;
+        }
+        neighbours::renew(model, state, &mut self.work, &NoSurface, approach);
+        Ok(())
+    }
+
+    /// Finds the candidates of this rank's blocks.
+    fn search(&mut self, model: &Model, state: &mut State) -> Result<(), Lost> {
+        let mut near = Vec::new();
+        // A little more than needed, for rounding.
+        let reach = 1.01 * model.skin;
+        for rank in self.others() {
+            let ranges = (self.work.own.clone(), self.partition.of_rank(rank));
+            halo::near(&state.blocks, &self.boxes, ranges, reach, &mut near);
+            self.out.clear();
+            put(&mut self.out, &near);
+            ghosts::put_motion(&state.blocks, &near, &mut self.out);
+            self.send(Kind::Search, rank)?;
+        }
+        self.work.halo.clear();
+        for rank in self.others() {
+            self.link.receive(rank, &mut self.message)?;
+            let rest = &mut &self.message[..];
+            let places: Vec<Place> = take(rest).ok_or(Lost::garbled(rank))?;
+            let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, &places, rest);
+            read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
+            // Ranks have their runs in order.
+            self.work.halo.extend(places);
+        }
+        candidates::search(model, state, &mut self.work, &NoSurface);
+        let need = ghosts::of_candidates(state, &self.work, &self.work.own);
+        self.agree(&need)
+    }
+}

@@ -1,0 +1,135 @@
+//! A run whose steps are shared among several processes: the first leads, with the run, its records and its checkpoints; the others
+//! follow, each with its part of the grains.
+
+use super::device::Place;
+use super::threads::thread_pool;
+use crate::failure::Failure;
+use crate::model::{self, Job};
+use crate::scene::Document;
+use std::fmt;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+use trackbed_dem as dem;
+use trackbed_dem::ranks::{self, Link, Lost};
+
+/// The other ranks of a run, if there are any.
+#[derive(Clone, Default)]
+pub struct Ranked(Option<Arc<Waiting>>);
+
+/// Ranks that wait for a model; without one they are sent home.
+struct Waiting {
+    link: Mutex<Option<Box<dyn Link>>>,
+    size: usize,
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        if let Some(link) = self.link.get_mut().unwrap_or_else(PoisonError::into_inner) {
+            ranks::dismiss(link);
+        }
+    }
+}
+
+impl fmt::Debug for Ranked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ranks", self.size())
+    }
+}
+
+impl Ranked {
+    /// Those that `link` leads to from the first; the others [`follow`].
+    pub fn first(link: Box<dyn Link>) -> Ranked {
+        let size = link.size();
+        Ranked(Some(Arc::new(Waiting { link: Mutex::new(Some(link)), size })))
+    }
+
+    /// Number of ranks, this one included.
+    pub fn size(&self) -> usize {
+        self.0.as_ref().map_or(1, |waiting| waiting.size)
+    }
+
+    /// The ranks, for a model of these bodies, with planes where packing has left them [m].
+    pub fn share(&self, bodies: &[dem::BodyInput], planes: &[dem::Vec3]) -> Sharing<'_> {
+        let description = match &self.0 {
+            None => Vec::new(),
+            Some(_) => postcard::to_stdvec(&(bodies, planes)).unwrap_or_default(),
+        };
+        Sharing { ranks: self, description }
+    }
+}
+
+/// Ranks, and from what they make the model of a run.
+pub struct Sharing<'a> {
+    ranks: &'a Ranked,
+    description: Vec<u8>,
+}
+
+impl Sharing<'_> {
+    /// The way to the ranks, if there are any and they have no model yet.
+    pub fn link(&self) -> Option<Box<dyn Link>> {
+        self.ranks.0.as_ref()?.link.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// The bodies and the places of planes.
+    pub fn description(&self) -> &[u8] {
+        &self.description
+    }
+}
+
+/// Whether ranks can share a scene, before anything is written.
+///
+/// # Errors
+/// Bad input: the scene has what they do not share.
+pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
+    if ranked.0.is_none() {
+        return Ok(());
+    }
+    let refused = |why: String| Failure::Input(format!("{} ranks: {why}", ranked.size()));
+    let grains = match (&job.grains, &job.solid) {
+        (Some(grains), None) => grains,
+        _ => return Err(refused("solids are not shared among ranks, only computed on one".into())),
+    };
+    if place != Place::Cpu {
+        return Err(refused("found --device gpu, expected steps on the processor".into()));
+    }
+    // A scene whose grains are wrong is refused where they are made, with the keys to blame.
+    if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
+        ranks::check(&model).map_err(|e| refused(e.to_string()))?;
+    }
+    Ok(())
+}
+
+/// Follows the first rank through its run of the same scene.
+///
+/// # Errors
+/// A rank is lost. What is wrong with the scene is for the first rank to say.
+pub fn follow(scene: &Path, set: &[String], threads: Option<usize>, link: Box<dyn Link>) -> Result<(), Lost> {
+    let resolved = || -> Result<(rayon::ThreadPool, Job), Failure> {
+        let mut document = Document::open(scene)?;
+        set.iter().try_for_each(|assignment| document.set(assignment))?;
+        let parsed = model::read_scene(&document)?;
+        let pool = thread_pool(threads)?;
+        let job = pool.install(|| model::resolve(&document, &parsed))?;
+        Ok((pool, job))
+    };
+    match resolved() {
+        Err(failure) => ranks::serve(link, |_| Err(failure.to_string())),
+        Ok((pool, job)) => pool
+            .install(|| ranks::serve(link, |description| made(&job, description).map_err(|e| e.to_string()))),
+    }
+}
+
+/// The model of the run proper, as the first rank describes it.
+fn made(job: &Job, description: &[u8]) -> Result<dem::Model, Failure> {
+    let other = || Failure::Input("the first rank has another scene".into());
+    let (bodies, places): (Vec<dem::BodyInput>, Vec<dem::Vec3>) =
+        postcard::from_bytes(description).map_err(|_| other())?;
+    let mut grains = job.grains.clone().ok_or_else(other)?;
+    if places.len() != grains.walls.planes.len() {
+        return Err(other());
+    }
+    places.iter().enumerate().for_each(|(k, place)| grains.place_plane(k, *place));
+    let mut model = dem::Model::new(grains.input(bodies)).map_err(|e| Failure::Input(e.to_string()))?;
+    model.forget_start();
+    Ok(model)
+}
