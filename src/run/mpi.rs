@@ -76,6 +76,12 @@ pub fn join() -> Result<Option<World>, Failure> {
     if !started {
         return Ok(None);
     }
+    // OpenMPI ends a process whose message comes from the memory of one that was killed, before it can say so.
+    const COPY: &str = "OMPI_MCA_btl_vader_single_copy_mechanism";
+    if std::env::var_os(COPY).is_none() {
+        // SAFETY: the command has just begun, and no other thread of it reads or writes the environment.
+        unsafe { std::env::set_var(COPY, "none") };
+    }
     let failed = || Failure::Other("MPI: it cannot be started for calls by one thread at a time".into());
     let (universe, threading) = initialize_with_threading(Threading::Serialized).ok_or_else(failed)?;
     if threading < Threading::Serialized {
