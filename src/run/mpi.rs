@@ -31,7 +31,7 @@ const NAP: Duration = Duration::from_micros(100);
 /// Time between two looks at the processes of others.
 const WATCH: Duration = Duration::from_millis(20);
 
-/// Longest time that a rank waits for the first to say which is lost.
+/// Longest time that a rank waits for one before it to say which is lost.
 const PARTING: Duration = Duration::from_secs(2);
 
 /// Bytes of the name of a machine that ranks compare.
@@ -152,9 +152,10 @@ impl World {
         // It is said already which rank is lost; the end of MPI would wait for it.
         let lost = self.lost.load(Ordering::Relaxed);
         if outcome.is_err() && (rank > 0 || lost) {
-            // The first rank must not take this one for lost.
+            // Ranks before this one, of which one says what is lost, must not take this one for it.
             let begun = Instant::now();
-            while lost && rank > 0 && !self.peers[0].has_ended() && begun.elapsed() < PARTING {
+            while lost && self.peers[..rank].iter().any(|peer| !peer.has_ended()) && begun.elapsed() < PARTING
+            {
                 std::thread::sleep(WATCH);
             }
             std::process::exit(1);
