@@ -111,11 +111,11 @@ pub fn write(
         return Ok(writers.frame(&frame)?);
     };
     // Computed once for all that is shown of them.
-    let stones = writers.show(Part::Walls) && has_faces(view);
+    let stones = writers.show(Part::Walls) && view.model.has_faces();
     let any = stones || writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
     let bodies = (stones || writers.show(Part::Grains)).then(|| BodyFields::of(view, &contacts));
-    let spheres = writers.show(Part::Grains).then(|| bodies.as_ref().map(|b| spheres(view, b, extra)));
+    let spheres = bodies.as_ref().filter(|_| writers.show(Part::Grains)).map(|b| spheres(view, b, extra));
     let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {
         let (mut walls, of) = walls(view, part);
@@ -126,7 +126,7 @@ pub fn write(
         walls
     });
     Ok(writers.frame(&Frame {
-        grains: spheres.flatten().as_ref(),
+        grains: spheres.as_ref(),
         chains: chains.as_ref(),
         walls: walls.as_ref(),
         ..frame
@@ -213,11 +213,6 @@ impl BodyFields {
         fields.extend(more.iter().map(|name| (*name, extra(name, view, &all, &self.force))));
         fields
     }
-}
-
-/// Whether there are grains with faces.
-fn has_faces(view: GrainsView<'_>) -> bool {
-    (0..view.model.body_count()).any(|b| matches!(view.model.shape(b), Shape::Polyhedron(_)))
 }
 
 /// The grains: one point per sphere.

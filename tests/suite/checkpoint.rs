@@ -2,7 +2,8 @@
 //! number of threads; and what is said when there is nothing to go on from.
 
 use super::support::{
-    COUPLED, Folder, PLASTIC, SOLID, json, repository, results, run, scene_folder, trackbed, trackbed_in,
+    COUPLED, Folder, PLASTIC, SOLID, json, repository, results, run, scene_folder, shaft, trackbed,
+    trackbed_in,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,17 +13,7 @@ use trackbed::run::{Interrupt, Options, Outcome, Verbosity};
 /// A bed of clumps and spheres that settles in a box with a moving flap, then carries a sleeper under two cycles of a load.
 fn bed() -> String {
     let library = repository().join("inputs/track/cyclic/stones.toml");
-    let wall = |point: [f64; 3], normal: [f64; 3]| {
-        format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"stone\"\n")
-    };
-    let walls = [
-        wall([0.0; 3], [0.0, 0.0, 1.0]),
-        wall([0.0; 3], [1.0, 0.0, 0.0]),
-        wall([0.4, 0.0, 0.0], [-1.0, 0.0, 0.0]),
-        wall([0.0; 3], [0.0, 1.0, 0.0]),
-        wall([0.0, 0.4, 0.0], [0.0, -1.0, 0.0]),
-    ]
-    .concat();
+    let walls = shaft(0.4);
     format!(
         r#"title = "bed in a box"
 

@@ -1,7 +1,7 @@
 //! A run whose steps are shared among ranks, here threads that send each other messages: the same files, whatever the number of
 //! ranks, and checkpoints that any number of them goes on from. By MPI: `tests/ranks_check.sh`.
 
-use super::support::{COUPLED, Folder, repository, results, scene_folder};
+use super::support::{COUPLED, Folder, repository, results, scene_folder, shaft};
 use std::path::Path;
 use trackbed::failure::Failure;
 use trackbed::run::{Interrupt, Options, Outcome, Ranked, Verbosity, follow, run};
@@ -10,17 +10,7 @@ use trackbed_dem::ranks::{Lost, local};
 /// Marbles and a few clumps fall on a slope that moves, in a box with an outlet; enough for some blocks.
 fn scene() -> String {
     let library = repository().join("inputs/track/cyclic/stones.toml");
-    let wall = |point: [f64; 3], normal: [f64; 3]| {
-        format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"stone\"\n")
-    };
-    let walls = [
-        wall([0.0; 3], [0.0, 0.0, 1.0]),
-        wall([0.0; 3], [1.0, 0.0, 0.0]),
-        wall([0.3, 0.0, 0.0], [-1.0, 0.0, 0.0]),
-        wall([0.0; 3], [0.0, 1.0, 0.0]),
-        wall([0.0, 0.3, 0.0], [0.0, -1.0, 0.0]),
-    ]
-    .concat();
+    let walls = shaft(0.3);
     format!(
         r#"title = "marbles and stones"
 

@@ -402,6 +402,21 @@ frames = 2
 tecplot = true
 "#;
 
+/// Planes of a material "stone" around a square shaft with its floor at the origin [m].
+pub fn shaft(width: f64) -> String {
+    let plane = |point: [f64; 3], normal: [f64; 3]| {
+        format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"stone\"\n")
+    };
+    [
+        plane([0.0; 3], [0.0, 0.0, 1.0]),
+        plane([0.0; 3], [1.0, 0.0, 0.0]),
+        plane([width, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        plane([0.0; 3], [0.0, 1.0, 0.0]),
+        plane([0.0, width, 0.0], [0.0, -1.0, 0.0]),
+    ]
+    .concat()
+}
+
 /// A folder with the small block's lists and `text` as `scene.toml`.
 pub fn scene_folder(name: &str, text: &str) -> Folder {
     let folder = Folder::new(name);

@@ -213,6 +213,11 @@ impl Model {
         self.bodies.get(body)
     }
 
+    /// Whether any shape is a dilated polyhedron or disk.
+    pub fn has_faces(&self) -> bool {
+        self.shapes.iter().any(Shape::dilated)
+    }
+
     /// Whether there are body forces, or drag of ground that is scarred.
     pub(crate) fn acts_on_bodies(&self) -> bool {
         self.scarred || !self.body_forces.is_empty()

@@ -17,6 +17,9 @@ use crate::law::scarring::{Scar, Scarring};
 use crate::spatial::facet::Facet;
 use crate::spatial::patchwork::Form;
 
+/// A way below which friction has forgotten that it has grown [m].
+const FORGOTTEN: f64 = 1e-12;
+
 /// Follows every body for the next step.
 pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
     let down = model.gravity.normalize();
@@ -133,6 +136,3 @@ impl Body<'_> {
         law.resistance(below.seen * scale * scale)
     }
 }
-
-/// A way below which friction has forgotten that it has grown [m].
-const FORGOTTEN: f64 = 1e-12;

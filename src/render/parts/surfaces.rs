@@ -166,24 +166,19 @@ impl Parts<'_> {
 
     /// How triangles of one part look: all alike, by a value, or by the number of a group.
     fn looks(&mut self, values: Option<impl Iterator<Item = f64>>, colour: Colour, opacity: f32) -> Looks {
-        let mut add = |paint, relief| self.scene.look(Look { paint, opacity, relief });
+        let (range, table) = (self.limits.grains.unwrap_or([0.0, 1.0]), self.table(Part::Grains));
+        let mut add = |paint| self.scene.look(Look { paint, opacity, relief: 1.0 });
+        let alike = |first| Looks { first, groups: BTreeMap::new() };
         let by_group = self.wanted.grains.as_deref() == Some("part");
         match values {
-            None => Looks { first: add(Paint::Own(colour), 1.0), groups: BTreeMap::new() },
+            None => alike(add(Paint::Own(colour))),
             Some(values) if by_group => {
                 let numbers: BTreeSet<usize> = values.map(|v| v as usize).collect();
-                let one = |g: usize| (g, add(Paint::Own(colours::group(g)), 1.0));
+                let one = |g: usize| (g, add(Paint::Own(colours::group(g))));
                 let groups: BTreeMap<usize, u16> = numbers.into_iter().map(one).collect();
                 Looks { first: groups.first_key_value().map_or(0, |(_, look)| *look), groups }
             }
-            Some(_) => {
-                let range = self.limits.grains.unwrap_or([0.0, 1.0]).map(|v| v as f32);
-                let paint = Paint::Map { table: self.table(Part::Grains), range, bands: 0 };
-                Looks {
-                    first: self.scene.look(Look { paint, opacity, relief: 1.0 }),
-                    groups: BTreeMap::new(),
-                }
-            }
+            Some(_) => alike(add(Paint::Map { table, range: range.map(|v| v as f32), bands: 0 })),
         }
     }
 
