@@ -25,13 +25,7 @@ DEVICE void image_contact(ARGUMENTS p, const unsigned c, const int second, const
     const four wa = second ? w_there : w, wb = second ? w : w_there;
     const real *k = law_of(p, wa, wb);
     if (!on) {
-        // What has not begun stays as it is, to the signs of zeros.
-        const outcome fresh = {none(), none(), none(), m, r, 0.0, 0.0, 0};
-        if (m.w < FRESH) {
-            end(p, c, k, m, r);
-        } else {
-            keep(p, c, fresh);
-        }
+        end(p, c, k, m, r);
         return;
     }
     const four x_there = OLD_X[body], v_there = OLD_V[body];
