@@ -7,7 +7,9 @@ use std::path::Path;
 use trackbed_dem::bond::{Bond, BondDamping, BondInput, ContactPoint};
 use trackbed_dem::law::table;
 use trackbed_dem::shape::clump::Clump;
-use trackbed_dem::{BodyInput, LocalDamping, Material, Model, ModelInput, Shape, Vec3, device};
+use trackbed_dem::{
+    BodyInput, LocalDamping, Material, Model, ModelInput, Shape, Vec3, WallInput, WallShape, device,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the name of a folder is missing")?;
@@ -19,36 +21,65 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let yielding = Material { normal: table::normal_named("walton_braun"), ..spring };
     for (name, material) in [("linear", spring), ("rough", rough), ("hertz", elastic), ("several", yielding)]
     {
-        for (suffix, turning, clumps) in
-            [("", false, false), ("_with_all", true, false), ("_clumps", true, true)]
-        {
-            let mut material = material;
-            let mut input =
-                ModelInput { shapes: vec![Shape::Sphere { radius: 0.01 }], ..ModelInput::default() };
-            if turning {
-                // All that a model can have.
-                (material.rolling_friction, material.twisting_friction) = (0.1, 0.1);
-                input.damping = Some(LocalDamping { factor: 0.2 });
-            }
-            input.materials = vec![material];
-            let position = Vec3::new(0.0, 0.0, 0.02);
-            input.bodies = vec![BodyInput::default(), BodyInput { position, ..BodyInput::default() }];
-            if turning {
-                bonded(&mut input);
-            }
-            if clumps {
-                let two = [([0.0, 0.0, 0.0], 0.01), ([0.01, 0.0, 0.0], 0.01)];
-                input.shapes.push(Shape::Clump(Clump::from_spheres(&two)?));
-                let position = Vec3::new(0.0, 0.0, 0.06);
-                input.bodies.push(BodyInput { shape: 1, position, ..BodyInput::default() });
-            }
-            let text = device::source(&Model::new(input)?)?;
-            let file = format!("{name}{suffix}.cu");
+        for scene in [Scene::Spheres, Scene::All, Scene::Clumps, Scene::Walls, Scene::Borders] {
+            let text = device::source(&Model::new(scene.input(material)?)?)?;
+            let file = format!("{name}{}.cu", scene.suffix());
             std::fs::write(Path::new(&folder).join(&file), &text)?;
             println!("{file}: {} bytes", text.len());
         }
     }
     Ok(())
+}
+
+/// What the bodies of a model are and meet.
+#[derive(Clone, Copy, PartialEq)]
+enum Scene {
+    Spheres,
+    /// Spheres with all that a model of them and planes can have.
+    All,
+    /// Clumps too; then walls of triangles too, or periodic borders.
+    Clumps,
+    Walls,
+    Borders,
+}
+
+impl Scene {
+    fn suffix(self) -> &'static str {
+        match self {
+            Scene::Spheres => "",
+            Scene::All => "_with_all",
+            Scene::Clumps => "_clumps",
+            Scene::Walls => "_walls",
+            Scene::Borders => "_borders",
+        }
+    }
+
+    fn input(self, mut material: Material) -> Result<ModelInput, Box<dyn std::error::Error>> {
+        let mut input = ModelInput { shapes: vec![Shape::Sphere { radius: 0.01 }], ..ModelInput::default() };
+        if self != Scene::Spheres {
+            (material.rolling_friction, material.twisting_friction) = (0.1, 0.1);
+            input.damping = Some(LocalDamping { factor: 0.2 });
+        }
+        input.materials = vec![material];
+        let at = |z: f64| Vec3::new(0.0, 0.0, z);
+        input.bodies = [0.0, 0.02].map(|z| BodyInput { position: at(z), ..BodyInput::default() }).to_vec();
+        match self {
+            Scene::Spheres => return Ok(input),
+            Scene::Borders => input.periodic = [Some([-1.0, 1.0]), None, None],
+            _ => bonded(&mut input),
+        }
+        if self != Scene::All {
+            let two = [([0.0, 0.0, 0.0], 0.01), ([0.01, 0.0, 0.0], 0.01)];
+            input.shapes.push(Shape::Clump(Clump::from_spheres(&two)?));
+            input.bodies.push(BodyInput { shape: 1, position: at(0.06), ..BodyInput::default() });
+        }
+        if self == Scene::Walls {
+            let vertices = vec![at(-0.1), at(-0.1) + Vec3::x(), at(-0.1) + Vec3::y()];
+            let floor = WallShape::Triangles { vertices, triangles: vec![[0, 1, 2]] };
+            input.walls.push(WallInput::fixed(floor, 0));
+        }
+        Ok(input)
+    }
 }
 
 /// Bonds the first two bodies.

@@ -3,7 +3,8 @@
 
 use crate::base::Vec3;
 use crate::bodies::block::PointMotion;
-use crate::lanes::Simd;
+use crate::lanes::record::xyz;
+use crate::lanes::{Real, Simd, V3};
 use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, Laws, with_law};
 
 /// What all blocks share.
@@ -41,16 +42,52 @@ pub(crate) fn between(
     history: &mut History,
     dt: f64,
 ) -> PairForce {
-    let inverse_mass = (a.inverse_mass() + b.inverse_mass()) * share;
-    let (velocity, spin) = (a.at_point() - b.at_point(), a.spin() - b.spin());
+    let (p, q) = (moving(a), moving(b));
+    let inverse_mass = (p.inverse_mass + q.inverse_mass) * share;
+    let (velocity, spin) = p.against(&q);
+    let (velocity, spin) = (velocity.to_vec(), spin.to_vec());
     let f = evaluate(laws, materials, friction, inverse_mass, geometry, &velocity, &spin, history, dt);
+    let (torque_a, torque_b) = p.torques(&q, V3::from_vec(&f.force), V3::from_vec(&f.moment));
     PairForce {
         force: f.force,
-        torque_a: a.arm.cross(&f.force) + f.moment,
-        torque_b: -(b.arm.cross(&f.force) + f.moment),
+        torque_a: torque_a.to_vec(),
+        torque_b: torque_b.to_vec(),
         moment: f.moment,
         dashpot: f.dashpot,
         friction: f.friction,
+    }
+}
+
+fn moving(m: &PointMotion) -> Moving<f64> {
+    let [velocity, spin, arm] = [xyz(&m.velocity), m.spin(), m.arm].map(|v| V3::from_vec(&v));
+    Moving { velocity, spin, arm, inverse_mass: m.inverse_mass() }
+}
+
+/// A body as a contact needs it: velocity, spin, the way from its centre to the contact point, and one over its mass.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moving<R> {
+    pub velocity: V3<R>,
+    pub spin: V3<R>,
+    pub arm: V3<R>,
+    pub inverse_mass: R,
+}
+
+impl<R: Real> Moving<R> {
+    #[inline(always)]
+    fn at_point(&self) -> V3<R> {
+        self.velocity + self.spin.cross(self.arm)
+    }
+
+    /// Velocity at the contact point and spin, relative to those of the other body.
+    #[inline(always)]
+    pub fn against(&self, other: &Moving<R>) -> (V3<R>, V3<R>) {
+        (self.at_point() - other.at_point(), self.spin - other.spin)
+    }
+
+    /// Torques on this body and on the other of a force on this one and a moment of its own.
+    #[inline(always)]
+    pub fn torques(&self, other: &Moving<R>, force: V3<R>, moment: V3<R>) -> (V3<R>, V3<R>) {
+        (self.arm.cross(force) + moment, -(other.arm.cross(force) + moment))
     }
 }
 

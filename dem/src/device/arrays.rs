@@ -1,12 +1,13 @@
 //! Contacts and bonds of a state as the flat arrays that a device keeps, and back.
 //!
-//! Contacts lie list by list: across blocks, within them, with planes, of debonded pairs across and within, each
-//! block by block; so do bonds, across and within. Each body has what it takes part in as entries, in the order in which the engine adds
-//! it up.
+//! Contacts lie list by list: across blocks, within them, with planes, of debonded pairs across and within, across periodic borders, with
+//! triangles, each block by block; so do bonds, across and within. Each body has what it takes part in as entries, in the order in which
+//! the engine adds it up.
 
 use super::bodies::Spheres;
 use super::layout::{LISTS, List, What, entry};
 use super::walls::{Kept, Pairs};
+use crate::Vec3;
 use crate::bond::BondList;
 use crate::bond::debonded::DebondedPair;
 use crate::bond::kernel;
@@ -16,6 +17,7 @@ use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::lanes::V3;
 use crate::law::History;
+use crate::pairs::cross::ImageName;
 use crate::pairs::groups::Groups;
 
 /// Lists of bonds across blocks, then within.
@@ -66,6 +68,7 @@ impl Memory {
                 bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
             }
         }
+        state.cross.iter().for_each(|c| c.images.iter().for_each(|image| add(image.history)));
         state.lists.iter().for_each(|l| kept.add(&l.walls, &mut add));
         out
     }
@@ -88,6 +91,10 @@ impl Memory {
                 list.set(k, &Entry { memory, ..list.get(k) });
                 bond += 2;
             }
+        }
+        for image in state.cross.iter_mut().flat_map(|c| &mut c.images) {
+            image.history = self.history(at, true);
+            at += 1;
         }
         let mut pair = 0;
         for lists in &mut state.lists {
@@ -126,6 +133,8 @@ pub(super) struct Lists {
     pub bond_constants: Vec<[f64; kernel::COUNT]>,
     /// Overlap of each debonded pair that does not count.
     pub reference: Vec<f64>,
+    /// Way of each image from its sphere.
+    pub ways: Vec<[f64; 4]>,
     /// Pairs of spheres and triangles, at the end of the contacts.
     pub pairs: Pairs,
     /// Number of blocks.
@@ -148,6 +157,7 @@ impl Lists {
         for ((debonded, bonds), lists) in places.zip(bond_lists(state)) {
             out.bonds(model, debonded, bonds, &lists);
         }
+        out.images(model, state, spheres);
         for (b, lists) in state.lists.iter().enumerate() {
             out.ranges[b][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
             out.pairs.add(b, lists, spheres);
@@ -191,6 +201,19 @@ impl Lists {
         mark(self, List::Planes, self.blocks);
     }
 
+    /// Contacts across periodic borders.
+    fn images(&mut self, model: &Model, state: &State, spheres: &Spheres) {
+        for (b, cross) in state.cross.iter().enumerate() {
+            self.ranges[b][List::Images as usize] = self.ends.len() as u32;
+            for ImageName { i, block, j, shift } in cross.images.iter().map(|image| image.name) {
+                self.ends.push([spheres.at(b, i), spheres.at(block as usize, j)]);
+                let way = model.periodic.map_or(Vec3::zeros(), |p| p.way(&shift));
+                self.ways.push([way.x, way.y, way.z, 0.0]);
+            }
+        }
+        self.ranges[self.blocks][List::Images as usize] = self.ends.len() as u32;
+    }
+
     /// Debonded pairs and bonds of some lists, one of each block; `debonded`, `bonds`: what these are here.
     fn bonds(&mut self, model: &Model, debonded: List, bonds: List, lists: &[&BondList]) {
         let across = bonds == List::CrossBonds;
@@ -221,8 +244,14 @@ impl Lists {
         for (b, w) in work.blocks.iter().enumerate() {
             for share in &w.shares.list {
                 let from = share.block as usize;
-                let slot = (share.record() / work.cross[from].width) as u32;
-                put(self.body(b, share.place), across, self.from(List::Cross, from) + slot, !share.first());
+                let (forces, record) = (&work.cross[from], share.record());
+                let (what, of) = match record.checked_sub(forces.images_at) {
+                    Some(beyond) => {
+                        (What::Images, self.from(List::Images, from) + (beyond / forces.width) as u32)
+                    }
+                    None => (across, self.from(List::Cross, from) + (record / forces.width) as u32),
+                };
+                put(self.body(b, share.place), what, of, !share.first());
             }
             for share in work.bonds.shares(b) {
                 let from = share.block as usize;

@@ -197,6 +197,7 @@ impl<M: Machine> Device<M> {
         self.call.count(Count::FirstPlane, planes as usize);
         self.call.count(Count::FirstDebonded, debonded as usize);
         self.call.count(Count::FirstPatch, lists.ends.len());
+        self.call.count(Count::FirstImage, lists.from(List::Images, 0) as usize);
         let counts: [(Slot, &[u32]); 7] = [
             (Slot::Ends, lists.ends.as_flattened()),
             (Slot::Start, &lists.start),
@@ -209,12 +210,13 @@ impl<M: Machine> Device<M> {
         for (slot, list) in counts {
             self.put_counts(slot, list)?;
         }
-        let numbers: [(Slot, &[f64]); 7] = [
+        let numbers: [(Slot, &[f64]); 8] = [
             (Slot::OldMemory, memory.spring.as_flattened()),
             (Slot::OldTurn, if self.features.roll { memory.turn.as_flattened() } else { &[] }),
             (Slot::OldBonds, memory.bonds.as_flattened()),
             (Slot::BondConstants, lists.bond_constants.as_flattened()),
             (Slot::Reference, &lists.reference),
+            (Slot::Ways, lists.ways.as_flattened()),
             (Slot::OldSpare, &memory.kept.spare),
             (Slot::OldTouch, memory.kept.touch.as_flattened().as_flattened()),
         ];
@@ -233,6 +235,7 @@ impl<M: Machine> Device<M> {
             (Slot::NewTouch, 12 * pairs),
             (Slot::Ended, pairs),
             (Slot::Action, 8 * pairs),
+            (Slot::Couples, 4 * lists.ways.len()),
         ];
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
@@ -369,6 +372,9 @@ impl<M: Machine> Device<M> {
             let cross = &mut self.work.cross[b];
             cross.clear_books();
             (cross.dashpot, cross.friction) = (spheres[0], spheres[1]);
+            if f.periodic {
+                cross.couple = vector(of(Booked::Images), 0);
+            }
             let tally = &mut self.work.blocks[b].tally;
             let ledger = &mut tally.ledger;
             *ledger = Ledger::default();

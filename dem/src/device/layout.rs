@@ -81,6 +81,9 @@ table! {
         /// What the springs of a contact that ended had left, force on the body and moment about the centre of the wall, of each pair.
         Ended = "ENDED": "real",
         Action = "ACTION": "four",
+        /// Of each contact across a periodic border the way of the image from its sphere, and the angular impulse that it gives.
+        Ways = "WAYS": "const four",
+        Couples = "COUPLES": "four",
         /// What local damping and fixed motions did to each body, where a model has them.
         HeldBy = "HELD_BY": "real",
         /// Bodies of each bond, its constants, what it remembers (shear, turn), and the power of its dashpots.
@@ -130,6 +133,8 @@ table! {
         FirstDebonded = "FIRST_DEBONDED",
         /// The first contact of a sphere and a triangle.
         FirstPatch = "FIRST_PATCH",
+        /// The first contact across a periodic border.
+        FirstImage = "FIRST_IMAGE",
     }
 }
 
@@ -145,6 +150,8 @@ pub(super) enum What {
     MemberPlane,
     /// The pairs of a sphere with triangles.
     Walls,
+    /// A contact across a periodic border.
+    Images,
 }
 
 /// The entry of a body: contact or bond `of`, of which it may be the `second`.
@@ -183,8 +190,10 @@ pub(super) enum List {
     OwnBonds,
     /// Pairs of spheres and triangles.
     Patches,
+    /// Contacts across periodic borders.
+    Images,
 }
-pub(super) const LISTS: usize = 9;
+pub(super) const LISTS: usize = 10;
 
 /// What a block books, part by part: how many numbers each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,16 +210,19 @@ pub(super) enum Booked {
     Held,
     /// What dashpots and friction took in contacts with triangles; force and moment of each wall.
     Patches,
+    /// Angular impulse of contacts across periodic borders.
+    Images,
 }
 
 impl Booked {
-    const ALL: [(Booked, &str, usize); 6] = [
+    const ALL: [(Booked, &str, usize); 7] = [
         (Booked::Spheres, "SPHERES", 4),
         (Booked::Planes, "PLANES", 9),
         (Booked::Motion, "MOTION", 4),
         (Booked::Bonds, "BONDS", 6),
         (Booked::Held, "HELD", 21),
         (Booked::Patches, "PATCHES", 2),
+        (Booked::Images, "IMAGES", 3),
     ];
 }
 
@@ -251,6 +263,8 @@ pub(super) struct Features {
     pub clumps: bool,
     /// Number of walls of triangles.
     pub walls: usize,
+    /// Whether there are periodic borders.
+    pub periodic: bool,
 }
 
 impl Features {
@@ -274,6 +288,13 @@ impl Features {
                 }
                 Booked::Held => {
                     if self.held {
+                        count
+                    } else {
+                        0
+                    }
+                }
+                Booked::Images => {
+                    if self.periodic {
                         count
                     } else {
                         0
@@ -338,13 +359,15 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("SHAPE_WIDTH", SHAPE_WIDTH),
         ("WALL_WIDTH", WALL_WIDTH),
         ("PATCH_WIDTH", PATCH_WIDTH),
+        ("PATCHES_LIST", List::Patches as usize),
+        ("IMAGES_LIST", List::Images as usize),
         ("BOND_WIDTH", crate::bond::kernel::COUNT),
         ("ITERATIONS", crate::integrate::rotation::ITERATIONS),
     ];
     for (name, value) in sizes {
         _ = writeln!(out, "#define {name} {value}u");
     }
-    for (name, on) in [("ROLL", f.roll), ("HELD", f.held), ("CLUMPS", f.clumps)] {
+    for (name, on) in [("ROLL", f.roll), ("HELD", f.held), ("CLUMPS", f.clumps), ("PERIODIC", f.periodic)] {
         _ = writeln!(out, "#define {name} {}", u32::from(on));
     }
     let how = if f.clumps {

@@ -1,5 +1,5 @@
 //! Steps on a device: the same arrays and the same order of sums as the engine's, and formulas that are the engine's own,
-//! recorded (`tape.rs`) and written out as text (`text.rs`) that a C compiler takes as well as CUDA's.
+//! recorded (`tape.rs`) and written out as text (`text`, a file a kind of force or motion) that a C compiler takes as well as CUDA's.
 //!
 //! Neighbours are searched on the processor; a step that fails there or that puts the bodies in a new order is made by the engine
 //! itself. Whatever the device cannot compute is refused by name ([`check`]).

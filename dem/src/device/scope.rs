@@ -26,10 +26,8 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
         (any_solid, "boxes and polyhedra"),
         (!model.walls.triangulated(), "walls other than triangles and planes of steady velocity"),
         (model.walls.walls.iter().any(|w| w.servo.is_some()), "walls that a force drives"),
-        (model.walls.walls.iter().any(|w| w.body.is_some()), "walls that are bodies"),
         (model.surface_material.is_some(), "contacts with a solid"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
-        (model.periodic.is_some(), "periodic borders"),
     ];
     match all.into_iter().find(|(there, _)| *there) {
         Some((_, name)) => Err(Unsupported(name)),

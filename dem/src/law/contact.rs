@@ -49,8 +49,10 @@ impl History {
             // No zero gets a sign that a step without a contact would not take away from it.
             return *self;
         }
+        // Likewise of springs that nothing has strained: less than zero by nothing is zero.
+        let back = |x: f64| 0.0 - x;
         let [x, y, z, twist] = self.turn;
-        History { spring: -self.spring, rate: self.rate, turn: [-x, -y, -z, twist] }
+        History { spring: self.spring.map(back), rate: self.rate, turn: [back(x), back(y), back(z), twist] }
     }
 
     /// Of one lane.

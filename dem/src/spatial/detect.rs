@@ -1,25 +1,68 @@
 //! Geometry of a touch, per pair of shapes. Nothing here knows stiffness or storage.
 
 use crate::base::Vec3;
+use crate::lanes::{Real, V3};
 use crate::law::ContactGeometry;
 use crate::shape::cuboid;
 use nalgebra::UnitQuaternion;
 
-/// Two spheres. The contact point halves the overlap. Coincident centres give a normal along z.
+/// Two spheres, as formulas need them: centres and radii.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spheres<R> {
+    xa: V3<R>,
+    ra: R,
+    rb: R,
+    between: V3<R>,
+    distance2: R,
+    reach: R,
+}
+
+/// Where two spheres touch: see [`ContactGeometry`].
+pub(crate) struct Touch<R> {
+    pub point: V3<R>,
+    pub normal: V3<R>,
+    pub overlap: R,
+    pub radius: R,
+}
+
+impl<R: Real> Spheres<R> {
+    #[inline(always)]
+    pub fn new(xa: V3<R>, ra: R, xb: V3<R>, rb: R) -> Spheres<R> {
+        let between = xa - xb;
+        Spheres { xa, ra, rb, between, distance2: between.norm2(), reach: ra + rb }
+    }
+
+    /// Whether they touch.
+    #[inline(always)]
+    pub fn on(&self) -> R::Mask {
+        self.distance2.lt(self.reach * self.reach)
+    }
+
+    /// Where they do. The contact point halves the overlap. Coincident centres give a normal along z.
+    #[inline(always)]
+    pub fn touch(&self) -> Touch<R> {
+        let &Spheres { xa, ra, rb, between, distance2, reach } = self;
+        let (distance, zero, one) = (distance2.sqrt(), R::zero(), R::splat(1.0));
+        // distance/distance² rather than 1/distance: the division need not wait for the root.
+        let mut normal = between * (distance * (one / distance2));
+        let apart = zero.lt(distance);
+        if !R::all(apart) {
+            normal = V3::select(apart, normal, V3::new(zero, zero, one));
+        }
+        let overlap = reach - distance;
+        let point = xa - normal * (ra - R::splat(0.5) * overlap);
+        Touch { point, normal, overlap, radius: ra * rb / reach }
+    }
+}
+
+/// Two spheres that touch.
 #[inline(always)]
 pub fn sphere_sphere(xa: &Vec3, ra: f64, xb: &Vec3, rb: f64) -> Option<ContactGeometry> {
-    let between = xa - xb;
-    let reach = ra + rb;
-    let distance2 = between.norm_squared();
-    if distance2 >= reach * reach {
-        return None;
-    }
-    let distance = distance2.sqrt();
-    // distance/distance² rather than 1/distance: the division need not wait for the root.
-    let normal = if distance > 0.0 { between * (distance * (1.0 / distance2)) } else { Vec3::z() };
-    let overlap = reach - distance;
-    let point = xa - normal * (ra - 0.5 * overlap);
-    Some(ContactGeometry { point, normal, overlap, radius: ra * rb / reach })
+    let both = Spheres::new(V3::from_vec(xa), ra, V3::from_vec(xb), rb);
+    both.on().then(|| {
+        let Touch { point, normal, overlap, radius } = both.touch();
+        ContactGeometry { point: point.to_vec(), normal: normal.to_vec(), overlap, radius }
+    })
 }
 
 /// A sphere (or, with radius 0, a point) and a plane through `origin` with unit normal `normal`.

@@ -13,8 +13,8 @@ use trackbed_dem::law::table;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
-    BackEnd, LocalDamping, Material, Model, ModelInput, Motion, Oscillation, Plane, Servo, Shape, State,
-    Vec3, WallInput, WallShape, Work, step,
+    BackEnd, LocalDamping, Material, Model, ModelInput, Motion, Oscillation, Plane, RigidBody, Servo, Shape,
+    State, Vec3, WallInput, WallShape, Work, step,
 };
 
 const STEPS: usize = 1000;
@@ -107,6 +107,13 @@ fn explain(model: &Model, ours: &State, theirs: &State) {
     let other = (0..model.body_count()).filter(|&b| motion(ours, b) != motion(theirs, b)).count();
     let same = if ours.ledger == theirs.ledger { "the same" } else { "different" };
     println!("{other} bodies move otherwise, the ledger is {same}");
+    let bytes = [ours, theirs].map(|s| postcard::to_stdvec(s).unwrap());
+    let at: Vec<usize> =
+        (0..bytes[0].len().min(bytes[1].len())).filter(|&k| bytes[0][k] != bytes[1][k]).collect();
+    println!("{} and {} bytes, {} differ, from {:?}", bytes[0].len(), bytes[1].len(), at.len(), at.first());
+    for k in at.iter().take(6) {
+        println!("  {k}: {:?}\n   {:?}", &bytes[0][k - 8..k + 9], &bytes[1][k - 8..k + 9]);
+    }
 }
 
 fn same_bits(name: &str, input: ModelInput) -> State {
@@ -324,6 +331,52 @@ fn walls_of_triangles() {
     }
 }
 
+/// The gas with periodic borders in place of the planes at its sides, blown along.
+fn with_borders(mut input: ModelInput) -> ModelInput {
+    let far = 0.0206 * 11.0;
+    input.planes.retain(|p| p.normal.z.abs() > 0.9);
+    input.periodic = [Some([0.0, far]), Some([0.0, far]), None];
+    input.bodies.iter_mut().for_each(|b| b.velocity = b.velocity * 2.0 + Vec3::new(1.5, -1.0, 0.0));
+    input
+}
+
+/// A wall that is a body: a block of triangles that is thrown onto the gas, tumbles, and stands on planes.
+#[test]
+fn a_body_of_triangles() {
+    if compiler_is_there() {
+        let mut input = with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 != 1);
+        input.planes.retain(|p| p.normal.z > -0.5);
+        let block = cuboid(Vec3::new(0.11, 0.11, 0.2065), Vec3::new(0.06, 0.05, 0.02));
+        let body =
+            RigidBody { velocity: Vec3::new(0.0, 0.3, -8.0), spin: Vec3::new(3.0, 5.0, 1.0), ..free(3.0) };
+        input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block, 0) });
+        let state = same_bits("a body of triangles", input);
+        let (velocity, spin) = state.wall_velocity(0);
+        println!("{} contacts, {velocity:?} m/s, {spin:?} rad/s", state.wall_contact_count());
+        assert!(state.wall_contact_count() > 2 && state.wall_acceleration(0).norm() > 0.0);
+    }
+}
+
+#[test]
+fn periodic_borders() {
+    if compiler_is_there() {
+        let pairs: [(&str, ModelInput); 3] = [
+            ("borders", gas([stone(), smooth()], Vec::new())),
+            (
+                "borders, hertz, rolling",
+                gas([turning(elastic(stone())), turning(elastic(smooth()))], Vec::new()),
+            ),
+            ("borders, clumps", with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 != 1)),
+        ];
+        for (name, input) in pairs {
+            let state = same_bits(name, with_borders(input));
+            let couple = state.ledger.periodic.angular.norm();
+            println!("{name}: angular impulse of the borders {couple:.3e} N m s");
+            assert!(couple > 0.0);
+        }
+    }
+}
+
 /// What is no wall of triangles with a prescribed motion is refused by name.
 #[test]
 fn other_walls_are_refused() {
@@ -332,12 +385,9 @@ fn other_walls_are_refused() {
     let sphere = WallShape::Sphere { centre: far, radius: 0.1 };
     let held = Servo { direction: Vec3::z(), force: vec![[0.0, 10.0]], max_speed: 0.2, gain: 0.5 };
     let driven = WallInput { servo: Some(held), ..WallInput::fixed(square, 0) };
-    let block = cuboid(far, Vec3::repeat(0.1));
-    let moving = WallInput { body: Some(free(1.0)), ..WallInput::fixed(block, 0) };
     for (wall, words) in [
         (WallInput::fixed(sphere, 0), "walls other than triangles and planes of steady velocity"),
         (driven, "walls that a force drives"),
-        (moving, "walls that are bodies"),
     ] {
         let mut input = gas([stone(), smooth()], Vec::new());
         input.walls.push(wall);
@@ -427,6 +477,7 @@ fn a_changed_operation_is_seen() {
         clumps.damping = Some(LocalDamping { factor: 0.3 });
         let few = with_clumps(spheres.clone(), in_a_corner);
         let walls = between_triangles(spheres.clone());
+        let borders = with_borders(spheres.clone());
         for (input, from, to) in [
             (&spheres, "x.w - ", "1.0000000000000002 * x.w - "),
             (&spheres, "lane[0] + lane[1]", "lane[0] + lane[2]"),
@@ -436,6 +487,8 @@ fn a_changed_operation_is_seen() {
             (&walls, "ENDED[before[m]] = ", "ENDED[before[m]] = 0.0 * "),
             (&walls, "past[nearest].alive = 0;", ""),
             (&walls, "turned = numbers[a] > numbers[b]", "turned = numbers[a] < numbers[b]"),
+            (&borders, "COUPLES[c - FIRST_IMAGE] = couple;", ""),
+            (&borders, "SPENT[c].x : SPENT[c].y", "SPENT[c].y : SPENT[c].x"),
             (&few, " sphere_contact(p, c, second, x, v, w, &s)", " (void)second"),
         ] {
             let change = |text: String| {

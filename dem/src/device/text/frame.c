@@ -42,6 +42,14 @@ typedef struct {
 /// Force and torque on a body so far.
 typedef struct { four force, torque; } sums;
 
+#if CLUMPS
+#define SPHERE(k) OLD_SPHERES[k]
+#define BODY(k) OWNER[k]
+#else
+#define SPHERE(k) OLD_X[k]
+#define BODY(k) (k)
+#endif
+
 DEVICE four none(void) {
     four zero = {0.0, 0.0, 0.0, 0.0};
     return zero;

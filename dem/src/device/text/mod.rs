@@ -3,6 +3,7 @@
 
 mod bonds;
 mod clumps;
+mod images;
 mod motion;
 mod patches;
 mod planes;
@@ -31,6 +32,7 @@ pub(super) fn features(model: &Model) -> Features {
         bonds: !model.bonds.is_empty(),
         clumps: model.clumps,
         walls: model.walls.walls.len(),
+        periodic: model.periodic.is_some(),
     }
 }
 
@@ -44,6 +46,9 @@ fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) ->
     if f.clumps {
         all.push(clumps::contacts::<L, ROLL>(&law));
         all.push(clumps::motion(f));
+    }
+    if f.periodic {
+        all.push(images::part::<L, ROLL>(&law, f));
     }
     if f.walls > 0 {
         all.push(patches::part::<L, ROLL>(&law));

@@ -284,11 +284,7 @@ DEVICE unsigned touches(ARGUMENTS p, const unsigned from, const unsigned to, con
 /// All contacts of a sphere with triangles.
 DEVICE void wall_contacts(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
     const unsigned from = GROUPS[c], to = GROUPS[c + 1];
-#if CLUMPS
-    const four sphere = OLD_SPHERES[PATCH_PAIRS[from].first];
-#else
-    const four sphere = x;
-#endif
+    const four sphere = SPHERE(PATCH_PAIRS[from].first);
     unsigned before[MOST], old = 0;
     for (unsigned k = from; k < to; ++k) {
         clear(p, k);
@@ -372,7 +368,7 @@ DEVICE void wall_contacts(ARGUMENTS p, const unsigned c, const int second, const
 
 /// What dashpots and friction took, the latter after what ended contacts had left; then force and moment wall by wall.
 DEVICE real patches_books(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned q) {
-    const unsigned first = from[8] - FIRST_PATCH, last = to[8] - FIRST_PATCH;
+    const unsigned first = from[PATCHES_LIST] - FIRST_PATCH, last = to[PATCHES_LIST] - FIRST_PATCH;
     real sum = 0.0;
     if (q == 1) sum = in_turn(ENDED + first, last - first, 1);
     for (unsigned k = first; k < last; ++k) {

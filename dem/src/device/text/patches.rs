@@ -41,7 +41,7 @@ fn three(array: &str, from: usize) -> V3<Recorded> {
     V3::new(at(0), at(1), at(2))
 }
 
-/// Numbers of the wall, as `Placed` (`device/walls.rs`) lays them out.
+/// Numbers of the wall, as `device/walls.rs` lays them out.
 fn place() -> Place<Recorded> {
     Place {
         centre: three("u", 0),

@@ -41,5 +41,10 @@ DEVICE void sphere_contact(ARGUMENTS p, const unsigned c, const int second, cons
 
 DEVICE real spheres_books(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned q) {
     const unsigned list = 1 + q / 2;
-    return in_lanes((const real *)(SPENT + from[list]) + (q & 1), to[list] - from[list], 2);
+    real sum = in_lanes((const real *)(SPENT + from[list]) + (q & 1), to[list] - from[list], 2);
+#if PERIODIC
+    // Contacts across borders come after those across blocks, one by one.
+    for (unsigned c = from[IMAGES_LIST]; c < to[IMAGES_LIST] && q < 2; ++c) sum += q == 0 ? SPENT[c].x : SPENT[c].y;
+#endif
+    return sum;
 }
