@@ -19,8 +19,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rough = Material { asperity_friction: 0.5, asperity_pressure: 1e6, ..spring };
     let elastic = Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..spring };
     let yielding = Material { normal: table::normal_named("walton_braun"), ..spring };
-    for (name, material) in [("linear", spring), ("rough", rough), ("hertz", elastic), ("several", yielding)]
-    {
+    let crushing = Material { corner_strength: 1e6, corner_angle: 1.36, ..elastic };
+    for (name, material) in [
+        ("linear", spring),
+        ("rough", rough),
+        ("hertz", elastic),
+        ("crushing", crushing),
+        ("several", yielding),
+    ] {
         for scene in [Scene::Spheres, Scene::All, Scene::Clumps, Scene::Walls, Scene::Borders] {
             let text = device::source(&Model::new(scene.input(material)?)?)?;
             let file = format!("{name}{}.cu", scene.suffix());

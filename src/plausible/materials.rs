@@ -17,6 +17,8 @@ const FRICTION: Usual = Usual::or_zero(0.01, 1.5, "");
 /// Joints of rough rock reach 70 degrees at small stress.
 const ASPERITIES: Usual = Usual::or_zero(0.05, 3.0, "");
 const ASPERITY_PRESSURE: Usual = Usual::new(1e4, 1e9, "Pa");
+/// From weak model corners to a tenth of the modulus of hard rock.
+const CORNER_STRENGTH: Usual = Usual::new(1e4, 1e10, "Pa");
 const RESTITUTION: Usual = Usual::new(0.01, 1.0, "");
 const ROLLING: Usual = Usual::or_zero(1e-4, 0.9, "");
 const RATIO: Usual = Usual::or_zero(0.05, 2.0, "");
@@ -38,6 +40,12 @@ fn grain(findings: &mut Findings, k: usize, m: &GrainMaterial) {
     findings.weigh_some(key("stiffness"), m.stiffness.map(|v| v.si), STIFFNESS);
     findings.weigh_some(key("young"), m.young.map(|v| v.si), YOUNG);
     findings.weigh_some(key("poisson"), m.poisson, POISSON);
+    findings.weigh_some(key("corner_strength"), m.corner_strength.map(|v| v.si), CORNER_STRENGTH);
+    findings.weigh_some(
+        key("corner_angle"),
+        m.corner_angle.map(|v| v.si / DEGREE),
+        Usual::new(30.0, 89.9, "deg"),
+    );
     findings.weigh_some(key("tangential_ratio"), m.tangential_ratio, RATIO);
     findings.weigh(key("friction"), m.friction, FRICTION);
     findings.weigh(key("asperity_friction"), m.asperity_friction, ASPERITIES);

@@ -1,6 +1,6 @@
 //! Contact materials and exceptions for pairs of them, as written in a scene.
 
-use super::units::{Adhesion, Density, Quantity, Stiffness, Stress};
+use super::units::{Adhesion, Angle, Density, Quantity, Stiffness, Stress};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -21,6 +21,10 @@ pub struct GrainMaterial {
     pub young: Option<Quantity<Stress>>,
     /// Poisson's ratio, above −1 and at most 0.5; needed with a Young's modulus.
     pub poisson: Option<f64>,
+    /// Pressure that its corners bear before they crush [Pa]; beside a Young's modulus; absent: they do not crush.
+    pub corner_strength: Option<Quantity<Stress>>,
+    /// Half the angle of the cones that corners are, above 0 and below 90 degrees; needed with `corner_strength`.
+    pub corner_angle: Option<Quantity<Angle>>,
     /// Tangential over normal stiffness, 0–1; default 0.5.
     pub tangential_ratio: Option<f64>,
     /// Tangential over normal damping coefficient, 0–1; default 0.
@@ -31,7 +35,8 @@ pub struct GrainMaterial {
     /// Friction that asperities add at vanishing force: μ + μₐ/(1 + F/(p R²)); default 0, none.
     #[serde(default)]
     pub asperity_friction: f64,
-    /// p of it [Pa]: normal force over the effective radius squared at which half is left; needed with `asperity_friction`.
+    /// p of it [Pa]: normal force over the effective radius squared at which half is left (mean pressure beside `corner_strength`); needed with
+    /// `asperity_friction`.
     pub asperity_pressure: Option<Quantity<Stress>>,
     /// Coefficient of restitution, above 0 and at most 1.
     pub restitution: f64,

@@ -101,6 +101,40 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
     }
 }
 
+/// A corner that crushes (Harkness and others 2016, Suhr & Six 2017): of an impact at any speed above that of first crushing there remains what is
+/// stored at the largest radius of its tip; the rest is work of crushing. Largest force c R². Tolerance 1e-4 (1e-3 where a step skips the peak).
+#[test]
+fn a_crushing_corner_keeps_the_part_of_the_closed_form() {
+    let (modulus, strength, angle) = (1e10 / 2.0 / 0.96, 6e7, 85.0_f64.to_radians());
+    let h = (0.5 * std::f64::consts::PI * strength / modulus).powi(2);
+    let k = (1.0 - angle.sin()) / angle.sin();
+    let (c, radius) = (4.0 / 3.0 * modulus * h.powf(1.5), 0.1_f64);
+    for speed in [0.05, 0.5] {
+        let folder = Folder::new("corner");
+        let set = [
+            format!("grains.0.velocity=[0, 0, -{speed}]"),
+            "time.grain_step=1e-6".into(),
+            "output.vtk=false".into(),
+        ];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        run(&repository().join("inputs/verify/corner.toml"), &folder.join("out"), &set).good();
+        let history = Table::read(&folder.join("out/history.csv"));
+        let kinetic = history.column("grains_kinetic");
+        let (first, last) = (kinetic[0], *kinetic.last().unwrap());
+        let cube = radius.powi(3) + 3.0 * (first - 0.4 * c * h * radius.powi(3)) / (c * (h + k));
+        let (kept, force) = (0.4 * c * h * cube / first, c * cube.powf(2.0 / 3.0));
+        let crushed = history.column("dissipated_dashpot").last().unwrap() / first;
+        let most = history.column("wall_force_z").iter().map(|f| f.abs()).fold(0.0, f64::max);
+        println!(
+            "{speed} m/s: kept {:.6} of {kept:.6}, crushed {crushed:.6}, force {most:.2} of {force:.2} N",
+            last / first
+        );
+        assert!((last / first / kept - 1.0).abs() < 1e-4 && (crushed + kept - 1.0).abs() < 1e-4);
+        assert!((most / force - 1.0).abs() < 1e-3);
+        assert!(sources(&json(&folder.join("out/summary.json"))).iter().any(|s| s.contains("Harkness")));
+    }
+}
+
 /// A fall through still air: kinetic energy of v = v∞ tanh(g t/v∞), v∞² = 8 r g ρₛ/(3 C ρ), within 0.2 %; the drag's work is in
 /// the account.
 #[test]

@@ -4,7 +4,8 @@ use super::input::{ModelInput, SearchSkin, TimeStep};
 use super::timestep;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind};
-use crate::law::{self, Laws};
+use crate::law::material::Material;
+use crate::law::{self, Laws, conical_damage};
 use crate::shape::Shape;
 use crate::wall::check::in_range;
 
@@ -18,6 +19,14 @@ fn positive(x: f64) -> bool {
 
 fn not_negative(x: f64) -> bool {
     x >= 0.0 && x.is_finite()
+}
+
+/// Cones of corners that crush: crushing takes energy.
+fn corner(m: &Material) -> bool {
+    let modulus = m.young.map_or(f64::INFINITY, |young| 0.5 * young / (1.0 - m.poisson * m.poisson));
+    let angle = m.corner_angle > 0.0 && m.corner_angle < std::f64::consts::FRAC_PI_2;
+    m.corner_strength.is_infinite()
+        || (angle && m.corner_strength < conical_damage::greatest_strength(modulus, m.corner_angle))
 }
 
 fn restitution(x: f64) -> bool {
@@ -55,6 +64,13 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
                 m.poisson,
                 m.poisson > -1.0 && m.poisson <= 0.5,
                 "lie above -1 and not above 0.5",
+            ),
+            ("corner strength", m.corner_strength, m.corner_strength > 0.0, POSITIVE),
+            (
+                "corner angle",
+                m.corner_angle,
+                corner(m),
+                "lie above 0 and below 90 degrees, and let crushing take energy",
             ),
             ("rolling friction", m.rolling_friction, not_negative(m.rolling_friction), NOT_NEGATIVE),
             ("twisting friction", m.twisting_friction, not_negative(m.twisting_friction), NOT_NEGATIVE),

@@ -6,6 +6,7 @@
 //! well below 1, and less where the growth would be more than a hundredth of what the collision takes, 1 − e²; 0.08 at least.
 
 use super::input::ModelInput;
+use super::timestep::contact_radius;
 use crate::bodies::table::Bodies;
 use crate::law::Laws;
 
@@ -25,20 +26,21 @@ fn collision(loss: f64) -> f64 {
 }
 
 /// Longest step [s] that the collisions of the lightest bodies of each material allow; infinite where nothing can collide.
-/// `expected`: overlap over the radius for laws whose stiffness grows.
+/// `expected`: overlap over the radius for laws whose stiffness grows; `largest`: radius of the largest sphere [m].
 pub(crate) fn longest(
     bodies: &Bodies,
     input: &ModelInput,
     laws: &Laws,
     partners: &[usize],
     expected: f64,
+    largest: f64,
 ) -> f64 {
     // Mass and radius of the lightest body that can move, by material.
     let mut lightest = vec![(f64::INFINITY, 0.0); input.materials.len()];
     for body in bodies.iter().filter(|b| b.inverse_mass > 0.0) {
         let least = &mut lightest[body.material as usize];
         if body.mass < least.0 {
-            *least = (body.mass, body.radius);
+            *least = (body.mass, contact_radius(&body, &input.shapes[body.shape], largest));
         }
     }
     let mut longest = f64::INFINITY;

@@ -131,10 +131,10 @@ impl Model {
         let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
-        let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii.0);
+        let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii);
         let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input, &laws, expected, radii);
         let partners = timestep::partners(&bodies, &input);
-        let collision = collision::longest(&bodies, &input, &laws, &partners, expected);
+        let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
         let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));
         let longest = of_fluids.fold(rigid.min(timestep::landing(&bodies, &input, &laws)), f64::min);
         let steps = Steps::new(&input.time_step, &limit, longest, collision)?;
@@ -193,6 +193,11 @@ impl Model {
     /// Share of what the contacts allow that steps take, where they follow it (see [`crate::stability`]).
     pub fn measured(&self) -> Option<f64> {
         self.steps.share
+    }
+
+    /// Whether the stiffness of any contact grows with its overlap.
+    pub(crate) fn stiffens(&self) -> bool {
+        self.expected > 0.0
     }
 
     /// Longest step that collisions, rigid bodies of walls and the input allow [s], whatever touches; `packed`: where most

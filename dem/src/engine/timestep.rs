@@ -103,7 +103,7 @@ pub(crate) fn limit(
     laws: &Laws,
     expected: f64,
     bonds: &[bond::Constants],
-    r_min: f64,
+    (r_min, r_max): (f64, f64),
 ) -> DtLimit {
     let bonded = bond::stiffest(bonds, bodies, &input.bodies);
     // A rolling spring counts as one more tangential spring on a lever.
@@ -134,10 +134,11 @@ pub(crate) fn limit(
         let shape = &input.shapes[body.shape];
         let flexibility = compliance(&body, shape);
         let sides = sides(shape, body.scale, r_min, several);
+        let radius = contact_radius(&body, shape, r_max);
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
             // The stiffest contact has the largest circle: that of the body's own radius on a plane.
-            let stiffness = laws.stiffness(a, b, expected * body.radius, body.radius);
+            let stiffness = laws.stiffness(a, b, expected * radius, radius);
             let tangential = stiffness * laws.tangential_ratio(a, b);
             if !stiffness.is_finite() {
                 continue;
@@ -176,6 +177,16 @@ pub(crate) fn limit(
         }
     }
     least
+}
+
+/// Largest effective radius of the contacts of a body [m]: that of its largest sphere, on a plane; of a box that of the largest sphere there is.
+pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
+    match shape {
+        Shape::Sphere { .. } | Shape::Polyhedron(_) => body.radius,
+        Shape::Clump(clump) => body.scale * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max),
+        Shape::Box { .. } if largest > 0.0 => largest,
+        Shape::Box { .. } => body.radius,
+    }
 }
 
 /// Contacts that act in one direction at once, twice. `smallest`: radius of the smallest neighbour [m]; `several`: there are

@@ -111,7 +111,7 @@ pub fn grow(
             ..now.clone()
         });
         let model = Model::new(ModelInput {
-            materials: vec![material.with_friction(how.friction)],
+            materials: vec![springs(&material, how.friction)],
             shapes: shapes.to_vec(),
             bodies: small.collect(),
             planes: planes.clone(),
@@ -162,6 +162,23 @@ pub fn grow(
     }
     grown.bodies = current;
     Ok(grown)
+}
+
+/// The material that grains grow with: springs whose stiffness does not grow with the overlap, for they start deep in each other, and whose size
+/// does not matter to where they come to rest.
+fn springs(material: &Material, friction: f64) -> Material {
+    let one = material.with_friction(friction);
+    match material.young {
+        // A modulus times a length of a centimetre.
+        Some(young) => Material {
+            stiffness: 0.01 * young,
+            young: None,
+            corner_strength: f64::INFINITY,
+            normal: None,
+            ..one
+        },
+        None => one,
+    }
 }
 
 /// The sides of a container as walls of material 0.

@@ -19,7 +19,7 @@ use super::contact::{FRESH, History, LawInput, LawOutput, Linearised, Memory};
 use super::contact_law::ContactLaw;
 use super::damping::Damping;
 use super::material::{LawName, Pair, harmonic};
-use super::normal::{Expected, NormalLaw};
+use super::normal::{Expected, NormalLaw, Touch};
 use super::slide;
 use super::tangential::TangentialLaw;
 use super::turning::{self, Turning, turning};
@@ -163,31 +163,43 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let approach = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * approach;
         let fresh = memory.rate.equals(R::splat(FRESH));
+        // A law whose memory holds another number books its dashpot with the speed of half a step ago: what that is wrong by adds up to
+        // nothing over a swing.
+        let remembered_approach = if N::REMEMBERS { approach } else { memory.rate };
         let Onset { now, time, weight } =
-            onset::<R>(approach, memory.rate, overlap, fresh, on, step, N::JUMPS || ROLL);
+            onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLL);
 
-        let own =
-            N::respond(&law.normal, touch.inverse_mass, touch.radius, overlap, memory.rate, fresh, step);
+        let pressed = Touch {
+            inverse_mass: touch.inverse_mass,
+            radius: touch.radius,
+            overlap,
+            approach,
+            remembered: memory.rate,
+            fresh,
+            step,
+        };
+        let own = N::respond(&law.normal, &pressed);
         let (elastic, c) = (own.elastic, own.damping);
         let (mut normal, mut dashpot, mut cs) = (elastic, own.lost, R::zero());
         if N::DASHPOT {
             let viscous = if N::JUMPS { weight * c * approach } else { c * approach };
             normal = (elastic + viscous).max(R::zero());
             dashpot = (normal - elastic) * now * step;
+            if N::REMEMBERS {
+                dashpot = dashpot + own.lost;
+            }
             cs = c * common.tangential_damping;
-            memory.rate = approach;
-        } else {
-            memory.rate = own.remembered;
         }
+        memory.rate = if N::REMEMBERS { own.remembered } else { approach };
 
-        let carried = T::carry(&law.tangential, own.circle, touch.radius, overlap, approach, step);
+        let carried = T::carry(&law.tangential, own.circle, own.circle_before);
         let mut lost = R::zero();
         if let Some(c) = &carried {
             lost = (c.loss * memory.spring.norm2()).only(!fresh);
             memory.spring = memory.spring * c.kept;
         }
         let grip = T::grip(&law.tangential, own.circle);
-        let limit = T::limit(&law.tangential, common.friction, normal, touch.radius);
+        let limit = T::limit(&law.tangential, common.friction, normal, touch.radius, own.circle);
         let slid = slide::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, step, on);
         dashpot = dashpot + slid.dashpot;
         let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };
@@ -220,7 +232,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
 
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let turn2: f64 = history.turn.iter().map(|x| x * x).sum();
-        let stiffness = self.tangential.stiffness((radius * overlap).sqrt());
+        let stiffness = self.tangential.stiffness(self.normal.circle(overlap, radius, history.rate));
         let held = 0.5 * stiffness * (history.spring.norm_squared() + turn2);
         let normal = self.normal.stored(overlap, radius, history.rate);
         (normal - self.common.pull * radius * overlap, held)
@@ -229,14 +241,15 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     #[inline(always)]
     fn springs(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let force = self.normal.force(overlap, radius, history.rate);
-        let stiffness = self.tangential.stiffness((radius * overlap).sqrt());
+        let stiffness = self.tangential.stiffness(self.normal.circle(overlap, radius, history.rate));
         (force - self.common.pull * radius, stiffness)
     }
 
     fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let (force, stiffness) = self.springs(overlap, radius, history);
         let normal = force + self.common.pull * radius;
-        (T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius), stiffness)
+        let circle = self.normal.circle(overlap, radius, history.rate);
+        (T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius, circle), stiffness)
     }
 
     #[inline(always)]
@@ -259,12 +272,14 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
 
     fn linearised(&self, mass: f64, radius: f64, overlap: f64, history: &History) -> Linearised {
         let law = self.normal.splat::<f64>();
-        let own = N::respond(&law, 1.0 / mass, radius, overlap, history.rate, history.is_fresh(), 0.0);
-        let damping = if N::DASHPOT { own.damping } else { 0.0 };
-        let tangential = self.tangential.stiffness((radius * overlap).sqrt());
+        let (remembered, fresh) = (history.rate, history.is_fresh());
+        let inverse_mass = 1.0 / mass;
+        let touch = Touch { inverse_mass, radius, overlap, approach: 0.0, remembered, fresh, step: 0.0 };
+        let damping = if N::DASHPOT { N::respond(&law, &touch).damping } else { 0.0 };
+        let tangential = self.tangential.stiffness(self.normal.circle(overlap, radius, remembered));
         let (c, turn) = (&self.common, tangential * radius * radius);
         Linearised {
-            normal: self.normal.stiffness(overlap, radius),
+            normal: self.normal.stiffness_with(overlap, radius, remembered),
             tangential,
             damping,
             tangential_damping: damping * c.tangential_damping,
@@ -274,9 +289,9 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     fn tangential_ratio(&self) -> f64 {
-        // Where both depend on the overlap they do in the same way.
-        let normal = self.normal.stiffness(1.0, 1.0);
-        if normal > 0.0 && normal.is_finite() { self.tangential.stiffness(1.0) / normal } else { 0.0 }
+        // Where both depend on the overlap they do in the same way, by the circle.
+        let (normal, circle) = (self.normal.stiffness(1.0, 1.0), self.normal.circle(1.0, 1.0, 1.0));
+        if normal > 0.0 && normal.is_finite() { self.tangential.stiffness(circle) / normal } else { 0.0 }
     }
 
     fn damping_ratio(&self) -> f64 {
@@ -292,7 +307,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     fn begun(&self, approach: f64) -> f64 {
-        if N::DASHPOT { approach } else { 0.0 }
+        if N::REMEMBERS { 0.0 } else { approach }
     }
 
     fn rolls(&self) -> bool {

@@ -20,7 +20,7 @@
 use super::constants::constants;
 use super::lag;
 use super::material::{Material, Pair};
-use super::normal::{Expected, NormalLaw, Response};
+use super::normal::{Expected, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 
 /// 2 √(5/6): with the tangent stiffness S = 2 E* a the dashpot is 2 √(5/6) ζ √(S m*).
@@ -37,40 +37,52 @@ pub struct Hertz<R = f64> {
 
 constants!(Hertz { modulus, damping_ratio });
 
+/// Coefficient of the dashpot that acts in a step [N s/m] beside a spring of the tangent stiffness `tangent` [N/m].
+#[inline(always)]
+pub(super) fn dashpot<R: Real>(zeta: R, tangent: R, touch: &Touch<R>) -> R {
+    // C = DASHPOT ζ √(S m*): with 1/m* it is C/m* that comes first.
+    let rate = R::splat(DASHPOT) * zeta * (tangent * touch.inverse_mass).sqrt();
+    let (numerator, denominator) = lag::share(R::splat(0.5) * touch.step * rate);
+    rate * numerator / (touch.inverse_mass * denominator)
+}
+
+/// Effective modulus E* of two materials [Pa], of which one without a modulus is rigid.
+pub(super) fn modulus(pair: &Pair<'_>) -> f64 {
+    let soft = |m: &Material| m.young.map_or(0.0, |e| (1.0 - m.poisson * m.poisson) / e);
+    1.0 / (soft(pair.a) + soft(pair.b))
+}
+
+/// Overlap of elastic bodies that a model expects, over the effective radius, before it is kept within bounds.
+pub(super) fn expected(modulus: f64, e: &Expected) -> f64 {
+    let impact = libm::pow(1.25 * std::f64::consts::PI * e.density * e.speed * e.speed / modulus, 0.4);
+    let rest = libm::pow(3.0 * e.density * e.gravity * e.height / modulus, 2.0 / 3.0);
+    impact.max(rest)
+}
+
 impl NormalLaw for Hertz {
     const NAME: &'static str = "hertz";
     const SOURCE: &'static str = "contact: elastic spheres, Hertz 1882; Johnson, Contact Mechanics, 1985; dashpot of Tsuji, \
                                   Tanaka & Ishida, Powder Technology 71, 1992";
     const KEYS: &'static [&'static str] = &["young", "poisson"];
     const DASHPOT: bool = true;
+    const REMEMBERS: bool = false;
     const JUMPS: bool = false;
     const STIFFENS: bool = true;
 
     fn mix(pair: &Pair<'_>, zeta: f64) -> Hertz {
-        let soft = |m: &Material| m.young.map_or(0.0, |e| (1.0 - m.poisson * m.poisson) / e);
-        Hertz { modulus: 1.0 / (soft(pair.a) + soft(pair.b)), damping_ratio: zeta }
+        Hertz { modulus: modulus(pair), damping_ratio: zeta }
     }
 
     #[inline(always)]
-    fn respond<R: Real>(
-        law: &Hertz<R>,
-        inverse_mass: R,
-        radius: R,
-        overlap: R,
-        remembered: R,
-        _: R::Mask,
-        step: R,
-    ) -> Response<R> {
-        let circle = (radius * overlap).sqrt();
+    fn respond<R: Real>(law: &Hertz<R>, touch: &Touch<R>) -> Response<R> {
+        let circle = (touch.radius * touch.overlap).sqrt();
         let tangent = R::splat(2.0) * law.modulus * circle;
-        // C = DASHPOT ζ √(S m*): with 1/m* it is C/m* that comes first.
-        let rate = R::splat(DASHPOT) * law.damping_ratio * (tangent * inverse_mass).sqrt();
-        let (numerator, denominator) = lag::share(R::splat(0.5) * step * rate);
         Response {
-            elastic: R::splat(2.0 / 3.0) * tangent * overlap,
-            damping: rate * numerator / (inverse_mass * denominator),
+            elastic: R::splat(2.0 / 3.0) * tangent * touch.overlap,
+            damping: dashpot(law.damping_ratio, tangent, touch),
             circle,
-            remembered,
+            circle_before: (touch.radius * touch.overlap_before()).sqrt(),
+            remembered: touch.remembered,
             lost: R::zero(),
         }
     }
@@ -98,10 +110,7 @@ impl NormalLaw for Hertz {
     }
 
     fn expected_overlap(&self, e: &Expected) -> f64 {
-        let modulus = self.modulus;
-        let impact = libm::pow(1.25 * std::f64::consts::PI * e.density * e.speed * e.speed / modulus, 0.4);
-        let rest = libm::pow(3.0 * e.density * e.gravity * e.height / modulus, 2.0 / 3.0);
         // A floor for bodies at rest without weight: no spring may be without stiffness.
-        impact.max(rest).clamp(1e-9, 1.0)
+        expected(self.modulus, e).clamp(1e-9, 1.0)
     }
 }

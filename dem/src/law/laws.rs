@@ -4,7 +4,7 @@ use super::contact::{History, Linearised};
 use super::contact_law::ContactLaw;
 use super::material::{Material, Pair, PairOverride};
 use super::normal::Expected;
-use super::table::{HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
+use super::table::{ConicalLaw, HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
 use crate::lanes::Pack;
 
 /// The mixed constants of all pairs of materials.
@@ -70,6 +70,7 @@ pub(crate) enum Laws {
     Linear(PairTable<LinearLaw>),
     Rough(PairTable<RoughLaw>),
     Hertz(PairTable<HertzLaw>),
+    Conical(PairTable<ConicalLaw>),
     Mixed(PairTable<Mixed>),
 }
 
@@ -80,6 +81,7 @@ macro_rules! with_law {
             $crate::law::Laws::Linear($table) => $body,
             $crate::law::Laws::Rough($table) => $body,
             $crate::law::Laws::Hertz($table) => $body,
+            $crate::law::Laws::Conical($table) => $body,
             $crate::law::Laws::Mixed($table) => $body,
         }
     };
@@ -101,6 +103,9 @@ impl Laws {
             Laws::Rough(PairTable::new(materials, exceptions))
         } else if only(&[Row::Hertz]) {
             Laws::Hertz(PairTable::new(materials, exceptions))
+        } else if only(&[Row::Hertz, Row::Conical]) {
+            // Bodies without corners that crush have the forces of Hertz's law there.
+            Laws::Conical(PairTable::new(materials, exceptions))
         } else {
             Laws::Mixed(PairTable::new(materials, exceptions))
         }

@@ -9,7 +9,7 @@
 use super::constants::constants;
 use super::lag;
 use super::material::Pair;
-use super::normal::{ConstantStiffness, NormalLaw, Response};
+use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 
 /// Constants of one pair of materials.
@@ -30,6 +30,7 @@ impl NormalLaw for Linear {
     const SOURCE: &'static str = super::spring::SOURCE;
     const KEYS: &'static [&'static str] = &["stiffness"];
     const DASHPOT: bool = true;
+    const REMEMBERS: bool = false;
     const JUMPS: bool = true;
     const STIFFENS: bool = false;
 
@@ -39,22 +40,16 @@ impl NormalLaw for Linear {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(
-        law: &Linear<R>,
-        inverse_mass: R,
-        radius: R,
-        overlap: R,
-        remembered: R,
-        _: R::Mask,
-        step: R,
-    ) -> Response<R> {
-        let root = inverse_mass.sqrt();
-        let (numerator, denominator) = lag::share(R::splat(0.5) * law.damping * step * root);
+    fn respond<R: Real>(law: &Linear<R>, touch: &Touch<R>) -> Response<R> {
+        let root = touch.inverse_mass.sqrt();
+        let (numerator, denominator) = lag::share(R::splat(0.5) * law.damping * touch.step * root);
+        let circle = (touch.radius * touch.overlap).sqrt();
         Response {
-            elastic: law.stiffness * overlap,
+            elastic: law.stiffness * touch.overlap,
             damping: law.damping * numerator / (root * denominator),
-            circle: (radius * overlap).sqrt(),
-            remembered,
+            circle,
+            circle_before: circle,
+            remembered: touch.remembered,
             lost: R::zero(),
         }
     }

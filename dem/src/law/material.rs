@@ -28,6 +28,10 @@ pub struct Material {
     pub young: Option<f64>,
     /// Poisson's ratio [-]; used with a Young's modulus.
     pub poisson: f64,
+    /// Largest pressure that corners bear [Pa] (`conical_damage.rs`); infinite: they do not crush.
+    pub corner_strength: f64,
+    /// Half the angle of the cone of a corner [rad].
+    pub corner_angle: f64,
     /// Rolling resistance: largest moment over R* F [-]; zero: none.
     pub rolling_friction: f64,
     /// Twisting resistance: largest moment about the normal over R* F [-]; zero: none.
@@ -49,6 +53,8 @@ impl Material {
         restitution: 1.0,
         young: None,
         poisson: 0.0,
+        corner_strength: f64::INFINITY,
+        corner_angle: std::f64::consts::FRAC_PI_2,
         rolling_friction: 0.0,
         twisting_friction: 0.0,
         normal: None,

@@ -7,7 +7,7 @@
 //! falls the spring's length is kept, so the force falls as a does (the rule of Elata & Berryman, Mech. Mater. 24, 1996: a
 //! force kept on unloading would create energy). The energy of the spring falls in both cases and is booked as friction:
 //! in the real contact it goes into slip near the rim. Rolling and twisting springs have the same stiffness and follow the
-//! same rule. The overlap before is d − ḋ dt.
+//! same rule. The circle before is that of the overlap d − ḋ dt.
 //!
 //! Limits: the partial slip near the rim under oscillating tangential force (Mindlin & Deresiewicz 1953) only as the rule
 //! above has it.
@@ -27,6 +27,15 @@ pub struct Mindlin<R = f64> {
 
 constants!(Mindlin { shear });
 
+/// Effective shear modulus G* of two materials [Pa], of which one without a modulus is rigid; zero where the pair has no tangential force.
+pub(super) fn shear(pair: &Pair<'_>) -> f64 {
+    if pair.given(|e| e.tangential) == Some(LawName::NONE) {
+        return 0.0;
+    }
+    let soft = |m: &Material| m.young.map_or(0.0, |e| (2.0 - m.poisson) * 2.0 * (1.0 + m.poisson) / e);
+    1.0 / (soft(pair.a) + soft(pair.b))
+}
+
 impl TangentialLaw<Hertz> for Mindlin {
     const NAME: &'static str = "mindlin";
     const SOURCE: &'static str =
@@ -34,11 +43,7 @@ impl TangentialLaw<Hertz> for Mindlin {
     const KEYS: &'static [&'static str] = &["young", "poisson"];
 
     fn mix(pair: &Pair<'_>, _: &Hertz) -> Mindlin {
-        if pair.given(|e| e.tangential) == Some(LawName::NONE) {
-            return Mindlin { shear: 0.0 };
-        }
-        let shear = |m: &Material| m.young.map_or(0.0, |e| (2.0 - m.poisson) * 2.0 * (1.0 + m.poisson) / e);
-        Mindlin { shear: 1.0 / (shear(pair.a) + shear(pair.b)) }
+        Mindlin { shear: shear(pair) }
     }
 
     #[inline(always)]
@@ -47,15 +52,7 @@ impl TangentialLaw<Hertz> for Mindlin {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(
-        law: &Mindlin<R>,
-        circle: R,
-        radius: R,
-        overlap: R,
-        approach: R,
-        step: R,
-    ) -> Option<Carried<R>> {
-        let before = (radius * (overlap - approach * step).max(R::zero())).sqrt();
+    fn carry<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<Carried<R>> {
         let kept = (before / circle).min(R::splat(1.0));
         let loss = R::splat(4.0) * law.shear * (before - circle * kept * kept);
         Some(Carried { kept, loss })

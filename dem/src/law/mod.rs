@@ -9,6 +9,7 @@
 pub mod adhesion;
 pub(crate) mod check;
 pub mod composed;
+pub mod conical_damage;
 mod constants;
 mod contact;
 mod contact_law;
@@ -23,6 +24,7 @@ mod mixed;
 pub mod normal;
 pub mod restitution;
 pub mod rough;
+pub mod rough_mindlin;
 pub mod scarring;
 pub(crate) mod slide;
 pub mod spring;

@@ -36,10 +36,10 @@ pub struct Rough<R = f64> {
 constants!(Rough { stiffness, compliance, asperities, pressure });
 
 /// Friction that asperities add between two materials at vanishing force [-], and the pressure at which half of it is left [Pa];
-/// `None` where the pair has one coefficient.
-pub(super) fn asperities(pair: &Pair<'_>) -> Option<(f64, f64)> {
+/// `None` where the pair has one coefficient. `law`: the tangential law that knows of them.
+pub(super) fn asperities(pair: &Pair<'_>, law: LawName) -> Option<(f64, f64)> {
     let of_its_own =
-        pair.given(|e| e.friction).is_some() || pair.given(|e| e.tangential).is_some_and(|t| t != NAME);
+        pair.given(|e| e.friction).is_some() || pair.given(|e| e.tangential).is_some_and(|t| t != law);
     let added = pair.a.asperity_friction.min(pair.b.asperity_friction);
     let pressure = pair.a.asperity_pressure.min(pair.b.asperity_pressure);
     (!of_its_own && added > 0.0).then_some((added, pressure))
@@ -56,7 +56,7 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
 
     fn mix(pair: &Pair<'_>, normal: &N) -> Rough {
         let Spring { stiffness, compliance } = Spring::mix(pair, normal);
-        let (asperities, pressure) = asperities(pair).unwrap_or((0.0, 1.0));
+        let (asperities, pressure) = asperities(pair, NAME).unwrap_or((0.0, 1.0));
         Rough { stiffness, compliance, asperities, pressure }
     }
 
@@ -66,13 +66,13 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
     }
 
     #[inline(always)]
-    fn limit<R: Real>(law: &Rough<R>, friction: R, normal: R, radius: R) -> R {
+    fn limit<R: Real>(law: &Rough<R>, friction: R, normal: R, radius: R, _: R) -> R {
         let half = law.pressure * radius * radius;
         (friction + law.asperities * (half / (half + normal))) * normal
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Rough<R>, _: R, _: R, _: R, _: R, _: R) -> Option<Carried<R>> {
+    fn carry<R: Real>(_: &Rough<R>, _: R, _: R) -> Option<Carried<R>> {
         None
     }
 

@@ -42,7 +42,7 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Spring {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Spring<R>, _: R, _: R, _: R, _: R, _: R) -> Option<Carried<R>> {
+    fn carry<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<Carried<R>> {
         None
     }
 

@@ -4,6 +4,7 @@
 //! their own for models that have no other ([`Laws`]).
 
 use super::composed::Composed;
+use super::conical_damage::ConicalDamage;
 use super::contact_law::ContactLaw;
 use super::hertz::Hertz;
 use super::linear::Linear;
@@ -12,6 +13,7 @@ use super::mindlin::Mindlin;
 use super::mixed::combinations;
 use super::normal::NormalLaw;
 use super::rough::{self, Rough};
+use super::rough_mindlin::RoughMindlin;
 use super::spring::Spring;
 use super::tangential::TangentialLaw;
 use super::walton_braun::WaltonBraun;
@@ -21,6 +23,7 @@ combinations! {
     Rough(Linear, Rough) = "linear spring-dashpot, rough",
     Hertz(Hertz, Mindlin) = "Hertz-Mindlin",
     WaltonBraun(WaltonBraun, Spring) = "Walton-Braun",
+    Conical(ConicalDamage, RoughMindlin) = "Hertz-Mindlin with corners that crush",
 }
 
 /// The linear law.
@@ -29,6 +32,8 @@ pub type LinearLaw = Composed<Linear, Spring>;
 pub type RoughLaw = Composed<Linear, Rough>;
 /// Hertz's law with Mindlin's.
 pub type HertzLaw = Composed<Hertz, Mindlin>;
+/// Hertz's law with corners that crush.
+pub type ConicalLaw = Composed<ConicalDamage, RoughMindlin>;
 
 /// A normal and a tangential law that go together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,7 +128,9 @@ pub enum NoLaw {
 /// [`NoLaw`] where the scene does not say which, or names laws that do not go together.
 pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
     let own = |m: &Material| {
-        let implied = if m.young.is_some() {
+        let implied = if m.corner_strength.is_finite() {
+            Some(ConicalDamage::NAME)
+        } else if m.young.is_some() {
             Some(Hertz::NAME)
         } else {
             m.stiffness.is_finite().then_some(Linear::NAME)
@@ -135,13 +142,16 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
     let spring = pair.given(|e| e.stiffness).map(|_| Linear::NAME);
     let normal = match (given, a, b) {
         (Some(name), _, _) => name,
+        // Corners crush against a partner without corners too.
+        (None, Some(Hertz::NAME), Some(ConicalDamage::NAME)) => ConicalDamage::NAME,
+        (None, Some(ConicalDamage::NAME), Some(Hertz::NAME)) => ConicalDamage::NAME,
         (None, Some(a), Some(b)) if a != b => return Err(NoLaw::Unlike(a, b)),
         (None, a, b) => match a.or(b).or(spring) {
             Some(name) => name,
             None => return Ok(None),
         },
     };
-    let rough = rough::asperities(pair).filter(|_| normal == Linear::NAME).map(|_| rough::NAME);
+    let rough = rough::asperities(pair, rough::NAME).filter(|_| normal == Linear::NAME).map(|_| rough::NAME);
     let tangential = pair.given(|e| e.tangential).filter(|t| *t != LawName::NONE).or(rough);
     let fits = |c: &Combination| c.normal == normal && tangential.is_none_or(|LawName(t)| c.tangential == t);
     match COMBINATIONS.iter().position(fits) {

@@ -40,22 +40,15 @@ pub trait TangentialLaw<N: NormalLaw>: Constants {
     /// The springs of contacts whose circles have the radius `circle` [m].
     fn grip<R: Real>(law: &Self::Lanes<R>, circle: R) -> Grip<R>;
 
-    /// Largest tangential force [N] of contacts with the coefficient `friction`, the normal force `normal` [N] and the effective
-    /// radius `radius` [m].
+    /// Largest tangential force [N] of contacts with the coefficient `friction`, the normal force `normal` [N], the effective radius
+    /// `radius` [m] and a circle of the radius `circle` [m].
     #[inline(always)]
-    fn limit<R: Real>(_: &Self::Lanes<R>, friction: R, normal: R, _radius: R) -> R {
+    fn limit<R: Real>(_: &Self::Lanes<R>, friction: R, normal: R, _radius: R, _circle: R) -> R {
         friction * normal
     }
 
-    /// How springs are carried over from the overlap before, d − ḋ dt; `None`: as they are.
-    fn carry<R: Real>(
-        law: &Self::Lanes<R>,
-        circle: R,
-        radius: R,
-        overlap: R,
-        approach: R,
-        step: R,
-    ) -> Option<Carried<R>>;
+    /// How springs are carried over to a circle of the radius `circle` from one of the radius `before` [m]; `None`: as they are.
+    fn carry<R: Real>(law: &Self::Lanes<R>, circle: R, before: R) -> Option<Carried<R>>;
 
     /// Stiffness of springs in a contact that ends, where the law has not brought it to zero by then.
     fn at_end<R: Real>(law: &Self::Lanes<R>) -> Option<R>;

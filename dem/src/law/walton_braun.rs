@@ -14,7 +14,7 @@
 use super::constants::constants;
 use super::contact::FRESH;
 use super::material::Pair;
-use super::normal::{ConstantStiffness, NormalLaw, Response};
+use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 
 /// Constants of one pair of materials.
@@ -36,6 +36,7 @@ impl NormalLaw for WaltonBraun {
         "contact: linear loading, stiffer unloading, Walton & Braun, J. Rheol. 30, 949, 1986";
     const KEYS: &'static [&'static str] = &["stiffness"];
     const DASHPOT: bool = false;
+    const REMEMBERS: bool = true;
     const JUMPS: bool = false;
     const STIFFENS: bool = false;
 
@@ -45,22 +46,17 @@ impl NormalLaw for WaltonBraun {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(
-        law: &WaltonBraun<R>,
-        _: R,
-        radius: R,
-        overlap: R,
-        remembered: R,
-        fresh: R::Mask,
-        _: R,
-    ) -> Response<R> {
-        let before = R::select(fresh, R::zero(), remembered);
+    fn respond<R: Real>(law: &WaltonBraun<R>, touch: &Touch<R>) -> Response<R> {
+        let overlap = touch.overlap;
+        let before = R::select(touch.fresh, R::zero(), touch.remembered);
         let most = before.max(overlap);
         let elastic = (law.loading * most - law.unloading * (most - overlap)).max(R::zero());
+        let circle = (touch.radius * overlap).sqrt();
         Response {
             elastic,
             damping: R::zero(),
-            circle: (radius * overlap).sqrt(),
+            circle,
+            circle_before: circle,
             remembered: most,
             lost: law.plastic * (most * most - before * before),
         }

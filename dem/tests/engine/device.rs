@@ -178,6 +178,17 @@ fn rough_and_several_laws() {
         same_bits("rough", gas([rough, smooth()], Vec::new()));
         let yielding = Material { normal: named("walton_braun"), restitution: 0.6, ..stone() };
         same_bits("walton-braun", gas([yielding, yielding], Vec::new()));
+        let crushing = Material {
+            stiffness: f64::INFINITY,
+            young: Some(2e7),
+            poisson: 0.2,
+            corner_strength: 3e5,
+            corner_angle: 1.36,
+            asperity_friction: 0.5,
+            asperity_pressure: 1e5,
+            ..stone()
+        };
+        same_bits("corners that crush", gas([crushing, crushing], Vec::new()));
         let linear = PairOverride { normal: named("linear"), stiffness: Some(1e5), ..PAIR };
         same_bits("three laws", gas([turning(yielding), turning(elastic(stone()))], vec![linear]));
     }

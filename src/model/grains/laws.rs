@@ -78,8 +78,9 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
         let expected = "no such key, as no law of its contacts has a dashpot";
         return Err(m.error("tangential_damping_ratio", "a value", expected));
     }
-    let linear = |law: &&Combination| law.normal == "linear";
-    if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(linear) {
+    // The linear law gets a tangential law of its own where there are asperities.
+    let knows = |law: &&Combination| law.normal == "linear" || law.uses("asperity_friction");
+    if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(knows) {
         let expected = "no such key, as no law of its contacts knows asperities";
         return Err(m.error("asperity_friction", "a value", expected));
     }

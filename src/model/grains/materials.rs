@@ -5,6 +5,8 @@ use super::laws;
 use super::sources;
 use crate::scene::material::{DampingKind, GrainMaterial, PairContact, Resistance};
 use crate::scene::{Scene, SceneError, Table};
+use std::f64::consts::FRAC_PI_2;
+use trackbed_dem::law::conical_damage;
 use trackbed_dem::law::damping::Damping;
 use trackbed_dem::law::table;
 use trackbed_dem::material::LawName;
@@ -77,6 +79,7 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
         m.check("young", m.young, |y| y > 0.0, "a modulus above 0")?;
         m.check("poisson", m.poisson, |p| p > -1.0 && p <= 0.5, "above -1, at most 0.5")?;
         poisson_beside_young(&m)?;
+        corners(&m)?;
         m.check("tangential_ratio", m.tangential_ratio, |r| (0.0..=1.0).contains(&r), "0 to 1")?;
         m.check(
             "tangential_damping_ratio",
@@ -104,6 +107,8 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
             restitution: m.restitution,
             young: m.young.map(|y| y.si),
             poisson: m.poisson.unwrap_or(0.0),
+            corner_strength: m.corner_strength.map_or(f64::INFINITY, |s| s.si),
+            corner_angle: m.corner_angle.map_or(FRAC_PI_2, |a| a.si),
             rolling_friction: m.rolling_friction,
             twisting_friction: m.twisting_friction,
             normal: normal(&m, m.normal.as_deref())?,
@@ -124,6 +129,32 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Corners that crush: strength and angle come in twos, beside a modulus, and crushing takes energy.
+fn corners(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
+    m.check("corner_strength", m.corner_strength, |s| s > 0.0, "a strength above 0")?;
+    m.check("corner_angle", m.corner_angle, |a| a > 0.0 && a < FRAC_PI_2, "above 0, below 90 deg")?;
+    let (strength, angle) = match (m.corner_strength, m.corner_angle) {
+        (None, None) => return Ok(()),
+        (None, Some(_)) => {
+            return Err(m.error("corner_angle", "a value", "no such key without `corner_strength`"));
+        }
+        (Some(_), None) => return Err(m.missing("corner_angle", "half the angle of the cones that crush")),
+        (Some(strength), Some(angle)) => (strength.si, angle.si),
+    };
+    let Some(young) = m.young else {
+        return Err(m.error("corner_strength", "a value", "no such key without `young`"));
+    };
+    let poisson = m.poisson.unwrap_or(0.0);
+    let most = conical_damage::greatest_strength(0.5 * young.si / (1.0 - poisson * poisson), angle);
+    m.check(
+        "corner_strength",
+        Some(strength),
+        |s| s < most,
+        &format!("below {most:.3e} Pa with this modulus and angle, so that crushing takes energy"),
+    )?;
+    Ok(())
 }
 
 fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {

@@ -84,6 +84,10 @@ fn soften(input: &mut ModelInput, factor: f64) {
     for material in &mut input.materials {
         material.stiffness *= factor;
         material.young = material.young.map(|young| young * factor);
+        // Corners of softer stones would crush under forces that the true ones bear.
+        if factor < 1.0 {
+            material.corner_strength = f64::INFINITY;
+        }
     }
     for pair in &mut input.contacts {
         pair.stiffness = pair.stiffness.map(|stiffness| stiffness * factor);

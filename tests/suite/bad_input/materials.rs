@@ -16,6 +16,41 @@ fn poisson_without_modulus() {
         .refused("scene.toml:8: material.0.poisson: found a value, expected no such key without `young`");
 }
 
+/// Corners that crush: strength and angle come in twos beside a modulus, and crushing takes energy.
+#[test]
+fn corners_out_of_place() {
+    let elastic = "young = \"10 GPa\"\npoisson = 0.2";
+    for (keys, message) in [
+        (
+            "corner_angle = \"80 deg\"",
+            "scene.toml:8: material.0.corner_angle: found a value, expected no such key without `corner_strength`",
+        ),
+        (
+            "corner_strength = \"60 MPa\"",
+            "scene.toml:3: material.0.corner_angle: found nothing, expected half the angle of the cones that crush",
+        ),
+        (
+            "corner_strength = 0.0\ncorner_angle = 1.4",
+            "scene.toml:8: material.0.corner_strength: found 0, expected a strength above 0",
+        ),
+        (
+            "corner_strength = 6e7\ncorner_angle = \"90 deg\"",
+            "scene.toml:9: material.0.corner_angle: found 1.5707963267948966, expected above 0, below 90 deg",
+        ),
+        (
+            "corner_strength = \"2 GPa\"\ncorner_angle = \"85 deg\"",
+            "scene.toml:8: material.0.corner_strength: found 2000000000, expected below 4.582e8 Pa with this modulus and angle, so that crushing takes energy",
+        ),
+    ] {
+        grains_scene().scene("stiffness = \"1 MN/m\"", &format!("{elastic}\n{keys}")).refused(message);
+    }
+    grains_scene()
+        .scene("friction = 0.5", "friction = 0.5\ncorner_strength = 6e7\ncorner_angle = 1.4")
+        .refused(
+            "scene.toml:8: material.0.corner_strength: found a value, expected no such key without `young`",
+        );
+}
+
 #[test]
 fn two_laws_in_one_scene() {
     grains_scene()
@@ -52,7 +87,7 @@ const PAIR: &str = "[[contact]]\nbetween = [\"stone\", \"stone\"]\n";
 #[test]
 fn unknown_normal_law() {
     grains_scene().scene("friction = 0.5", "friction = 0.5\nnormal = \"herz\"").refused(
-        "scene.toml:8: material.0.normal: found \"herz\", expected one of linear, hertz, walton_braun",
+        "scene.toml:8: material.0.normal: found \"herz\", expected one of linear, hertz, walton_braun, conical_damage",
     );
 }
 

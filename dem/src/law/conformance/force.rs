@@ -34,7 +34,7 @@ pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
             let (mut low, mut high) = (0.0, RADIUS);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
-                let stored = law.stored(middle, RADIUS, &History::NONE).0;
+                let stored = law.stored(middle, RADIUS, &History { rate: law.begun(0.0), ..History::NONE }).0;
                 *if stored > 0.5 * MASS * speed * speed { &mut high } else { &mut low } = middle;
             }
             let dt = 0.005 * (MASS / law.stiffness(low, RADIUS)).sqrt();
@@ -50,9 +50,29 @@ pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
                 }
             }
             let found = -v / speed;
-            assert!((found / wanted - 1.0).abs() < 5e-3, "wanted {wanted} at {speed} m/s, found {found}");
+            let kept = if wanted == 1.0 { kept(material, speed) } else { wanted };
+            if wanted < 1.0 && material.corner_strength.is_finite() {
+                assert!(found < wanted * (1.0 + 5e-3), "at most {wanted} at {speed} m/s, found {found}");
+            } else {
+                assert!((found / kept - 1.0).abs() < 5e-3, "wanted {kept} at {speed} m/s, found {found}");
+            }
         }
     }
+}
+
+/// Restitution of an impact that only crushes corners, in closed form: what is stored at the largest radius of the tip, by the energy before.
+fn kept(m: &Material, speed: f64) -> f64 {
+    let Some(young) = m.young.filter(|_| m.corner_strength.is_finite()) else { return 1.0 };
+    let modulus = 0.5 * young / (1.0 - m.poisson * m.poisson);
+    let h = (0.5 * std::f64::consts::PI * m.corner_strength / modulus).powi(2);
+    let k = (1.0 - m.corner_angle.sin()) / m.corner_angle.sin();
+    let c = 4.0 / 3.0 * modulus * h.powf(1.5);
+    let (before, first) = (0.5 * MASS * speed * speed, 0.4 * c * h * RADIUS.powi(3));
+    if before <= first {
+        return 1.0;
+    }
+    let cube = RADIUS.powi(3) + 3.0 * (before - first) / (c * (h + k));
+    (0.4 * c * h * cube / before).sqrt()
 }
 
 pub fn partners_are_alike<L: ContactLaw>(material: &Material) {
@@ -95,10 +115,18 @@ pub fn rotation_of_everything_rotates_the_force<L: ContactLaw>(material: &Materi
     assert!(largest > 0.0);
 }
 
-/// Largest tangential force at a normal force [N], in closed form.
-fn limit(m: &Material, normal: f64) -> f64 {
-    let added = m.asperity_friction / (1.0 + normal / (m.asperity_pressure * RADIUS * RADIUS));
-    (m.friction + added) * normal
+/// Largest tangential force at a normal force [N] and an overlap [m], in closed form.
+fn limit(m: &Material, normal: f64, overlap: f64, history: &History) -> f64 {
+    // The pressure is taken over R², over the circle where corners crush: by the radius that their tip has by now.
+    let square = if m.corner_strength.is_finite() {
+        let k = (1.0 - m.corner_angle.sin()) / m.corner_angle.sin();
+        let elastic = overlap - (history.rate - RADIUS) * k;
+        std::f64::consts::PI * history.rate * elastic.max(0.0)
+    } else {
+        RADIUS * RADIUS
+    };
+    let added = m.asperity_friction / (1.0 + normal / (m.asperity_pressure * square));
+    (m.friction + if added.is_nan() { 0.0 } else { added }) * normal
 }
 
 /// Coulomb's limit, and no pull: along a path on which contacts slide and stick.
@@ -111,8 +139,8 @@ pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
         for m in path.moments() {
             let f = m.evaluate(&law, &mut history, path.dt());
             let tangential = f.force - m.geometry.normal * f.normal;
-            let limit = limit(material, f.normal);
-            assert!(f.normal >= 0.0 && tangential.norm() <= limit * (1.0 + 1e-12) + 1e-300);
+            let limit = limit(material, f.normal, m.geometry.overlap, &history);
+            assert!(f.normal >= 0.0 && tangential.norm() <= limit * (1.0 + 1e-9) + 1e-300);
             *if tangential.norm() > limit * (1.0 - 1e-9) { &mut sliding } else { &mut sticking } += 1;
         }
     }
@@ -130,13 +158,19 @@ pub fn stiffness_is_the_slope_of_the_force<L: ContactLaw>(material: &Material) {
         };
         let (force, stiffness) = law.loading(d, RADIUS);
         assert!((evaluated(d) / force - 1.0).abs() < 1e-12, "{} against {force}", evaluated(d));
-        assert!((law.springs(d, RADIUS, &History::NONE).0 / force - 1.0).abs() < 1e-12);
+        let begun = History { rate: law.begun(0.0), ..History::NONE };
+        assert!((law.springs(d, RADIUS, &begun).0 / force - 1.0).abs() < 1e-12);
         let slope = (evaluated(1.001 * d) - evaluated(0.999 * d)) / (0.002 * d);
         assert!((slope / stiffness - 1.0).abs() < 1e-6, "{slope} against {stiffness} at {d}");
         assert!(law.stiffness(d, RADIUS) >= stiffness);
     }
     assert!(law.tangential_ratio() > 0.0 && law.tangential_ratio() < 2.0);
-    assert_eq!(law.damping_ratio() > 0.0, law.begun(1.0) == 1.0, "a dashpot remembers the approach speed");
+    let own = ["walton_braun", "conical_damage"].contains(&law.names()[0]);
+    assert_eq!(
+        law.begun(1.0),
+        if own { 0.0 } else { 1.0 },
+        "the approach speed is remembered but for a number of its own"
+    );
     assert!(!law.sources().is_empty() && GLASS.young.is_some());
 }
 

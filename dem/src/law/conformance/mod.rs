@@ -7,7 +7,7 @@ mod lanes;
 use super::composed::Composed;
 use super::material::{Material, Pair};
 use super::spring::Spring;
-use super::table::{HertzLaw, LinearLaw, RoughLaw};
+use super::table::{ConicalLaw, HertzLaw, LinearLaw, RoughLaw};
 use super::walton_braun::WaltonBraun;
 use super::{ContactForce, ContactGeometry, ContactLaw, History};
 use crate::base::Vec3;
@@ -85,6 +85,20 @@ conforms! {
     rough: RoughLaw, Material { friction: 0.2, asperity_friction: 0.4, asperity_pressure: 2e5, ..SOFT };
     hertz: HertzLaw, GLASS;
     walton_braun: Composed<WaltonBraun, Spring>, SOFT;
+    conical_whole: ConicalLaw, Material { corner_strength: 4e7, corner_angle: 0.2, ..GLASS };
+}
+
+/// Corners that crush from an overlap of a thousandth of the radius on, and a cone that gives way by as much again for three times the radius.
+const CRUSHING: Material = Material {
+    corner_strength: 6.5e5,
+    corner_angle: 1.4,
+    asperity_friction: 0.5,
+    asperity_pressure: 2e5,
+    ..GLASS
+};
+
+conforms! {
+    conical: ConicalLaw, CRUSHING;
 }
 
 /// The law of two bodies of a material with resistance of every kind.

@@ -1,0 +1,188 @@
+//! Normal law: elastic spheres whose corners crush where the pressure passes what the rock bears (conical damage).
+//!
+//! Broken rock touches at corners. Here a corner is a cone of the half-angle α with a spherical tip of the radius R (the effective radius
+//! at first touch, R₀). Where Hertz's pressure in the middle of the contact, p = (2 E*/π) √(u/R), reaches the strength σ of the corner,
+//! the tip crushes: it is rounded to the larger sphere that fits the same cone, whose top lies back by (R − R₀) k, k = (1 − sin α)/sin α,
+//! so that p stays at σ. With δ the overlap,
+//!
+//! * elastic overlap u = δ − (R − R₀) k, force F = 4/3 E* √R u^(3/2) where u > 0, else none;
+//! * crushing where u > h R, h = (π σ/2E*)²: R = (δ + k R₀)/(h + k), so that u = h R and F = 4/3 E* h^(3/2) R²;
+//! * unloading and reloading with the R that is left, so that a deformation (R − R₀) k stays until the partners part.
+//!
+//! Work of crushing from R to R': c (k/3 − h/15)(R'³ − R³), c = 4/3 E* h^(3/2), positive where h < 5k, which is asked for. The dashpot is that
+//! of `hertz.rs` on the circle √(R u); the restitution of a hit that crushes nothing is that of the materials, of others it is less.
+//! The memory is R; it is forgotten when the partners part, as if they met with other corners the next time. Bodies that overlap already when
+//! a model begins, as in a bed that another stage has pressed, have crushed there: R = R₀ + δ/k, without a force.
+//!
+//! Sources: Harkness, Zervos, Le Pen, Aingaran & Powrie, Granular Matter 18:65, 2016; with the overlap as above Suhr & Six, Granular Matter
+//! 19:64, 2017 (also in YADE, by the latter). Mixing: the smaller σ and the smaller α; a partner without a strength of its own does not lower them. Against a partner so soft that h ≥ 5k nothing crushes.
+//!
+//! Limits: rubble takes no room; contact circle small against the radii.
+
+use super::constants::constants;
+use super::contact::FRESH;
+use super::hertz::{self, dashpot, modulus};
+use super::material::Pair;
+use super::normal::{Expected, NormalLaw, Response, Touch};
+use crate::lanes::Real;
+use std::f64::consts::PI;
+
+/// Constants of one pair of materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConicalDamage<R = f64> {
+    /// Effective modulus E* [Pa].
+    pub modulus: R,
+    /// Elastic overlap over the radius at which corners crush, h [-].
+    pub limit: R,
+    /// Way back of the tip over the growth of its radius, k [-].
+    pub slope: R,
+    /// 1/(h + k), zero where nothing crushes [-].
+    growth: R,
+    /// 1/k, likewise [-].
+    given_way: R,
+    /// Work of crushing over the growth of R³ [Pa].
+    work: R,
+    /// Damping ratio ζ [-].
+    damping_ratio: R,
+}
+
+constants!(ConicalDamage { modulus, limit, slope, growth, given_way, work, damping_ratio });
+
+/// Elastic overlap over the radius at which a corner of the strength σ [Pa] crushes, with the effective modulus E* [Pa].
+pub fn elastic_limit(strength: f64, modulus: f64) -> f64 {
+    (0.5 * PI * strength / modulus).powi(2)
+}
+
+/// Strength [Pa] at and above which crushing would give energy, with the effective modulus E* [Pa] and the half-angle α [rad] of the cone.
+pub fn greatest_strength(modulus: f64, angle: f64) -> f64 {
+    2.0 * modulus / PI * (5.0 * slope(angle)).sqrt()
+}
+
+/// How far the tip of a cone of the half-angle α [rad] lies back for each metre that its radius grows [-].
+pub fn slope(angle: f64) -> f64 {
+    let sine = libm::sin(angle);
+    (1.0 - sine) / sine
+}
+
+impl ConicalDamage {
+    /// Radius [m] and elastic overlap [m] of a contact.
+    #[inline(always)]
+    fn state(&self, overlap: f64, radius: f64, remembered: f64) -> (f64, f64) {
+        let before =
+            if remembered == FRESH { radius + overlap * self.given_way } else { radius.max(remembered) };
+        let grown = before.max((overlap + radius * self.slope) * self.growth);
+        (grown, (overlap - (grown - radius) * self.slope).max(0.0))
+    }
+}
+
+impl NormalLaw for ConicalDamage {
+    const NAME: &'static str = "conical_damage";
+    const SOURCE: &'static str = "contact: elastic spheres whose corners crush, Harkness and others, Granular Matter 18:65, 2016; Suhr & Six, \
+                                  Granular Matter 19:64, 2017";
+    const KEYS: &'static [&'static str] = &["young", "poisson", "corner_strength", "corner_angle"];
+    const DASHPOT: bool = true;
+    const REMEMBERS: bool = true;
+    const JUMPS: bool = false;
+    const STIFFENS: bool = true;
+
+    fn mix(pair: &Pair<'_>, zeta: f64) -> ConicalDamage {
+        let modulus = modulus(pair);
+        let strength = pair.a.corner_strength.min(pair.b.corner_strength);
+        let limit = elastic_limit(strength, modulus);
+        let slope = slope(pair.a.corner_angle.min(pair.b.corner_angle));
+        // A soft partner yields before the corner does.
+        let crushes = limit < 5.0 * slope;
+        let work =
+            if crushes { 4.0 / 3.0 * modulus * limit.powf(1.5) * (slope / 3.0 - limit / 15.0) } else { 0.0 };
+        let growth = if crushes { 1.0 / (limit + slope) } else { 0.0 };
+        let given_way = if crushes { 1.0 / slope } else { 0.0 };
+        ConicalDamage { modulus, limit, slope, growth, given_way, work, damping_ratio: zeta }
+    }
+
+    #[inline(always)]
+    fn respond<R: Real>(law: &ConicalDamage<R>, touch: &Touch<R>) -> Response<R> {
+        let Touch { radius, overlap, .. } = *touch;
+        let overlap_before = touch.overlap_before();
+        // Bodies that overlap already when a model begins have crushed there.
+        let there = (overlap * R::splat(0.5)).lt(overlap_before);
+        let first = radius + (overlap_before * law.given_way).only(there);
+        let before = R::select(touch.fresh, first, touch.remembered.max(radius));
+        let grown = before.max((overlap + radius * law.slope) * law.growth);
+        let elastic = (overlap - (grown - radius) * law.slope).max(R::zero());
+        let elastic_before = (overlap_before - (before - radius) * law.slope).max(R::zero());
+        let circle = (grown * elastic).sqrt();
+        let tangent = R::splat(2.0) * law.modulus * circle;
+        Response {
+            elastic: R::splat(2.0 / 3.0) * tangent * elastic,
+            damping: dashpot(law.damping_ratio, tangent, touch),
+            circle,
+            circle_before: (before * elastic_before).sqrt(),
+            remembered: grown,
+            lost: law.work * (grown * grown * grown - before * before * before),
+        }
+    }
+
+    #[inline(always)]
+    fn force(&self, overlap: f64, radius: f64, remembered: f64) -> f64 {
+        let (radius, elastic) = self.state(overlap, radius, remembered);
+        4.0 / 3.0 * self.modulus * (radius * elastic).sqrt() * elastic
+    }
+
+    fn stored(&self, overlap: f64, radius: f64, remembered: f64) -> f64 {
+        let (radius, elastic) = self.state(overlap, radius, remembered);
+        8.0 / 15.0 * self.modulus * (radius * elastic).sqrt() * elastic * elastic
+    }
+
+    fn loading(&self, overlap: f64, radius: f64) -> (f64, f64) {
+        let (grown, elastic) = self.state(overlap, radius, radius);
+        let force = self.force(overlap, radius, radius);
+        let crushes = grown > radius;
+        // F = c R² with dR/dδ = 1/(h + k).
+        (
+            force,
+            if crushes {
+                2.0 * force / grown * self.growth
+            } else {
+                2.0 * self.modulus * (grown * elastic).sqrt()
+            },
+        )
+    }
+
+    fn stiffness(&self, overlap: f64, radius: f64) -> f64 {
+        self.stiffness_with(overlap, radius, radius)
+    }
+
+    fn stiffness_with(&self, overlap: f64, radius: f64, remembered: f64) -> f64 {
+        2.0 * self.modulus * self.circle(overlap, radius, remembered)
+    }
+
+    #[inline(always)]
+    fn circle(&self, overlap: f64, radius: f64, remembered: f64) -> f64 {
+        // Of a contact that is to come the stiffness asked for is that of first loading.
+        let (radius, elastic) =
+            self.state(overlap, radius, if remembered == FRESH { radius } else { remembered });
+        (radius * elastic).sqrt()
+    }
+
+    fn damping_ratio(&self) -> f64 {
+        self.damping_ratio
+    }
+
+    /// As Hertz's where no corner crushes; else the overlap at which crushing has taken up the impact, or bears the weight of all bodies.
+    fn expected_overlap(&self, e: &Expected) -> f64 {
+        let elastic = hertz::expected(self.modulus, e);
+        let crushed = if self.growth > 0.0 && elastic > self.limit {
+            let force = 4.0 / 3.0 * self.modulus * self.limit.powf(1.5);
+            let impact = libm::cbrt(1.0 + 2.0 * PI * e.density * e.speed * e.speed * self.growth / force);
+            let rest = (4.0 * e.density * e.gravity * e.height / force).sqrt();
+            impact.max(rest).max(1.0) / self.growth - self.slope
+        } else {
+            elastic
+        };
+        crushed.clamp(1e-9, 1.0)
+    }
+}
+
+#[cfg(test)]
+#[path = "conical_damage_tests.rs"]
+mod tests;

@@ -1,0 +1,78 @@
+//! Tangential law: Mindlin's spring beside corners that crush, with friction that falls with the pressure in the contact.
+//!
+//! The spring is that of `mindlin.rs` on the contact circle a = √(R u) of `conical_damage.rs`: while corners crush the circle grows and the
+//! force is kept; where the elastic overlap is gone, so is the spring. With asperities the coefficient is that of Suhr & Six (Powder Technol. 294, 2016),
+//!
+//! μ(p̄) = μ + μₐ/(1 + p̄/p), p̄ = F/(π a²) the mean pressure,
+//!
+//! so that crushed corners, where p̄ is 2/3 of their strength, keep μ + μₐ/(1 + 2σ/3p). Mixing as in `rough.rs`.
+
+use super::conical_damage::ConicalDamage;
+use super::constants::constants;
+use super::material::{LawName, Pair};
+use super::mindlin::{Mindlin, shear};
+use super::rough::asperities;
+use super::tangential::{Carried, Grip, TangentialLaw};
+use crate::lanes::Real;
+
+/// Constants of one pair of materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughMindlin<R = f64> {
+    /// Effective shear modulus G* [Pa].
+    pub shear: R,
+    /// Friction that asperities add at vanishing pressure [-].
+    asperities: R,
+    /// π times the mean pressure at which half of that is left [Pa].
+    pressure: R,
+}
+
+constants!(RoughMindlin { shear, asperities, pressure });
+
+/// Name in a scene.
+const NAME: LawName = LawName("mindlin");
+
+impl TangentialLaw<ConicalDamage> for RoughMindlin {
+    const NAME: &'static str = NAME.0;
+    const SOURCE: &'static str = "contact, tangential: Mindlin, J. Appl. Mech. 16, 1949; friction that falls with the pressure, Suhr & Six, \
+                                  Powder Technol. 294, 2016";
+    const KEYS: &'static [&'static str] = &["young", "poisson", "asperity_friction"];
+
+    fn mix(pair: &Pair<'_>, _: &ConicalDamage) -> RoughMindlin {
+        let (asperities, pressure) = asperities(pair, NAME).unwrap_or((0.0, 1.0));
+        RoughMindlin { shear: shear(pair), asperities, pressure: std::f64::consts::PI * pressure }
+    }
+
+    #[inline(always)]
+    fn grip<R: Real>(law: &RoughMindlin<R>, circle: R) -> Grip<R> {
+        Grip { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
+    }
+
+    #[inline(always)]
+    fn limit<R: Real>(law: &RoughMindlin<R>, friction: R, normal: R, _: R, circle: R) -> R {
+        let half = law.pressure * circle * circle;
+        // Without a force there is no circle.
+        let share = half / (half + normal).max(R::splat(f64::MIN_POSITIVE));
+        (friction + law.asperities * share) * normal
+    }
+
+    #[inline(always)]
+    fn carry<R: Real>(law: &RoughMindlin<R>, circle: R, before: R) -> Option<Carried<R>> {
+        let mindlin = Mindlin { shear: law.shear };
+        let Carried { kept, loss } =
+            <Mindlin as TangentialLaw<super::hertz::Hertz>>::carry(&mindlin, circle, before)?;
+        let touches = R::zero().lt(circle);
+        let all = R::splat(4.0) * law.shear * before;
+        Some(Carried { kept: kept.only(touches), loss: R::select(touches, loss, all) })
+    }
+
+    /// Stiffness and energy have gone to zero with the elastic overlap, booked on the way but for the last step's.
+    #[inline(always)]
+    fn at_end<R: Real>(_: &RoughMindlin<R>) -> Option<R> {
+        None
+    }
+
+    #[inline(always)]
+    fn stiffness(&self, circle: f64) -> f64 {
+        8.0 * self.shear * circle
+    }
+}
