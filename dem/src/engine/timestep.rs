@@ -133,8 +133,7 @@ pub(crate) fn limit(
         }
         let shape = &input.shapes[body.shape];
         let flexibility = compliance(&body, shape);
-        let sides = sides(shape, body.scale, r_min, several);
-        let radius = contact_radius(&body, shape, r_max);
+        let (sides, radius) = (sides(shape, body.scale, r_min, several), contact_radius(&body, shape, r_max));
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
             // The stiffest contact has the largest circle: that of the body's own radius on a plane.

@@ -92,8 +92,11 @@ impl NormalLaw for ConicalDamage {
         let slope = slope(pair.a.corner_angle.min(pair.b.corner_angle));
         // A soft partner yields before the corner does.
         let crushes = limit < 5.0 * slope;
-        let work =
-            if crushes { 4.0 / 3.0 * modulus * limit.powf(1.5) * (slope / 3.0 - limit / 15.0) } else { 0.0 };
+        let work = if crushes {
+            4.0 / 3.0 * modulus * limit * limit.sqrt() * (slope / 3.0 - limit / 15.0)
+        } else {
+            0.0
+        };
         let growth = if crushes { 1.0 / (limit + slope) } else { 0.0 };
         let given_way = if crushes { 1.0 / slope } else { 0.0 };
         ConicalDamage { modulus, limit, slope, growth, given_way, work, damping_ratio: zeta }
@@ -172,7 +175,7 @@ impl NormalLaw for ConicalDamage {
     fn expected_overlap(&self, e: &Expected) -> f64 {
         let elastic = hertz::expected(self.modulus, e);
         let crushed = if self.growth > 0.0 && elastic > self.limit {
-            let force = 4.0 / 3.0 * self.modulus * self.limit.powf(1.5);
+            let force = 4.0 / 3.0 * self.modulus * self.limit * self.limit.sqrt();
             let impact = libm::cbrt(1.0 + 2.0 * PI * e.density * e.speed * e.speed * self.growth / force);
             let rest = (4.0 * e.density * e.gravity * e.height / force).sqrt();
             impact.max(rest).max(1.0) / self.growth - self.slope
