@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("crushing", crushing),
         ("several", yielding),
     ] {
-        for scene in [Scene::Spheres, Scene::All, Scene::Clumps, Scene::Walls, Scene::Borders] {
+        for scene in [Scene::Spheres, Scene::All, Scene::Loose, Scene::Clumps, Scene::Walls, Scene::Borders] {
             let text = device::source(&Model::new(scene.input(material)?)?)?;
             let file = format!("{name}{}.cu", scene.suffix());
             std::fs::write(Path::new(&folder).join(&file), &text)?;
@@ -43,7 +43,8 @@ enum Scene {
     Spheres,
     /// Spheres with all that a model of them and planes can have.
     All,
-    /// Clumps too; then walls of triangles too, or periodic borders.
+    /// Clumps too, without bonds and with; then walls of triangles too, or periodic borders.
+    Loose,
     Clumps,
     Walls,
     Borders,
@@ -54,6 +55,7 @@ impl Scene {
         match self {
             Scene::Spheres => "",
             Scene::All => "_with_all",
+            Scene::Loose => "_loose",
             Scene::Clumps => "_clumps",
             Scene::Walls => "_walls",
             Scene::Borders => "_borders",
@@ -71,6 +73,7 @@ impl Scene {
         input.bodies = [0.0, 0.02].map(|z| BodyInput { position: at(z), ..BodyInput::default() }).to_vec();
         match self {
             Scene::Spheres => return Ok(input),
+            Scene::Loose => (),
             Scene::Borders => input.periodic = [Some([-1.0, 1.0]), None, None],
             _ => bonded(&mut input),
         }

@@ -10,7 +10,7 @@ use cudarc::driver::{
 use cudarc::nvrtc::{CompileError, CompileOptions, compile_ptx_with_opts};
 use std::collections::HashMap;
 use std::sync::Arc;
-use trackbed_dem::device::{Arguments, Call, KERNELS, Machine};
+use trackbed_dem::device::{Arguments, Call, Machine};
 
 /// Threads of a block, as the text states them in its launch bounds.
 const THREADS: u32 = 128;
@@ -48,11 +48,11 @@ fn of_driver(e: DriverError) -> String {
 }
 
 impl Cuda {
-    /// The first device, with the kernels of a text. Call it where nothing is [`missing`].
+    /// The first device, with the kernels of a text, by name. Call it where nothing is [`missing`].
     ///
     /// # Errors
     /// There is no device, or it does not take the kernels.
-    pub fn new(text: &str) -> Result<Cuda, String> {
+    pub fn new(text: &str, kernels: &[&'static str]) -> Result<Cuda, String> {
         let context = CudaContext::new(0).map_err(of_driver)?;
         let (major, minor) = context.compute_capability().map_err(of_driver)?;
         let options = CompileOptions {
@@ -66,8 +66,8 @@ impl Cuda {
             other => format!("NVRTC: {other}"),
         })?;
         let module = context.load_module(code).map_err(of_driver)?;
-        let kernel = |name| Ok((name, module.load_function(name).map_err(of_driver)?));
-        let kernels = KERNELS.into_iter().map(kernel).collect::<Result<_, String>>()?;
+        let kernel = |&name| Ok((name, module.load_function(name).map_err(of_driver)?));
+        let kernels = kernels.iter().map(kernel).collect::<Result<_, String>>()?;
         let name = context.name().map_err(of_driver)?;
         Ok(Cuda { stream: context.default_stream(), kernels, buffers: Vec::new(), name })
     }
@@ -115,6 +115,10 @@ impl Machine for Cuda {
 
     fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String> {
         self.room(buffer, numbers * size_of::<f64>()).map(|_| ())
+    }
+
+    fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String> {
+        self.room(buffer, counts * size_of::<u32>()).map(|_| ())
     }
 
     fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {

@@ -63,7 +63,7 @@ impl Steps {
     pub fn device(model: &dem::Model, state: &dem::State) -> Result<Steps, Failure> {
         let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
         let text = device::source(model).map_err(|e| refused(e.to_string()))?;
-        let machine = Cuda::new(&text).map_err(refused)?;
+        let machine = Cuda::new(&text, device::kernels(model)).map_err(refused)?;
         message::note(&format!("the steps of the run proper are computed on {}", machine.name));
         let device = Device::new(machine, model, state).map_err(|e| refused(e.to_string()))?;
         Ok(Steps::Device(Box::new(device)))

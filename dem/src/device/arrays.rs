@@ -172,6 +172,24 @@ impl Lists {
         self.ranges[block][list as usize]
     }
 
+    /// First contact of each sphere across blocks, then within, then with planes, and one past the last; room for as much again of spheres.
+    pub fn offsets(&self, work: &Work, spheres: &Spheres) -> Vec<u32> {
+        let count = spheres.count;
+        let mut out = vec![0; 4 * count + 1];
+        for (k, list) in [List::Cross, List::Own, List::Planes].into_iter().enumerate() {
+            for (b, members) in work.members.iter().enumerate() {
+                let by_body = spheres.clumps && !members.rigid && list != List::Cross;
+                for of in self.from(list, b)..self.from(list, b + 1) {
+                    let i = self.ends[of as usize][0];
+                    let sphere = if by_body { spheres.first[i as usize] } else { i };
+                    out[k * count + sphere as usize + 1] += 1;
+                }
+            }
+        }
+        (0..3 * count).for_each(|k| out[k + 1] += out[k]);
+        out
+    }
+
     fn body(&self, block: usize, place: u32) -> u32 {
         self.ranges[block][0] + place
     }

@@ -31,17 +31,19 @@ pub fn source(model: &Model) -> Result<String, Unsupported> {
 
 /// Steps on a device. A state that it has taken over is whole again after [`BackEnd::download`].
 pub struct Device<M> {
-    machine: M,
-    /// What the processor needs for the search, and for the steps that it makes itself.
-    work: Work,
-    call: Call,
-    features: Features,
-    spheres: Spheres,
+    pub(super) machine: M,
+    /// What the processor needs for its search, and for the steps that it makes itself.
+    pub(super) work: Work,
+    pub(super) call: Call,
+    pub(super) features: Features,
+    pub(super) spheres: Spheres,
     books: Vec<f64>,
     /// Whether the device is ahead of the state.
-    ahead: bool,
+    pub(super) ahead: bool,
+    /// Whether the device has found the neighbours, and neither the state nor `work` knows them.
+    pub(super) found: bool,
     /// Contacts, pairs of spheres and triangles among them, and bonds on the device.
-    contacts: usize,
+    pub(super) contacts: usize,
     pairs: usize,
     bonds: usize,
     /// Whether the next step is the engine's to make.
@@ -86,6 +88,7 @@ impl<M: Machine> Device<M> {
             spheres: Spheres::default(),
             books: Vec::new(),
             ahead: false,
+            found: false,
             contacts: 0,
             pairs: 0,
             bonds: 0,
@@ -112,11 +115,11 @@ impl<M: Machine> Device<M> {
         self.work.rebuilds()
     }
 
-    fn buffer(&self, slot: Slot) -> usize {
+    pub(super) fn buffer(&self, slot: Slot) -> usize {
         self.call.buffers[slot as usize]
     }
 
-    fn put(&mut self, slot: Slot, numbers: &[f64]) -> Result<(), String> {
+    pub(super) fn put(&mut self, slot: Slot, numbers: &[f64]) -> Result<(), String> {
         self.machine.put(self.call.buffers[slot as usize], numbers)
     }
 
@@ -124,7 +127,7 @@ impl<M: Machine> Device<M> {
         self.machine.put_counts(self.call.buffers[slot as usize], counts)
     }
 
-    fn reserve(&mut self, slot: Slot, numbers: usize) -> Result<(), String> {
+    pub(super) fn reserve(&mut self, slot: Slot, numbers: usize) -> Result<(), String> {
         self.machine.reserve(self.call.buffers[slot as usize], numbers)
     }
 
@@ -152,8 +155,14 @@ impl<M: Machine> Device<M> {
         if self.features.clumps {
             self.take_clumps(&motion, &constants)?;
         }
+        if self.features.classes > 0 {
+            let blocks = state.blocks.iter().enumerate();
+            let blocks: Vec<u32> =
+                blocks.flat_map(|(b, block)| block.bodies.iter().map(move |_| b as u32)).collect();
+            self.put_counts(Slot::Block, &blocks)?;
+        }
         self.take_lists(model, state)?;
-        self.ahead = false;
+        (self.ahead, self.found) = (false, false);
         Ok(())
     }
 
@@ -210,6 +219,9 @@ impl<M: Machine> Device<M> {
         for (slot, list) in counts {
             self.put_counts(slot, list)?;
         }
+        if self.features.classes > 0 {
+            self.put_counts(Slot::Offsets, &lists.offsets(&self.work, &self.spheres))?;
+        }
         let numbers: [(Slot, &[f64]); 8] = [
             (Slot::OldMemory, memory.spring.as_flattened()),
             (Slot::OldTurn, if self.features.roll { memory.turn.as_flattened() } else { &[] }),
@@ -250,6 +262,9 @@ impl<M: Machine> Device<M> {
     }
 
     fn bring_back(&mut self, state: &mut State) -> Result<(), String> {
+        if self.found {
+            self.name_contacts(state)?;
+        }
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let mut motion = Motion::zeros(n, self.features.clumps);
         let mut memory = Memory::zeros(self.contacts, self.pairs, self.bonds);
@@ -295,9 +310,7 @@ impl<M: Machine> Device<M> {
             return self.by_processor(model, state, applied);
         }
         if neighbours::due(state) {
-            self.fetch(state)?;
-            neighbours::update(model, state, &mut self.work, &NoSurface);
-            self.take_lists(model, state).map_err(|e| failed(state, e))?;
+            self.list(model, state)?;
         }
         if self.orphans {
             return self.by_processor(model, state, applied);
@@ -317,6 +330,21 @@ impl<M: Machine> Device<M> {
         step::collect(model, state, &mut self.work, 0.0)
     }
 
+    /// Makes the near list anew: on the device, or on the processor.
+    fn list(&mut self, model: &Model, state: &mut State) -> Result<(), StepError> {
+        if self.features.classes > 0 {
+            neighbours::adapt(model, state);
+            self.search(model, state).map_err(|e| failed(state, e))?;
+            self.work.searched.searches += 1;
+            neighbours::made(state, &mut self.work);
+        } else {
+            self.fetch(state)?;
+            neighbours::update(model, state, &mut self.work, &NoSurface);
+            self.take_lists(model, state).map_err(|e| failed(state, e))?;
+        }
+        Ok(())
+    }
+
     /// Has the engine make a step.
     fn by_processor(
         &mut self,
@@ -325,6 +353,9 @@ impl<M: Machine> Device<M> {
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         self.fetch(state)?;
+        if self.found {
+            self.work.follow(model, state);
+        }
         step::step(model, state, &mut self.work, &NoSurface, applied)?;
         self.take_over(model, state).map_err(|e| failed(state, e))
     }

@@ -132,6 +132,8 @@ fn by_four(members: &Members, k: usize, n: usize) -> bool {
 pub(super) struct Spheres {
     /// Whether any body is a clump.
     pub clumps: bool,
+    /// Number of spheres.
+    pub count: usize,
     /// First sphere of each block.
     pub base: Vec<u32>,
     /// First sphere of each body, and one past the last.
@@ -165,6 +167,7 @@ impl Spheres {
             bodies += block.bodies.len() as u32;
         }
         out.first.push(out.owner.len() as u32);
+        out.count = if model.clumps { out.owner.len() } else { bodies as usize };
         out
     }
 

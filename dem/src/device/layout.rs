@@ -32,11 +32,11 @@ table! {
         NewMemory = "NEW_MEMORY": "four",
         NewTurn = "NEW_TURN": "four",
         /// Bodies of each contact, spheres where clumps may be; the second of those with planes is the plane.
-        Ends = "ENDS": "const ends",
+        Ends = "ENDS": "ends",
         /// Where the entries of each body begin, and one past the last.
-        Start = "START": "const unsigned",
+        Start = "START": "unsigned",
         /// Sixteen times a contact or bond; plus twice what it is ([`What`]), plus one where the body is the second.
-        Entries = "ENTRIES": "const unsigned",
+        Entries = "ENTRIES": "unsigned",
         /// Constants of the laws of each pair of materials.
         Law = "LAW": "const real",
         /// Unit normal and its product with a point; velocity and material.
@@ -46,7 +46,7 @@ table! {
         /// Mass and moment of inertia of each body.
         Constants = "CONSTANTS": "const two",
         /// Where the lists of each block begin ([`List`]).
-        Ranges = "RANGES": "const unsigned",
+        Ranges = "RANGES": "unsigned",
         /// What dashpots and friction took in each contact.
         Spent = "SPENT": "two",
         /// Spheres of clumps and single ones: centre and radius, the body of each, the first of each body and one past the last, and
@@ -100,6 +100,27 @@ table! {
         Books = "BOOKS": "real",
         /// Whether a step has failed.
         Flags = "FLAGS": "unsigned",
+        /// Of the search. One over the width of the cells and the largest radius of each class of size; the block of each body; point,
+        /// with one where it is open, offset and normal of each plane.
+        Grids = "GRIDS": "const real",
+        Block = "BLOCK": "const unsigned",
+        PlanesSearched = "PLANES_SEARCHED": "const four",
+        /// First item of each bucket and one past the last; the bucket of each sphere and its place there; spheres by bucket.
+        Cells = "CELLS": "unsigned",
+        Bucket = "BUCKET": "unsigned",
+        Place = "PLACE": "unsigned",
+        Items = "ITEMS": "unsigned",
+        /// First contact of each sphere with other blocks, then within its own, then with planes; first of its partners. One past the last.
+        Offsets = "OFFSETS": "unsigned",
+        /// Partners of each sphere, ascending.
+        Rows = "ROWS": "unsigned",
+        /// Contacts and their offsets before the search, and how much it has found.
+        OldEnds = "OLD_ENDS": "const ends",
+        OldOffsets = "OLD_OFFSETS": "const unsigned",
+        Totals = "TOTALS": "unsigned",
+        /// A list of which sums are made, and those of its stretches.
+        Summed = "SUMMED": "unsigned",
+        Sums = "SUMS": "unsigned",
     }
 }
 
@@ -118,6 +139,8 @@ table! {
         /// The last step, and the time since then: zero before the first.
         Last = "LAST",
         Since = "SINCE",
+        /// Way apart up to which partners are listed.
+        Reach = "REACH",
     }
 }
 
@@ -135,6 +158,14 @@ table! {
         FirstPatch = "FIRST_PATCH",
         /// The first contact across a periodic border.
         FirstImage = "FIRST_IMAGE",
+        Spheres = "SPHERE_COUNT",
+        Planes = "PLANE_COUNT",
+        /// A power of two.
+        Buckets = "BUCKETS",
+        /// Of sums: where the list begins, its length, and where the sums of its stretches go.
+        SumFrom = "SUM_FROM",
+        SumLength = "SUM_COUNT",
+        SumTo = "SUM_TO",
     }
 }
 
@@ -233,6 +264,9 @@ pub(super) const SHAPE_WIDTH: usize = 25;
 pub(super) const WALL_WIDTH: usize = 19;
 pub(super) const PATCH_WIDTH: usize = 5;
 
+/// Numbers that one thread sums up in the search.
+pub(super) const STRETCH: usize = 64;
+
 /// Numbers that a body keeps for local damping and fixed motions.
 pub(super) const HELD_WIDTH: usize = 21;
 
@@ -265,6 +299,8 @@ pub(super) struct Features {
     pub walls: usize,
     /// Whether there are periodic borders.
     pub periodic: bool,
+    /// Classes of size in the search for neighbours; none where that is the processor's.
+    pub classes: usize,
 }
 
 impl Features {
@@ -363,6 +399,13 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("IMAGES_LIST", List::Images as usize),
         ("BOND_WIDTH", crate::bond::kernel::COUNT),
         ("ITERATIONS", crate::integrate::rotation::ITERATIONS),
+        ("CLASSES", f.classes),
+        ("STRETCH", STRETCH),
+        ("ACROSS", if f.clumps { What::Members } else { What::Spheres } as usize),
+        ("WITHIN", What::Spheres as usize),
+        ("WITHIN_TURNED", What::Members as usize),
+        ("PLANE", What::Plane as usize),
+        ("PLANE_TURNED", What::MemberPlane as usize),
     ];
     for (name, value) in sizes {
         _ = writeln!(out, "#define {name} {value}u");

@@ -1,6 +1,8 @@
 //! What carries the kernels out.
 
 use super::layout::{Arguments, Count, Number, Slot};
+use super::search;
+use crate::engine::model::Model;
 
 /// A launch: which array is where, and the numbers and counts.
 #[derive(Clone, Debug)]
@@ -53,6 +55,12 @@ pub trait Machine {
     /// As [`Machine::put`].
     fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String>;
 
+    /// Makes a buffer hold so many counts, whatever they are.
+    ///
+    /// # Errors
+    /// As [`Machine::put`].
+    fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String>;
+
     /// Reads as many numbers of a buffer as there is room for.
     ///
     /// # Errors
@@ -72,5 +80,24 @@ pub trait Machine {
     fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String>;
 }
 
-/// The kernels that a text has.
-pub const KERNELS: [&str; 2] = ["bodies", "books"];
+/// The kernels of a step, and those of the search for neighbours.
+const STEP: [&str; 2] = ["bodies", "books"];
+const ALL: [&str; 12] = [
+    "bodies",
+    "books",
+    "clear_cells",
+    "count_cells",
+    "fill_cells",
+    "count_partners",
+    "totals",
+    "list_partners",
+    "enter_partners",
+    "ranges",
+    "sum_up",
+    "sum_down",
+];
+
+/// The kernels that the text for a model has.
+pub fn kernels(model: &Model) -> &'static [&'static str] {
+    if search::covers(model) { &ALL } else { &STEP }
+}

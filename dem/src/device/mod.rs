@@ -1,8 +1,8 @@
 //! Steps on a device: the same arrays and the same order of sums as the engine's, and formulas that are the engine's own,
 //! recorded (`tape.rs`) and written out as text (`text`, a file a kind of force or motion) that a C compiler takes as well as CUDA's.
 //!
-//! Neighbours are searched on the processor; a step that fails there or that puts the bodies in a new order is made by the engine
-//! itself. Whatever the device cannot compute is refused by name ([`check`]).
+//! Neighbours are searched there too where bodies meet each other and planes alone (`search.rs`), else on the processor; a step that fails
+//! there or that puts the bodies in a new order is made by the engine itself. Whatever the device cannot compute is refused by name ([`check`]).
 
 mod arrays;
 mod back_end;
@@ -10,11 +10,12 @@ mod bodies;
 mod layout;
 mod machine;
 mod scope;
+mod search;
 mod tape;
 mod text;
 mod walls;
 
 pub use back_end::{Device, source};
 pub use layout::Arguments;
-pub use machine::{Call, KERNELS, Machine};
+pub use machine::{Call, Machine, kernels};
 pub use scope::{Unsupported, check};

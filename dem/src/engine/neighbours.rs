@@ -14,9 +14,11 @@ use super::walls;
 use super::work::Work;
 use crate::bodies::part::Part;
 use crate::contact::kind::{KINDS, Now};
+use crate::lanes::V3;
 use crate::lanes::record::xyz;
 use crate::pairs::cross::{self, Cross, ImageName};
 use crate::pairs::patch_search as patches;
+use crate::pairs::reach;
 use crate::shape::cuboid;
 use crate::spatial::patchwork::Walls;
 use crate::spatial::surface::Surface;
@@ -67,6 +69,11 @@ pub(crate) fn renew<S: Surface>(
     approach: f64,
 ) {
     make(model, state, work, surface, approach);
+    made(state, work);
+}
+
+/// Takes note of a near list that has just been made.
+pub(crate) fn made(state: &mut State, work: &mut Work) {
     state.drift = 0.0;
     state.wall_drift = 0.0;
     state.lasted = 0;
@@ -138,8 +145,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         let own = spheres(b as u32);
         let close = |c: &[u32; 3]| {
             let (p, q) = (&own[c[0] as usize], &spheres(c[1])[c[2] as usize]);
-            let reach = p[3] + q[3] + near;
-            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+            reach::spheres(V3::from_vec(&(xyz(p) - xyz(q))), (p[3], q[3]), near)
         };
         merging.three.merge(&mut cross.spheres, c.cross.iter().copied(), close);
         pool.give_back(merging);
@@ -149,8 +155,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         if let Some(periodic) = &model.periodic {
             let close = |c: &&ImageName| {
                 let (p, q) = (&own[c.i as usize], &spheres(c.block)[c.j as usize]);
-                let reach = p[3] + q[3] + near;
-                (xyz(p) - xyz(q) - periodic.way(&c.shift)).norm_squared() < reach * reach
+                let between = xyz(p) - xyz(q) - periodic.way(&c.shift);
+                reach::spheres(V3::from_vec(&between), (p[3], q[3]), near)
             };
             cross::merge(&mut cross.images, c.images.iter().filter(close).copied());
         }
@@ -161,14 +167,14 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         let mut merging = pool.take();
         let close = |c: &[u32; 2]| {
             let (p, q) = (&own[c[0] as usize], &own[c[1] as usize]);
-            let reach = p[3] + q[3] + near;
-            (xyz(p) - xyz(q)).norm_squared() < reach * reach
+            reach::spheres(V3::from_vec(&(xyz(p) - xyz(q))), (p[3], q[3]), near)
         };
         merging.two.merge(pairs, c.pairs.iter().map(|c| c.map(u32::from)), close);
         let close = |c: &[u32; 2]| {
             let plane = &model.planes[c[1] as usize];
             let (p, offset) = (&own[c[0] as usize], planes[c[1] as usize].offset);
-            !planes[c[1] as usize].open && (xyz(p) - plane.point - offset).dot(&plane.normal) < p[3] + near
+            let (from, normal) = (xyz(p) - plane.point - offset, V3::from_vec(&plane.normal));
+            !planes[c[1] as usize].open && reach::plane(V3::from_vec(&from), normal, p[3], near)
         };
         merging.two.merge(plane_pairs, c.planes.iter().copied(), close);
         pool.give_back(merging);

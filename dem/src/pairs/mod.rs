@@ -8,4 +8,5 @@ pub(crate) mod list;
 pub(crate) mod merge;
 pub(crate) mod patch_search;
 pub(crate) mod patches;
+pub(crate) mod reach;
 pub(crate) mod reference;

@@ -20,6 +20,8 @@ pub struct CMachine {
     folder: PathBuf,
     buffers: Vec<Buffer>,
     launches: u32,
+    /// Numbers and counts that were read.
+    pub read: usize,
 }
 
 /// Whether there is a C compiler; says so where there is none.
@@ -44,7 +46,7 @@ impl CMachine {
         compile(&source, &library);
         // SAFETY: the library is the one just compiled, whose loading runs no code.
         let library = unsafe { libloading::Library::new(&library) }.unwrap();
-        CMachine { library, folder, buffers: Vec::new(), launches: 0 }
+        CMachine { library, folder, buffers: Vec::new(), launches: 0, read: 0 }
     }
 
     fn set(&mut self, buffer: usize, to: Buffer) {
@@ -95,7 +97,14 @@ impl Machine for CMachine {
         Ok(())
     }
 
+    fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String> {
+        // Likewise.
+        self.set(buffer, Buffer::Counts(vec![0x00ab_cdef; counts]));
+        Ok(())
+    }
+
     fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
+        self.read += numbers.len();
         match &self.buffers[buffer] {
             Buffer::Numbers(own) => numbers.copy_from_slice(own),
             Buffer::Counts(_) => return Err(format!("buffer {buffer} holds counts")),
@@ -104,6 +113,7 @@ impl Machine for CMachine {
     }
 
     fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
+        self.read += counts.len();
         match &self.buffers[buffer] {
             Buffer::Counts(own) => counts.copy_from_slice(own),
             Buffer::Numbers(_) => return Err(format!("buffer {buffer} holds numbers")),

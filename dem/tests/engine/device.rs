@@ -17,7 +17,7 @@ use trackbed_dem::{
     State, Vec3, WallInput, WallShape, Work, step,
 };
 
-const STEPS: usize = 1000;
+pub(crate) const STEPS: usize = 1000;
 /// Both materials of a scene.
 const PAIR: PairOverride = PairOverride {
     a: 0,
@@ -34,7 +34,7 @@ const PAIR: PairOverride = PairOverride {
 };
 
 /// Spheres of unlike sizes thrown about in a box of planes, the floor of which comes up; more than a block of them.
-fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> ModelInput {
+pub(crate) fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> ModelInput {
     let mut random = Random::new(7);
     let mut input = ModelInput {
         materials: materials.to_vec(),
@@ -77,6 +77,16 @@ fn compare(
     steps: usize,
     change: impl Fn(String) -> String,
 ) -> (Option<usize>, State, (u64, u64)) {
+    compare_events(input, steps, change, |_, _| false)
+}
+
+/// As [`compare`]; `event` may do something to both states before a step, and says whether it has.
+pub(crate) fn compare_events(
+    input: ModelInput,
+    steps: usize,
+    change: impl Fn(String) -> String,
+    event: impl Fn(usize, &mut State) -> bool,
+) -> (Option<usize>, State, (u64, u64)) {
     let model = Model::new(input).expect("a good input");
     let text = change(source(&model).expect("a model for a device"));
     let (mut ours, mut theirs) = (State::new(&model), State::new(&model));
@@ -86,8 +96,18 @@ fn compare(
     let mut device = Device::new(CMachine::new(&text), &model, &ours).expect("memory");
     let mut differs = None;
     for k in 1..=steps {
+        if event(k, &mut theirs) {
+            device.download(&model, &mut ours).expect("a device that responds");
+            event(k, &mut ours);
+            device.upload(&model, &ours).expect("memory");
+        }
         step(&model, &mut theirs, &mut work, &NoSurface, &[]).expect("a good step");
-        device.step(&model, &mut ours, &NoSurface, &[]).expect("a good step on the device");
+        // What is wrong may end there.
+        if let Err(e) = device.step(&model, &mut ours, &NoSurface, &[]) {
+            println!("step {k} on the device: {e}");
+            differs = Some(k);
+            break;
+        }
         if k % 7 == 0 || k == steps {
             device.download(&model, &mut ours).expect("a device that responds");
             let bytes = |s: &State| postcard::to_stdvec(s).unwrap();
@@ -129,7 +149,7 @@ fn same_bits(name: &str, input: ModelInput) -> State {
     state
 }
 
-fn smooth() -> Material {
+pub(crate) fn smooth() -> Material {
     Material { friction: 0.2, restitution: 0.8, tangential_damping_ratio: 0.1, density: 2000.0, ..stone() }
 }
 
@@ -142,7 +162,7 @@ fn named(name: &str) -> Option<LawName> {
     Some(table::normal_named(name).expect("a normal law"))
 }
 
-fn turning(m: Material) -> Material {
+pub(crate) fn turning(m: Material) -> Material {
     Material { rolling_friction: 0.1, twisting_friction: 0.05, ..m }
 }
 
@@ -208,7 +228,7 @@ fn local_damping_and_fixed_motions() {
 }
 
 /// The gas, with clumps of two sizes in place of the spheres that `which` picks.
-fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) -> ModelInput {
+pub(crate) fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) -> ModelInput {
     let three = [([0.0, 0.0, 0.0], 0.006), ([0.0035, 0.001, 0.0], 0.005), ([-0.003, 0.002, 0.002], 0.0045)];
     let two = [([0.003, 0.0, 0.0], 0.0055), ([-0.003, 0.001, 0.0], 0.005)];
     for spheres in [&three[..], &two[..]] {

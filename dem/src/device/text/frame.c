@@ -12,6 +12,8 @@
 #define THREAD(i, count)                                     \
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x; \
     if (i >= (count)) return;
+#define RUN(name)
+#define TAKE(count) atomicAdd(&(count), 1u)
 #define ENDLESS __longlong_as_double(0x7ff0000000000000LL)
 #else
 #include <math.h>
@@ -23,6 +25,13 @@
 #define THREAD(i, count)              \
     const unsigned i = thread_number; \
     if (i >= (count)) return;
+/// Runs a kernel with so many threads one after another, from the first or from the last.
+#define RUN(name)                                                                        \
+    void name(const arguments *p, unsigned threads, int backwards) {                     \
+        for (unsigned t = 0; t < threads; ++t) name##_of(p, backwards ? threads - 1 - t : t); \
+    }
+/// What a count is before one is added to it; on a device as one operation.
+#define TAKE(count) ((count)++)
 #define ENDLESS ((real)INFINITY)
 #endif
 
@@ -128,6 +137,7 @@ KERNEL(bodies) {
     }
     advance(p, i, x, v, w, s);
 }
+RUN(bodies)
 
 /// What the blocks book, one number of one block a thread.
 KERNEL(books) {
@@ -137,13 +147,4 @@ KERNEL(books) {
 //@BOOKS
     BOOKS[t] = x;
 }
-
-#ifndef __CUDACC__
-/// Runs a kernel with so many threads one after another, from the first or from the last.
-#define RUN(name)                                                                        \
-    void name(const arguments *p, unsigned threads, int backwards) {                     \
-        for (unsigned t = 0; t < threads; ++t) name##_of(p, backwards ? threads - 1 - t : t); \
-    }
-RUN(bodies)
 RUN(books)
-#endif

@@ -8,9 +8,11 @@ mod motion;
 mod patches;
 mod planes;
 mod record;
+mod search;
 mod spheres;
 
 use super::layout::{self, Features};
+use super::search::{classes, covers};
 use super::tape::{self, Recorded};
 use crate::engine::model::Model;
 use crate::law::{ContactLaw, FRESH, Laws, PairTable, with_law};
@@ -33,6 +35,7 @@ pub(super) fn features(model: &Model) -> Features {
         clumps: model.clumps,
         walls: model.walls.walls.len(),
         periodic: model.periodic.is_some(),
+        classes: if covers(model) { classes(model.radii) } else { 0 },
     }
 }
 
@@ -56,6 +59,9 @@ fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) ->
     all.push(motion::part(f));
     if f.held {
         all.push(motion::books());
+    }
+    if f.classes > 0 {
+        all.push(search::part());
     }
     all
 }
