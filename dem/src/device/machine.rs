@@ -1,7 +1,7 @@
 //! What carries the kernels out.
 
 use super::layout::{Arguments, Count, Number, Slot};
-use super::search;
+use super::sizes;
 use crate::engine::model::Model;
 
 /// A launch: which array is where, and the numbers and counts.
@@ -99,5 +99,5 @@ const ALL: [&str; 12] = [
 
 /// The kernels that the text for a model has.
 pub fn kernels(model: &Model) -> &'static [&'static str] {
-    if search::covers(model) { &ALL } else { &STEP }
+    if sizes::covers(model) { &ALL } else { &STEP }
 }

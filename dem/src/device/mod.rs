@@ -11,6 +11,7 @@ mod layout;
 mod machine;
 mod scope;
 mod search;
+mod sizes;
 mod tape;
 mod text;
 mod walls;

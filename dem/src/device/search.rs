@@ -1,4 +1,4 @@
-//! The search for neighbours on the device: its kernels in turn (`text/search.c`), and what of it the processor is told.
+//! The search for neighbours on the device: its kernels in turn (`text/search.c`), and what of it the processor gets.
 //!
 //! The near list is a function of where bodies are: all pairs within a reach, by the order of their spheres, with the memory of those that
 //! were listed before. So it has the engine's bits however it is found; here straight from cells, without candidates.
@@ -6,29 +6,11 @@
 use super::back_end::Device;
 use super::layout::{Count, LISTS, List, Number, STRETCH, Slot};
 use super::machine::Machine;
+use super::sizes::largest;
 use crate::base::Vec3;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::law::History;
-
-/// Most classes of size; all smaller spheres share the last.
-const CLASSES: usize = 8;
-
-/// Whether the device searches for the neighbours of a model's bodies: those that meet each other and planes alone.
-pub(super) fn covers(model: &Model) -> bool {
-    model.bonds.is_empty() && model.walls.walls.is_empty() && model.periodic.is_none()
-}
-
-/// Classes of size for spheres between two radii [m]: each spans a factor of two, where they differ much.
-pub(super) fn classes((least, most): (f64, f64)) -> usize {
-    let wide = most > 3.0 * least;
-    (1..CLASSES).take_while(|k| wide && least <= largest(most, *k)).count() + 1
-}
-
-/// The largest radius of a class [m].
-fn largest(most: f64, class: usize) -> f64 {
-    most / f64::from(1_u32 << class)
-}
 
 impl<M: Machine> Device<M> {
     /// Makes the near list anew where the bodies are.
@@ -40,10 +22,10 @@ impl<M: Machine> Device<M> {
         let (spheres, bodies, blocks) = (self.spheres.count, state.present_count(), state.blocks.len());
         self.fill_cells(model, state, spheres)?;
         self.reserve_counts(Slot::Offsets, 4 * spheres + 1)?;
-        self.run("count_partners", spheres + 1)?;
-        self.sum(Slot::Offsets, 4 * spheres + 1)?;
+        self.call_kernel("count_partners", spheres + 1)?;
+        self.running_total(Slot::Offsets, 4 * spheres + 1)?;
         self.reserve_counts(Slot::Totals, 3)?;
-        self.run("totals", 1)?;
+        self.call_kernel("totals", 1)?;
         let mut totals = [0; 3];
         let buffer = self.buffer(Slot::Totals);
         self.machine.get_counts(buffer, &mut totals)?;
@@ -52,9 +34,9 @@ impl<M: Machine> Device<M> {
         self.reserve_counts(Slot::Rows, partners)?;
         self.reserve_counts(Slot::Entries, partners + (contacts - of_spheres))?;
         self.remember(contacts)?;
-        self.run("list_partners", spheres)?;
-        self.run("enter_partners", bodies + 1)?;
-        self.run("ranges", blocks + 1)?;
+        self.call_kernel("list_partners", spheres)?;
+        self.call_kernel("enter_partners", bodies + 1)?;
+        self.call_kernel("ranges", blocks + 1)?;
         for (old, new) in [(Slot::OldMemory, Slot::NewMemory), (Slot::OldTurn, Slot::NewTurn)] {
             self.call.buffers.swap(old as usize, new as usize);
         }
@@ -98,14 +80,14 @@ impl<M: Machine> Device<M> {
         for slot in [Slot::Bucket, Slot::Place, Slot::Items] {
             self.reserve_counts(slot, spheres)?;
         }
-        self.run("clear_cells", buckets + 1)?;
-        self.run("count_cells", spheres)?;
-        self.sum(Slot::Cells, buckets + 1)?;
-        self.run("fill_cells", spheres)
+        self.call_kernel("clear_cells", buckets + 1)?;
+        self.call_kernel("count_cells", spheres)?;
+        self.running_total(Slot::Cells, buckets + 1)?;
+        self.call_kernel("fill_cells", spheres)
     }
 
     /// Has each number of a list become the sum of all before it.
-    fn sum(&mut self, slot: Slot, count: usize) -> Result<(), String> {
+    fn running_total(&mut self, slot: Slot, count: usize) -> Result<(), String> {
         // The list, sums of its stretches, sums of stretches of these; all but the list in one buffer.
         let (mut lengths, mut from) = (vec![count], vec![0, 0]);
         while let Some(&last) = lengths.last().filter(|n| **n > STRETCH) {
@@ -121,12 +103,12 @@ impl<M: Machine> Device<M> {
             self.call.count(Count::SumFrom, from[k]);
             self.call.count(Count::SumLength, lengths[k]);
             self.call.count(Count::SumTo, from[k + 1]);
-            self.run(kernel, lengths[k].div_ceil(STRETCH))?;
+            self.call_kernel(kernel, lengths[k].div_ceil(STRETCH))?;
         }
         Ok(())
     }
 
-    fn run(&mut self, kernel: &'static str, threads: usize) -> Result<(), String> {
+    fn call_kernel(&mut self, kernel: &'static str, threads: usize) -> Result<(), String> {
         self.machine.launch(kernel, threads, &self.call)
     }
 
@@ -160,17 +142,5 @@ impl<M: Machine> Device<M> {
             of(List::Planes).for_each(|[i, plane]| lists.planes.push([i - first, plane], &History::NONE));
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every radius between the two has a class that is no more than twice as large, but in the last.
-    #[test]
-    fn classes_halve() {
-        assert_eq!([(1.0, 1.0), (0.4, 1.0), (0.25, 1.0), (0.2, 1.0)].map(classes), [1, 1, 3, 3]);
-        assert_eq!(classes((1e-9, 1.0)), CLASSES);
     }
 }

@@ -12,7 +12,7 @@ mod search;
 mod spheres;
 
 use super::layout::{self, Features};
-use super::search::{classes, covers};
+use super::sizes::{classes, covers};
 use super::tape::{self, Recorded};
 use crate::engine::model::Model;
 use crate::law::{ContactLaw, FRESH, Laws, PairTable, with_law};

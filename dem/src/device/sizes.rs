@@ -1,0 +1,34 @@
+//! Where the device searches for neighbours itself, and the classes of size that its cells have.
+
+use crate::engine::model::Model;
+
+/// Most classes of size; all smaller spheres share the last.
+const CLASSES: usize = 8;
+
+/// Whether the device searches for the neighbours of a model's bodies: those that meet each other and planes alone.
+pub(super) fn covers(model: &Model) -> bool {
+    model.bonds.is_empty() && model.walls.walls.is_empty() && model.periodic.is_none()
+}
+
+/// Classes of size for spheres between two radii [m]: each spans a factor of two, where they differ much.
+pub(super) fn classes((least, most): (f64, f64)) -> usize {
+    let wide = most > 3.0 * least;
+    (1..CLASSES).take_while(|k| wide && least <= largest(most, *k)).count() + 1
+}
+
+/// The largest radius of a class [m].
+pub(super) fn largest(most: f64, class: usize) -> f64 {
+    most / f64::from(1_u32 << class)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every radius between the two has a class that is no more than twice as large, but in the last.
+    #[test]
+    fn classes_halve() {
+        assert_eq!([(1.0, 1.0), (0.4, 1.0), (0.25, 1.0), (0.2, 1.0)].map(classes), [1, 1, 3, 3]);
+        assert_eq!(classes((1e-9, 1.0)), CLASSES);
+    }
+}
