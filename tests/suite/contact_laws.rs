@@ -69,6 +69,16 @@ fn parts_switched_off_dissipate_nothing() {
     assert!(history.column("contact_springs").iter().any(|e| *e > 0.0));
 }
 
+/// Runs a scene of `inputs/verify` in which a ball hits a wall: its history, and the kinetic energies before and after [J].
+fn impact(scene: &str, folder: &Folder, set: &[String]) -> (Table, [f64; 2]) {
+    let set: Vec<&str> = set.iter().map(String::as_str).collect();
+    run(&repository().join("inputs/verify").join(scene), &folder.join("out"), &set).good();
+    let history = Table::read(&folder.join("out/history.csv"));
+    let kinetic = history.column("grains_kinetic");
+    let ends = [kinetic[0], *kinetic.last().unwrap()];
+    (history, ends)
+}
+
 /// Walton & Braun 1986: e = √(k₁/k₂) and the plastic work (1 − e²) m v²/2 at any speed. Tolerance 0.5 %.
 #[test]
 fn plastic_bounce_keeps_the_part_of_the_closed_form() {
@@ -85,11 +95,7 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
                 format!("time.end={}", 0.04 / speed / e + 0.01),
                 "output.vtk=false".to_string(),
             ];
-            let set: Vec<&str> = set.iter().map(String::as_str).collect();
-            run(&repository().join("inputs/verify/bounce.toml"), &folder.join("out"), &set).good();
-            let history = Table::read(&folder.join("out/history.csv"));
-            let kinetic = history.column("grains_kinetic");
-            let (first, last) = (kinetic[0], *kinetic.last().unwrap());
+            let (history, [first, last]) = impact("bounce.toml", &folder, &set);
             let found = (last / first).sqrt();
             let plastic = history.column("dissipated_dashpot").last().unwrap() / first;
             println!("e {e}, {speed} m/s: found {found:.5}, plastic work {plastic:.5} of {:.5}", 1.0 - e * e);
@@ -116,11 +122,7 @@ fn a_crushing_corner_keeps_the_part_of_the_closed_form() {
             "time.grain_step=1e-6".into(),
             "output.vtk=false".into(),
         ];
-        let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        run(&repository().join("inputs/verify/corner.toml"), &folder.join("out"), &set).good();
-        let history = Table::read(&folder.join("out/history.csv"));
-        let kinetic = history.column("grains_kinetic");
-        let (first, last) = (kinetic[0], *kinetic.last().unwrap());
+        let (history, [first, last]) = impact("corner.toml", &folder, &set);
         let cube = radius.powi(3) + 3.0 * (first - 0.4 * c * h * radius.powi(3)) / (c * (h + k));
         let (kept, force) = (0.4 * c * h * cube / first, c * cube.powf(2.0 / 3.0));
         let crushed = history.column("dissipated_dashpot").last().unwrap() / first;

@@ -195,11 +195,6 @@ impl Model {
         self.steps.share
     }
 
-    /// Whether the stiffness of any contact grows with its overlap.
-    pub(crate) fn stiffens(&self) -> bool {
-        self.expected > 0.0
-    }
-
     /// Longest step that collisions, rigid bodies of walls and the input allow [s], whatever touches; `packed`: where most
     /// contacts last (see [`crate::stability`]).
     pub fn longest(&self, packed: bool) -> f64 {

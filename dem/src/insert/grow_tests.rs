@@ -104,6 +104,28 @@ fn clumps_grow_in_funnels_and_surfaces() {
     }
 }
 
+/// Grains with a modulus start as deep in each other as those with springs, and come to the same porosity.
+#[test]
+fn elastic_grains_grow() {
+    let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(0.2) };
+    let shape = Shape::Sphere { radius: 0.5 };
+    let bodies = bodies(&container, &shape, SizeLaw::ByNumber { low: 0.8, high: 1.2 }, 300, 0.4, 0.5);
+    let of = |material| {
+        grow(&container, std::slice::from_ref(&shape), &bodies, material, &Growth::default()).unwrap()
+    };
+    let elastic = Material {
+        stiffness: f64::INFINITY,
+        young: Some(2e10),
+        poisson: 0.2,
+        corner_strength: 2e8,
+        corner_angle: 1.4,
+        ..material()
+    };
+    let (grown, springs) = (of(elastic), of(material()));
+    assert!((grown.porosity - springs.porosity).abs() < 1e-3, "{} {}", grown.porosity, springs.porosity);
+    assert!((grown.overlap / springs.overlap - 1.0).abs() < 0.1, "{} {}", grown.overlap, springs.overlap);
+}
+
 #[test]
 fn too_much_in_too_few_rounds_is_said() {
     let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(0.2) };

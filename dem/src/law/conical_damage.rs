@@ -161,9 +161,7 @@ impl NormalLaw for ConicalDamage {
 
     #[inline(always)]
     fn circle(&self, overlap: f64, radius: f64, remembered: f64) -> f64 {
-        // Of a contact that is to come the stiffness asked for is that of first loading.
-        let (radius, elastic) =
-            self.state(overlap, radius, if remembered == FRESH { radius } else { remembered });
+        let (radius, elastic) = self.state(overlap, radius, remembered);
         (radius * elastic).sqrt()
     }
 

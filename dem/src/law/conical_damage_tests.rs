@@ -1,8 +1,11 @@
 //! Corners that crush, against the figures of another program and closed forms.
 
 use super::*;
+use crate::base::Vec3;
 use crate::law::constants::Constants;
 use crate::law::material::Material;
+use crate::law::table::ConicalLaw;
+use crate::law::{ContactGeometry, ContactLaw, History};
 
 const GRANITE: Material = Material {
     young: Some(1e10),
@@ -86,6 +89,27 @@ fn overlaps_of_the_start_have_crushed() {
     );
 }
 
+/// Where the elastic overlap is gone nothing holds bodies that slide over each other, and the spring begins anew with the next load.
+#[test]
+fn nothing_is_held_without_pressure() {
+    let law = ConicalLaw::mix(&Pair { a: &GRANITE, b: &GRANITE, exception: None });
+    let (mut history, still, dt) = (History { rate: law.begun(0.0), ..History::NONE }, Vec3::zeros(), 1e-5);
+    let mut go = |overlap: f64, velocity: Vec3| {
+        let touch = ContactGeometry { point: still, normal: Vec3::z(), overlap, radius: 0.1 };
+        let f = law.evaluate_one(1.0, &touch, &velocity, &still, &mut history, dt);
+        (f, history.spring.norm())
+    };
+    go(2e-4, still);
+    let slide = Vec3::new(0.1, 0.0, 0.0);
+    for _ in 0..10 {
+        let (force, spring) = go(1e-4, slide);
+        assert!(force.force.norm() == 0.0 && spring <= 0.1 * dt * (1.0 + 1e-12), "{force:?} {spring:e}");
+    }
+    let again = Vec3::new(0.0, 0.0, -1e-4 / dt);
+    let (force, _) = go(2e-4, again);
+    assert!(force.normal > 1.0 && force.force.x.abs() < 1e-9 * force.normal, "{force:?}");
+}
+
 /// A partner without corners takes those of the other; one softer than any corner crushes none.
 #[test]
 fn partners_without_corners() {
@@ -94,6 +118,7 @@ fn partners_without_corners() {
     let rubber = Material { young: Some(5e7), ..plate };
     let soft = law(&rubber, &GRANITE);
     assert_eq!(soft.state(1e-3, 0.1, 0.1), (0.1, 1e-3));
+    assert_eq!(soft.state(1e-3, 0.1, FRESH), (0.1, 1e-3), "and what overlaps at the start is elastic");
     assert!(greatest_strength(soft.modulus, GRANITE.corner_angle) < GRANITE.corner_strength);
 }
 

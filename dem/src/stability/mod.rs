@@ -78,11 +78,7 @@ const ROUNDS: usize = 6;
 /// Returns whether it looked.
 pub fn follow(model: &Model, state: &mut State) -> bool {
     let Some(share) = model.measured() else { return false };
-    if state.steps == 0 {
-        begin(model, state, share);
-        return false;
-    }
-    if state.steps < state.pace.look {
+    if state.steps < state.pace.look || state.steps == 0 {
         return false;
     }
     let mut operator = Operator::new(model, state);
@@ -105,18 +101,6 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
     pace.wanted = rung(model.dt(), wanted);
     pace.dt = pace.wanted;
     true
-}
-
-/// Contacts that stiffen with the overlap may be deeper at the start than the first step expects, as in a packing under pressure; others have
-/// the stiffness that it is made for.
-fn begin(model: &Model, state: &mut State, share: f64) {
-    if model.stiffens() {
-        let most = UNSTEADY * share * largest_step(&mut Operator::new(model, state), state);
-        if most < state.pace.wanted {
-            state.pace.wanted = rung(model.dt(), most);
-            state.pace.dt = state.pace.wanted;
-        }
-    }
 }
 
 /// The largest of `first` times powers of 2^⅛ that is not above `wanted`.

@@ -518,7 +518,7 @@ fn a_changed_operation_is_seen() {
             (&walls, "ENDED[before[m]] = ", "ENDED[before[m]] = 0.0 * "),
             (&walls, "past[nearest].alive = 0;", ""),
             (&walls, "turned = numbers[a] > numbers[b]", "turned = numbers[a] < numbers[b]"),
-            (&borders, "COUPLES[c - FIRST_IMAGE] = couple;", ""),
+            (&borders, "if (!second) COUPLES[c - FIRST_IMAGE] = couple;", ""),
             (&borders, "SPENT[c].x : SPENT[c].y", "SPENT[c].y : SPENT[c].x"),
             (&few, " sphere_contact(p, c, second, x, v, w, &s)", " (void)second"),
         ] {

@@ -1,8 +1,9 @@
 //! Contact after Hertz and Mindlin against closed forms.
 
 use crate::scene::{Run, pile, plane, sphere, stone, weightless};
+use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::NoSurface;
-use trackbed_dem::{BodyInput, Material, PairOverride, TimeStep, Vec3, find_contacts, measure};
+use trackbed_dem::{BodyInput, Material, PairOverride, Shape, TimeStep, Vec3, find_contacts, measure};
 
 /// [`stone`] with moduli in place of a stiffness.
 pub fn elastic() -> Material {
@@ -163,6 +164,37 @@ fn unlike_laws_need_one_for_the_pair() {
     let stiffness = Some(1e5);
     input.contacts.push(PairOverride { a: 0, b: 1, normal, stiffness, ..PairOverride::default() });
     trackbed_dem::Model::new(input).expect("a law for every pair");
+}
+
+/// What meets a sleeper has the radius of a stone, whatever the size of the sleeper; a clump touches with its spheres, not with its outline.
+#[test]
+fn radii_are_those_of_contacts() {
+    let longest = |shapes: Vec<Shape>| {
+        let mut input = weightless(elastic());
+        input.impact_speed = Some(1.0);
+        input.time_step = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: true };
+        input.shapes = shapes;
+        input.bodies = (0..input.shapes.len())
+            .map(|k| BodyInput {
+                shape: k,
+                position: Vec3::new(9.0 * k as f64, 0.0, 0.0),
+                ..BodyInput::default()
+            })
+            .collect();
+        let model = trackbed_dem::Model::new(input).expect("a good input");
+        model.longest(false)
+    };
+    let stone = Shape::Sphere { radius: 0.01 };
+    let sleeper = Shape::Box { half: [1.3, 0.14, 0.1] };
+    assert_eq!(longest(vec![stone.clone(), sleeper]), longest(vec![stone]));
+    // A row of nine: the radius of one, the mass of all.
+    let row: Vec<_> = (0..9).map(|k| ([0.015 * k as f64, 0.0, 0.0], 0.01)).collect();
+    let clump = Clump::from_spheres(&row).expect("a clump");
+    let mass = 2600.0 * clump.volume;
+    let found = longest(vec![Shape::Clump(clump)]);
+    let d = (1.25 * std::f64::consts::PI * 2600.0 / modulus()).powf(0.4) * 0.01;
+    let stiffness = 2.0 * modulus() * (0.01 * d).sqrt();
+    assert!((found / (0.2 * (0.5 * mass / stiffness).sqrt()) - 1.0).abs() < 1e-9, "{found:e}");
 }
 
 /// A harder or a faster impact takes a smaller step, and an impact speed overrides the estimate.

@@ -78,6 +78,10 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
         let expected = "no such key, as no law of its contacts has a dashpot";
         return Err(m.error("tangential_damping_ratio", "a value", expected));
     }
+    if m.corner_strength.is_some() && unused("corner_strength") {
+        let expected = "no such key, as no law of its contacts has corners that crush";
+        return Err(m.error("corner_strength", "a value", expected));
+    }
     // The linear law gets a tangential law of its own where there are asperities.
     let knows = |law: &&Combination| law.normal == "linear" || law.uses("asperity_friction");
     if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(knows) {

@@ -44,6 +44,10 @@ fn corners_out_of_place() {
     ] {
         grains_scene().scene("stiffness = \"1 MN/m\"", &format!("{elastic}\n{keys}")).refused(message);
     }
+    let whole = format!("{elastic}\nnormal = \"hertz\"\ncorner_strength = 6e7\ncorner_angle = 1.4");
+    grains_scene().scene("stiffness = \"1 MN/m\"", &whole).refused(
+        "scene.toml:9: material.0.corner_strength: found a value, expected no such key, as no law of its contacts has corners that crush",
+    );
     grains_scene()
         .scene("friction = 0.5", "friction = 0.5\ncorner_strength = 6e7\ncorner_angle = 1.4")
         .refused(

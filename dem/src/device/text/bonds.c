@@ -54,14 +54,7 @@ DEVICE void debonded_contact(ARGUMENTS p, const unsigned c, const int second, co
     }
     outcome o;
     debonded(xa, second ? v_there : v, wa, xb, second ? v : v_there, wb, k, m, r, reference, LAST, &o);
-    if (second) {
-        subtract(&s->force, o.force);
-        add(&s->torque, o.torque_b);
-    } else {
-        add(&s->force, o.force);
-        add(&s->torque, o.torque_a);
-        keep(p, c, o);
-    }
+    hand_out(p, c, second, o, s);
 }
 
 DEVICE real bonds_books(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned q) {

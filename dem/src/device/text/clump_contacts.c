@@ -28,14 +28,7 @@ DEVICE void member_contact(ARGUMENTS p, const unsigned c, const int second, cons
     const four x_there = OLD_X[body], v_there = OLD_V[body];
     outcome o;
     members(xa, second ? v_there : v, wa, second ? x_there : x, xb, second ? v : v_there, wb, second ? x : x_there, k, m, r, STEP, &o);
-    if (second) {
-        subtract(&s->force, o.force);
-        add(&s->torque, o.torque_b);
-    } else {
-        add(&s->force, o.force);
-        add(&s->torque, o.torque_a);
-        keep(p, c, o);
-    }
+    hand_out(p, c, second, o, s);
 }
 
 /// A contact of such a sphere with a plane.

@@ -104,6 +104,18 @@ DEVICE void keep(ARGUMENTS p, const unsigned c, const outcome o) {
     if (o.deep) FLAGS[0] = 1;
 }
 
+/// What a contact does to the body that it is seen from; the first of the two keeps what it remembers.
+DEVICE void hand_out(ARGUMENTS p, const unsigned c, const int second, const outcome o, sums *s) {
+    if (second) {
+        subtract(&s->force, o.force);
+        add(&s->torque, o.torque_b);
+    } else {
+        add(&s->force, o.force);
+        add(&s->torque, o.torque_a);
+        keep(p, c, o);
+    }
+}
+
 /// A contact that does not touch: what it had in its springs is lost.
 DEVICE void end(ARGUMENTS p, const unsigned c, const real *k, const four m, const four r) {
     outcome o = {none(), none(), none(), {0.0, 0.0, 0.0, FRESH}, none(), 0.0, 0.0, 0};

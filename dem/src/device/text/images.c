@@ -33,15 +33,8 @@ DEVICE void image_contact(ARGUMENTS p, const unsigned c, const int second, const
     four couple = none();
     images(xa, second ? v_there : v, wa, second ? x_there : x, xb, second ? v : v_there, wb, second ? x : x_there, way, k, m, r, STEP, &o,
            &couple);
-    if (second) {
-        subtract(&s->force, o.force);
-        add(&s->torque, o.torque_b);
-    } else {
-        add(&s->force, o.force);
-        add(&s->torque, o.torque_a);
-        keep(p, c, o);
-        COUPLES[c - FIRST_IMAGE] = couple;
-    }
+    hand_out(p, c, second, o, s);
+    if (!second) COUPLES[c - FIRST_IMAGE] = couple;
 }
 
 /// What they do about the origin; what they took joins that of the other contacts across blocks.

@@ -29,14 +29,7 @@ DEVICE void sphere_contact(ARGUMENTS p, const unsigned c, const int second, cons
     const four v_there = OLD_V[other];
     outcome o;
     spheres(xa, second ? v_there : v, wa, xb, second ? v : v_there, wb, k, m, r, STEP, &o);
-    if (second) {
-        subtract(&s->force, o.force);
-        add(&s->torque, o.torque_b);
-    } else {
-        add(&s->force, o.force);
-        add(&s->torque, o.torque_a);
-        keep(p, c, o);
-    }
+    hand_out(p, c, second, o, s);
 }
 
 DEVICE real spheres_books(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned q) {
