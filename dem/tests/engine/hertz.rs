@@ -169,7 +169,7 @@ fn unlike_laws_need_one_for_the_pair() {
 /// What meets a sleeper has the radius of a stone, whatever the size of the sleeper; a clump touches with its spheres, not with its outline.
 #[test]
 fn radii_are_those_of_contacts() {
-    let longest = |shapes: Vec<Shape>| {
+    let model = |shapes: Vec<Shape>| {
         let mut input = weightless(elastic());
         input.impact_speed = Some(1.0);
         input.time_step = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: true };
@@ -181,12 +181,15 @@ fn radii_are_those_of_contacts() {
                 ..BodyInput::default()
             })
             .collect();
-        let model = trackbed_dem::Model::new(input).expect("a good input");
-        model.longest(false)
+        trackbed_dem::Model::new(input).expect("a good input")
     };
+    let longest = |shapes: Vec<Shape>| model(shapes).longest(false);
     let stone = Shape::Sphere { radius: 0.01 };
     let sleeper = Shape::Box { half: [1.3, 0.14, 0.1] };
-    assert_eq!(longest(vec![stone.clone(), sleeper]), longest(vec![stone]));
+    assert_eq!(longest(vec![stone.clone(), sleeper.clone()]), longest(vec![stone.clone()]));
+    let (with, alone) = (model(vec![stone.clone(), sleeper]), model(vec![stone]));
+    assert_eq!(with.dt_limit().body, 1, "so many stones fit under the sleeper that it decides");
+    assert_eq!(with.dt_limit().stiffness, alone.dt_limit().stiffness);
     // A row of nine: the radius of one, the mass of all.
     let row: Vec<_> = (0..9).map(|k| ([0.015 * k as f64, 0.0, 0.0], 0.01)).collect();
     let clump = Clump::from_spheres(&row).expect("a clump");
