@@ -20,6 +20,8 @@ pub struct Document {
     included: Vec<Included>,
     /// Overrides given on the command line as (key path, value); their values carry spans past the text.
     overrides: Vec<(String, String)>,
+    /// The same as they were given, with names in place of indices.
+    given: Vec<String>,
 }
 
 impl Document {
@@ -41,8 +43,13 @@ impl Document {
     /// The text is not TOML.
     pub fn parse(file: &Path, text: String) -> Result<Document, SceneError> {
         syntax(file, &text, 0)?;
-        let mut document =
-            Document { file: file.to_path_buf(), text, included: Vec::new(), overrides: Vec::new() };
+        let mut document = Document {
+            file: file.to_path_buf(),
+            text,
+            included: Vec::new(),
+            overrides: Vec::new(),
+            given: Vec::new(),
+        };
         document.included = include::read(&document)?;
         Ok(document)
     }
@@ -61,17 +68,40 @@ impl Document {
 
     /// Replaces or adds one key, given as `key.path=value` with a TOML value; a value that is not TOML is taken
     /// as a string, and nothing after the `=` takes the key away. Tables of an array are addressed by index, `solid.material.0.young=2e7`,
-    /// or by the name that they have: `solid.material.clay.young=2e7`.
+    /// or by the name that they have: `solid.material.clay.young=2e7`. Other files to `include` take the place of those that the scene names,
+    /// also under what was set before.
     ///
     /// # Errors
-    /// No `=`, or a path through something that is not a table or an array.
+    /// No `=`, or a path through something that is not a table or an array; a file to include that cannot be read.
     pub fn set(&mut self, assignment: &str) -> Result<(), SceneError> {
         let Some((path, value)) = assignment.split_once('=') else {
             return Err(override_error(assignment, assignment, "key.path=value"));
         };
         let (path, value) = (self.numbered(path.trim()), value.trim().to_string());
         self.apply(self.tree().get_mut(), &path, &value)?;
+        let includes = path == include::KEY;
         self.overrides.push((path, value));
+        self.given.push(assignment.to_string());
+        if includes {
+            self.include_others()?;
+        }
+        Ok(())
+    }
+
+    /// Reads the files that an override names, and numbers the others anew: names may stand at other indices in the new files.
+    fn include_others(&mut self) -> Result<(), SceneError> {
+        self.included = include::read(self)?;
+        self.overrides.retain(|(path, _)| path == include::KEY);
+        let mut given = std::mem::take(&mut self.given);
+        for assignment in &given {
+            let (path, value) = assignment.split_once('=').expect("seen when it was set");
+            let (path, value) = (self.numbered(path.trim()), value.trim().to_string());
+            if path != include::KEY {
+                self.apply(self.tree().get_mut(), &path, &value)?;
+                self.overrides.push((path, value));
+            }
+        }
+        self.given.append(&mut given);
         Ok(())
     }
 

@@ -46,14 +46,21 @@ impl Included {
     }
 }
 
-/// Reads the files that a scene includes; their paths are relative to its folder.
+/// Reads the files that a scene includes, or those that an override names in their place; their paths are relative to the folder of the scene.
 ///
 /// # Errors
 /// `include` is no list of names; a file cannot be read, is not TOML, or includes files itself.
 pub(super) fn read(document: &Document) -> Result<Vec<Included>, SceneError> {
     let expected = "a list of files: include = [\"granite.toml\"]";
     let tree = DeTable::parse(document.text()).expect("the text was parsed before").into_inner();
-    let names = match tree.get(KEY).map(Spanned::get_ref) {
+    let set =
+        document.overrides().iter().rev().find(|(path, _)| path == KEY).map(|(_, value)| value.as_str());
+    let set = match set {
+        Some("") => return Ok(Vec::new()),
+        Some(value) => Some(DeValue::parse(value).map_or(DeValue::String(value.into()), Spanned::into_inner)),
+        None => None,
+    };
+    let names = match set.as_ref().or_else(|| tree.get(KEY).map(Spanned::get_ref)) {
         None => return Ok(Vec::new()),
         Some(DeValue::Array(names)) => names,
         Some(_) => return Err(document.error(KEY, "no list", expected)),

@@ -110,3 +110,40 @@ fn overrides_paths_and_changes() {
     let faster = hash("third");
     assert!(before != moved && moved != faster);
 }
+
+/// Other files to include may be named on the command line: what was set by name before reaches the new ones, and an empty list takes
+/// all of them away.
+#[test]
+fn other_files_by_an_override() {
+    let scene = format!("include = [\"parts/one.toml\"]\n{GRAINS}\n{WALL}\n{REST}");
+    let hard = MATERIAL.replace("1 MN/m", "2 MN/m");
+    let two = format!(
+        "[[material]]\nname = \"rubber\"\nstiffness = \"1 MN/m\"\nfriction = 0.5\nrestitution = 0.5\n\n{hard}"
+    );
+    let folder = written(
+        "include_others",
+        &scene,
+        &[("one.toml", MATERIAL), ("two.toml", &two), ("same.toml", &hard)],
+    );
+    let file = folder.join("scene.toml");
+    let history = |out: &str, set: &[&str]| {
+        run(&file, &folder.join(out), set).good();
+        fs::read_to_string(folder.join(out).join("history.csv")).unwrap()
+    };
+    let friction = "material.stone.friction=0.1";
+    let others = "include=[\"parts/two.toml\"]";
+    let plain = history("plain", &[friction]);
+    let before = history("before", &[friction, others]);
+    assert_eq!(before, history("after", &[others, friction]));
+    assert_eq!(before, history("same", &["include=[\"parts/same.toml\"]", friction]));
+    assert!(before != plain && before != history("rough", &[others]));
+    for (set, expected) in [
+        ("include=[\"parts/none.toml\"]", "--set: include.0: found"),
+        ("include=parts/two.toml", "--set: include: found no list"),
+        ("include=", "grains.0.material: found \"stone\", expected"),
+    ] {
+        let outcome = run(&file, &folder.join("bad"), &[set]);
+        assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+        assert!(outcome.stderr.contains(expected), "{}\n{expected}", outcome.stderr);
+    }
+}

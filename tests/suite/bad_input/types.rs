@@ -89,8 +89,8 @@ fn values_of_a_wrong_type_are_refused_in_plain_words() {
             }
             for value in VALUES {
                 let mut changed = Document::parse(file, text.clone()).unwrap();
-                changed.set(&format!("{key}={value}")).unwrap();
-                let Err(error) = changed.read::<Scene>() else { continue };
+                let set = changed.set(&format!("{key}={value}"));
+                let Err(error) = set.and_then(|()| changed.read::<Scene>()) else { continue };
                 refused += 1;
                 let sentence = format!("{key}={value}: found {}, expected {}", error.found, error.expected);
                 if TERMS.iter().any(|term| sentence.contains(term)) {
