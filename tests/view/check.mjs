@@ -78,8 +78,36 @@ try {
     await view.set({ 'grains.show': false });
     const hidden = await view.hash();
     expect(new Set([plain, speed, groups, hidden]).size === 4, 'pictures are alike');
-    await view.page.context().close();
+    await view.set({ 'grains.show': true });
     return `${legend.range.map((v) => v.toFixed(2)).join(' to ')} m/s, ${names.length} groups`;
+  });
+  await check('faces picked', 'grains with faces are picked, and removed by the section', async () => {
+    const view = new View(await open(browser, third.address, faults));
+    // Those that are seen are picked where they are drawn; each moved as its speed says.
+    const found = await view.run(async () => {
+      const { app, histories } = trackbed;
+      const out = [];
+      for (const [id, place] of app.walls.places) {
+        if (out.filter((p) => p).length === 4) break;
+        await histories.pick(...histories.picker.project(place).map(Math.round));
+        const { picked } = app.state;
+        const value = (name) => picked.data.find((row) => row[0] === name)?.[1];
+        const way = picked && Math.hypot(...['x', 'y', 'z'].map((k) => picked.history[`displacement ${k} [m]`].y.at(-1)));
+        out.push(picked && { id, title: picked.title, speed: value('Speed'), extent: value('longest extent'), way });
+      }
+      return out;
+    });
+    const seen = found.filter((p) => p);
+    expect(seen.length === 4 && seen.every((p) => p.title === `Stone ${p.id}`), JSON.stringify(found));
+    expect(seen.every((p) => Math.abs(p.way / (0.01 * p.speed) - 1) < 0.02 && p.extent > 1 && p.extent < 3), JSON.stringify(found));
+    const whole = await view.hash();
+    await view.set({ 'section.axis': 'x', 'section.front': 0.5 });
+    const { removed } = (await view.state()).section;
+    expect(removed > 0 && removed < 96 && await view.hash() !== whole, `${removed} of 96 removed`);
+    await view.set({ 'section.front': 0 });
+    expect(await view.hash() === whole, 'they are back');
+    await view.page.context().close();
+    return `${seen.length} of ${found.length} seen and picked, ${removed} of 96 removed`;
   });
   await third.stop();
   await check('faults', 'no errors of scripts, no requests to elsewhere', () => {

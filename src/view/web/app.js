@@ -211,10 +211,11 @@ export class App {
     if (has.includes('walls')) {
       await this.once('walls', k, async () => {
         this.walls.frame(await this.block(`walls/${k}`));
-        this.shown.stones = null;
+        this.shown.stones = this.shown.section = null;
       });
       await this.once('stones', chosen(state.grains), async () => this.paintStones(k));
       this.walls.look(state.walls, state.grains);
+      this.section();
     }
     if (has.includes('solid') && this.solidSkin) await this.updateSolid(k);
     if (state.view.projection !== stage.projection) stage.select(state.view.projection);
@@ -331,12 +332,13 @@ export class App {
     if (this.shown.section === key) return;
     this.shown.section = key;
     const [from, to] = off ? [-1e30, 1e30] : [front ? low : -1e30, rear ? high : 1e30];
-    if (this.grains.bodies) state.section.removed = this.grains.section(along, from, to);
+    const removed = this.grains.bodies ? this.grains.section(along, from, to) : 0;
+    state.section.removed = removed + this.walls.section(along, from, to);
     this.solid.cut(along, solid ? from : -1e30, solid ? to : 1e30);
   }
 
   beforeDrawing() {
-    if (this.source && this.grains.bodies && (this.state.section.front || this.state.section.rear)) this.section();
+    if (this.source && (this.grains.bodies || this.walls.stones?.length) && (this.state.section.front || this.state.section.rear)) this.section();
   }
 
   /** Legends over the picture. */

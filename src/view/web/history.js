@@ -1,4 +1,5 @@
 // Curves beside the picture: settlement, load and deflection, what was picked; with the time of the frame marked.
+import { FACED, Walls } from 'walls';
 import { Grains, GRAIN, label as grainLabel, unit as grainUnit } from 'grains';
 import { NODE, label as solidLabel, unit as solidUnit } from 'solid';
 import { cyclesAt, plot, rowAt } from 'plots';
@@ -107,9 +108,11 @@ export class Histories {
     const meshes = [];
     if (app.grains.group.visible && app.grains.count) meshes.push([app.grains.spheres.meshes[1], GRAIN]);
     if (app.solid.group.visible && app.solid.object) meshes.push([app.solid.object, NODE]);
+    if (app.walls.group.visible && app.walls.stoneMesh.visible) meshes.push([app.walls.stoneMesh, FACED]);
     const found = this.picker.at(x, y, meshes);
     if (!found) return app.set('picked', null);
-    const picked = found.kind === GRAIN ? await this.grain(found.index) : await this.node(found.index, x, y);
+    const made = { [GRAIN]: () => this.grain(found.index), [FACED]: () => this.faced(found.index), [NODE]: () => this.node(found.index, x, y) };
+    const picked = await made[found.kind]();
     await app.set({ picked, pickedQuantity: '' });
     return this.follow(picked);
   }
@@ -128,6 +131,19 @@ export class Histories {
       data.push([grainLabel(field), values[body], grainUnit(field)]);
     }
     return { kind: 'grain', id, title: `Stone ${id}`, data, place };
+  }
+
+  /** A grain with faces, by one of its triangles. */
+  async faced(triangle) {
+    const { source, walls, meta, state } = this.app;
+    const stone = walls.stoneAt(triangle);
+    const place = stone.place.map((x, k) => x + meta.origin[k]);
+    const data = [['place', place, 'm'], ['longest extent', stone.extent, 'm']];
+    for (const field of meta.grainFields) {
+      const block = await source.block(`walls/${state.frame}/${field}`);
+      if (block) data.push([grainLabel(field), block.arrays.value[stone.triangle], grainUnit(field)]);
+    }
+    return { kind: 'faced', id: stone.id, title: `Stone ${stone.id}`, data, place };
   }
 
   async node(triangle, x, y) {
@@ -157,10 +173,10 @@ export class Histories {
     const { state, meta } = app;
     const step = Math.ceil(state.frames / MOST);
     const [times, rows] = [[], []];
-    const field = picked.kind === 'grain' ? (meta.grainFields.includes(state.grains.colour) ? state.grains.colour : 'speed') : state.solid.field;
+    const field = picked.kind !== 'node' ? (meta.grainFields.includes(state.grains.colour) ? state.grains.colour : 'speed') : state.solid.field;
     for (let k = 0; k < state.frames; k += step) {
       if (state.picked !== picked) return;
-      const row = picked.kind === 'grain' ? await this.grainRow(picked.id, k, field) : await this.nodeRow(picked.node, k, field);
+      const row = picked.kind === 'node' ? await this.nodeRow(picked.node, k, field) : await this.stoneRow(picked, k, field);
       if (!row) continue;
       times.push(state.times[k]);
       rows.push(row);
@@ -168,22 +184,23 @@ export class Histories {
     if (!rows.length || state.picked !== picked) return;
     const history = {};
     for (const name of Object.keys(rows[0])) {
-      const first = name.startsWith('displacement') && picked.kind === 'grain' ? rows[0][name] : 0;
+      const first = name.startsWith('displacement') && picked.kind !== 'node' ? rows[0][name] : 0;
       history[name] = { x: times, y: rows.map((row) => row[name] - first), xLabel: 'time [s]', yLabel: `${picked.title}: ${name}`, points: times.length < 40 };
     }
     picked.history = history;
     await app.set('pickedQuantity', Object.keys(history)[0]);
   }
 
-  async grainRow(id, k, field) {
+  async stoneRow({ kind, id }, k, field) {
     const { source, common, meta } = this.app;
-    const block = await source.block(`grains/${k}`);
-    const found = block && Grains.placeIn(common.grains, block, id);
+    const part = kind === 'faced' ? 'walls' : 'grains';
+    const block = await source.block(`${part}/${k}`);
+    const found = block && (kind === 'faced' ? Walls.stoneIn(block, id) : Grains.placeIn(common.grains, block, id));
     if (!found) return null;
     const row = { 'displacement z [m]': found.place[2], 'displacement x [m]': found.place[0], 'displacement y [m]': found.place[1] };
     if (meta.grainFields.includes(field)) {
       const unit = grainUnit(field);
-      row[`${grainLabel(field)}${unit ? ` [${unit}]` : ''}`] = (await source.block(`grains/${k}/${field}`))?.arrays.value[found.body] ?? 0;
+      row[`${grainLabel(field)}${unit ? ` [${unit}]` : ''}`] = (await source.block(`${part}/${k}/${field}`))?.arrays.value[found.body ?? found.triangle] ?? 0;
     }
     return row;
   }
