@@ -76,7 +76,7 @@ fn modulus(material: Material, size: f64, pressure: f64) -> Option<f64> {
     let force = pressure * size * size;
     let effective = young / (2.0 * (1.0 - material.poisson * material.poisson));
     // The circle of contact of two spheres of half the size (Hertz); corners crush until the pressure in its middle is their strength.
-    let circle = f64::cbrt(0.75 * force * 0.25 * size / effective);
+    let circle = libm::cbrt(0.75 * force * 0.25 * size / effective);
     let circle = circle.max((1.5 * force / (PI * material.corner_strength)).sqrt());
     Some(ELASTIC_MODULUS * 2.0 * effective * circle / size)
 }

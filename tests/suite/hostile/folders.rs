@@ -301,7 +301,7 @@ fn check_finds_what_would_show_after_settling() {
         assert!(!out.exists());
     }
     let lateral = repository().join("inputs/ballast/lateral.toml");
-    let set = ["--set", "track.push.stiffness=1e14", "--set", "time.grain_step=1e-6"];
+    let set = ["--set", "track.push.stiffness=1e14", "--set", "time.grain_step=5e-7"];
     refused(
         ["check", lateral.to_str().unwrap(), set[0], set[1], set[2], set[3]],
         "track.push.stiffness: found 1.000e14 N/m",
