@@ -93,19 +93,43 @@ try {
         const { picked } = app.state;
         const value = (name) => picked.data.find((row) => row[0] === name)?.[1];
         const way = picked && Math.hypot(...['x', 'y', 'z'].map((k) => picked.history[`displacement ${k} [m]`].y.at(-1)));
-        out.push(picked && { id, title: picked.title, speed: value('Speed'), extent: value('longest extent'), way });
+        out.push(picked && { id, title: picked.title, place: picked.place, speed: value('Speed'), extent: value('longest extent'), way });
       }
       return out;
     });
     const seen = found.filter((p) => p);
     expect(seen.length === 4 && seen.every((p) => p.title === `Stone ${p.id}`), JSON.stringify(found));
     expect(seen.every((p) => Math.abs(p.way / (0.01 * p.speed) - 1) < 0.02 && p.extent > 1 && p.extent < 3), JSON.stringify(found));
+    // They start where the packings put them.
+    const rows = [1, 2, 3, 4].flatMap((k) => fs.readFileSync(path.join(path.dirname(plates), `impact${k}.csv`), 'utf8').trim().split('\n'));
+    const starts = rows.map((row) => row.split(',').slice(0, 3).map(Number));
+    const off = seen.map((p) => Math.min(...starts.map((at) => Math.hypot(...at.map((x, k) => x - p.place[k])))));
+    expect(Math.max(...off) < 1e-3, `${off} m from where they start`);
     const whole = await view.hash();
     await view.set({ 'section.axis': 'x', 'section.front': 0.5 });
     const { removed } = (await view.state()).section;
     expect(removed > 0 && removed < 96 && await view.hash() !== whole, `${removed} of 96 removed`);
+    const picked = await view.run(async (places) => {
+      const { app, histories } = trackbed;
+      const out = [];
+      for (const place of places) {
+        await histories.pick(...histories.picker.project(place.map((x, k) => x - app.meta.origin[k])).map(Math.round));
+        out.push(app.state.picked?.id ?? null);
+      }
+      return out;
+    }, seen.map((p) => p.place));
+    expect(picked.some((id, k) => id !== seen[k].id), `what is removed is not picked: ${picked}`);
     await view.set({ 'section.front': 0 });
     expect(await view.hash() === whole, 'they are back');
+    // The middle of the volume of a pyramid, which is not that of its corners or of its surface.
+    const middle = await view.run(() => {
+      const points = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 1];
+      const triangles = [0, 1, 2, 0, 2, 3, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];
+      const arrays = { points, triangles, kind: Array(6).fill(4), id: Array(6).fill(7) };
+      const read = { ...arrays, points: Float32Array.from(points), id: Uint32Array.from(arrays.id) };
+      return trackbed.app.walls.constructor.stoneIn({ arrays: read }, 7).place;
+    });
+    expect(Math.hypot(middle[0] - 0.5, middle[1] - 0.5, middle[2] - 0.25) < 1e-6, `middle of a pyramid: ${middle}`);
     await view.page.context().close();
     return `${seen.length} of ${found.length} seen and picked, ${removed} of 96 removed`;
   });
