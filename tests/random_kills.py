@@ -1,11 +1,12 @@
 """Runs that are killed without warning at random moments, resumed and compared with runs without a break, byte by byte.
 
-    python3 tests/random_kills.py BINARY [--kills N] [--threads N] [--seed N] [--only TEXT]
+    python3 tests/random_kills.py BINARY [--kills N] [--threads N] [--seed N] [--only TEXT] [--device]
 
 Takes the cases with `restart` of tests/scene_cases.toml in turn: every stage of every kind of scene. A run keeps a checkpoint
 twenty times a second; it is killed (SIGKILL) at a moment spread evenly over the time that a run without a break takes, once to
 three times, and then goes on to its end. What it leaves is compared as tests/scene_hashes.py compares it. Exit code 1 where
-anything differs or a run does not go on. Needs Python 3.11 and nothing else.
+anything differs or a run does not go on. With --device the runs that are killed have `--device gpu`, the others not, and cases that a device does
+not compute are left out; where there is none, LD_LIBRARY_PATH may lead to the libraries of tests/stand_in. Needs Python 3.11 and nothing else.
 """
 
 import argparse
@@ -47,17 +48,27 @@ class Case:
 
     def __init__(self, case, binary, threads, work):
         self.case, self.binary, self.threads, self.work = case, binary, threads, work
+        self.more = []
         whole = work / "whole"
         start = time.monotonic()
         _, self.status = scene_hashes.execute(command(case, binary, whole, threads), None)
         self.seconds = time.monotonic() - start
         self.files = scene_hashes.files(whole)
 
+    def on_device(self):
+        """Has the runs that are killed use a device from now on; whether it computes the case."""
+        self.more = ["--device", "gpu"]
+        out = self.work / "device"
+        start = time.monotonic()
+        done = subprocess.run([*command(self.case, self.binary, out, self.threads), *self.more], capture_output=True, text=True)
+        self.seconds = time.monotonic() - start
+        return "on a device" not in done.stderr or done.returncode != 2
+
     def attempt(self, rng, stages):
         """Kills a run one to three times and lets it end; the number of kills that met a run, and what differs then."""
         out, done = self.work / "killed", 0
         shutil.rmtree(out, ignore_errors=True)
-        words = command(self.case, self.binary, out, self.threads)
+        words = [*command(self.case, self.binary, out, self.threads), *self.more]
         for _ in range(rng.randint(1, 3)):
             resume = ["--resume"] if out.is_dir() and any(out.iterdir()) else []
             process = subprocess.Popen([*words, *resume], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -86,6 +97,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--device", action="store_true")
     options = parser.parse_args()
     rng, binary = random.Random(options.seed), str(pathlib.Path(options.binary).resolve())
     chosen = [c for c in scene_hashes.cases(options.only) if c.get("restart") and c.get("verb", "run") == "run"]
@@ -94,6 +106,10 @@ def main():
     for at in chosen:
         work = pathlib.Path(tempfile.mkdtemp(prefix="random_kills_"))
         case, count = Case(at, binary, options.threads, work), 0
+        if options.device and not case.on_device():
+            print(f"{at['name']}: not on a device", file=sys.stderr, flush=True)
+            shutil.rmtree(work)
+            continue
         while count < share:
             done, differing = case.attempt(rng, stages)
             count += done

@@ -1,11 +1,10 @@
 //! Where the steps of grains are computed.
 
-use super::cuda::{self, Cuda};
 use crate::failure::Failure;
 use crate::message;
 use crate::model::Job;
 use trackbed_dem as dem;
-use trackbed_dem::device::{self, Device};
+use trackbed_dem::device::{self, Cuda, Device};
 use trackbed_dem::ranks::{Link, Ranks, Traffic};
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_dem::{AppliedForce, BackEnd, StepError};
@@ -16,7 +15,7 @@ pub enum Place {
     /// The processor.
     #[default]
     Cpu,
-    /// A CUDA device; not run on a device yet.
+    /// A CUDA device.
     Gpu,
 }
 
@@ -37,7 +36,7 @@ pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
         device::check(&model).map_err(|e| refused(e.to_string()))?;
     }
-    cuda::missing().map_or(Ok(()), |what| Err(refused(what.into())))
+    Cuda::missing().map_or(Ok(()), |what| Err(refused(what.into())))
 }
 
 /// What computes the steps.

@@ -6,7 +6,6 @@ mod checkpoint;
 mod checkpoint_store;
 mod companion;
 mod context;
-mod cuda;
 mod device;
 mod energy_watch;
 pub mod estimate;

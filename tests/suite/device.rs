@@ -1,7 +1,9 @@
 //! `run --device gpu` up to where a device begins: what it refuses, and in which words.
 
-use super::support::{COUPLED, GRAINS, Outcome, repository, scene_folder, trackbed};
+use super::support::{COUPLED, Folder, GRAINS, Outcome, repository, results, run, scene_folder, trackbed};
 use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 /// Runs a scene on a device, into a folder beside it; whether the folder is there afterwards.
 fn on_device(name: &str, text: &str, set: &[&str]) -> (Outcome, bool) {
@@ -57,4 +59,76 @@ fn what_a_device_needs_is_named_where_it_is_missing() {
     }
     let lines = outcome.stderr.lines().filter(|l| l.contains("--device gpu")).count();
     assert!(outcome.code == 0 || lines == 1, "{outcome:?}");
+}
+
+/// Libraries that stand in for CUDA's, made by the C compiler from `tests/stand_in`; none where there is no such compiler.
+fn stand_in() -> Option<Folder> {
+    let folder = Folder::new("stand_in");
+    for (source, library) in [("driver.c", "libcuda.so.1"), ("compiler.c", "libnvrtc.so.13")] {
+        let options = ["-std=gnu11", "-O1", "-shared", "-fPIC", "-o"];
+        let source = repository().join("tests/stand_in").join(source);
+        let made = Command::new("cc").args(options).args([folder.join(library), source]).arg("-ldl").output();
+        let Ok(made) = made else {
+            eprintln!("skipped: no C compiler (cc) on this machine");
+            return None;
+        };
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    }
+    Some(folder)
+}
+
+/// Runs the program where these libraries are found first.
+fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str]) -> Outcome {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    command.args(arguments).env("LD_LIBRARY_PATH", libraries).env("STAND_IN_FOLDER", libraries);
+    let output = command.envs(settings.iter().copied()).output().unwrap();
+    Outcome {
+        code: output.status.code().unwrap_or(-1),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// What the program hands to CUDA's libraries and takes from them: whole runs have the bytes of the processor's, resumed ones too.
+#[test]
+fn runs_on_a_stand_in_have_the_processors_bytes() {
+    let Some(libraries) = stand_in() else { return };
+    let folder = Folder::new("device_runs");
+    let scenes: [(&str, &[&str]); 5] = [
+        ("verify/asperities/scene.toml", &["time.end=0.1 s"]),
+        ("grains/bonded_stone/scene.toml", &["time.end=0.01 s"]),
+        ("grains/block.toml", &["time.end=0.02 s", "grains.0.count=120"]),
+        ("grains/two_laws.toml", &["time.end=0.05 s"]),
+        ("grains/shear.toml", &["time.end=0.02 s"]),
+    ];
+    for (name, set) in scenes {
+        let scene = repository().join("inputs").join(name).display().to_string();
+        let out = |kind: &str| folder.join(&format!("{kind}_{}", name.replace('/', "_")));
+        run(Path::new(&scene), &out("processor"), set).good();
+        let device = out("device").display().to_string();
+        let mut arguments = vec!["run", &scene, "--quiet", "--device", "gpu", "--out", &device];
+        set.iter().for_each(|s| arguments.extend(["--set", s]));
+        with_libraries(libraries.path(), &[], &arguments).good();
+        let (ours, theirs) = (results(Path::new(&device)), results(&out("processor")));
+        assert!(ours.len() > 4 && ours.keys().eq(theirs.keys()), "{name}");
+        ours.iter().for_each(|(file, bytes)| assert!(bytes == &theirs[file], "{name}: {file} differs"));
+    }
+}
+
+/// A device that fails, and one without memory, end the run with a sentence.
+#[test]
+fn a_device_that_fails_is_named() {
+    let Some(libraries) = stand_in() else { return };
+    let folder = scene_folder("device_fails", GRAINS);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    let (scene, out) = (scene.display().to_string(), out.display().to_string());
+    let arguments = ["run", &scene, "--out", &out, "--force", "--device", "gpu"];
+    let cases =
+        [("STAND_IN_LAUNCHES", "40", 3, "LAUNCH_FAILED"), ("STAND_IN_MEMORY", "300", 2, "OUT_OF_MEMORY")];
+    for (setting, value, code, words) in cases {
+        let outcome = with_libraries(libraries.path(), &[(setting, value)], &arguments);
+        println!("{}", outcome.stderr);
+        assert_eq!(outcome.code, code, "{outcome:?}");
+        assert!(outcome.stderr.contains(words), "{outcome:?}");
+    }
 }

@@ -125,7 +125,8 @@ pub(super) struct Lists {
     pub ends: Vec<[u32; 2]>,
     /// Where the entries of each body begin, and one past the last.
     pub start: Vec<u32>,
-    pub entries: Vec<u32>,
+    /// What it is and which, and the other of its ends.
+    pub entries: Vec<[u32; 2]>,
     /// Where the lists of each block begin, and one past the last of each.
     pub ranges: Vec<[u32; LISTS]>,
     /// Bodies of each bond, and its constants.
@@ -312,6 +313,18 @@ impl Lists {
         self.sort(&all);
     }
 
+    /// The other of the ends of an entry, if it has any.
+    fn there(&self, entry: u32) -> u32 {
+        let (what, of, side) = (entry >> 1 & 7, (entry >> 4) as usize, 1 - (entry & 1) as usize);
+        if what == What::Walls as u32 {
+            0
+        } else if what == What::Bond as u32 {
+            self.bond_ends[of][side]
+        } else {
+            self.ends[of][side]
+        }
+    }
+
     /// Sorts entries by body; the order of each body's entries stays.
     fn sort(&mut self, all: &[(u32, u32)]) {
         let bodies = self.from(List::Bodies, self.blocks) as usize;
@@ -319,10 +332,10 @@ impl Lists {
         all.iter().for_each(|(body, _)| self.start[*body as usize + 1] += 1);
         (0..bodies).for_each(|k| self.start[k + 1] += self.start[k]);
         let mut next = self.start.clone();
-        self.entries = vec![0; all.len()];
+        self.entries = vec![[0; 2]; all.len()];
         for (body, entry) in all {
             let to = &mut next[*body as usize];
-            self.entries[*to as usize] = *entry;
+            self.entries[*to as usize] = [*entry, self.there(*entry)];
             *to += 1;
         }
     }

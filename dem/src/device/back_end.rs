@@ -2,15 +2,13 @@
 
 use super::arrays::{Lists, Memory};
 use super::bodies::{Constants, Motion, Spheres};
-use super::layout::{Booked, Count, Features, HELD_WIDTH, List, Number, Slot, WALL_BOOKED};
+use super::books;
+use super::layout::{Count, Features, HELD_WIDTH, List, Number, Slot};
 use super::machine::{Call, Machine};
 use super::scope::{self, Unsupported};
 use super::text;
 use super::walls::{Triangles, placed};
-use crate::base::Vec3;
 use crate::base::error::StepError;
-use crate::base::ledger::Ledger;
-use crate::bodies::sums::WallSum;
 use crate::contact::planes;
 use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
@@ -38,6 +36,11 @@ pub struct Device<M> {
     pub(super) features: Features,
     pub(super) spheres: Spheres,
     books: Vec<f64>,
+    /// Mass of the bodies of each block [kg].
+    mass: Vec<f64>,
+    /// Planes and walls as the device has them.
+    planes: Vec<[f64; 4]>,
+    walls: Vec<f64>,
     /// Whether the device is ahead of the state.
     pub(super) ahead: bool,
     /// Whether the device has found the neighbours, and neither the state nor `work` knows them.
@@ -87,6 +90,9 @@ impl<M: Machine> Device<M> {
             features: text::features(model),
             spheres: Spheres::default(),
             books: Vec::new(),
+            mass: Vec::new(),
+            planes: Vec::new(),
+            walls: Vec::new(),
             ahead: false,
             found: false,
             contacts: 0,
@@ -143,14 +149,18 @@ impl<M: Machine> Device<M> {
             self.reserve(slot, 4 * n)?;
         }
         self.reserve(Slot::Speed2, n)?;
-        let booked = self.features.quantities() * state.blocks.len();
+        // Behind what blocks book stands whether the step has failed.
+        let booked = self.features.quantities() * state.blocks.len() + 1;
         self.reserve(Slot::Books, booked)?;
         self.books.resize(booked, 0.0);
+        self.mass = self.work.members.iter().map(|m| m.mass_sum).collect();
         self.reserve(Slot::HeldBy, if self.features.held { HELD_WIDTH * n } else { 0 })?;
         self.put_counts(Slot::Flags, &[0])?;
         let constants = Constants::of(model, state, &self.work);
         self.put_counts(Slot::Single, &constants.how)?;
+        self.put_counts(Slot::FirstSingle, &constants.first_single)?;
         self.put(Slot::Constants, constants.inertia.as_flattened())?;
+        self.put(Slot::Mass, &constants.mass)?;
         self.spheres = Spheres::of(model, state, &self.work);
         if self.features.clumps {
             self.take_clumps(&motion, &constants)?;
@@ -210,7 +220,7 @@ impl<M: Machine> Device<M> {
         let counts: [(Slot, &[u32]); 7] = [
             (Slot::Ends, lists.ends.as_flattened()),
             (Slot::Start, &lists.start),
-            (Slot::Entries, &lists.entries),
+            (Slot::Entries, lists.entries.as_flattened()),
             (Slot::Ranges, lists.ranges.as_flattened()),
             (Slot::BondEnds, lists.bond_ends.as_flattened()),
             (Slot::PatchPairs, lists.pairs.ends.as_flattened()),
@@ -323,11 +333,11 @@ impl<M: Machine> Device<M> {
         }
         self.exchange();
         self.ahead = true;
-        self.book(model, state);
+        let all = books::add_up(&self.books, &self.features, &self.mass, model, state, &mut self.work);
         if bonds::looks_at_separation(state) {
             self.fetch(state)?;
         }
-        step::collect(model, state, &mut self.work, 0.0)
+        step::conclude(model, state, &mut self.work, all, 0.0)
     }
 
     /// Makes the near list anew: on the device, or on the processor.
@@ -364,9 +374,16 @@ impl<M: Machine> Device<M> {
     fn launch(&mut self, model: &Model, state: &State) -> Result<bool, String> {
         planes::now(&model.planes, &state.planes, &mut self.work.planes);
         let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
-        self.put(Slot::Planes, planes.as_flattened())?;
+        if planes != self.planes {
+            self.put(Slot::Planes, planes.as_flattened())?;
+            self.planes = planes;
+        }
         if self.features.walls > 0 {
-            self.put(Slot::WallNow, placed(model, state).as_flattened())?;
+            let walls = placed(model, state).into_flattened();
+            if walls != self.walls {
+                self.put(Slot::WallNow, &walls)?;
+                self.walls = walls;
+            }
             self.call.number(Number::Gone, state.drift + state.wall_drift);
         }
         let pace = state.pace;
@@ -377,12 +394,10 @@ impl<M: Machine> Device<M> {
         self.call.number(Number::Since, bonds.since());
         self.call.number(Number::Bound, 0.5 * model.radii.0 / pace.dt);
         self.machine.launch("bodies", state.present_count(), &self.call)?;
-        self.machine.launch("books", self.books.len(), &self.call)?;
-        let mut flags = [0];
-        let (flag, books) = (self.buffer(Slot::Flags), self.buffer(Slot::Books));
-        self.machine.get_counts(flag, &mut flags)?;
+        self.machine.launch("books", 4 * (self.books.len() - 1), &self.call)?;
+        let books = self.buffer(Slot::Books);
         self.machine.get(books, &mut self.books)?;
-        Ok(flags[0] != 0)
+        Ok(self.books.last() != Some(&0.0))
     }
 
     /// What was written becomes what is read.
@@ -390,73 +405,6 @@ impl<M: Machine> Device<M> {
         for (old, new) in PAIRS {
             self.call.buffers.swap(old as usize, new as usize);
         }
-    }
-
-    /// Books what the device has summed up, block by block, where the engine's loops would.
-    fn book(&mut self, model: &Model, state: &State) {
-        let dt = state.pace.kick();
-        let impulse = model.gravity * dt;
-        let f = &self.features;
-        for (b, all) in self.books.chunks_exact(f.quantities()).enumerate() {
-            let of = |part: Booked| &all[f.booked(part)];
-            let (spheres, planes, motion) = (of(Booked::Spheres), of(Booked::Planes), of(Booked::Motion));
-            let cross = &mut self.work.cross[b];
-            cross.clear_books();
-            (cross.dashpot, cross.friction) = (spheres[0], spheres[1]);
-            if f.periodic {
-                cross.couple = vector(of(Booked::Images), 0);
-            }
-            let tally = &mut self.work.blocks[b].tally;
-            let ledger = &mut tally.ledger;
-            *ledger = Ledger::default();
-            ledger.dissipated_dashpot = spheres[2] + planes[0];
-            ledger.dissipated_friction = spheres[3] + planes[1];
-            ledger.work_walls = planes[2] * dt;
-            ledger.walls.linear = vector(planes, 3) * dt;
-            ledger.walls.angular = vector(planes, 6) * dt;
-            ledger.gravity.linear = impulse * self.work.members[b].mass_sum;
-            ledger.gravity.angular = vector(motion, 0).cross(&impulse);
-            tally.fastest = motion[3].sqrt();
-            if f.held {
-                book_held(ledger, of(Booked::Held), dt, f.damped);
-            }
-            tally.failure = None;
-            if f.walls > 0 {
-                let q = of(Booked::Patches);
-                ledger.dissipated_dashpot += q[0];
-                ledger.dissipated_friction += q[1];
-                let sum =
-                    |q: &[f64]| WallSum { force: vector(q, 0), moment: vector(q, 3), ..WallSum::default() };
-                let sums = &mut self.work.blocks[b].patches.wall_sums;
-                sums.clear();
-                sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
-            }
-            if f.bonds {
-                let q = of(Booked::Bonds);
-                let lists = [&mut self.work.bonds.cross[b], &mut self.work.blocks[b].bonds];
-                for (k, list) in lists.into_iter().enumerate() {
-                    list.reset();
-                    list.power = q[k];
-                    (list.dashpot, list.friction) = (q[2 + 2 * k], q[3 + 2 * k]);
-                }
-            }
-        }
-    }
-}
-
-fn vector(q: &[f64], k: usize) -> Vec3 {
-    Vec3::new(q[k], q[k + 1], q[k + 2])
-}
-
-/// Books local damping and fixed motions of a block.
-fn book_held(ledger: &mut Ledger, q: &[f64], kick: f64, damped: bool) {
-    let vector = |k: usize| vector(q, k);
-    ledger.work_constraints = q[7];
-    (ledger.constraints.linear, ledger.constraints.angular) = (vector(8), vector(11));
-    if damped {
-        ledger.dissipated_local_damping = q[14] - q[0] * kick;
-        ledger.local_damping.linear = vector(15) + vector(1) * kick;
-        ledger.local_damping.angular = vector(18) + vector(4) * kick;
     }
 }
 

@@ -85,6 +85,10 @@ impl Motion {
 pub(super) struct Constants {
     /// How each moves ([`How`]).
     pub how: Vec<u32>,
+    /// The first of each block that moves by itself, or one past its last.
+    pub first_single: Vec<u32>,
+    /// Mass as the engine's sums of moments have it: of those that move four at a time one over its inverse.
+    pub mass: Vec<f64>,
     /// Mass and moment of inertia.
     pub inertia: Vec<[f64; 2]>,
     /// In models with clumps: principal moments and bounding radius, and the spin that a fixed rotation keeps.
@@ -97,6 +101,7 @@ impl Constants {
         let mut out = Constants::default();
         for (block, members) in state.blocks.iter().zip(&work.members) {
             let n = block.bodies.len();
+            let first = out.how.len();
             for (k, &body) in block.bodies.iter().enumerate() {
                 let fixed = members.fixed.get(k).copied().unwrap_or(0);
                 let number = body as usize;
@@ -108,6 +113,7 @@ impl Constants {
                 let bit = |on: bool, of: u32| if on { of } else { 0 };
                 out.how.push(single | bit(turns, How::TURNS) | bit(members.rigid, How::ORIENTED));
                 out.inertia.push([body.mass, body.inertia.x]);
+                out.mass.push(if by_four { 1.0 / block.velocity[k].0[3] } else { body.mass });
                 if model.clumps {
                     let (i, reach) =
                         (body.inertia, if body.kind == Kind::Sphere { 0.0 } else { body.radius });
@@ -116,6 +122,8 @@ impl Constants {
                     out.target.push([spin.x, spin.y, spin.z, 0.0]);
                 }
             }
+            let single = out.how[first..].iter().position(|how| how & How::SINGLE != 0);
+            out.first_single.push((first + single.unwrap_or(n)) as u32);
         }
         out
     }

@@ -35,18 +35,22 @@ table! {
         Ends = "ENDS": "ends",
         /// Where the entries of each body begin, and one past the last.
         Start = "START": "unsigned",
-        /// Sixteen times a contact or bond; plus twice what it is ([`What`]), plus one where the body is the second.
-        Entries = "ENTRIES": "unsigned",
+        /// Sixteen times a contact or bond, plus twice what it is ([`What`]), plus one where the body is the second; and what it is with:
+        /// the other of the ends.
+        Entries = "ENTRIES": "ends",
         /// Constants of the laws of each pair of materials.
         Law = "LAW": "const real",
         /// Unit normal and its product with a point; velocity and material.
         Planes = "PLANES": "const four",
         /// How a body moves ([`How`]).
         Single = "SINGLE": "const unsigned",
-        /// Mass and moment of inertia of each body.
+        /// Mass and moment of inertia of each body; its mass as sums of moments have it.
         Constants = "CONSTANTS": "const two",
+        Mass = "MASS": "const real",
         /// Where the lists of each block begin ([`List`]).
         Ranges = "RANGES": "unsigned",
+        /// The first body of each block that moves by itself, or one past its last.
+        FirstSingle = "FIRST_SINGLE": "const unsigned",
         /// What dashpots and friction took in each contact.
         Spent = "SPENT": "two",
         /// Spheres of clumps and single ones: centre and radius, the body of each, the first of each body and one past the last, and
@@ -96,7 +100,7 @@ table! {
         Reference = "REFERENCE": "const real",
         /// Square of the speed of each body.
         Speed2 = "SPEED2": "real",
-        /// What each block books.
+        /// What each block books, and behind it whether the step has failed.
         Books = "BOOKS": "real",
         /// Whether a step has failed.
         Flags = "FLAGS": "unsigned",
@@ -353,16 +357,21 @@ impl Features {
         from..from
     }
 
-    /// The lines of C that sum a number `q` of a block up, by the function of its part.
+    /// The lines of C that sum up number `number` of all blocks, which lie part by part, by the function of its part.
     pub fn books(&self) -> String {
         let mut out = String::new();
         for (part, name, _) in Booked::ALL {
             let Range { start, end } = self.booked(part);
-            if start < end {
+            let count = end - start;
+            if count > 0 {
                 let name = name.to_lowercase();
                 _ = writeln!(
                     out,
-                    "    if (q >= {start}u && q < {end}u) x = {name}_books(p, from, to, q - {start}u);"
+                    "    if (number < {count}u * BLOCKS) {{\n        \
+                     const unsigned block = number / {count}u, q = number % {count}u;\n        \
+                     const real x = {name}_books(p, LISTS_OF(block), LISTS_OF(block + 1), q);\n        \
+                     if (t % 4 == 0) BOOKS[block * QUANTITIES + {start}u + q] = x;\n        \
+                     return;\n    }}\n    number -= {count}u * BLOCKS;"
                 );
             }
         }
@@ -401,6 +410,8 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("ITERATIONS", crate::integrate::rotation::ITERATIONS),
         ("CLASSES", f.classes),
         ("STRETCH", STRETCH),
+        // Four of spheres alone are faster for the registers that they cannot have, but larger steps would keep too much elsewhere.
+        ("BLOCKS_AT_ONCE", if f.clumps || f.bonds || f.walls > 0 || f.periodic { 3 } else { 4 }),
         ("ACROSS", if f.clumps { What::Members } else { What::Spheres } as usize),
         ("WITHIN", What::Spheres as usize),
         ("WITHIN_TURNED", What::Members as usize),

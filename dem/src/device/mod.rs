@@ -7,6 +7,9 @@
 mod arrays;
 mod back_end;
 mod bodies;
+mod books;
+#[cfg(feature = "cuda")]
+mod cuda;
 mod layout;
 mod machine;
 mod scope;
@@ -15,6 +18,9 @@ mod sizes;
 mod tape;
 mod text;
 mod walls;
+
+#[cfg(feature = "cuda")]
+pub use cuda::Cuda;
 
 pub use back_end::{Device, source};
 pub use layout::Arguments;

@@ -32,7 +32,7 @@ impl<M: Machine> Device<M> {
         let [of_spheres, contacts, partners] = totals.map(|n| n as usize);
         self.reserve_counts(Slot::Ends, 2 * contacts)?;
         self.reserve_counts(Slot::Rows, partners)?;
-        self.reserve_counts(Slot::Entries, partners + (contacts - of_spheres))?;
+        self.reserve_counts(Slot::Entries, 2 * (partners + (contacts - of_spheres)))?;
         self.remember(contacts)?;
         self.call_kernel("list_partners", spheres)?;
         self.call_kernel("enter_partners", bodies + 1)?;

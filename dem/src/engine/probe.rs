@@ -1,6 +1,5 @@
 //! Contacts of a state that has made no step.
 
-use super::bonds;
 use super::model::Model;
 use super::state::{BlockLists, State};
 use super::step::step;
@@ -31,7 +30,7 @@ pub fn find_contacts<S: Surface>(
     }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
-    // The probe may have broken bonds.
-    bonds::arrange(model, state, work);
+    // The probe may have broken bonds, and has taken the spheres of clumps along.
+    work.follow(model, state);
     Ok(())
 }

@@ -271,14 +271,12 @@ pub(crate) fn collect(
     work: &mut Work,
     surface_speed: f64,
 ) -> Result<(), StepError> {
-    let dt = state.pace.dt;
-    let mut fastest = 0.0_f64;
-    let mut failure = None;
     work.surface_contacts.clear();
-    let mut sum = Ledger::default();
+    let mut all = Collected::default();
+    let Collected { sum, fastest, failure } = &mut all;
     for (w, cross) in work.blocks.iter().zip(&work.cross) {
         let tally = &w.tally;
-        sum += &tally.ledger;
+        *sum += &tally.ledger;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
         sum.work_walls += cross.work_walls;
@@ -286,11 +284,33 @@ pub(crate) fn collect(
         sum.periodic.angular += cross.couple;
         sum.work_surface += cross.surface.work;
         sum.surface += &cross.surface.impulse;
-        fastest = fastest.max(tally.fastest);
-        failure = failure.or(cross.failure).or(tally.failure);
+        *fastest = fastest.max(tally.fastest);
+        *failure = failure.or(cross.failure).or(tally.failure);
         work.surface_contacts.extend_from_slice(&w.patches.contacts);
         work.surface_contacts.extend_from_slice(&cross.surface.contacts);
     }
+    conclude(model, state, work, all, surface_speed)
+}
+
+/// What all blocks report together.
+#[derive(Default)]
+pub(crate) struct Collected {
+    pub sum: Ledger,
+    /// The largest speed [m/s].
+    pub fastest: f64,
+    pub failure: Option<Failure>,
+}
+
+/// Moves walls on, then time.
+pub(crate) fn conclude(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    all: Collected,
+    surface_speed: f64,
+) -> Result<(), StepError> {
+    let dt = state.pace.dt;
+    let Collected { mut sum, fastest, mut failure } = all;
     let (wall_speed, wall_failure) = walls::advance(model, state, work, &mut sum);
     failure = failure.or(wall_failure);
     state.ledger += &sum;

@@ -1,8 +1,11 @@
 //! A device of the system's C compiler: the text of the kernels as a library, its threads one after another.
+//!
+//! With the feature `cuda`, `TRACKBED_DEVICE=cuda` has the same tests run on a CUDA device.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
+use trackbed_dem::Model;
 use trackbed_dem::device::{Arguments, Call, Machine};
 
 type Kernel = unsafe extern "C" fn(*const Arguments, u32, i32);
@@ -15,17 +18,18 @@ enum Buffer {
 
 /// The device. Threads run from the first to the last and from the last to the first by turns: whatever depended on their
 /// order would show.
-pub struct CMachine {
+struct CMachine {
     library: libloading::Library,
     folder: PathBuf,
     buffers: Vec<Buffer>,
     launches: u32,
-    /// Numbers and counts that were read.
-    pub read: usize,
 }
 
-/// Whether there is a C compiler; says so where there is none.
-pub fn compiler_is_there() -> bool {
+/// Whether there is a device, or a C compiler in its place; says so where there is none.
+pub fn device_is_there() -> bool {
+    if on_cuda() {
+        return true;
+    }
     let there = Command::new("cc").arg("--version").output().is_ok_and(|o| o.status.success());
     if !there {
         eprintln!("skipped: no C compiler (cc) on this machine, so the text of the kernels is not run");
@@ -33,9 +37,71 @@ pub fn compiler_is_there() -> bool {
     there
 }
 
+/// Whether the tests run on a CUDA device.
+fn on_cuda() -> bool {
+    std::env::var("TRACKBED_DEVICE").is_ok_and(|v| v == "cuda")
+}
+
+/// What carries the kernels of a text out.
+pub struct TestMachine {
+    machine: Box<dyn Machine>,
+    /// Numbers and counts that were read.
+    pub read: usize,
+}
+
+impl TestMachine {
+    pub fn new(text: &str, model: &Model) -> TestMachine {
+        let machine = if on_cuda() { cuda(text, model) } else { Box::new(CMachine::new(text)) };
+        TestMachine { machine, read: 0 }
+    }
+}
+
+#[cfg(feature = "cuda")]
+fn cuda(text: &str, model: &Model) -> Box<dyn Machine> {
+    let kernels = trackbed_dem::device::kernels(model);
+    Box::new(trackbed_dem::device::Cuda::new(text, kernels).unwrap())
+}
+
+#[cfg(not(feature = "cuda"))]
+fn cuda(_: &str, _: &Model) -> Box<dyn Machine> {
+    panic!("TRACKBED_DEVICE=cuda needs the feature `cuda`")
+}
+
+impl Machine for TestMachine {
+    fn put(&mut self, buffer: usize, numbers: &[f64]) -> Result<(), String> {
+        self.machine.put(buffer, numbers)
+    }
+
+    fn put_counts(&mut self, buffer: usize, counts: &[u32]) -> Result<(), String> {
+        self.machine.put_counts(buffer, counts)
+    }
+
+    fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String> {
+        self.machine.reserve(buffer, numbers)
+    }
+
+    fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String> {
+        self.machine.reserve_counts(buffer, counts)
+    }
+
+    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
+        self.read += numbers.len();
+        self.machine.get(buffer, numbers)
+    }
+
+    fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
+        self.read += counts.len();
+        self.machine.get_counts(buffer, counts)
+    }
+
+    fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String> {
+        self.machine.launch(kernel, threads, call)
+    }
+}
+
 impl CMachine {
     /// Compiles a text.
-    pub fn new(text: &str) -> CMachine {
+    fn new(text: &str) -> CMachine {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let name =
             format!("trackbed-kernels-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
@@ -46,7 +112,7 @@ impl CMachine {
         compile(&source, &library);
         // SAFETY: the library is the one just compiled, whose loading runs no code.
         let library = unsafe { libloading::Library::new(&library) }.unwrap();
-        CMachine { library, folder, buffers: Vec::new(), launches: 0, read: 0 }
+        CMachine { library, folder, buffers: Vec::new(), launches: 0 }
     }
 
     fn set(&mut self, buffer: usize, to: Buffer) {
@@ -104,7 +170,6 @@ impl Machine for CMachine {
     }
 
     fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
-        self.read += numbers.len();
         match &self.buffers[buffer] {
             Buffer::Numbers(own) => numbers.copy_from_slice(own),
             Buffer::Counts(_) => return Err(format!("buffer {buffer} holds counts")),
@@ -113,7 +178,6 @@ impl Machine for CMachine {
     }
 
     fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
-        self.read += counts.len();
         match &self.buffers[buffer] {
             Buffer::Counts(own) => counts.copy_from_slice(own),
             Buffer::Numbers(_) => return Err(format!("buffer {buffer} holds numbers")),

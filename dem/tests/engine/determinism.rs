@@ -1,6 +1,7 @@
 //! The same bits whatever the threads, the skin, or a restart.
 
 use crate::scene::{Run, pile, sphere, stone, weightless};
+use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
     BodyInput, ModelInput, Motion, Oscillation, RigidBody, Servo, State, TimeStep, Vec3, WallInput,
     WallShape, Work,
@@ -75,6 +76,24 @@ fn restart_changes_nothing() {
     run.steps(1500);
     again.steps(1500);
     assert!(bits(&run) == bits(&again), "the restart shows");
+}
+
+/// A run that begins with bodies that touch goes on as with new scratch after its contacts have been found.
+#[test]
+fn a_look_at_contacts_leaves_nothing_behind() {
+    let mut settled = Run::new(pile(4, true));
+    settled.steps(3000);
+    let Run { model, mut state, .. } = settled;
+    state.begin_anew();
+    let mut work = Work::new(&model, &state);
+    trackbed_dem::find_contacts(&model, &mut state, &mut work, &NoSurface).expect("contacts");
+    let new = Work::new(&model, &state);
+    let mut one = Run { model: model.clone(), state: state.clone(), work };
+    let mut other = Run { model, state, work: new };
+    one.steps(1);
+    other.steps(1);
+    assert!(one.state.ledger.dissipated() > 0.0, "nothing touches");
+    assert!(bits(&one) == bits(&other), "the look shows");
 }
 
 /// Sorting the bodies anew keeps every contact: a settled pile does not feel it.

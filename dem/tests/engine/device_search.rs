@@ -1,6 +1,6 @@
 //! The search for neighbours on a device: the lists, their order and the memory of their contacts are the engine's.
 
-use crate::c_machine::{CMachine, compiler_is_there};
+use crate::c_machine::{TestMachine, device_is_there};
 use crate::device::{STEPS, compare_events, gas, smooth, turning, with_clumps};
 use crate::scene::{Random, sphere, stone};
 use trackbed_dem::device::{Device, kernels, source};
@@ -51,7 +51,7 @@ fn events(k: usize, state: &mut State) -> bool {
 
 #[test]
 fn unlike_sizes_have_the_same_bits() {
-    if compiler_is_there() {
+    if device_is_there() {
         let (differs, state, (searches, _)) = compare_events(unlike(), STEPS, |text| text, events);
         let l = &state.ledger;
         let (spent, walls) = (l.dissipated_friction, l.work_walls);
@@ -64,14 +64,14 @@ fn unlike_sizes_have_the_same_bits() {
 /// Between downloads a device is asked for no more than what its steps book, and for the size of what a search has found.
 #[test]
 fn the_state_stays_on_the_device() {
-    if compiler_is_there() {
+    if device_is_there() {
         for input in [gas([stone(), smooth()], Vec::new()), with_clumps(unlike(), |k| k % 3 == 1)] {
             let model = Model::new(input).expect("a good input");
             let text = source(&model).expect("a model for a device");
             kernels(&model).iter().for_each(|k| assert!(text.contains(&format!("KERNEL({k})")), "{k}"));
             let (mut ours, mut theirs) = (State::new(&model), State::new(&model));
             let mut work = Work::new(&model, &theirs);
-            let mut device = Device::new(CMachine::new(&text), &model, &ours).expect("memory");
+            let mut device = Device::new(TestMachine::new(&text, &model), &model, &ours).expect("memory");
             for _ in 0..500 {
                 step(&model, &mut theirs, &mut work, &NoSurface, &[]).expect("a good step");
                 device.step(&model, &mut ours, &NoSurface, &[]).expect("a good step on the device");
@@ -90,12 +90,12 @@ fn the_state_stays_on_the_device() {
 /// The comparison sees what is wrong with a list: a memory lost, a partner twice, one that may not touch.
 #[test]
 fn a_changed_search_is_seen() {
-    if compiler_is_there() {
+    if device_is_there() {
         let input = unlike();
         for (from, to) in [
             ("known ? OLD_MEMORY[old] : fresh", "fresh"),
             ("known ? OLD_TURN[old] : none()", "none()"),
-            ("if (!in_cell(p, y, size, inverse, cx, cy, cz)) continue;", ""),
+            ("if (!in_row(p, y, size, inverse, from_x, to_x, cy, cz)) continue;", ""),
             ("if (still && OLD_V[there].w == 0.0) continue;", ""),
         ] {
             let change = |text: String| {

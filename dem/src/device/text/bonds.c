@@ -20,9 +20,8 @@ DEVICE void debonded(const four xa, const four va, const four wa, const four xb,
 //@DEBONDED
 }
 /// A bond, seen from one of its bodies.
-DEVICE void bond(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const unsigned other = second ? BOND_ENDS[c].first : BOND_ENDS[c].second;
-    const four x_there = OLD_X[other], v_there = OLD_V[other], w_there = OLD_W[other];
+DEVICE void bond(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const four x_there = OLD_X[there], v_there = OLD_V[there], w_there = OLD_W[there];
     outcome o;
     four n[2];
     const int holds = bond_holds(second ? x_there : x, second ? v_there : v, second ? w_there : w, second ? x : x_there,
@@ -42,9 +41,8 @@ DEVICE void bond(ARGUMENTS p, const unsigned c, const int second, const four x, 
 }
 
 /// The contact of a pair that was bonded, seen from one of its bodies.
-DEVICE void debonded_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const unsigned other = second ? ENDS[c].first : ENDS[c].second;
-    const four x_there = OLD_X[other], v_there = OLD_V[other], w_there = OLD_W[other], m = OLD_MEMORY[c];
+DEVICE void debonded_contact(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const four x_there = OLD_X[there], v_there = OLD_V[there], w_there = OLD_W[there], m = OLD_MEMORY[c];
     const four xa = second ? x_there : x, wa = second ? w_there : w, xb = second ? x : x_there, wb = second ? w : w_there;
     const real reference = REFERENCE[c - FIRST_DEBONDED], *k = law_of(p, wa, wb);
     const four r = old_turn(p, c);

@@ -11,8 +11,8 @@ DEVICE void member_plane(const four x, const four v, const four w, const four ce
 }
 
 /// A contact of two spheres that may be members of clumps, seen from one of their bodies.
-DEVICE void member_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const unsigned here = second ? ENDS[c].second : ENDS[c].first, there = second ? ENDS[c].first : ENDS[c].second;
+DEVICE void member_contact(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const unsigned here = second ? ENDS[c].second : ENDS[c].first;
     const four own = OLD_SPHERES[here], other = OLD_SPHERES[there];
     const four xa = second ? other : own, xb = second ? own : other;
     const int on = spheres_touch(xa, xb);
@@ -32,8 +32,8 @@ DEVICE void member_contact(ARGUMENTS p, const unsigned c, const int second, cons
 }
 
 /// A contact of such a sphere with a plane.
-DEVICE void member_plane_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const four face = PLANES[2 * ENDS[c].second], motion = PLANES[2 * ENDS[c].second + 1], m = OLD_MEMORY[c], r = old_turn(p, c);
+DEVICE void member_plane_contact(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const four face = PLANES[2 * there], motion = PLANES[2 * there + 1], m = OLD_MEMORY[c], r = old_turn(p, c);
     const four own = OLD_SPHERES[ENDS[c].first];
     const real *k = law_of(p, w, motion);
     four *wall = WALLS + 2 * (c - FIRST_PLANE);

@@ -8,13 +8,17 @@
 #define ALIGNED __align__(16)
 #define ARGUMENTS const arguments &
 #define OF(member) p.member
-#define KERNEL(name) extern "C" __global__ void __launch_bounds__(128) name(const arguments p)
+#define KERNEL(name) extern "C" __global__ void __launch_bounds__(128, BLOCKS_AT_ONCE) name(const arguments p)
 #define THREAD(i, count)                                     \
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x; \
     if (i >= (count)) return;
 #define RUN(name)
 #define TAKE(count) atomicAdd(&(count), 1u)
 #define ENDLESS __longlong_as_double(0x7ff0000000000000LL)
+#define UNROLL _Pragma("unroll")
+#define SHARED_BY_FOUR(i)
+#define LANES(f, ...) over_lanes(f(__VA_ARGS__, threadIdx.x & 3u))
+#define LARGEST(f, ...) largest_of_lanes(f(__VA_ARGS__, threadIdx.x & 3u))
 #else
 #include <math.h>
 #define DEVICE static inline
@@ -33,6 +37,14 @@
 /// What a count is before one is added to it; on a device as one operation.
 #define TAKE(count) ((count)++)
 #define ENDLESS ((real)INFINITY)
+#define UNROLL
+/// Threads that sum up together, a lane each, on a device; here the first does it all.
+#define SHARED_BY_FOUR(i) \
+    if ((i) & 3u) return;
+/// The sum of what a function has for each of four lanes, as lanes of four add up.
+#define LARGER(a, b) ((a) > (b) ? (a) : (b))
+#define LARGEST(f, ...) LARGER(LARGER(f(__VA_ARGS__, 0u), f(__VA_ARGS__, 1u)), LARGER(f(__VA_ARGS__, 2u), f(__VA_ARGS__, 3u)))
+#define LANES(f, ...) ((f(__VA_ARGS__, 0u) + f(__VA_ARGS__, 1u)) + (f(__VA_ARGS__, 2u) + f(__VA_ARGS__, 3u)))
 #endif
 
 typedef double real;
@@ -58,6 +70,11 @@ typedef struct { four force, torque; } sums;
 #define SPHERE(k) OLD_X[k]
 #define BODY(k) (k)
 #endif
+
+/// Where the lists of a block begin.
+#define LISTS_OF(block) (RANGES + (block) * LISTS)
+
+#define AT_MOST(a, b) ((a) < (b) ? (a) : (b))
 
 DEVICE four none(void) {
     four zero = {0.0, 0.0, 0.0, 0.0};
@@ -123,11 +140,40 @@ DEVICE void end(ARGUMENTS p, const unsigned c, const real *k, const four m, cons
     keep(p, c, o);
 }
 
+#ifdef __CUDACC__
+/// What four threads have together: either order of two terms has the same sum.
+DEVICE real over_lanes(real sum) {
+    const unsigned four_threads = 0xfu << (threadIdx.x & 28u);
+    sum += __shfl_xor_sync(four_threads, sum, 1);
+    return sum + __shfl_xor_sync(four_threads, sum, 2);
+}
+
+DEVICE real largest_of_lanes(const real own) {
+    const unsigned four_threads = 0xfu << (threadIdx.x & 28u);
+    const real beside = __shfl_xor_sync(four_threads, own, 1), larger = own > beside ? own : beside;
+    const real others = __shfl_xor_sync(four_threads, larger, 2);
+    return larger > others ? larger : others;
+}
+#endif
+
+/// Numbers that are fetched before any of them is added, so that they do not wait for each other. Past the end of a list the last is
+/// fetched once more, and a zero added, which changes no sum.
+#define BATCH 32u
+
+/// Sum of every `stride`-th number of a list, of them every fourth.
+DEVICE real lane_sum(const real *list, const unsigned count, const unsigned stride, const unsigned lane) {
+    real sum = 0.0;
+    for (unsigned k = lane; k < count; k += 4 * BATCH) {
+        real x[BATCH];
+        UNROLL for (unsigned m = 0; m < BATCH; ++m) x[m] = list[AT_MOST(k + 4 * m, count - 1) * stride];
+        UNROLL for (unsigned m = 0; m < BATCH; ++m) sum += k + 4 * m < count ? x[m] : 0.0;
+    }
+    return sum;
+}
+
 /// Sum of every `stride`-th number of a list as lanes of four add them up.
 DEVICE real in_lanes(const real *list, const unsigned count, const unsigned stride) {
-    real lane[4] = {0.0, 0.0, 0.0, 0.0};
-    for (unsigned k = 0; k < count; ++k) lane[k & 3] += list[k * stride];
-    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+    return LANES(lane_sum, list, count, stride);
 }
 
 /// The same one by one.
@@ -143,20 +189,22 @@ KERNEL(bodies) {
     const four x = OLD_X[i], v = OLD_V[i], w = OLD_W[i];
     sums s = {none(), none()};
     for (unsigned e = START[i]; e < START[i + 1]; ++e) {
-        const unsigned c = ENTRIES[e] >> 4, what = ENTRIES[e] >> 1 & 7;
-        const int second = (int)(ENTRIES[e] & 1);
+        const ends entry = ENTRIES[e];
+        const unsigned c = entry.first >> 4, what = entry.first >> 1 & 7, there = entry.second;
+        const int second = (int)(entry.first & 1);
 //@ENTRIES
     }
     advance(p, i, x, v, w, s);
 }
 RUN(bodies)
 
-/// What the blocks book, one number of one block a thread.
+/// What the blocks book, one number of one block four threads, part by part, so that threads side by side do the same; behind it whether
+/// the step has failed.
 KERNEL(books) {
-    THREAD(t, BLOCKS * QUANTITIES)
-    const unsigned q = t % QUANTITIES, *from = RANGES + t / QUANTITIES * LISTS, *to = from + LISTS;
-    real x = 0.0;
+    THREAD(t, 4 * BLOCKS * QUANTITIES)
+    SHARED_BY_FOUR(t)
+    if (t == 0) BOOKS[BLOCKS * QUANTITIES] = FLAGS[0];
+    unsigned number = t / 4;
 //@BOOKS
-    BOOKS[t] = x;
 }
 RUN(books)

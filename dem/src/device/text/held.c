@@ -1,9 +1,9 @@
 // What local damping and fixed motions did.
 
 /// Sums over the bodies of a block that move by themselves, of one number or of two in turn.
-DEVICE real of_singles(ARGUMENTS p, const unsigned first, const unsigned last, const unsigned one, const unsigned two) {
+DEVICE real of_singles(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned one, const unsigned two) {
     real sum = 0.0;
-    for (unsigned i = first; i < last; ++i) {
+    for (unsigned i = first_single(p, from); i < to[0]; ++i) {
         if (BY_FOUR(i)) continue;
         sum += HELD_BY[HELD_WIDTH * i + one];
         if (two != one) sum += HELD_BY[HELD_WIDTH * i + two];
@@ -36,13 +36,13 @@ DEVICE real power(ARGUMENTS p, const unsigned first, const unsigned last, const 
     return sum;
 }
 
-/// The same in lanes.
-DEVICE real of_lanes(ARGUMENTS p, const unsigned first, const unsigned last, const unsigned one) {
-    real lane[4] = {0.0, 0.0, 0.0, 0.0};
-    for (unsigned i = first; i < last; ++i) {
-        if (BY_FOUR(i)) lane[(i - first) & 3] += HELD_BY[HELD_WIDTH * i + one];
+/// Sum of one number over those that move four at a time, of them every fourth.
+DEVICE real held_lane(ARGUMENTS p, const unsigned first, const unsigned last, const unsigned one, const unsigned lane) {
+    real sum = 0.0;
+    for (unsigned i = first + lane; i < last; i += 4) {
+        if (BY_FOUR(i)) sum += HELD_BY[HELD_WIDTH * i + one];
     }
-    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+    return sum;
 }
 
 /// What local damping and fixed motions are booked with.
@@ -50,22 +50,22 @@ DEVICE real held_books(ARGUMENTS p, const unsigned *from, const unsigned *to, co
     const unsigned first = from[0], last = to[0];
     switch (q) {
     case 0:
-        return (power(p, first, last, 0) + power(p, first, last, 1)) + (power(p, first, last, 2) + power(p, first, last, 3));
+        return LANES(power, p, first, last);
     case 1: case 2: case 3:
         return of_fours(p, first, last, 5 + q);
     case 4: case 5: case 6:
-        return of_lanes(p, first, last, 8 + q) + of_fours(p, first, last, 5 + q);
+        return LANES(held_lane, p, first, last, 8 + q) + of_fours(p, first, last, 5 + q);
     case 7:
-        return of_singles(p, first, last, 0, 7);
+        return of_singles(p, from, to, 0, 7);
     case 8: case 9: case 10:
-        return of_singles(p, first, last, q - 7, q - 7);
+        return of_singles(p, from, to, q - 7, q - 7);
     case 11: case 12: case 13:
-        return of_singles(p, first, last, q - 7, q - 3);
+        return of_singles(p, from, to, q - 7, q - 3);
     case 14:
-        return of_singles(p, first, last, 11, 11);
+        return of_singles(p, from, to, 11, 11);
     case 15: case 16: case 17:
-        return of_singles(p, first, last, q - 3, q - 3);
+        return of_singles(p, from, to, q - 3, q - 3);
     default:
-        return of_singles(p, first, last, q - 3, q);
+        return of_singles(p, from, to, q - 3, q);
     }
 }

@@ -13,8 +13,8 @@ DEVICE void images(const four xa, const four va, const four wa, const four ca, c
 }
 
 /// A contact with the image of a sphere, seen from one of the bodies.
-DEVICE void image_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const unsigned here = second ? ENDS[c].second : ENDS[c].first, there = second ? ENDS[c].first : ENDS[c].second;
+DEVICE void image_contact(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const unsigned here = second ? ENDS[c].second : ENDS[c].first;
     const four own = SPHERE(here), other = SPHERE(there), way = WAYS[c - FIRST_IMAGE];
     const four xa = second ? other : own, xb = second ? own : other;
     const int on = images_touch(xa, xb, way);

@@ -90,7 +90,7 @@ pub(super) fn text(laws: &Laws, f: &Features) -> String {
 /// The lines of C that hand an entry to the function of its part.
 fn entries(parts: &[Part]) -> String {
     let tests = parts.iter().flat_map(|p| p.entries).map(|(what, function)| {
-        format!("if (what == {}u) {function}(p, c, second, x, v, w, &s);\n", *what as u32)
+        format!("if (what == {}u) {function}(p, c, there, second, x, v, w, &s);\n", *what as u32)
     });
     format!("        {}", tests.collect::<Vec<_>>().join("        else "))
 }

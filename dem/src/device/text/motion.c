@@ -44,26 +44,48 @@ DEVICE void advance(ARGUMENTS p, const unsigned i, const four x, const four v, c
     if (!(speed2 <= BOUND * BOUND)) FLAGS[0] = 1;
 }
 
-/// Component `d` of the sum of mass times position of a block's bodies.
-DEVICE real moment(ARGUMENTS p, const unsigned first, const unsigned last, const unsigned d) {
-    real lane[4] = {0.0, 0.0, 0.0, 0.0}, single = 0.0;
-    for (unsigned i = first; i < last; ++i) {
-        const real x = ((const real *)(OLD_X + i))[d];
-        if (BY_FOUR(i)) {
-            lane[(i - first) & 3] += x * (1.0 / OLD_V[i].w);
-        } else {
-            single += x * CONSTANTS[i].x;
+/// Component `d` of the sum of mass times position of the bodies that move four at a time, of them every fourth.
+DEVICE real moment_lane(ARGUMENTS p, const unsigned first, const unsigned last, const unsigned d, const unsigned lane) {
+    real sum = 0.0;
+    for (unsigned i = first + lane; i < last; i += 2 * BATCH) {
+        real x[BATCH / 2], mass[BATCH / 2];
+        unsigned how[BATCH / 2];
+        UNROLL for (unsigned m = 0; m < BATCH / 2; ++m) {
+            const unsigned k = AT_MOST(i + 4 * m, last - 1);
+            x[m] = ((const real *)(OLD_X + k))[d];
+            mass[m] = MASS[k];
+            how[m] = BY_FOUR(k);
         }
+        UNROLL for (unsigned m = 0; m < BATCH / 2; ++m) sum += i + 4 * m < last && how[m] ? x[m] * mass[m] : 0.0;
     }
-    return single + ((lane[0] + lane[1]) + (lane[2] + lane[3]));
+    return sum;
 }
 
-DEVICE real fastest2(ARGUMENTS p, const unsigned first, const unsigned last) {
+/// The first body of a block that moves by itself, or one past the last.
+DEVICE unsigned first_single(ARGUMENTS p, const unsigned *from) {
+    return FIRST_SINGLE[(unsigned)(from - RANGES) / LISTS];
+}
+
+/// Component `d` of the sum of mass times position of a block's bodies.
+DEVICE real moment(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned d) {
+    real single = 0.0;
+    for (unsigned i = first_single(p, from); i < to[0]; ++i) {
+        if (!(BY_FOUR(i))) single += ((const real *)(OLD_X + i))[d] * MASS[i];
+    }
+    return single + LANES(moment_lane, p, from[0], to[0], d);
+}
+
+/// The largest square of a speed of every fourth body.
+DEVICE real fastest_lane(ARGUMENTS p, const unsigned first, const unsigned last, const unsigned lane) {
     real most = 0.0;
-    for (unsigned i = first; i < last; ++i) most = SPEED2[i] > most ? SPEED2[i] : most;
+    for (unsigned i = first + lane; i < last; i += 4 * BATCH) {
+        real x[BATCH];
+        UNROLL for (unsigned m = 0; m < BATCH; ++m) x[m] = SPEED2[AT_MOST(i + 4 * m, last - 1)];
+        UNROLL for (unsigned m = 0; m < BATCH; ++m) most = x[m] > most ? x[m] : most;
+    }
     return most;
 }
 
 DEVICE real motion_books(ARGUMENTS p, const unsigned *from, const unsigned *to, const unsigned q) {
-    return q < 3 ? moment(p, from[0], to[0], q) : fastest2(p, from[0], to[0]);
+    return q < 3 ? moment(p, from, to, q) : LARGEST(fastest_lane, p, from[0], to[0]);
 }

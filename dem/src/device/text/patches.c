@@ -282,7 +282,7 @@ DEVICE unsigned touches(ARGUMENTS p, const unsigned from, const unsigned to, con
 }
 
 /// All contacts of a sphere with triangles.
-DEVICE void wall_contacts(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
+DEVICE void wall_contacts(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
     const unsigned from = GROUPS[c], to = GROUPS[c + 1];
     const four sphere = SPHERE(PATCH_PAIRS[from].first);
     unsigned before[MOST], old = 0;

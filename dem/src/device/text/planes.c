@@ -12,8 +12,8 @@ DEVICE void plane(const four x, const four v, const four w, const four face, con
 }
 
 /// A contact of a sphere with a plane.
-DEVICE void plane_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const four face = PLANES[2 * ENDS[c].second], motion = PLANES[2 * ENDS[c].second + 1], m = OLD_MEMORY[c];
+DEVICE void plane_contact(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const four face = PLANES[2 * there], motion = PLANES[2 * there + 1], m = OLD_MEMORY[c];
     const real *k = law_of(p, w, motion);
     four *wall = WALLS + 2 * (c - FIRST_PLANE);
     const four r = old_turn(p, c);

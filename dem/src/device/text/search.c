@@ -47,9 +47,11 @@ DEVICE unsigned bucket_of(ARGUMENTS p, const unsigned size, const long long x, c
     return ((unsigned)x + h * 2654435761u) & (BUCKETS - 1);
 }
 
-DEVICE int in_cell(ARGUMENTS p, const four x, const unsigned size, const real inverse, const long long cx, const long long cy,
-                   const long long cz) {
-    return size_of(p, x.w) == size && cell_of(x.x, inverse) == cx && cell_of(x.y, inverse) == cy && cell_of(x.z, inverse) == cz;
+/// Whether a sphere lies in one of the cells of a row along x.
+DEVICE int in_row(ARGUMENTS p, const four x, const unsigned size, const real inverse, const long long from_x, const long long to_x,
+                  const long long cy, const long long cz) {
+    const long long cx = cell_of(x.x, inverse);
+    return size_of(p, x.w) == size && cx >= from_x && cx <= to_x && cell_of(x.y, inverse) == cy && cell_of(x.z, inverse) == cz;
 }
 
 /// Puts a number into an ascending list of `count`.
@@ -69,24 +71,31 @@ DEVICE unsigned partners(ARGUMENTS p, const unsigned s, unsigned *later, unsigne
         const real inverse = GRIDS[2 * size], way = 1.000001 * (x.w + GRIDS[2 * size + 1] + REACH);
         // The cells of all centres within that way, roundings allowed for.
         const real wx = way + 1e-15 * fabs(x.x), wy = way + 1e-15 * fabs(x.y), wz = way + 1e-15 * fabs(x.z);
-        const long long to_x = cell_of(x.x + wx, inverse), to_y = cell_of(x.y + wy, inverse), to_z = cell_of(x.z + wz, inverse);
+        const long long from_x = cell_of(x.x - wx, inverse), to_x = cell_of(x.x + wx, inverse);
+        const long long to_y = cell_of(x.y + wy, inverse), to_z = cell_of(x.z + wz, inverse);
+        // No bucket twice.
+        const unsigned cells = to_x - from_x < (long long)BUCKETS ? (unsigned)(to_x - from_x) + 1 : BUCKETS;
         for (long long cz = cell_of(x.z - wz, inverse); cz <= to_z; ++cz)
-        for (long long cy = cell_of(x.y - wy, inverse); cy <= to_y; ++cy)
-        for (long long cx = cell_of(x.x - wx, inverse); cx <= to_x; ++cx) {
-            const unsigned bucket = bucket_of(p, size, cx, cy, cz);
-            for (unsigned m = CELLS[bucket]; m < CELLS[bucket + 1]; ++m) {
-                const unsigned other = ITEMS[m], there = BODY(other);
-                const four y = SPHERE(other);
-                if (there == body || !spheres_near(x, y, REACH)) continue;
-                if (still && OLD_V[there].w == 0.0) continue;
-                // Other cells share the bucket.
-                if (!in_cell(p, y, size, inverse, cx, cy, cz)) continue;
-                if (row) {
-                    insert(row, n, other);
-                } else if (other > s) {
-                    ++later[BLOCK[there] == BLOCK[body]];
+        for (long long cy = cell_of(x.y - wy, inverse); cy <= to_y; ++cy) {
+            unsigned bucket = bucket_of(p, size, from_x, cy, cz);
+            // The last bucket is followed by the first.
+            for (unsigned left = cells, run; left > 0; left -= run, bucket = 0) {
+                run = AT_MOST(left, BUCKETS - bucket);
+                const unsigned end = CELLS[bucket + run];
+                for (unsigned m = CELLS[bucket]; m < end; ++m) {
+                    const unsigned other = ITEMS[m], there = BODY(other);
+                    const four y = SPHERE(other);
+                    if (there == body || !spheres_near(x, y, REACH)) continue;
+                    if (still && OLD_V[there].w == 0.0) continue;
+                    // Other cells share the buckets.
+                    if (!in_row(p, y, size, inverse, from_x, to_x, cy, cz)) continue;
+                    if (row) {
+                        insert(row, n, other);
+                    } else if (other > s) {
+                        ++later[BLOCK[there] == BLOCK[body]];
+                    }
+                    ++n;
                 }
-                ++n;
             }
         }
     }
@@ -198,11 +207,19 @@ DEVICE unsigned contact_of(ARGUMENTS p, unsigned c, const unsigned name) {
     return c;
 }
 
+/// Puts an entry into an ascending list of `count`.
+DEVICE void enter(ends *list, unsigned count, const unsigned what, const unsigned with) {
+    for (; count > 0 && list[count - 1].first > what; --count) list[count] = list[count - 1];
+    list[count].first = what;
+    list[count].second = with;
+}
+
 /// Contacts that a body gathers, in the order of the engine's sums: across blocks, within, with planes; in the order of the lists in each.
 KERNEL(enter_partners) {
     THREAD(i, BODIES + 1)
     const unsigned first = FIRST_OF(i);
-    unsigned *entry = ENTRIES + (ROW_OF(first) + PLANES_OF(first) - PLANES_OF(0)), n = 0;
+    ends *entry = ENTRIES + (ROW_OF(first) + PLANES_OF(first) - PLANES_OF(0));
+    unsigned n = 0;
     START[i] = (unsigned)(entry - ENTRIES);
     if (i == BODIES) return;
     for (unsigned own = 0; own < 2; ++own) {
@@ -214,12 +231,15 @@ KERNEL(enter_partners) {
                 const unsigned other = ROWS[m], second = other < s;
                 if ((BLOCK[BODY(other)] == BLOCK[i]) != own) continue;
                 const unsigned of = second ? contact_of(p, OFFSETS[own * SPHERE_COUNT + other], own ? NAME(s) : s) : c++;
-                insert(entry + n, count++, of << 4 | what << 1 | second);
+                enter(entry + n, count++, of << 4 | what << 1 | second, own ? NAME(other) : other);
             }
         }
         n += count;
     }
-    for (unsigned c = PLANES_OF(first); c < PLANES_OF(FIRST_OF(i + 1)); ++c) entry[n++] = c << 4 | (ORIENTED(i) ? PLANE_TURNED : PLANE) << 1;
+    for (unsigned c = PLANES_OF(first); c < PLANES_OF(FIRST_OF(i + 1)); ++c) {
+        const ends with = {c << 4 | (ORIENTED(i) ? PLANE_TURNED : PLANE) << 1, ENDS[c].second};
+        entry[n++] = with;
+    }
 }
 RUN(enter_partners)
 

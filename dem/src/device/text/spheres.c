@@ -12,13 +12,12 @@ DEVICE void spheres(const four xa, const four va, const four wa, const four xb, 
 }
 
 /// A contact of two spheres, seen from one of them.
-DEVICE void sphere_contact(ARGUMENTS p, const unsigned c, const int second, const four x, const four v, const four w, sums *s) {
-    const unsigned other = second ? ENDS[c].first : ENDS[c].second;
-    const four x_there = OLD_X[other];
+DEVICE void sphere_contact(ARGUMENTS p, const unsigned c, const unsigned there, const int second, const four x, const four v, const four w, sums *s) {
+    const four x_there = OLD_X[there];
     const four xa = second ? x_there : x, xb = second ? x : x_there;
     const int on = spheres_touch(xa, xb);
     if (!on && second) return;
-    const four m = OLD_MEMORY[c], w_there = OLD_W[other];
+    const four m = OLD_MEMORY[c], w_there = OLD_W[there];
     const four wa = second ? w_there : w, wb = second ? w : w_there;
     const real *k = law_of(p, wa, wb);
     const four r = old_turn(p, c);
@@ -26,7 +25,7 @@ DEVICE void sphere_contact(ARGUMENTS p, const unsigned c, const int second, cons
         end(p, c, k, m, r);
         return;
     }
-    const four v_there = OLD_V[other];
+    const four v_there = OLD_V[there];
     outcome o;
     spheres(xa, second ? v_there : v, wa, xb, second ? v : v_there, wb, k, m, r, STEP, &o);
     hand_out(p, c, second, o, s);

@@ -1,25 +1,30 @@
-//! A CUDA device as the machine of `trackbed_dem::device`: the driver's and NVRTC's libraries are loaded when they are asked for, so
-//! that neither the build nor any other run needs them. Not run on a device yet: what it hands over and in which order is tested with
-//! a machine of the C compiler (`dem/tests/engine/device.rs`), and the text with NVRTC (`tests/nvrtc_check.py`).
+//! A CUDA device as a [`Machine`]. The driver's and NVRTC's libraries are loaded when they are asked for, so that neither the build nor
+//! any other run needs them.
 
+use super::layout::Arguments;
+use super::machine::{Call, Machine};
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use cudarc::driver::{
     CudaContext, CudaFunction, CudaSlice, CudaStream, DevicePtr, DeviceRepr, DriverError, LaunchConfig,
-    PushKernelArg,
+    PinnedHostSlice, PushKernelArg,
 };
 use cudarc::nvrtc::{CompileError, CompileOptions, compile_ptx_with_opts};
 use std::collections::HashMap;
 use std::sync::Arc;
-use trackbed_dem::device::{Arguments, Call, Machine};
 
 /// Threads of a block, as the text states them in its launch bounds.
 const THREADS: u32 = 128;
+
+/// Size of the memory that reads of each step go through; larger ones are rare and do without [B].
+const LANDING: usize = 1 << 22;
 
 /// A CUDA device with the kernels of one model.
 pub struct Cuda {
     stream: Arc<CudaStream>,
     kernels: HashMap<&'static str, CudaFunction>,
     buffers: Vec<Option<CudaSlice<u8>>>,
+    /// Memory of the processor that the device reaches by itself: what each step reads goes through it.
+    landing: Option<PinnedHostSlice<u8>>,
     /// What it is called.
     pub name: String,
 }
@@ -31,24 +36,24 @@ struct ByValue(Arguments);
 // SAFETY: `Arguments` is `repr(C)` of plain numbers, laid out as the text declares its only parameter.
 unsafe impl DeviceRepr for ByValue {}
 
-/// What this machine lacks for a device, if anything.
-pub fn missing() -> Option<&'static str> {
-    // SAFETY: both only try to open a library by name.
-    let (driver, compiler) =
-        unsafe { (cudarc::driver::sys::is_culib_present(), cudarc::nvrtc::sys::is_culib_present()) };
-    match (driver, compiler) {
-        (false, _) => Some("the library of NVIDIA's driver (libcuda) is not on this machine"),
-        (_, false) => Some("the library of CUDA's run-time compiler (libnvrtc) is not on this machine"),
-        _ => None,
-    }
-}
-
 fn of_driver(e: DriverError) -> String {
     format!("CUDA's driver: {e}")
 }
 
 impl Cuda {
-    /// The first device, with the kernels of a text, by name. Call it where nothing is [`missing`].
+    /// What the machine lacks for a device, if anything.
+    pub fn missing() -> Option<&'static str> {
+        // SAFETY: both only try to open a library by name.
+        let (driver, compiler) =
+            unsafe { (cudarc::driver::sys::is_culib_present(), cudarc::nvrtc::sys::is_culib_present()) };
+        match (driver, compiler) {
+            (false, _) => Some("the library of NVIDIA's driver (libcuda) is not on this machine"),
+            (_, false) => Some("the library of CUDA's run-time compiler (libnvrtc) is not on this machine"),
+            _ => None,
+        }
+    }
+
+    /// The first device, with the kernels of a text, by name. Call it where nothing is [missing](Cuda::missing).
     ///
     /// # Errors
     /// There is no device, or it does not take the kernels.
@@ -69,7 +74,7 @@ impl Cuda {
         let kernel = |&name| Ok((name, module.load_function(name).map_err(of_driver)?));
         let kernels = kernels.iter().map(kernel).collect::<Result<_, String>>()?;
         let name = context.name().map_err(of_driver)?;
-        Ok(Cuda { stream: context.default_stream(), kernels, buffers: Vec::new(), name })
+        Ok(Cuda { stream: context.default_stream(), kernels, buffers: Vec::new(), landing: None, name })
     }
 
     /// A buffer with room for so many bytes; what it held is lost where it was too small.
@@ -99,8 +104,23 @@ impl Cuda {
     fn read<T: Pod>(&mut self, buffer: usize, data: &mut [T]) -> Result<(), String> {
         let bytes: &mut [u8] = cast_slice_mut(data);
         let Some(Some(slice)) = self.buffers.get(buffer).filter(|_| !bytes.is_empty()) else { return Ok(()) };
-        self.stream.memcpy_dtoh(&slice.slice(..bytes.len()), bytes).map_err(of_driver)?;
-        self.stream.synchronize().map_err(of_driver)
+        let wanted = slice.slice(..bytes.len());
+        if bytes.len() > LANDING {
+            self.stream.memcpy_dtoh(&wanted, bytes).map_err(of_driver)?;
+            return self.stream.synchronize().map_err(of_driver);
+        }
+        if self.landing.is_none() {
+            // SAFETY: nothing is read from it that has not been copied into it.
+            let memory = unsafe { self.stream.context().alloc_pinned_with_flags(LANDING, 0) };
+            self.landing = Some(memory.map_err(of_driver)?);
+        }
+        let Some(landing) = &mut self.landing else { return Err("no memory".into()) };
+        // It is copied to the end of what is handed over here.
+        let landed = &mut landing.as_mut_slice().map_err(of_driver)?[..bytes.len()];
+        self.stream.memcpy_dtoh(&wanted, landed).map_err(of_driver)?;
+        self.stream.synchronize().map_err(of_driver)?;
+        bytes.copy_from_slice(landed);
+        Ok(())
     }
 }
 
