@@ -89,7 +89,7 @@ fn tiled(scene: &str, n: usize) -> ModelInput {
             all.bonds.push(trackbed_dem::bond::BondInput {
                 a: bond.a + first,
                 b: bond.b + first,
-                ..bond.clone()
+                ..*bond
             });
         }
     }
