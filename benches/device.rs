@@ -86,11 +86,7 @@ fn tiled(scene: &str, n: usize) -> ModelInput {
             all.bodies.push(trackbed_dem::BodyInput { position, ..body.clone() });
         }
         for bond in &one.bonds {
-            all.bonds.push(trackbed_dem::bond::BondInput {
-                a: bond.a + first,
-                b: bond.b + first,
-                ..*bond
-            });
+            all.bonds.push(trackbed_dem::bond::BondInput { a: bond.a + first, b: bond.b + first, ..*bond });
         }
     }
     if scene != "s3" {
