@@ -30,7 +30,7 @@ pub(in crate::model) use check::region;
 use steps::StepPlan;
 use trackbed_dem::Vec3;
 
-pub use bonds::check_joined;
+pub use bonds::{check_gaps, check_joined};
 pub use compaction::{CompactionPlan, Press};
 pub use deposition::DepositionPlan;
 pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};

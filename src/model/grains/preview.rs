@@ -1,7 +1,7 @@
 //! The models of the grains as far as they are known before anything has moved: what is wrong with a scene shows here, and not
 //! after its bed has settled.
 
-use super::bonds::{check_joinable, check_joined};
+use super::bonds::{check_gaps, check_joinable, check_joined};
 use super::part::GrainsPart;
 use super::refused::refused;
 use crate::scene::{Document, SceneError};
@@ -23,6 +23,7 @@ pub struct Preview {
 /// # Errors
 /// Bad input.
 pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, SceneError> {
+    check_gaps(document, &grains.bonds, &grains.groups.bodies, &grains.groups.shapes)?;
     // First without the sleeper, as a run does to find its place.
     let input = grains.input(grains.groups.bodies.clone());
     if grains.is_packed() {

@@ -3,7 +3,7 @@
 use super::carried::Carried;
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GrainsPart, check_joined, check_steps, refused};
+use crate::model::grains::{GrainsPart, check_gaps, check_joined, check_steps, refused};
 use crate::run::bed::Bed;
 use crate::run::checkpoint::{self, Loaded, Moment};
 use crate::run::context::Run;
@@ -284,6 +284,7 @@ impl RunState<'_> {
     pub fn grain_model(&mut self, run: &Run<'_>) -> Result<dem::Model, Failure> {
         let grains = self.grains.as_mut().expect("a run with grains");
         let (part, summary) = (&grains.part, &mut self.summary);
+        check_gaps(run.document, &part.bonds, &grains.bodies, &part.groups.shapes)?;
         let input = part.input(std::mem::take(&mut grains.bodies));
         check_joined(run.document, &part.bonds, &input.bonds)?;
         if !part.bonds.is_empty() {

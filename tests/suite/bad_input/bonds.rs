@@ -18,6 +18,14 @@ fn bonds_that_join_nothing() {
     );
 }
 
+/// Gaps that would join each sphere to hundreds.
+#[test]
+fn bonds_across_many_spheres() {
+    bonded().scene("gap = \"5 mm\"", "gap = \"0.6 m\"").refused(
+        "scene.toml:18: bond.0.gap: found 0.6 m, expected at most 10 times the largest radius, which is 5.000e-2 m",
+    );
+}
+
 #[test]
 fn two_kinds_of_bond() {
     bonded().scene("[bond.parallel]", "[bond.direct]\nstiffness = [1, 1, 1, 1]\n[bond.parallel]").refused(

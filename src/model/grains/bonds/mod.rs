@@ -10,8 +10,8 @@ use super::deposition::DepositionPlan;
 use crate::failure::Failure;
 use crate::scene::{Document, Scene, SceneError, Table};
 use rule::{Joinable, rule};
-use trackbed_dem::ModelInput;
 use trackbed_dem::bond::BondInput;
+use trackbed_dem::{BodyInput, ModelInput, Shape};
 
 /// Resolves the kinds of bonds, so that grains can name them.
 pub(super) fn kinds(scene: &Table<Scene>) -> Result<BondPart, Failure> {
@@ -45,6 +45,26 @@ pub(super) fn rules(
         let bodies = Joinable { bonds, kind, groups, count, levelled };
         let rule = rule(&table, &bodies)?;
         bonds.add_rule(rule);
+    }
+    Ok(())
+}
+
+/// Largest gap that bonds bridge, over the largest radius of the spheres.
+const WIDEST_GAP: f64 = 10.0;
+
+/// Refuses gaps many times as wide as the spheres: each would be joined to hundreds, and a bed of small ones to all of it.
+pub fn check_gaps(
+    document: &Document,
+    part: &BondPart,
+    bodies: &[BodyInput],
+    shapes: &[Shape],
+) -> Result<(), SceneError> {
+    for kind in 0..part.names.len() {
+        let Some((gap, radius)) = part.gap(kind, bodies, shapes) else { continue };
+        if gap > WIDEST_GAP * radius {
+            let expected = format!("at most {WIDEST_GAP} times the largest radius, which is {radius:.3e} m");
+            return Err(document.error(&format!("bond.{kind}.gap"), format!("{gap} m"), expected));
+        }
     }
     Ok(())
 }

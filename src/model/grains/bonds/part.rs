@@ -146,6 +146,16 @@ impl BondPart {
         input.bonds = self.made.iter().map(Made::bond).collect();
     }
 
+    /// The gap that a kind bridges and the largest radius of the spheres among these bodies [m], if it joins by gaps and there are any.
+    pub(super) fn gap(&self, kind: usize, bodies: &[BodyInput], shapes: &[Shape]) -> Option<(f64, f64)> {
+        let PairSource::Gap(gap) = self.rules[kind].source else { return None };
+        let radii = bodies.iter().filter_map(|b| match shapes[b.shape] {
+            Shape::Sphere { radius } => Some(radius * b.scale),
+            _ => None,
+        });
+        radii.reduce(f64::max).map(|largest| (gap, largest))
+    }
+
     /// Whether the rule of a kind can join any two of these bodies, wherever they come to lie: only single spheres are joined.
     pub(super) fn can_join(&self, kind: usize, bodies: &[BodyInput], shapes: &[Shape]) -> bool {
         let rule = &self.rules[kind];
