@@ -1,5 +1,6 @@
 //! Contacts of a state that has made no step.
 
+use super::bonds;
 use super::model::Model;
 use super::state::{BlockLists, State};
 use super::step::step;
@@ -30,7 +31,10 @@ pub fn find_contacts<S: Surface>(
     }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
-    // The probe may have broken bonds, and has taken the spheres of clumps along.
-    work.follow(model, state);
+    // The probe may have broken bonds, and has taken the spheres of clumps along. What it has found of forces stays.
+    for (members, block) in work.members.iter_mut().zip(&state.blocks) {
+        members.arrange(&model.bodies, &model.shapes, block);
+    }
+    bonds::arrange(model, state, work);
     Ok(())
 }
