@@ -14,7 +14,7 @@ const WIDTH: f64 = 0.222;
 const ROUNDING: f64 = 0.06;
 
 /// The bonded block: bonds of a beam of E = 1 GPa, radius and half length 1 cm; its lower layer is held, the upper moves.
-pub fn block() -> ModelInput {
+fn block() -> ModelInput {
     let mut input = ModelInput {
         materials: vec![Material { stiffness: 1e6, ..grains::stone() }],
         shapes: vec![Shape::Sphere { radius: 1.0 }],

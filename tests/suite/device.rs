@@ -1,4 +1,4 @@
-//! `run --device gpu` up to where a device begins: what it refuses, and in which words.
+//! `run --device gpu`: what it refuses, in which words, and whole runs through libraries that stand in for CUDA's.
 
 use super::support::{COUPLED, Folder, GRAINS, Outcome, repository, results, run, scene_folder, trackbed};
 use std::fs;
@@ -89,7 +89,7 @@ fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str
     }
 }
 
-/// What the program hands to CUDA's libraries and takes from them: whole runs have the bytes of the processor's, resumed ones too.
+/// What the program hands to CUDA's libraries and takes from them: whole runs have the bytes of the processor's.
 #[test]
 fn runs_on_a_stand_in_have_the_processors_bytes() {
     let Some(libraries) = stand_in() else { return };
@@ -130,5 +130,27 @@ fn a_device_that_fails_is_named() {
         println!("{}", outcome.stderr);
         assert_eq!(outcome.code, code, "{outcome:?}");
         assert!(outcome.stderr.contains(words), "{outcome:?}");
+    }
+}
+
+/// A run whose device has failed on the way goes on from its checkpoint, on a device or on the processor, as if nothing had been.
+#[test]
+fn a_run_goes_on_after_its_device_has_failed() {
+    let Some(libraries) = stand_in() else { return };
+    let folder = Folder::new("device_goes_on");
+    let scene = repository().join("inputs/grains/block.toml").display().to_string();
+    let set = ["time.end=0.02 s", "grains.0.count=120", "output.checkpoint=1 ms"];
+    run(Path::new(&scene), &folder.join("whole"), &set).good();
+    for more in [&["--resume", "--device", "gpu"][..], &["--resume"]] {
+        let out = folder.join(&format!("out_{}", more.len())).display().to_string();
+        let mut arguments = vec!["run", &scene, "--quiet", "--out", &out];
+        set.iter().for_each(|s| arguments.extend(["--set", s]));
+        let begin = [&arguments[..], &["--device", "gpu"]].concat();
+        let failed = with_libraries(libraries.path(), &[("STAND_IN_LAUNCHES", "2500")], &begin);
+        assert_eq!(failed.code, 3, "{failed:?}");
+        with_libraries(libraries.path(), &[], &[&arguments[..], more].concat()).good();
+        let (ours, theirs) = (results(Path::new(&out)), results(&folder.join("whole")));
+        assert!(ours.keys().eq(theirs.keys()));
+        ours.iter().for_each(|(file, bytes)| assert!(bytes == &theirs[file], "{more:?}: {file} differs"));
     }
 }
