@@ -512,6 +512,8 @@ fn a_changed_operation_is_seen() {
         for (input, from, to) in [
             (&spheres, "x.w - ", "1.0000000000000002 * x.w - "),
             (&spheres, "unsigned k = lane;", "unsigned k = lane >> 1 | (lane & 1) << 1;"),
+            (&spheres, "x[m] * mass[m]", "1.0000000000000002 * x[m] * mass[m]"),
+            (&spheres, "unsigned i = first_single(p, from);", "unsigned i = to[0];"),
             (&clumps, "if (!more) break;", "if (n == 1) break;"),
             (&clumps, "HELD_WIDTH * (g + lane) + 3", "HELD_WIDTH * (g + lane) + 4"),
             (&walls, "keep_deepest(found, n);", ""),
