@@ -394,7 +394,7 @@ impl<M: Machine> Device<M> {
         self.call.number(Number::Since, bonds.since());
         self.call.number(Number::Bound, 0.5 * model.radii.0 / pace.dt);
         self.machine.launch("bodies", state.present_count(), &self.call)?;
-        self.machine.launch("books", 4 * (self.books.len() - 1), &self.call)?;
+        self.machine.launch("books", 4 * (self.books.len() - 1) + 1, &self.call)?;
         let books = self.buffer(Slot::Books);
         self.machine.get(books, &mut self.books)?;
         Ok(self.books.last() != Some(&0.0))

@@ -41,10 +41,10 @@
 /// Threads that sum up together, a lane each, on a device; here the first does it all.
 #define SHARED_BY_FOUR(i) \
     if ((i) & 3u) return;
-/// The sum of what a function has for each of four lanes, as lanes of four add up.
+/// The sum of what a function has for each of four lanes, as lanes of four add up; and the largest.
+#define LANES(f, ...) ((f(__VA_ARGS__, 0u) + f(__VA_ARGS__, 1u)) + (f(__VA_ARGS__, 2u) + f(__VA_ARGS__, 3u)))
 #define LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define LARGEST(f, ...) LARGER(LARGER(f(__VA_ARGS__, 0u), f(__VA_ARGS__, 1u)), LARGER(f(__VA_ARGS__, 2u), f(__VA_ARGS__, 3u)))
-#define LANES(f, ...) ((f(__VA_ARGS__, 0u) + f(__VA_ARGS__, 1u)) + (f(__VA_ARGS__, 2u) + f(__VA_ARGS__, 3u)))
 #endif
 
 typedef double real;
@@ -198,12 +198,12 @@ KERNEL(bodies) {
 }
 RUN(bodies)
 
-/// What the blocks book, one number of one block four threads, part by part, so that threads side by side do the same; behind it whether
-/// the step has failed.
+/// What the blocks book, one number of one block four threads, part by part, so that threads side by side do the same; one more thread
+/// puts behind it whether the step has failed.
 KERNEL(books) {
-    THREAD(t, 4 * BLOCKS * QUANTITIES)
+    THREAD(t, 4 * BLOCKS * QUANTITIES + 1)
+    if (t == 4 * BLOCKS * QUANTITIES) BOOKS[BLOCKS * QUANTITIES] = FLAGS[0];
     SHARED_BY_FOUR(t)
-    if (t == 0) BOOKS[BLOCKS * QUANTITIES] = FLAGS[0];
     unsigned number = t / 4;
 //@BOOKS
 }
