@@ -40,6 +40,7 @@ fn grain(findings: &mut Findings, k: usize, m: &GrainMaterial) {
     findings.weigh_some(key("stiffness"), m.stiffness.map(|v| v.si), STIFFNESS);
     findings.weigh_some(key("young"), m.young.map(|v| v.si), YOUNG);
     findings.weigh_some(key("poisson"), m.poisson, POISSON);
+    findings.weigh_some(key("edge_factor"), m.edge_factor, Usual::new(0.2, 5.0, ""));
     findings.weigh_some(key("corner_strength"), m.corner_strength.map(|v| v.si), CORNER_STRENGTH);
     findings.weigh_some(
         key("corner_angle"),

@@ -21,6 +21,8 @@ pub struct GrainMaterial {
     pub young: Option<Quantity<Stress>>,
     /// Poisson's ratio, above −1 and at most 0.5; needed with a Young's modulus.
     pub poisson: Option<f64>,
+    /// Factor on the stiffness of edges of polyhedra and disks after Hertz, 0.01 to 100; default 1.
+    pub edge_factor: Option<f64>,
     /// Pressure that its corners bear before they crush [Pa]; beside a Young's modulus; absent: they do not crush.
     pub corner_strength: Option<Quantity<Stress>>,
     /// Half the angle of the cones that corners are, above 0 and below 90 degrees; needed with `corner_strength`.

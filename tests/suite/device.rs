@@ -25,7 +25,7 @@ fn a_device_refuses_by_name() {
     let inputs = repository().join("inputs").display().to_string();
     let stones = fs::read_to_string(repository().join("inputs/ballast/box-polyhedra.toml")).unwrap();
     let stones = stones.replace("\"../", &format!("\"{inputs}/"));
-    let stones = stones.replace("\"granite-", &format!("\"{inputs}/ballast/granite-"));
+    let stones = stones.replace("\"polyhedra-", &format!("\"{inputs}/ballast/polyhedra-"));
     let cases: [(&str, &str, &[&str], &str); 4] = [
         ("device_solid", COUPLED, &[], "solids are not"),
         (

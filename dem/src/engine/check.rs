@@ -65,6 +65,7 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
                 m.poisson > -1.0 && m.poisson <= 0.5,
                 "lie above -1 and not above 0.5",
             ),
+            ("edge factor", m.edge_factor, positive(m.edge_factor), POSITIVE),
             ("corner strength", m.corner_strength, m.corner_strength > 0.0, POSITIVE),
             (
                 "corner angle",
@@ -313,12 +314,12 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     for body in bodies.iter().filter(is_one) {
         let grows = |b: &&usize| {
             let at = |overlap| laws.stiffness(body.material, **b as u32, overlap, 1.0);
-            at(1.0) != at(2.0)
+            at(1.0) != at(2.0) && laws.edges([body.material, **b as u32]).is_none()
         };
         if let Some(b) = partners.iter().find(grows) {
             return error(format!(
                 "a dilated polyhedron or disk; the stiffness of its material {} with material {b} grows with the overlap, and only linear \
-                 springs can be spread along its edges",
+                 springs and Hertz's law can be spread along its edges",
                 body.material
             ));
         }

@@ -110,7 +110,9 @@ impl Model {
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
         check::input(&input)?;
         let bodies = Bodies::new(&input.bodies, &input.shapes, &input.materials)?;
-        let laws = Laws::new(&input.materials, &input.contacts);
+        let dilated = bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Polyhedron(_)));
+        let laws = if dilated { Laws::with_edges } else { Laws::new };
+        let laws = laws(&input.materials, &input.contacts);
         let given: Vec<WallInput> = input.all_walls().collect();
         let scarred = given.iter().any(|w| w.scarring.is_some());
         let mut walls = Walls::new(&given, input.triangles.len())?;
@@ -136,7 +138,8 @@ impl Model {
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
         let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));
-        let longest = of_fluids.fold(rigid.min(timestep::landing(&bodies, &input, &laws)), f64::min);
+        let longest =
+            of_fluids.fold(rigid.min(timestep::landing(&bodies, &input, &laws, expected)), f64::min);
         let steps = Steps::new(&input.time_step, &limit, longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);

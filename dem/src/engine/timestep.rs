@@ -133,7 +133,7 @@ pub(crate) fn limit(
         }
         let shape = &input.shapes[body.shape];
         let flexibility = compliance(&body, shape);
-        let (sides, radius) = (sides(shape, body.scale, r_min, several), contact_radius(&body, shape, r_max));
+        let radius = contact_radius(&body, shape, r_max);
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
             // The stiffest contact has the largest circle: that of the body's own radius on a plane.
@@ -142,6 +142,10 @@ pub(crate) fn limit(
             if !stiffness.is_finite() {
                 continue;
             }
+            let sides = match shape {
+                Shape::Polyhedron(it) => 2.0 * faces(it, &body, laws, b, stiffness),
+                other => sides(other, body.scale, r_min, several),
+            };
             // A sphere's tangential spring turns it as well: 1/m + r²/I = 3.5/m.
             let own = if body.kind == Kind::Sphere {
                 stiffness.max((1.0 + 2.5 * levers) * tangential) / body.mass
@@ -188,7 +192,7 @@ pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
     }
 }
 
-/// Contacts that act in one direction at once, twice. `smallest`: radius of the smallest neighbour [m]; `several`: there are
+/// Contacts that act in one direction at once, twice, of a body that is not dilated. `smallest`: radius of the smallest neighbour [m]; `several`: there are
 /// other boxes.
 fn sides(shape: &Shape, scale: f64, smallest: f64, several: bool) -> f64 {
     match shape {
@@ -200,20 +204,59 @@ fn sides(shape: &Shape, scale: f64, smallest: f64, several: bool) -> f64 {
             // Boxes on two opposite sides touch in four points each.
             if several { grains.max(16.0) } else { grains }
         }
-        Shape::Polyhedron(it) => 2.0 * faces(it),
+        Shape::Polyhedron(it) => 4.0 * corners(it),
     }
 }
 
+/// Most corners of a face.
+fn corners(it: &Dilated) -> f64 {
+    it.core.faces.iter().map(|f| f.corners.len()).max().unwrap_or(0) as f64
+}
+
 /// Corners' worth of stiffness that act on a dilated polyhedron in one direction: as much as a face with the longest circumference has
-/// on a face of its like, its edges and those of the other one.
-fn faces(it: &Dilated) -> f64 {
-    let corners = it.core.faces.iter().map(|f| f.corners.len()).max().unwrap_or(0) as f64;
-    2.0 * (corners + it.core.circumference() / (LENGTH * it.radius))
+/// on a face of its like, its edges and those of the other one. `corner`: the stiffness of a corner on material `b` [N/m].
+fn faces(it: &Dilated, body: &Body, laws: &Laws, b: u32, corner: f64) -> f64 {
+    2.0 * Face::of(it, body).worth(laws, [body.material, b], corner)
+}
+
+/// A face with the most corners and the longest circumference.
+#[derive(Clone, Copy)]
+struct Face {
+    corners: f64,
+    /// Circumference [m], and over the length with the stiffness of a corner under a linear law.
+    around: f64,
+    lengths: f64,
+}
+
+impl Face {
+    fn of(it: &Dilated, body: &Body) -> Face {
+        let around = it.core.circumference();
+        Face { corners: corners(it), around: body.scale * around, lengths: around / (LENGTH * it.radius) }
+    }
+
+    /// One that has the most of both.
+    fn max(&self, other: &Face) -> Face {
+        Face {
+            corners: self.corners.max(other.corners),
+            around: self.around.max(other.around),
+            lengths: self.lengths.max(other.lengths),
+        }
+    }
+
+    /// How many corners of the stiffness `corner` [N/m] its corners and edges are worth.
+    fn worth(&self, laws: &Laws, materials: [u32; 2], corner: f64) -> f64 {
+        let edges = match laws.edges(materials) {
+            None => self.lengths,
+            Some([a, b]) => self.around * laws.stiffness(a, b, 0.0, 0.0) / corner,
+        };
+        self.corners + edges
+    }
 }
 
 /// Longest step [s] with which dilated polyhedra may come to lie on a face: one that stands on a corner has a stiffness many times smaller
 /// until it does, and that may happen between two looks at what the contacts allow. Infinite where there are none.
-pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
+/// `expected`: the overlap expected over the radius.
+pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: f64) -> f64 {
     let partners = partners(bodies, input);
     let mut longest = f64::INFINITY;
     for body in bodies.iter().filter(|b| b.fixed != 0b11_1111) {
@@ -221,12 +264,14 @@ pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
         let Shape::Polyhedron(it) = shape else { continue };
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
-            let stiffness = laws.stiffness(a, b, 0.0, body.radius) * laws.tangential_ratio(a, b).max(1.0);
+            let corner = laws.stiffness(a, b, expected * body.radius, body.radius);
+            let stiffness = corner * laws.tangential_ratio(a, b).max(1.0);
             let zeta = laws.damping_ratio(a, b);
             // Half of what is stable: so close to the limit a collision of such a face would heat.
             let bound = 0.5 * ((4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta);
             if stiffness.is_finite() {
-                longest = longest.min(bound / (faces(it) * stiffness * compliance(&body, shape)).sqrt());
+                let all = faces(it, &body, laws, b, corner) * stiffness;
+                longest = longest.min(bound / (all * compliance(&body, shape)).sqrt());
             }
         }
     }
@@ -307,31 +352,32 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
     1.0 / body.mass + turn
 }
 
-/// What touches the bodies of walls: a material, the radius of the smallest that is made of it [m], and how many times the stiffness of the law acts
-/// between one of them and a wall, over that of two points.
+/// What touches the bodies of walls: a material, and the radius of the smallest that is made of it [m].
 #[derive(Clone, Copy)]
 struct Partner {
     material: u32,
     radius: f64,
-    times: f64,
-    /// Whether it is a polyhedron or a disk.
-    faced: bool,
+    /// Of polyhedra and disks the largest face.
+    face: Option<Face>,
 }
 
-/// What may touch the body of a wall: spheres and planes by a point or two, polyhedra by as much as a face has.
+/// What may touch the body of a wall.
 fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
     let grains = bodies.iter().map(|b| b.material);
     let planes = input.planes.iter().map(|p| p.material as u32);
     let all: BTreeSet<u32> = grains.chain(planes).collect();
     let mut partners: Vec<Partner> =
-        all.into_iter().map(|material| Partner { material, radius, times: 1.0, faced: false }).collect();
+        all.into_iter().map(|material| Partner { material, radius, face: None }).collect();
     let mut faced: Vec<Partner> = Vec::new();
     for body in bodies.iter() {
         let Shape::Polyhedron(it) = &input.shapes[body.shape] else { continue };
-        let times = 0.5 * faces(it);
+        let own = Face::of(it, &body);
         match faced.iter_mut().find(|p| p.material == body.material) {
-            None => faced.push(Partner { material: body.material, radius: body.radius, times, faced: true }),
-            Some(p) => (p.radius, p.times) = (p.radius.min(body.radius), p.times.max(times)),
+            None => faced.push(Partner { material: body.material, radius: body.radius, face: Some(own) }),
+            Some(p) => {
+                p.radius = p.radius.min(body.radius);
+                p.face = p.face.map(|f| f.max(&own));
+            }
         }
     }
     // Where polyhedra are all there is of a material nothing else touches.
@@ -379,8 +425,11 @@ pub(crate) fn walls(
             let dt = 2.0 / mount.sqrt();
             note(dt, dt, 0, 0.0);
         }
-        for &Partner { material, radius, times, faced } in &partners {
-            let stiffness = times * laws.stiffness(wall.material, material, expected * radii.1, radii.1);
+        for &Partner { material, radius, face } in &partners {
+            let point = laws.stiffness(wall.material, material, expected * radii.1, radii.1);
+            // Spheres and planes touch by a point or two, polyhedra by as much as a face has.
+            let times = face.map_or(1.0, |f| f.worth(laws, [wall.material, material], point));
+            let stiffness = times * point;
             if !stiffness.is_finite() {
                 continue;
             }
@@ -388,7 +437,7 @@ pub(crate) fn walls(
             let zeta = laws.damping_ratio(wall.material, material);
             let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radius);
             // Faces of many that lie on it are known from the contacts; one may come to lie on it between two looks at them.
-            let sudden = if faced {
+            let sudden = if face.is_some() {
                 0.5 * body.step_limit(stiffness, stiffness * ratio, zeta, f64::INFINITY)
             } else {
                 dt

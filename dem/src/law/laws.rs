@@ -2,6 +2,7 @@
 
 use super::contact::{History, Linearised};
 use super::contact_law::ContactLaw;
+use super::edges;
 use super::material::{Material, Pair, PairOverride};
 use super::normal::Expected;
 use super::table::{ConicalLaw, HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
@@ -12,6 +13,8 @@ use crate::lanes::Pack;
 pub struct PairTable<L> {
     count: usize,
     pairs: Vec<L>,
+    /// Pairs whose edges have a law of their own, that of the materials behind them; empty where none has.
+    edged: Vec<bool>,
 }
 
 impl<L: ContactLaw> PairTable<L> {
@@ -20,7 +23,21 @@ impl<L: ContactLaw> PairTable<L> {
         let count = materials.len();
         let all = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
         let pairs = all.map(|(i, j)| L::mix(&Pair::of(materials, exceptions, i, j))).collect();
-        PairTable { count, pairs }
+        PairTable { count, pairs, edged: Vec::new() }
+    }
+
+    /// How many materials there are, without those of edges.
+    #[inline(always)]
+    fn own(&self) -> usize {
+        if self.edged.is_empty() { self.count } else { self.count / 2 }
+    }
+
+    /// The materials whose law acts at edges, where that is not the law of `a` and `b`.
+    #[inline(always)]
+    pub(crate) fn edges(&self, [a, b]: [u32; 2]) -> Option<[u32; 2]> {
+        let own = self.own() as u32;
+        let has = !self.edged.is_empty() && a < own && b < own && self.edged[(a * own + b) as usize];
+        has.then(|| [a + own, b + own])
     }
 
     /// Constants of materials `a` and `b`.
@@ -47,7 +64,8 @@ impl<L: ContactLaw> PairTable<L> {
 
     /// The laws of pairs that are not rigid, each pair once.
     fn in_use(&self) -> impl Iterator<Item = &L> {
-        let upper = (0..self.count).flat_map(move |i| (i..self.count).map(move |j| i * self.count + j));
+        let own = self.own();
+        let upper = (0..own).flat_map(move |i| (i..own).map(move |j| i * self.count + j));
         upper.map(|k| &self.pairs[k]).filter(|law| law.stiffness(1.0, 1.0).is_finite())
     }
 
@@ -109,6 +127,27 @@ impl Laws {
         } else {
             Laws::Mixed(PairTable::new(materials, exceptions))
         }
+    }
+
+    /// The same for models with edges that press: beside Hertz's law those have one of their own (`edges.rs`).
+    pub fn with_edges(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
+        let count = materials.len();
+        let all = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let edged: Vec<bool> =
+            all.map(|(i, j)| edges::spread(&Pair::of(materials, exceptions, i, j))).collect();
+        if !edged.contains(&true) {
+            return Laws::new(materials, exceptions);
+        }
+        let (materials, exceptions) = edges::beside(materials, exceptions);
+        let mut laws = Laws::new(&materials, &exceptions);
+        with_law!(&mut laws, t => t.edged = edged);
+        laws
+    }
+
+    /// The materials whose law acts at edges, where that is not the law of the two.
+    #[inline(always)]
+    pub fn edges(&self, materials: [u32; 2]) -> Option<[u32; 2]> {
+        with_law!(self, t => t.edges(materials))
     }
 
     pub fn loading(&self, a: u32, b: u32, overlap: f64, radius: f64) -> (f64, f64) {

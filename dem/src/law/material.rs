@@ -28,6 +28,8 @@ pub struct Material {
     pub young: Option<f64>,
     /// Poisson's ratio [-]; used with a Young's modulus.
     pub poisson: f64,
+    /// Factor on the stiffness of edges of dilated bodies [-]; used with a Young's modulus (`edges.rs`).
+    pub edge_factor: f64,
     /// Largest pressure that corners bear [Pa] (`conical_damage.rs`); infinite: they do not crush.
     pub corner_strength: f64,
     /// Half the angle of the cone of a corner [rad].
@@ -53,6 +55,7 @@ impl Material {
         restitution: 1.0,
         young: None,
         poisson: 0.0,
+        edge_factor: 1.0,
         corner_strength: f64::INFINITY,
         corner_angle: std::f64::consts::FRAC_PI_2,
         rolling_friction: 0.0,

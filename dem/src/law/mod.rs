@@ -14,6 +14,7 @@ mod constants;
 mod contact;
 mod contact_law;
 pub mod damping;
+mod edges;
 pub mod hertz;
 pub(crate) mod lag;
 mod laws;

@@ -192,7 +192,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             let shift = model.periodic.map_or(here, |p| p.way(&name.shift));
             pair(name.i, name.block, name.j, history, shift);
         }
-        KINDS.iter().zip(kinds).for_each(|(kind, list)| kind.visit(&now, b, list, &mut f));
+        KINDS.iter().zip(kinds).for_each(|(kind, list)| kind.visit(&model.laws, &now, b, list, &mut f));
         planes(state, &now, b, &mut f);
         for contact in &lists.walls.live {
             let k = model.walls.wall_of(contact.patch);

@@ -5,17 +5,20 @@ use crate::base::held::held;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
-/// Memory of one contact point: the features that touch there, what the law keeps, and the share of its force that acted.
+/// Memory of one contact point: the features that touch there, what the law keeps, the share of its force that acted, and whether it is the
+/// law that edges have of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointMemory {
     pub feature: u32,
     pub history: History,
     pub weight: f64,
+    pub edge: bool,
 }
 
 impl PointMemory {
     /// Of a contact that has just begun.
-    pub const FRESH: PointMemory = PointMemory { feature: 0, history: History::NONE, weight: 0.0 };
+    pub const FRESH: PointMemory =
+        PointMemory { feature: 0, history: History::NONE, weight: 0.0, edge: false };
 
     /// The same contact seen from the other partner: the halves of the feature change places.
     pub fn turned(&self) -> PointMemory {
@@ -182,7 +185,7 @@ mod tests {
 
     fn point(feature: u32) -> PointMemory {
         let history = History { spring: Vec3::x() * f64::from(feature), rate: 0.5, ..History::NONE };
-        PointMemory { feature, history, weight: 0.5 }
+        PointMemory { feature, history, weight: 0.5, edge: true }
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Dilated polyhedra: at rest on planes, on each other and on boxes, sliding, tipping, bouncing, and collisions of all kinds.
 
 use crate::scene::{FOLLOWED, Random, Run, block, body, plane, stone, weightless};
+use crate::tables::read;
 use nalgebra::UnitQuaternion;
+use std::f64::consts::PI;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Material, Model, ModelInput, Shape, TimeStep, Vec3};
 use trackbed_dem::{flow, measure};
@@ -18,6 +20,20 @@ fn material() -> Material {
 
 fn elastic() -> Material {
     Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
+}
+
+/// Ice after Hertz, as in the tables of forces.
+fn hertz() -> Material {
+    Material { young: Some(1e9), poisson: 0.3, stiffness: f64::INFINITY, ..material() }
+}
+
+/// Effective modulus of two of it [Pa].
+const MODULUS: f64 = 1e9 / (2.0 * (1.0 - 0.09));
+
+/// The same for elastic springs and elastic bodies after Hertz.
+fn laws() -> [(&'static str, Material); 2] {
+    let smooth = Material { friction: 0.0, restitution: 1.0, ..hertz() };
+    [("springs", elastic()), ("Hertz", Material { young: Some(1e8), ..smooth })]
 }
 
 fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
@@ -191,10 +207,11 @@ fn bounces_on_face_edge_and_corner() {
         ("corner", diagonal),
         ("askew", UnitQuaternion::from_scaled_axis(Vec3::new(0.3, 0.2, 0.1))),
     ];
-    for (restitution, wall) in [(1.0, false), (1.0, true), (0.5, false)] {
+    let all = laws().map(|law| [(1.0, false), (1.0, true), (0.5, false)].map(|(e, wall)| (law, e, wall)));
+    for ((law, elastic), restitution, wall) in all.into_iter().flatten() {
         for (name, orientation) in turns {
             let shapes = vec![block([half; 3], 0.01), block([0.2, 0.2, 0.05], 0.01)];
-            let mut input = scene(Material { restitution, ..elastic() }, shapes);
+            let mut input = scene(Material { restitution, ..elastic }, shapes);
             input.time_step = TimeStep::Auto { fraction: 0.1 };
             if wall {
                 input.planes.push(plane(Vec3::zeros(), Vec3::z()));
@@ -208,11 +225,14 @@ fn bounces_on_face_edge_and_corner() {
             let before = total(&run);
             run.until(0.3);
             let (after, speed) = (total(&run), run.state.velocity(number).z);
-            println!("{name}, e = {restitution}: energy {:.2e}, speed {speed:.4}", after / before - 1.0);
+            println!(
+                "{law}, {name}, e = {restitution}: energy {:.2e}, speed {speed:.4}",
+                after / before - 1.0
+            );
             if restitution == 1.0 {
-                assert!((after / before - 1.0).abs() < 1e-4, "{name}: {after} of {before}");
+                assert!((after / before - 1.0).abs() < 1e-4, "{law}, {name}: {after} of {before}");
             } else if name == "face" {
-                assert!((speed - 0.25).abs() < 0.01, "{speed}");
+                assert!((speed - 0.25).abs() < 0.01, "{law}: {speed}");
             }
             assert!(speed > 0.05 || name == "askew", "{name}: {speed}");
         }
@@ -223,6 +243,12 @@ fn bounces_on_face_edge_and_corner() {
 /// to the step's error.
 #[test]
 fn collisions_keep_momentum_and_energy() {
+    for (name, elastic) in laws() {
+        collisions(name, elastic);
+    }
+}
+
+fn collisions(name: &str, elastic: Material) {
     let mut random = Random::new(5);
     let (mut worst, mut sum, mut touched) = (0.0_f64, 0.0, 0);
     for k in 0..200 {
@@ -236,7 +262,7 @@ fn collisions_keep_momentum_and_energy() {
         if k % 4 == 1 {
             shapes[1] = Shape::Sphere { radius: 0.03 };
         }
-        let mut input = scene(elastic(), shapes);
+        let mut input = scene(elastic, shapes);
         input.time_step = TimeStep::Auto { fraction: 0.1 };
         for (shape, side) in [(0, -1.0), (1, 1.0)] {
             let orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
@@ -262,14 +288,17 @@ fn collisions_keep_momentum_and_energy() {
         sum += change;
     }
     let mean = sum / f64::from(touched);
-    println!("{touched} collisions: worst {worst:.1e}, mean {mean:.1e}");
-    assert!(touched > 150 && worst < 1e-3 && mean.abs() < 1e-4, "{touched} {worst:e} {mean:e}");
+    println!("{name}, {touched} collisions: worst {worst:.1e}, mean {mean:.1e}");
+    assert!(touched > 150 && worst < 1e-3 && mean.abs() < 1e-4, "{name}: {touched} {worst:e} {mean:e}");
 }
 
 /// Collisions with friction, with dashpots, and with both: what is left and what was dissipated add up to what there was.
 #[test]
 fn collisions_keep_their_account() {
-    for (friction, restitution) in [(0.0, 0.5), (0.5, 1.0), (0.5, 0.5)] {
+    let pairs = [(0.0, 0.5), (0.5, 1.0), (0.5, 0.5)];
+    let young = Material { young: Some(1e8), ..hertz() };
+    let all = [("springs", material()), ("Hertz", young)].map(|law| pairs.map(|pair| (law, pair)));
+    for ((law, material), (friction, restitution)) in all.into_iter().flatten() {
         let mut random = Random::new(6);
         let (mut worst, mut sum) = (0.0_f64, 0.0);
         for k in 0..60 {
@@ -280,7 +309,7 @@ fn collisions_keep_their_account() {
             if k % 4 == 1 {
                 shapes[1] = Shape::Box { half: [0.05, 0.04, 0.03] };
             }
-            let mut input = scene(Material { friction, restitution, ..material() }, shapes);
+            let mut input = scene(Material { friction, restitution, ..material }, shapes);
             input.time_step = TimeStep::Auto { fraction: 0.1 };
             for (shape, side) in [(0, -1.0), (1, 1.0)] {
                 let orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
@@ -297,7 +326,10 @@ fn collisions_keep_their_account() {
             worst = worst.max(error.abs());
             sum += error;
         }
-        println!("friction {friction}, e {restitution}: account off by {worst:.1e}, mean {:.1e}", sum / 60.0);
+        println!(
+            "{law}, friction {friction}, e {restitution}: account off by {worst:.1e}, mean {:.1e}",
+            sum / 60.0
+        );
         assert!(worst < 0.01, "{worst:e}");
     }
 }
@@ -346,6 +378,91 @@ fn a_heap_of_stones() {
     assert_eq!(places, run_on(3).0);
 }
 
+/// Radius and length of the edges of a cube of the tables [m].
+const RADIUS: f64 = 0.04;
+const LENGTH: f64 = 0.5;
+
+fn about(axis: nalgebra::Unit<Vec3>, angle: f64) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_axis_angle(&axis, angle.to_radians())
+}
+
+/// Force of what touches the first body of a scene of cubes where they are, along the vertical [N].
+fn lift(material: Material, change: impl Fn(&mut ModelInput)) -> f64 {
+    let mut input = scene(material, vec![block([0.5 * LENGTH + RADIUS; 3], RADIUS)]);
+    input.time_step = TimeStep::FixedAboveLimit(1e-12);
+    change(&mut input);
+    let mut run = Run::new(input);
+    run.step();
+    measure::contacts(&run.model, &run.state).iter().filter(|c| c.a == 0).map(|c| c.force.z).sum()
+}
+
+/// The same of a cube whose lowest corner or edge lies at a distance from its middle, pressed into a plane.
+fn pressed(edge_factor: f64, orientation: UnitQuaternion<f64>, low: f64, overlap: f64) -> f64 {
+    lift(Material { edge_factor, ..hertz() }, |input| {
+        input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        input.bodies.push(BodyInput { orientation, ..body(0, Vec3::z() * (low + RADIUS - overlap)) });
+    })
+}
+
+/// 4/3 E* √r d^(3/2) [N].
+fn sphere_on_plane(overlap: f64) -> f64 {
+    4.0 / 3.0 * MODULUS * (RADIUS * overlap).sqrt() * overlap
+}
+
+/// Elastic bodies after Hertz: a corner on a plane has the force of a sphere, an edge a quarter of the modulus per unit of its length, or π/4 where that
+/// is asked for. Beside the half-space (a column of the table) an edge is up to 1.4 times as stiff or 0.9 times.
+#[test]
+fn corners_and_edges_on_planes_after_hertz() {
+    let diagonal = UnitQuaternion::rotation_between(&Vec3::repeat(1.0), &Vec3::z()).expect("not opposite");
+    let low = 0.5 * LENGTH * f64::sqrt(2.0);
+    for row in read("tests/data/shapes/laws/halfspace_edge_face.csv") {
+        let [overlap, half_space, popov] = [row[0], row[1], row[3]];
+        let sphere = sphere_on_plane(overlap);
+        let corner = pressed(1.0, diagonal, 0.5 * LENGTH * f64::sqrt(3.0), overlap) / sphere;
+        // Without the two corners at its ends.
+        let edge = |factor| pressed(factor, about(Vec3::x_axis(), 45.0), low, overlap) - 2.0 * sphere;
+        let share = edge(1.0) / (0.25 * MODULUS * LENGTH * overlap);
+        let beside = 0.25 * MODULUS * LENGTH * overlap / half_space;
+        println!(
+            "overlap {overlap:.0e}: corner over sphere {corner:.4}, edge {share:.4}; over half-space {beside:.3}"
+        );
+        // Edges that begin at the corner, or at its ends, press a little as well.
+        assert!(corner > 1.0 && corner < 1.0 + 0.6 * (overlap / RADIUS).sqrt(), "{corner}");
+        assert!(share > 1.0 && share < 1.0 + 4.0 * overlap / LENGTH + 0.2 * overlap / RADIUS, "{share}");
+        let share = edge(PI) / popov;
+        assert!(
+            share > 1.0 - 1e-9 && share < 1.0 + 4.0 * overlap / LENGTH + 0.2 * overlap / RADIUS,
+            "{share}"
+        );
+        assert!((0.9..1.4).contains(&beside), "{beside}");
+    }
+}
+
+/// Edges that cross at right angles have the force of crossing cylinders after Hertz, others that over the sine of their angle, until they lie along each
+/// other. Beside the half-space up to 2.5 times as much.
+#[test]
+fn edges_that_cross_after_hertz() {
+    for row in read("tests/data/shapes/laws/halfspace_edge_edge.csv") {
+        let [angle, half_space] = [row[0], row[1]];
+        let force = lift(hertz(), |input| {
+            let apart = LENGTH * f64::sqrt(2.0) + 2.0 * RADIUS - 1e-4;
+            let tilt = about(Vec3::x_axis(), 45.0);
+            input.bodies.push(BodyInput { orientation: tilt, ..body(0, Vec3::z() * apart) });
+            let orientation = about(Vec3::z_axis(), angle) * tilt;
+            input.bodies.push(BodyInput { orientation, ..body(0, Vec3::zeros()) });
+        });
+        let over_sine = sphere_on_plane(1e-4) / angle.to_radians().sin();
+        println!(
+            "edges at {angle} degrees: {force:.1} N, half-space {half_space} N, ratio {:.3}",
+            force / half_space
+        );
+        if angle >= 5.0 {
+            assert!((force / over_sine - 1.0).abs() < 3e-3, "{angle}: {force} and {over_sine}");
+        }
+        assert!((0.99..2.5).contains(&(force / half_space)), "{angle}: {force}");
+    }
+}
+
 /// What cannot be combined is refused by name.
 #[test]
 fn refusals() {
@@ -355,10 +472,10 @@ fn refusals() {
         change(&mut input);
         Model::new(input).expect_err("a refusal").to_string()
     };
-    let young = |i: &mut ModelInput| {
-        i.materials[0] = Material { young: Some(1e9), stiffness: f64::INFINITY, ..material() };
+    let crush = |i: &mut ModelInput| {
+        i.materials[0] = Material { corner_strength: 1e8, corner_angle: 1.3, ..hertz() };
     };
-    assert!(refused(&young).contains("grows with the overlap"));
+    assert!(refused(&crush).contains("grows with the overlap"));
     let surface = |i: &mut ModelInput| i.surface_material = Some(0);
     assert!(refused(&surface).contains("an external surface"));
     let narrow = |i: &mut ModelInput| i.periodic[0] = Some([0.0, 0.2]);

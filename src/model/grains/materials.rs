@@ -107,6 +107,7 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
             restitution: m.restitution,
             young: m.young.map(|y| y.si),
             poisson: m.poisson.unwrap_or(0.0),
+            edge_factor: m.edge_factor.unwrap_or(1.0),
             corner_strength: m.corner_strength.map_or(f64::INFINITY, |s| s.si),
             corner_angle: m.corner_angle.map_or(FRAC_PI_2, |a| a.si),
             rolling_friction: m.rolling_friction,
@@ -161,7 +162,10 @@ fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     match (&m.young, m.poisson) {
         (Some(_), None) => Err(m.missing("poisson", "Poisson's ratio beside `young`")),
         (None, Some(_)) => Err(m.error("poisson", "a value", "no such key without `young`")),
-        _ => Ok(()),
+        (None, None) if m.edge_factor.is_some() => {
+            Err(m.error("edge_factor", "a value", "no such key without `young`"))
+        }
+        _ => m.check("edge_factor", m.edge_factor, |f| (0.01..=100.0).contains(&f), "0.01 to 100").map(drop),
     }
 }
 

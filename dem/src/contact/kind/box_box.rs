@@ -146,7 +146,7 @@ fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: 
     let t = (v.dot(&(p + u * s - q))).clamp(-b[j], b[j]);
     let point = (p + u * s + q + v * t) * 0.5;
     let geometry = ContactGeometry { point, normal: *normal, overlap, radius: 0.0 };
-    found.push(Touch { feature: features, geometry, weight: 1.0, bound: 0.0, couple: Vec3::zeros() });
+    found.push(Touch::of(features, geometry, 1.0, 0.0));
 }
 
 /// A corner of a polygon in the plane of a face, its height over the face, and the edge that begins there.
@@ -200,7 +200,7 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
         // From the second box to the first.
         let normal = Vec3::ith(axis, -side);
         let geometry = ContactGeometry { point, normal, overlap: -corner.height, radius: 0.0 };
-        found.push(Touch { feature, geometry, weight, bound: 0.0, couple: Vec3::zeros() });
+        found.push(Touch::of(feature, geometry, weight, 0.0));
     }
 }
 

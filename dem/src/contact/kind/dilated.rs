@@ -269,12 +269,14 @@ pub(super) fn touch(
         radius,
     };
     let couple = frame.orientation * p.couple * (sign * frame.scale);
-    Touch { feature, geometry, weight, bound: DEEPEST * reach * frame.scale, couple }
+    let edge = if p.edge { LENGTH * reach * frame.scale } else { 0.0 };
+    Touch { edge, couple, ..Touch::of(feature, geometry, weight, DEEPEST * reach * frame.scale) }
 }
 
-/// Effective radius of two.
-pub(super) fn effective(a: f64, b: f64) -> f64 {
-    if a > 0.0 && b > 0.0 { a * b / (a + b) } else { a.max(b) }
+/// Radius of a contact: that of what presses, since corners meet faces, but for a sharp one; of a length of edge it is without effect but
+/// for rolling resistance.
+pub(super) fn rounding(own: f64, other: f64) -> f64 {
+    if own > 0.0 { own } else { other }
 }
 
 /// What is left to say where cores overlap: too much of it.
@@ -322,12 +324,11 @@ impl PairKind for DilatedDilated {
         let (n, level, floor) = (heights.n, heights.high + most, heights.low - most);
         let near_a = set(heights.first.iter().copied(), |h| h < level);
         let near_b = set(heights.second.iter().copied(), |h| h > floor);
-        let radius = effective(a.radius, b.radius);
         let view = View::new(n, floor, reach, heights.low - heights.high);
         let mut target = Part::none(b.core, view);
         let (target, of_a) = (target.take(near_b), (near_a, &view.turned(-level)));
         skeleton(a.core, &two.frame, of_a, target, reach, |feature, pressed, weight| {
-            let lengths = [a.radius / b.scale, reach, radius];
+            let lengths = [a.radius / b.scale, reach, rounding(a.radius, b.radius)];
             found.push(touch(&b.pose(), feature << 16, pressed, weight, lengths, 1.0));
         });
         // The same in the frame of the first.
@@ -337,7 +338,8 @@ impl PairKind for DilatedDilated {
         let mut target = Part::none(a.core, view.turned(-level));
         let (target, of_b) = (target.take(near_a), (near_b, &view));
         skeleton(b.core, &back, of_b, target, reach, |feature, pressed, weight| {
-            found.push(touch(&a.pose(), feature, pressed, weight, [b.radius / a.scale, reach, radius], -1.0));
+            let lengths = [b.radius / a.scale, reach, rounding(b.radius, a.radius)];
+            found.push(touch(&a.pose(), feature, pressed, weight, lengths, -1.0));
         });
     }
 }
@@ -412,7 +414,7 @@ impl PairKind for SphereDilated {
             return;
         };
         let own = sphere[3] / body.scale;
-        let radius = effective(sphere[3], body.radius);
+        let radius = sphere[3];
         // A sphere may sink into a face as deep as into another sphere, but not through a disk.
         let bound = if body.core.rim.is_some() { DEEPEST * sum } else { sum };
         found.push(Touch { bound, ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0) });

@@ -2,7 +2,7 @@
 
 use super::side::{First, Second, Side};
 use crate::base::Vec3;
-use crate::law::ContactGeometry;
+use crate::law::{ContactGeometry, Laws};
 use crate::pairs::list::Hint;
 
 /// Which two shapes touch, and where.
@@ -50,16 +50,38 @@ pub(crate) struct Touch {
     /// Share of the law's force that acts here: one, but where one area is stood for by several points; less than zero where others count
     /// something twice.
     pub weight: f64,
+    /// Of a length of edge: what has weight one [m]; zero for points.
+    pub edge: f64,
     /// Overlap above which the contact has lost its meaning [m].
     pub bound: f64,
     /// Torque about the point on the first partner per unit of normal force [m].
     pub couple: Vec3,
+    /// Materials whose law acts here, and contacts of its stiffness that carry the mass of the pair together: see [`Touch::under`].
+    pub materials: [u32; 2],
+    pub share: f64,
 }
 
 impl Touch {
     /// The only point of a pair.
     pub fn only(geometry: ContactGeometry, bound: f64) -> Touch {
-        Touch { feature: 0, geometry, weight: 1.0, bound, couple: Vec3::zeros() }
+        Touch::of(0, geometry, 1.0, bound)
+    }
+
+    /// A point of several.
+    pub fn of(feature: u32, geometry: ContactGeometry, weight: f64, bound: f64) -> Touch {
+        let (couple, materials) = (Vec3::zeros(), [0; 2]);
+        Touch { feature, geometry, weight, edge: 0.0, bound, couple, materials, share: 1.0 }
+    }
+
+    /// Puts it under the law of two materials, or of their edges where those have one of their own (`law/edges.rs`).
+    pub fn under(&mut self, laws: &Laws, materials: [u32; 2]) {
+        self.materials = materials;
+        if self.edge > 0.0
+            && let Some(edges) = laws.edges(materials)
+        {
+            self.materials = edges;
+            self.weight *= self.edge;
+        }
     }
 }
 

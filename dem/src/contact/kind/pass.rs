@@ -10,8 +10,8 @@ use crate::base::ledger::Impulse;
 use crate::bodies::sums::WallSum;
 use crate::contact::single::{self, Setting};
 use crate::lanes::record::Record;
-use crate::law::ContactGeometry;
 use crate::law::scarring::Scar;
+use crate::law::{ContactGeometry, Laws};
 use crate::pairs::cross::SurfaceBook;
 use crate::pairs::list::{PairList, PairName, PointMemory};
 
@@ -63,7 +63,14 @@ pub(crate) trait Kind: Sync {
     );
 
     /// Calls `f` for each contact of a block's list.
-    fn visit(&self, scene: &dyn Scene, b: usize, list: &PairList, f: &mut dyn FnMut(&Visited<'_>));
+    fn visit(
+        &self,
+        laws: &Laws,
+        scene: &dyn Scene,
+        b: usize,
+        list: &PairList,
+        f: &mut dyn FnMut(&Visited<'_>),
+    );
 
     /// Calls `f` for each pair of a block's list with ground that is scarred.
     fn grounds(&self, now: &Now<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround));
@@ -216,18 +223,26 @@ impl<K: PairKind> Kind for Of<K> {
                 let (first, second, way) = Self::partners(now, b, list.name(m));
                 let from = found.len();
                 self.0.touches_again(&first, &second, list.hint_mut(m), &mut found);
+                let materials = Self::materials(now, b, list.name(m));
+                found[from..].iter_mut().for_each(|t| t.under(setting.laws, materials));
                 parts.push((from..found.len(), way));
             }
-            let share = self.share(&found);
+            Self::share(setting.laws, &mut found);
             for (m, (part, way)) in (k..end).zip(&parts) {
-                let touches = (&found[part.clone()], share, way);
-                self.pair(setting, now, (b, m), touches, list, &mut memory, books);
+                self.pair(setting, now, (b, m), (&found[part.clone()], way), list, &mut memory, books);
             }
             k = end;
         }
     }
 
-    fn visit(&self, scene: &dyn Scene, b: usize, list: &PairList, f: &mut dyn FnMut(&Visited<'_>)) {
+    fn visit(
+        &self,
+        laws: &Laws,
+        scene: &dyn Scene,
+        b: usize,
+        list: &PairList,
+        f: &mut dyn FnMut(&Visited<'_>),
+    ) {
         let (mut found, mut parts, mut at, mut end) = (Touches::new(), Vec::new(), 0, 0);
         for k in 0..list.len() {
             if k == end {
@@ -238,13 +253,16 @@ impl<K: PairKind> Kind for Of<K> {
                     let (first, second, way) = Self::partners(scene, b, list.name(m));
                     let from = found.len();
                     self.0.touches(&first, &second, &mut found);
+                    let materials = Self::materials(scene, b, list.name(m));
+                    found[from..].iter_mut().for_each(|t| t.under(laws, materials));
                     parts.push((from..found.len(), way));
                 }
+                Self::share(laws, &mut found);
             }
             let [i, other, j] = list.name(k);
             let other = other as usize;
             let Some(body) = K::First::body(scene, b, i) else { continue };
-            let (share, (part, way)) = (self.share(&found), &parts[k - at]);
+            let (part, way) = &parts[k - at];
             for touch in &found[part.clone()] {
                 let point = &touch.geometry.point;
                 let own = K::First::motion(scene, b, i, point);
@@ -256,10 +274,10 @@ impl<K: PairKind> Kind for Of<K> {
                     geometry: touch.geometry,
                     weight: touch.weight,
                     velocity: own.at_point() - its.at_point(),
-                    inverse_mass: (own.inverse_mass() + its.inverse_mass()) * share,
+                    inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
                     history: &memory.unwrap_or(&PointMemory::FRESH).history,
                     spin: own.spin() - its.spin(),
-                    materials: [K::First::material(scene, b, i), K::Second::material(scene, other, j)],
+                    materials: touch.materials,
                     friction: Self::scar(scene, b, list.name(k)).map(|s| s.friction),
                     shift: *way,
                 });
@@ -320,13 +338,29 @@ impl<K: PairKind> Kind for Of<K> {
     }
 }
 
-/// Where a pair touches, how many contacts carry its mass together, and the way to the image of the second partner [m].
-type Found<'a> = (&'a [Touch], f64, &'a Vec3);
+/// Where a pair touches, and the way to the image of the second partner [m].
+type Found<'a> = (&'a [Touch], &'a Vec3);
 
 impl<K: PairKind> Of<K> {
-    /// Contacts that carry the mass of a pair together.
-    fn share(&self, found: &[Touch]) -> f64 {
-        if K::SHARED { found.iter().map(|t| t.weight).sum::<f64>().max(LEAST) } else { 1.0 }
+    /// Materials of the partners of a pair.
+    fn materials(scene: &(impl Scene + ?Sized), b: usize, [i, other, j]: PairName) -> [u32; 2] {
+        [K::First::material(scene, b, i), K::Second::material(scene, other as usize, j)]
+    }
+
+    /// Says how many contacts carry the mass of a pair together: by their weights where all have one stiffness.
+    fn share(laws: &Laws, found: &mut [Touch]) {
+        if !K::SHARED || found.is_empty() {
+            return;
+        }
+        let one = found[0].materials;
+        if found.iter().all(|t| t.materials == one) && laws.edges(one).is_none() {
+            let sum = found.iter().map(|t| t.weight).sum::<f64>().max(LEAST);
+            return found.iter_mut().for_each(|t| t.share = sum);
+        }
+        let stiffness =
+            |t: &Touch| laws.stiffness(t.materials[0], t.materials[1], t.geometry.overlap, t.geometry.radius);
+        let sum: f64 = found.iter().map(|t| t.weight * stiffness(t)).sum();
+        found.iter_mut().for_each(|t| t.share = (sum / stiffness(t)).max(LEAST));
     }
 
     /// Forces and memory of the `k`-th pair.
@@ -335,23 +369,24 @@ impl<K: PairKind> Of<K> {
         setting: &Setting<'_>,
         now: &Now<'_>,
         (b, k): (usize, usize),
-        (found, share, way): Found<'_>,
+        (found, way): Found<'_>,
         list: &mut PairList,
         memory: &mut Vec<PointMemory>,
         books: &mut Books<'_>,
     ) {
-        let name @ [i, other, j] = list.name(k);
+        let name = list.name(k);
         books.slots[3 * k..][..3].fill(Record::default());
         let points = list.points(k);
         if found.is_empty() && points.is_empty() {
             return;
         }
-        let materials = [K::First::material(now, b, i), K::Second::material(now, other as usize, j)];
         // Mostly the same features as before, in the same order.
         let same =
             found.len() == points.len() && found.iter().zip(points).all(|(t, p)| t.feature == p.feature);
         for p in points.iter().filter(|_| !same) {
             if !found.iter().any(|t| t.feature == p.feature) {
+                let own = Self::materials(now, b, name);
+                let materials = setting.laws.edges(own).filter(|_| p.edge).unwrap_or(own);
                 *books.friction += p.weight * single::end(setting.laws, materials, &mut { p.history });
             }
         }
@@ -359,8 +394,9 @@ impl<K: PairKind> Of<K> {
         memory.clear();
         for (n, touch) in found.iter().enumerate() {
             let known = if same { points.get(n) } else { points.iter().find(|p| p.feature == touch.feature) };
-            let mut point = PointMemory { feature: touch.feature, ..*known.unwrap_or(&PointMemory::FRESH) };
-            self.force(setting, now, (b, name), materials, (touch, share, way), &mut point, &mut sums, books);
+            let mut point = *known.unwrap_or(&PointMemory::FRESH);
+            (point.feature, point.edge) = (touch.feature, touch.edge > 0.0);
+            self.force(setting, now, (b, name), (touch, way), &mut point, &mut sums, books);
             memory.push(point);
         }
         list.set(k, memory);
@@ -377,13 +413,13 @@ impl<K: PairKind> Of<K> {
         setting: &Setting<'_>,
         now: &Now<'_>,
         (b, [i, other, j]): (usize, PairName),
-        materials: [u32; 2],
-        (touch, share, way): (&Touch, f64, &Vec3),
+        (touch, way): (&Touch, &Vec3),
         memory: &mut PointMemory,
         sums: &mut [Vec3; 3],
         books: &mut Books<'_>,
     ) {
-        let (g, other, weight) = (&touch.geometry, other as usize, touch.weight);
+        let &Touch { geometry: ref g, weight, materials, share, .. } = touch;
+        let other = other as usize;
         let (own, its) =
             (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
         *books.friction += weigh(setting, materials, g, memory, weight);
@@ -404,7 +440,7 @@ impl<K: PairKind> Of<K> {
         if K::Second::EXTERNAL {
             let body = now.block(b).bodies[K::First::body(now, b, i).unwrap_or_default()];
             let (facet, history) = (&now.sheet.facets[j as usize], &memory.history);
-            sheet::book(setting, &Met { body, patch: j, facet, materials, touch, history }, &f, books);
+            sheet::book(setting, &Met { body, patch: j, facet, touch, history }, &f, books);
         } else if let Some(wall) = K::Second::wall(now, j) {
             let sum = &mut books.wall_sums[wall];
             sum.force += force;

@@ -7,7 +7,7 @@
 //!
 //! Limits: as between bodies; a core that meets a triangle ends the run. Triangles have two sides.
 
-use super::dilated::{self, DEEPEST, Frame, Heights, Hull, ROUNDING, Two, effective, set, skeleton, touch};
+use super::dilated::{self, DEEPEST, Frame, Heights, Hull, ROUNDING, Two, rounding, set, skeleton, touch};
 use super::facet::{Closed, Rim, Tip};
 use super::pair::{PairKind, Touch, Touches};
 use super::round;
@@ -136,7 +136,7 @@ fn on_body(
     let corners = facet.corners.map(|x| back.point(&x));
     let presses = |share: &Share| share.press > 0.0;
     let mut put = |number: u32, pressed: &Pressed, weight: f64| {
-        let lengths = [0.0, reach, effective(body.radius, 0.0)];
+        let lengths = [0.0, reach, body.radius];
         found.push(touch(&body.pose(), PRESSING + number, pressed, weight, lengths, -1.0));
     };
     for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| presses(t)) {
@@ -169,7 +169,7 @@ pub(super) fn points_on_body(
     let most = body.core.reach + reach;
     for (number, p) in points.filter(|(_, p)| p.norm_squared() < most * most) {
         if let Some(pressed) = press::corner(target, &p, reach) {
-            let lengths = [own, reach, effective(own * body.scale, body.radius)];
+            let lengths = [own, reach, rounding(own * body.scale, body.radius)];
             let touch = touch(&body.pose(), number, &pressed, weight, lengths, -1.0);
             found.push(Touch { bound: (DEEPEST * body.radius).max(touch.bound - own * body.scale), ..touch });
         }

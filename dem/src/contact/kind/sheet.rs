@@ -123,14 +123,13 @@ pub(super) struct Met<'a> {
     pub body: u32,
     pub patch: u32,
     pub facet: &'a SheetFacet,
-    pub materials: [u32; 2],
     pub touch: &'a Touch,
     pub history: &'a History,
 }
 
 /// Writes a contact down for the owner of the surface, and in the books of the grains.
 pub(super) fn book(setting: &Setting<'_>, met: &Met<'_>, f: &PairForce, books: &mut Books<'_>) {
-    let Touch { geometry: g, weight, .. } = met.touch;
+    let Touch { geometry: g, weight, materials, .. } = met.touch;
     let force = f.force * *weight;
     let foot = met.facet.foot(&g.point);
     let couple = met.touch.couple * force.dot(&g.normal) + f.moment * *weight + foot.aside.cross(&force);
@@ -142,7 +141,7 @@ pub(super) fn book(setting: &Setting<'_>, met: &Met<'_>, f: &PairForce, books: &
     surface.impulse.add(&foot.point, &(force * setting.dt));
     surface.impulse.angular += couple * setting.dt;
     // What springs do not explain; a spring that slides holds what the limit has left to it.
-    let (normal, tangential) = single::springs(setting.laws, met.materials, g.overlap, g.radius, met.history);
+    let (normal, tangential) = single::springs(setting.laws, *materials, g.overlap, g.radius, met.history);
     let sprung = (g.normal * normal - met.history.spring * tangential) * *weight;
     surface.contacts.push(SurfaceContact {
         sphere: met.touch.feature,

@@ -96,6 +96,8 @@ pub(crate) struct Pressed {
     pub point: Vec3,
     /// Torque about that point per unit of force [m]: of an edge whose normals turn along it.
     pub couple: Vec3,
+    /// Whether it is an edge.
+    pub edge: bool,
 }
 
 /// What a corner does.
@@ -106,6 +108,7 @@ pub(crate) fn corner(target: &impl Target, p: &Vec3, reach: f64) -> Option<Press
         overlap: reach - d,
         point: *p,
         couple: Vec3::zeros(),
+        edge: false,
     })
 }
 
@@ -204,7 +207,8 @@ pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Optio
     };
     let couple = (torque - lever * s) / size;
     // With this overlap a spring has the energy of all points of the edge.
-    Some(Pressed { force, overlap: squares / size, point: segment.from + segment.direction * s, couple })
+    let point = segment.from + segment.direction * s;
+    Some(Pressed { force, overlap: squares / size, point, couple, edge: true })
 }
 
 /// A half-space below a plane.

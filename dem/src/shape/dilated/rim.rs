@@ -45,7 +45,7 @@ impl Sum {
         }
         let point = self.place / self.whole;
         let couple = (self.torque - point.cross(&self.force)) / size;
-        Some(Pressed { force: self.force * radius, overlap: self.squares / size, point, couple })
+        Some(Pressed { force: self.force * radius, overlap: self.squares / size, point, couple, edge: true })
     }
 }
 
