@@ -68,6 +68,20 @@ pub struct DtLimit {
     pub mount: f64,
 }
 
+impl DtLimit {
+    /// Where no body can move.
+    const FREE: DtLimit = DtLimit {
+        dt: 1e-4,
+        body: 0,
+        partner: 0,
+        stiffness: 0.0,
+        mass: 0.0,
+        wall: None,
+        bonds: 0.0,
+        mount: 0.0,
+    };
+}
+
 impl fmt::Display for DtLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(wall) = self.wall {
@@ -116,16 +130,7 @@ pub(crate) fn limit(
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
-    let mut least = DtLimit {
-        dt: 1e-4,
-        body: 0,
-        partner: 0,
-        stiffness: 0.0,
-        mass: 0.0,
-        bonds: 0.0,
-        wall: None,
-        mount: 0.0,
-    };
+    let mut least = DtLimit::FREE;
     let mut found = false;
     for (k, body) in bodies.iter().enumerate() {
         if body.fixed == 0b11_1111 {
@@ -142,10 +147,7 @@ pub(crate) fn limit(
             if !stiffness.is_finite() {
                 continue;
             }
-            let sides = match shape {
-                Shape::Polyhedron(it) => 2.0 * faces(it, &body, laws, b, stiffness),
-                other => sides(other, body.scale, r_min, several),
-            };
+            let sides = sides(shape, &body, (r_min, several), (laws, b, stiffness));
             // A sphere's tangential spring turns it as well: 1/m + r²/I = 3.5/m.
             let own = if body.kind == Kind::Sphere {
                 stiffness.max((1.0 + 2.5 * levers) * tangential) / body.mass
@@ -192,19 +194,24 @@ pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
     }
 }
 
-/// Contacts that act in one direction at once, twice, of a body that is not dilated. `smallest`: radius of the smallest neighbour [m]; `several`: there are
-/// other boxes.
-fn sides(shape: &Shape, scale: f64, smallest: f64, several: bool) -> f64 {
+/// Contacts that act in one direction at once, twice. `smallest`: radius of the smallest neighbour [m]; `several`: there are
+/// other boxes; `corner`: the stiffness of a corner on material `b` [N/m].
+fn sides(
+    shape: &Shape,
+    body: &Body,
+    (smallest, several): (f64, bool),
+    (laws, b, corner): (&Laws, u32, f64),
+) -> f64 {
     match shape {
         Shape::Sphere { .. } => 12.0,
         Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
         Shape::Box { half } => {
-            let h = half.map(|h| 2.0 * h * scale / (2.0 * smallest) + 1.0);
+            let h = half.map(|h| 2.0 * h * body.scale / (2.0 * smallest) + 1.0);
             let grains = 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0]);
             // Boxes on two opposite sides touch in four points each.
             if several { grains.max(16.0) } else { grains }
         }
-        Shape::Polyhedron(it) => 4.0 * corners(it),
+        Shape::Polyhedron(it) => 2.0 * faces(it, body, laws, b, corner),
     }
 }
 

@@ -19,7 +19,7 @@ fn poisson_without_modulus() {
         .refused("scene.toml:8: material.0.edge_factor: found a value, expected no such key without `young`");
     grains_scene()
         .scene("stiffness = \"1 MN/m\"", "young = \"10 GPa\"\npoisson = 0.2\nedge_factor = 0.0")
-        .refused("scene.toml:9: material.0.edge_factor: found 0, expected 0.01 to 100");
+        .refused("scene.toml:8: material.0.edge_factor: found 0, expected 0.01 to 100");
 }
 
 /// Corners that crush: strength and angle come in twos beside a modulus, and crushing takes energy.
