@@ -333,11 +333,20 @@ impl Model {
     }
 
     /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that
-    /// grows with the overlap is taken at the largest overlap expected (see [`crate::engine::timestep`]) of the largest sphere.
+    /// grows with the overlap is taken at the largest overlap expected (see [`crate::engine::timestep`]) of the largest sphere, or
+    /// is that of the longest edge where edges have a law of their own and are stiffer.
     pub fn contact_stiffness(&self, a: usize, b: usize) -> (f64, f64) {
         let (a, b) = (a as u32, b as u32);
         let radius = self.radii.1;
-        (self.laws.stiffness(a, b, self.expected * radius, radius), self.laws.damping_ratio(a, b))
+        let point = self.laws.stiffness(a, b, self.expected * radius, radius);
+        let edge = self.laws.edges([a, b]).map_or(0.0, |[a, b]| {
+            let longest = |body: Body| match &self.shapes[body.shape] {
+                Shape::Polyhedron(it) => body.scale * it.core.longest_edge(),
+                _ => 0.0,
+            };
+            self.bodies.iter().map(longest).fold(0.0, f64::max) * self.laws.stiffness(a, b, 0.0, 0.0)
+        });
+        (point.max(edge), self.laws.damping_ratio(a, b))
     }
 
     /// Force of the normal spring [N] and its stiffness [N/m] between two materials at an overlap and an effective radius

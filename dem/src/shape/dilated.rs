@@ -230,6 +230,14 @@ impl Core {
         };
         self.faces.iter().map(around).fold(0.0, f64::max)
     }
+
+    /// The longest edge, or arc of a rim, that is one contact [m].
+    pub fn longest_edge(&self) -> f64 {
+        match self.rim {
+            Some(radius) => std::f64::consts::TAU * radius / rim::ARCS as f64,
+            None => self.edges.iter().map(|e| e.length).fold(0.0, f64::max),
+        }
+    }
 }
 
 impl Dilated {

@@ -22,6 +22,11 @@ fn elastic() -> Material {
     Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
 }
 
+/// The same as an elastic body after Hertz.
+fn hertz(material: Material) -> Material {
+    Material { young: Some(1e8), poisson: 0.3, stiffness: f64::INFINITY, ..material }
+}
+
 fn disk(radius: f64, rounding: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::disk(radius, rounding).expect("a disk")))
 }
@@ -34,23 +39,28 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
-/// A disk sinks into a plane by its weight over the springs of its rim, and nothing moves any more.
+/// A disk sinks into a plane by its weight over the springs of its rim, or after Hertz over a quarter of the modulus per unit of its length, and
+/// nothing moves any more.
 #[test]
 fn a_disk_at_rest() {
     let (big, r) = (0.1, 0.02);
-    let mut input = scene(material(), vec![disk(big, r)]);
-    input.gravity = DOWN;
-    input.planes.push(plane(Vec3::zeros(), Vec3::z()));
-    input.bodies.push(body(0, Vec3::new(0.3, -0.2, r)));
-    let mut run = Run::new(input);
-    run.until(1.0);
-    let springs = TAU * big / (2.0 * r);
-    let weight = run.model.mass(0) * G;
-    let sunk = r - run.state.position(0).z;
-    assert!((sunk / (weight / (springs * K)) - 1.0).abs() < 1e-6, "{sunk}");
-    assert!(run.state.velocity(0).norm() < 1e-9 && run.state.spin(0).norm() < 1e-9);
-    let carried: f64 = measure::contacts(&run.model, &run.state).iter().map(|c| c.force.z).sum();
-    assert!((carried / weight - 1.0).abs() < 1e-9, "{carried}");
+    let modulus = 1e8 / (2.0 * (1.0 - 0.09));
+    for (material, springs) in
+        [(material(), TAU * big / (2.0 * r) * K), (hertz(material()), 0.25 * modulus * TAU * big)]
+    {
+        let mut input = scene(material, vec![disk(big, r)]);
+        input.gravity = DOWN;
+        input.planes.push(plane(Vec3::zeros(), Vec3::z()));
+        input.bodies.push(body(0, Vec3::new(0.3, -0.2, r)));
+        let mut run = Run::new(input);
+        run.until(1.0);
+        let weight = run.model.mass(0) * G;
+        let sunk = r - run.state.position(0).z;
+        assert!((sunk / (weight / springs) - 1.0).abs() < 1e-6, "{sunk}");
+        assert!(run.state.velocity(0).norm() < 1e-9 && run.state.spin(0).norm() < 1e-9);
+        let carried: f64 = measure::contacts(&run.model, &run.state).iter().map(|c| c.force.z).sum();
+        assert!((carried / weight - 1.0).abs() < 1e-9, "{carried}");
+    }
 }
 
 /// Ten disks of two sizes, put on each other a little aside, come to rest and stand; the lowest joint carries all.
@@ -132,7 +142,9 @@ fn stone_of(random: &mut Random, half: [f64; 3], radius: f64) -> Shape {
 /// dashpots what is left and what was dissipated add up to what there was.
 #[test]
 fn collisions_keep_momentum_and_energy() {
-    for (material, count, bound) in [(elastic(), 160, 2e-3), (material(), 60, 0.01)] {
+    let springs = [(elastic(), 160, 2e-3), (material(), 60, 0.01)];
+    let after_hertz = springs.map(|(m, count, bound)| (hertz(m), count / 2, bound));
+    for (material, count, bound) in springs.into_iter().chain(after_hertz) {
         let mut random = Random::new(5);
         let (mut worst, mut sum, mut touched) = (0.0_f64, 0.0, 0);
         for k in 0..count {

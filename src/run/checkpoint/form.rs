@@ -1,7 +1,7 @@
 //! The file of a checkpoint.
 //!
 //! ```text
-//! trackbed checkpoint 8\n        the form of the file
+//! trackbed checkpoint N\n        the form of the file
 //! { header }\n                   JSON: program, scene, stage, step, time
 //! body                           binary: every number with all its bits
 //! 8 bytes                        64-bit FNV-1a checksum of all before, low byte first

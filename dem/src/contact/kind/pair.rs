@@ -50,7 +50,7 @@ pub(crate) struct Touch {
     /// Share of the law's force that acts here: one, but where one area is stood for by several points; less than zero where others count
     /// something twice.
     pub weight: f64,
-    /// Of a length of edge: what has weight one [m]; zero for points.
+    /// Of a length of edge: what has weight one [m]; zero for points, and where edges have the law of points.
     pub edge: f64,
     /// Overlap above which the contact has lost its meaning [m].
     pub bound: f64,
@@ -75,12 +75,12 @@ impl Touch {
 
     /// Puts it under the law of two materials, or of their edges where those have one of their own (`law/edges.rs`).
     pub fn under(&mut self, laws: &Laws, materials: [u32; 2]) {
-        self.materials = materials;
-        if self.edge > 0.0
-            && let Some(edges) = laws.edges(materials)
-        {
-            self.materials = edges;
+        let edges = laws.edges(materials).filter(|_| self.edge > 0.0);
+        self.materials = edges.unwrap_or(materials);
+        if edges.is_some() {
             self.weight *= self.edge;
+        } else {
+            self.edge = 0.0;
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::law::scarring::Scar;
 use crate::law::{ContactGeometry, Laws};
 use crate::pairs::cross::SurfaceBook;
 use crate::pairs::list::{PairList, PairName, PointMemory};
+use std::ops::Range;
 
 /// Least number of contacts that carry the mass of a pair: so small where only ends of edges touch.
 const LEAST: f64 = 1e-9;
@@ -220,12 +221,11 @@ impl<K: PairKind> Kind for Of<K> {
             found.clear();
             parts.clear();
             for m in k..end {
-                let (first, second, way) = Self::partners(now, b, list.name(m));
-                let from = found.len();
-                self.0.touches_again(&first, &second, list.hint_mut(m), &mut found);
-                let materials = Self::materials(now, b, list.name(m));
-                found[from..].iter_mut().for_each(|t| t.under(setting.laws, materials));
-                parts.push((from..found.len(), way));
+                let name = list.name(m);
+                let again = |a: &_, b: &_, found: &mut Touches| {
+                    self.0.touches_again(a, b, list.hint_mut(m), found);
+                };
+                parts.push(Self::seek(setting.laws, now, (b, name), &mut found, again));
             }
             Self::share(setting.laws, &mut found);
             for (m, (part, way)) in (k..end).zip(&parts) {
@@ -250,12 +250,8 @@ impl<K: PairKind> Kind for Of<K> {
                 found.clear();
                 parts.clear();
                 for m in k..end {
-                    let (first, second, way) = Self::partners(scene, b, list.name(m));
-                    let from = found.len();
-                    self.0.touches(&first, &second, &mut found);
-                    let materials = Self::materials(scene, b, list.name(m));
-                    found[from..].iter_mut().for_each(|t| t.under(laws, materials));
-                    parts.push((from..found.len(), way));
+                    let touches = |a: &_, b: &_, found: &mut Touches| self.0.touches(a, b, found);
+                    parts.push(Self::seek(laws, scene, (b, list.name(m)), &mut found, touches));
                 }
                 Self::share(laws, &mut found);
             }
@@ -347,20 +343,38 @@ impl<K: PairKind> Of<K> {
         [K::First::material(scene, b, i), K::Second::material(scene, other as usize, j)]
     }
 
+    /// Adds where a pair touches, as `touches` finds it, and puts that under its law: which they are, and the way to the second partner's image.
+    #[inline(always)]
+    fn seek<'a>(
+        laws: &Laws,
+        scene: &'a (impl Scene + ?Sized),
+        (b, name): (usize, PairName),
+        found: &mut Touches,
+        touches: impl FnOnce(&View<'a, K::First>, &View<'a, K::Second>, &mut Touches),
+    ) -> (Range<usize>, Vec3) {
+        let (first, second, way) = Self::partners(scene, b, name);
+        let from = found.len();
+        touches(&first, &second, found);
+        let materials = Self::materials(scene, b, name);
+        found[from..].iter_mut().for_each(|t| t.under(laws, materials));
+        (from..found.len(), way)
+    }
+
     /// Says how many contacts carry the mass of a pair together: by their weights where all have one stiffness.
     fn share(laws: &Laws, found: &mut [Touch]) {
-        if !K::SHARED || found.is_empty() {
+        if !K::SHARED {
             return;
         }
-        let one = found[0].materials;
-        if found.iter().all(|t| t.materials == one) && laws.edges(one).is_none() {
+        if found.iter().all(|t| t.edge == 0.0 && laws.edges(t.materials).is_none()) {
             let sum = found.iter().map(|t| t.weight).sum::<f64>().max(LEAST);
             return found.iter_mut().for_each(|t| t.share = sum);
         }
         let stiffness =
             |t: &Touch| laws.stiffness(t.materials[0], t.materials[1], t.geometry.overlap, t.geometry.radius);
         let sum: f64 = found.iter().map(|t| t.weight * stiffness(t)).sum();
-        found.iter_mut().for_each(|t| t.share = (sum / stiffness(t)).max(LEAST));
+        // Edges weigh by their length.
+        let least = |t: &Touch| if t.edge > 0.0 { LEAST * t.edge } else { LEAST };
+        found.iter_mut().for_each(|t| t.share = (sum / stiffness(t)).max(least(t)));
     }
 
     /// Forces and memory of the `k`-th pair.
