@@ -234,7 +234,7 @@ impl Core {
     /// The longest edge, or arc of a rim, that is one contact [m].
     pub fn longest_edge(&self) -> f64 {
         match self.rim {
-            Some(radius) => std::f64::consts::TAU * radius / rim::ARCS as f64,
+            Some(radius) => std::f64::consts::TAU * radius / disk::ARCS as f64,
             None => self.edges.iter().map(|e| e.length).fold(0.0, f64::max),
         }
     }

@@ -3,6 +3,9 @@
 use crate::base::Vec3;
 use std::f64::consts::{PI, TAU};
 
+/// Arcs of a rim, each a contact of its own.
+pub(super) const ARCS: usize = 8;
+
 /// Strips of the rim and points around it in pictures.
 const STRIPS: usize = 4;
 const AROUND: usize = 36;

@@ -2,12 +2,10 @@
 //! that friction has points to hold at all around, and a disk that rolls comes from one to the next.
 
 use super::circle::{Circle, Turns};
+use super::disk::ARCS;
 use super::press::{CURVED, Pressed, Target};
 use crate::base::Vec3;
 use std::f64::consts::TAU;
-
-/// Arcs of a rim.
-pub(crate) const ARCS: usize = 8;
 
 /// What the points of an arc do together.
 #[derive(Clone, Copy, Debug, Default)]
