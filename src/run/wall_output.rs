@@ -10,7 +10,7 @@ use trackbed_dem::{Vec3, WallShape};
 /// Corners around a ring in a picture.
 const AROUND: u32 = 48;
 
-/// Energies of mounts; force of the grains on each recorded wall, its moment about the wall's centre, and the displacement of that centre.
+/// Energies of mounts; force of grains and other walls on each recorded wall, its moment about the wall's centre, and the displacement of that centre.
 pub struct Walls;
 
 impl<S: System> Recorder<S> for Walls {

@@ -152,6 +152,9 @@ pub struct Body {
     pub hold: Vec<HeldMotion>,
     /// Springs and dashpots to where its centre of mass started; default none.
     pub mount: Option<Mount>,
+    /// Radius that corners and edges of triangles are rounded with where they touch other walls [m]; default a fiftieth of the smallest side
+    /// of the bounds.
+    pub rounding: Option<Quantity<Length>>,
 }
 
 /// Springs and dashpots that hold a body, along x, y, z. Each is given by its constants or by what the body's mass makes of them.

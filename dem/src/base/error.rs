@@ -220,7 +220,7 @@ pub enum StepError {
     /// A rigid triangle body moves so fast that contacts would be missed, or its velocity is not a number.
     #[error(
         "at t = {time} s a point of wall {wall} moves at {speed} m/s, above the bound {bound} m/s (half \
-         the smallest radius per step)"
+         the smallest radius, of a grain or of rounded corners, per step)"
     )]
     WallSpeed {
         /// Time [s].
@@ -232,9 +232,9 @@ pub enum StepError {
         /// The bound [m/s].
         bound: f64,
     },
-    /// Two rigid bodies of walls have come within each other's bounds.
+    /// Two round bodies of walls have come within each other's bounds.
     #[error(
-        "at t = {time} s the rigid bodies of walls {} and {} come within each other's bounds: contact between bodies of \
+        "at t = {time} s the rigid bodies of walls {} and {} come within each other's bounds: contact between round bodies of \
          walls is not modelled",
         walls[0],
         walls[1]
@@ -244,6 +244,23 @@ pub enum StepError {
         time: f64,
         /// The walls, counted through.
         walls: [usize; 2],
+    },
+    /// Two walls overlap by more than contacts are meant for.
+    #[error(
+        "at t = {time} s walls {} and {} overlap by {overlap:e} m, more than the {bound:e} m that rounded corners allow: their contact is too \
+         soft, or its `rounding` too small",
+        walls[0],
+        walls[1]
+    )]
+    WallsOverlap {
+        /// Time [s].
+        time: f64,
+        /// The walls, counted through.
+        walls: [usize; 2],
+        /// Overlap of one contact [m].
+        overlap: f64,
+        /// The bound [m].
+        bound: f64,
     },
     /// The device that computes the steps does not respond, or has no memory left.
     #[error("at t = {time} s the device failed: {problem}")]

@@ -10,4 +10,5 @@ pub(crate) enum Failure {
     Speed { body: u32, speed: f64, bound: f64 },
     Wall { wall: u32, speed: f64, bound: f64 },
     Meeting { walls: [u32; 2] },
+    Walls { walls: [u32; 2], overlap: f64, bound: f64 },
 }

@@ -51,10 +51,10 @@ pub(crate) struct Tally {
     pub failure: Option<Failure>,
 }
 
-/// What the grains felt from one wall in one step.
+/// What grains and other walls felt from one wall in one step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WallSum {
-    /// Force on the grains [N] and its moment about the wall's centre [N m].
+    /// Force on them [N] and its moment about the wall's centre [N m].
     pub force: Vec3,
     pub moment: Vec3,
     /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.

@@ -3,6 +3,7 @@
 use super::model::Model;
 use super::place;
 use super::state::State;
+use super::wall_contacts::WallContacts;
 use super::work::{Searched, Work};
 use super::{bonds, candidates};
 use crate::bodies::members::{Members, common};
@@ -34,6 +35,7 @@ impl Work {
             searched: Searched::default(),
             simd: Simd::best(),
             planes: Vec::new(),
+            wall_contacts: WallContacts::default(),
             walls: Vec::new(),
             sheet: Vec::new(),
             ground: Vec::new(),

@@ -8,6 +8,8 @@ use crate::law::material::Material;
 use crate::law::{self, Laws, conical_damage};
 use crate::shape::Shape;
 use crate::wall::check::in_range;
+use crate::wall::set::Walls;
+use crate::wall::shells::Shells;
 
 const POSITIVE: &str = "be positive and finite";
 const NOT_NEGATIVE: &str = "be zero or positive, and finite";
@@ -322,6 +324,20 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
                  springs and Hertz's law can be spread along its edges",
                 body.material
             ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses walls that touch each other by a law that cannot be spread along edges.
+pub(crate) fn shells(walls: &Walls, shells: &Shells, laws: &Laws) -> Result<(), ModelError> {
+    for &[a, b] in &shells.pairs {
+        let [own, other] = [a, b].map(|k| walls.walls[k as usize].material);
+        let at = |overlap| laws.stiffness(own, other, overlap, 1.0);
+        if at(1.0) != at(2.0) && laws.edges([own, other]).is_none() {
+            let problem = "it is a rigid body of triangles that touches other walls, and the stiffness of such a contact grows with the overlap: only \
+                           linear springs and Hertz's law can be spread along its edges";
+            return Err(ModelError::Wall { wall: walls.name(a as usize), problem });
         }
     }
     Ok(())

@@ -25,5 +25,6 @@ pub mod step;
 mod steps;
 pub(crate) mod threads;
 pub mod timestep;
+pub(crate) mod wall_contacts;
 pub(crate) mod walls;
 pub mod work;

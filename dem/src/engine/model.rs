@@ -17,7 +17,7 @@ use crate::shape::plane::Plane;
 use crate::spatial::patchwork::{Patch, Trees};
 use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::{Sheet, SheetFacet};
-use crate::wall::{WallInput, set::Walls};
+use crate::wall::{WallInput, set::Walls, shells::Shells};
 
 /// Spheres that a block of bodies holds, about. Part of a scene's numbers (it orders sums), so a constant.
 const BLOCK_SPHERES: usize = 1024;
@@ -32,6 +32,8 @@ pub struct Model {
     /// Planes with unit normals.
     pub(crate) planes: Vec<Plane>,
     pub(crate) walls: Walls,
+    /// Walls as they touch each other.
+    pub(crate) shells: Shells,
     pub(crate) surface_material: Option<u32>,
     pub(crate) other_surface: Option<(u32, u32)>,
     pub(crate) laws: Laws,
@@ -111,11 +113,12 @@ impl Model {
         check::input(&input)?;
         let bodies = Bodies::new(&input.bodies, &input.shapes, &input.materials)?;
         let dilated = bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Polyhedron(_)));
-        let laws = if dilated { Laws::with_edges } else { Laws::new };
-        let laws = laws(&input.materials, &input.contacts);
         let given: Vec<WallInput> = input.all_walls().collect();
         let scarred = given.iter().any(|w| w.scarring.is_some());
         let mut walls = Walls::new(&given, input.triangles.len())?;
+        let shells = Shells::new(&given, &walls)?;
+        let laws = if dilated || !shells.pairs.is_empty() { Laws::with_edges } else { Laws::new };
+        let laws = laws(&input.materials, &input.contacts);
         let faces = bodies.iter().any(|b| input.shapes[b.shape].dilated());
         let patches = if faces { walls.patchwork(&given) } else { Vec::new() };
         check::rigid_pairs(&bodies, &input, &laws)?;
@@ -128,6 +131,7 @@ impl Model {
         check::adhesion(&input)?;
         check::scarring(&bodies, &input)?;
         check::polyhedra(&bodies, &input, &laws)?;
+        check::shells(&walls, &shells, &laws)?;
         super::check_periodic::check(&input, &bodies, &patches, skin)?;
         let periodic = Periodic::new(&input.periodic);
         let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
@@ -135,6 +139,7 @@ impl Model {
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii);
         let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input, &laws, expected, radii);
+        let rigid = rigid.min(timestep::shells(&walls, &mut limit, &shells, &laws));
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
         let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));
@@ -161,6 +166,7 @@ impl Model {
             cores: input.shapes.iter().map(Shape::core).collect(),
             planes,
             walls,
+            shells,
             surface_material: input.surface_material.map(|m| m as u32),
             other_surface: input.other_surface.map(|(first, m)| (first, m as u32)),
             laws,

@@ -27,7 +27,8 @@ pub fn find_contacts<S: Surface>(
     state.cross = probe.cross;
     state.sheet = probe.sheet;
     for (wall, seen) in state.walls.iter_mut().zip(probe.walls) {
-        (wall.force, wall.moment, wall.feet) = (seen.force, seen.moment, seen.feet);
+        (wall.force, wall.moment) = (seen.force, seen.moment);
+        (wall.feet, wall.meets) = (seen.feet, seen.meets);
     }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);

@@ -244,7 +244,7 @@ impl State {
         self.walls[wall].acceleration
     }
 
-    /// Force of the grains on a wall in the last step [N] and its moment about the wall's centre where it was then [N m].
+    /// Force of grains and other walls on a wall in the last step [N] and its moment about the wall's centre where it was then [N m].
     pub fn wall_force(&self, wall: usize) -> (Vec3, Vec3) {
         (self.walls[wall].force, self.walls[wall].moment)
     }

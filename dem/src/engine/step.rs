@@ -7,7 +7,7 @@ use super::model::Model;
 use super::state::State;
 use super::threads::{self, Bodies, Lists, One};
 use super::work::Work;
-use super::{applied, neighbours, order, scarring, walls};
+use super::{applied, neighbours, order, scarring, wall_contacts, walls};
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
@@ -311,8 +311,9 @@ pub(crate) fn conclude(
 ) -> Result<(), StepError> {
     let dt = state.pace.dt;
     let Collected { mut sum, fastest, mut failure } = all;
+    let meeting = wall_contacts::forces(model, state, &mut work.wall_contacts, &mut sum);
     let (wall_speed, wall_failure) = walls::advance(model, state, work, &mut sum);
-    failure = failure.or(wall_failure);
+    failure = failure.or(meeting).or(wall_failure);
     state.ledger += &sum;
     if !model.bonds.is_empty() {
         failure = failure.or(bonds::settle(model, state, work));
@@ -342,6 +343,9 @@ pub(crate) fn conclude(
         }
         Some(Failure::Meeting { walls }) => {
             Err(StepError::WallsMeet { time, walls: walls.map(|w| w as usize) })
+        }
+        Some(Failure::Walls { walls, overlap, bound }) => {
+            Err(StepError::WallsOverlap { time, walls: walls.map(|w| w as usize), overlap, bound })
         }
     }
 }

@@ -37,13 +37,14 @@ use super::input::ModelInput;
 use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Body, Kind};
 use crate::bond;
-use crate::contact::kind::LENGTH;
+use crate::contact::kind::{DEEPEST, LENGTH};
 use crate::law::Laws;
 use crate::law::normal::Expected;
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
 use crate::shape::dilated::Dilated;
 use crate::wall::set::Walls;
+use crate::wall::shells::Shells;
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -450,6 +451,38 @@ pub(crate) fn walls(
                 dt
             };
             note(dt, sudden, material as usize, stiffness);
+        }
+    }
+    least
+}
+
+/// The same for walls that touch each other ([`Shells`]): the longest step [s] with which one may come to lie on another between two looks at
+/// what the contacts allow, as flat and as stiff as their corners and edges let it.
+pub(crate) fn shells(walls: &Walls, limit: &mut DtLimit, shells: &Shells, laws: &Laws) -> f64 {
+    let mut least = f64::INFINITY;
+    for &[a, b] in &shells.pairs {
+        let [own, other] = [a, b].map(|k| walls.walls[k as usize].material);
+        let [first, second] = [shells.radius(a), shells.radius(b)];
+        let reach = first + second;
+        // What it is where they are about to come through each other.
+        let corner = laws.stiffness(own, other, DEEPEST * reach, first.max(second));
+        let edge = match laws.edges([own, other]) {
+            None => corner / (LENGTH * reach),
+            Some([a, b]) => laws.stiffness(a, b, 0.0, 0.0),
+        };
+        let [corners, length] = shells.flattest([a, b], reach);
+        let stiffness = corners * corner + length * edge;
+        let ratio = laws.tangential_ratio(own, other) * if laws.rolls() { 2.0 } else { 1.0 };
+        let zeta = laws.damping_ratio(own, other);
+        for k in [a, b] {
+            let Some(body) = &walls.walls[k as usize].body else { continue };
+            let dt = body.step_limit(stiffness, stiffness * ratio, zeta, f64::INFINITY);
+            least = least.min(0.5 * dt);
+            if body.fixed != 0b11_1111 && dt < limit.dt {
+                let partner = if k == a { other } else { own } as usize;
+                let (bonds, mass, wall, mount) = (0.0, body.mass, Some(k as usize), body.mount_frequency());
+                *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds, wall, mount };
+            }
         }
     }
     least

@@ -1,4 +1,4 @@
-//! What walls do at the end of a step: they take the forces of the grains, book what they did, and move on.
+//! What walls do at the end of a step: they take the forces of the grains and of each other, book what they did, and move on.
 //!
 //! A wall with prescribed motion does work F·v̄ + M·ω̄ with the means of its velocities before and after the step: those
 //! of the bodies' half steps. The prescribed oscillation enters by the displacement, so that it does not drift.
@@ -38,6 +38,9 @@ pub(crate) fn advance(
             if let Some(part) = w.wall_sums.get(k) {
                 sum += part;
             }
+        }
+        if let Some(part) = work.wall_contacts.sums.get(k) {
+            sum += part;
         }
         let own = &mut state.walls[k];
         own.force = -sum.force;
@@ -98,10 +101,10 @@ pub(crate) fn advance(
     (fastest, failure.or_else(|| meeting(model, state)))
 }
 
-/// Two bodies whose bounds meet.
+/// Two bodies that do not touch each other and whose bounds meet.
 fn meeting(model: &Model, state: &State) -> Option<Failure> {
-    let bodies =
-        || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(_, (w, _))| w.body.is_some());
+    let round = |k: usize| model.walls.walls[k].body.as_ref().is_some_and(|b| !b.stands());
+    let bodies = || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(k, _)| round(*k));
     for (i, (a, sa)) in bodies() {
         for (j, (b, sb)) in bodies().skip_while(|(j, _)| *j <= i) {
             let (Some(p), Some(q)) = (&a.body, &b.body) else { continue };

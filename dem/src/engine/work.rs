@@ -2,6 +2,7 @@
 
 use super::block_work::{BlockWork, Ground};
 use super::state::State;
+use super::wall_contacts::WallContacts;
 use crate::base::Vec3;
 use crate::bodies::members::Members;
 use crate::bodies::sums::Sums;
@@ -54,6 +55,7 @@ pub struct Work {
     pub(crate) planes: Vec<PlaneNow>,
     /// Walls of patches where they are, where bodies with faces may touch them.
     pub(crate) walls: Vec<WallNow>,
+    pub(crate) wall_contacts: WallContacts,
     /// What each body of a block has of ground that is scarred.
     pub(crate) ground: Vec<Ground>,
     /// Scratch of cutting bodies.

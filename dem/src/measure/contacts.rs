@@ -308,22 +308,28 @@ fn patch(
     }
 }
 
+/// Force that the next step will find of a contact, and the normal part of it [N].
+pub(super) fn force_of(model: &Model, state: &State, c: &Visited<'_>) -> (Vec3, f64) {
+    let mut history = *c.history;
+    let ContactForce { force, normal, .. } = single::evaluate(
+        &model.laws,
+        c.materials,
+        c.friction,
+        c.inverse_mass,
+        &c.geometry,
+        &c.velocity,
+        &c.spin,
+        &mut history,
+        state.pace.kick(),
+    );
+    (force * c.weight, normal * c.weight)
+}
+
 /// All contacts, with the forces that the next step will find; block by block, in a fixed order.
 pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
-        let mut history = *c.history;
-        let ContactForce { force, normal, .. } = single::evaluate(
-            &model.laws,
-            c.materials,
-            c.friction,
-            c.inverse_mass,
-            &c.geometry,
-            &c.velocity,
-            &c.spin,
-            &mut history,
-            state.pace.kick(),
-        );
+        let (force, normal_force) = force_of(model, state, c);
         out.push(ContactRecord {
             a: c.body as usize,
             b: c.partner,
@@ -331,8 +337,8 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
             normal: c.geometry.normal,
             overlap: c.geometry.overlap,
             radius: c.geometry.radius,
-            normal_force: normal * c.weight,
-            force: force * c.weight,
+            normal_force,
+            force,
             shift: c.shift,
         });
     });

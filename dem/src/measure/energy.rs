@@ -66,6 +66,8 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_tangential += tangential;
     }
     contacts(model, state, |_| true, &mut e);
+    let back = 0.5 * state.pace.last;
+    crate::engine::wall_contacts::visit(model, state, back, |_, c| springs(model, c, back, &mut e));
     e.elastic_bonds = super::bonds::elastic(model, state);
     e
 }
@@ -101,40 +103,44 @@ fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut
 fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool, e: &mut Energies) {
     let back = 0.5 * state.pace.last;
     visit(model, state, back, |c| {
-        if !counted(c) {
-            return;
+        if counted(c) {
+            springs(model, c, back, e);
         }
-        // The spring belongs to the last full step: half a step of sliding brings it to the half step. Beyond what friction holds that is
-        // work of friction, which the ledger has not booked yet.
-        let n = &c.geometry.normal;
-        let slip = c.velocity - n * c.velocity.dot(n);
-        let mut history = *c.history;
-        if !history.is_fresh() {
-            let before = history.spring.norm();
-            history.spring += slip * back;
-            let length = history.spring.norm();
-            if length > before {
-                let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
-                let (force, stiffness) =
-                    model.laws.held_by_friction(c.materials, c.friction, overlap, radius, &history);
-                let most = if stiffness > 0.0 { before.max(force / stiffness) } else { 0.0 };
-                if length > most {
-                    history.spring *= most / length;
-                    e.elastic_tangential += stiffness * most * (length - most) * c.weight;
-                }
-            }
-            if model.laws.rolls() {
-                let about = c.spin.dot(n);
-                let roll = (c.spin - n * about) * (c.geometry.radius * back);
-                let forward = [roll.x, roll.y, roll.z, about * c.geometry.radius * back];
-                history.turn.iter_mut().zip(forward).for_each(|(x, d)| *x += d);
-            }
-        }
-        let [a, b] = c.materials;
-        let (normal, tangential) = model.laws.stored(a, b, c.geometry.overlap, c.geometry.radius, &history);
-        e.elastic_normal += normal * c.weight;
-        e.elastic_tangential += tangential * c.weight;
     });
+}
+
+/// Adds the springs of a contact.
+fn springs(model: &Model, c: &Visited<'_>, back: f64, e: &mut Energies) {
+    // The spring belongs to the last full step: half a step of sliding brings it to the half step. Beyond what friction holds that is
+    // work of friction, which the ledger has not booked yet.
+    let n = &c.geometry.normal;
+    let slip = c.velocity - n * c.velocity.dot(n);
+    let mut history = *c.history;
+    if !history.is_fresh() {
+        let before = history.spring.norm();
+        history.spring += slip * back;
+        let length = history.spring.norm();
+        if length > before {
+            let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
+            let (force, stiffness) =
+                model.laws.held_by_friction(c.materials, c.friction, overlap, radius, &history);
+            let most = if stiffness > 0.0 { before.max(force / stiffness) } else { 0.0 };
+            if length > most {
+                history.spring *= most / length;
+                e.elastic_tangential += stiffness * most * (length - most) * c.weight;
+            }
+        }
+        if model.laws.rolls() {
+            let about = c.spin.dot(n);
+            let roll = (c.spin - n * about) * (c.geometry.radius * back);
+            let forward = [roll.x, roll.y, roll.z, about * c.geometry.radius * back];
+            history.turn.iter_mut().zip(forward).for_each(|(x, d)| *x += d);
+        }
+    }
+    let [a, b] = c.materials;
+    let (normal, tangential) = model.laws.stored(a, b, c.geometry.overlap, c.geometry.radius, &history);
+    e.elastic_normal += normal * c.weight;
+    e.elastic_tangential += tangential * c.weight;
 }
 
 /// Momentum [kg m/s] and angular momentum about the origin [kg m²/s] at the last half step. With

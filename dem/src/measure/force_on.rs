@@ -1,11 +1,12 @@
 //! The force on a group of bodies, and loads on structures.
 
 use super::bonds::records;
-use super::contacts::contacts;
+use super::contacts::{contacts, force_of};
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::engine::model::Model;
 use crate::engine::state::State;
+use crate::engine::wall_contacts;
 
 /// Sum of the forces of bonds and contacts on the bodies that `of` picks, from bodies, walls and surfaces that are not
 /// among them [N]: on bodies of prescribed motion, what holds them is its opposite (gravity apart).
@@ -45,4 +46,9 @@ pub fn loads_on(
             _ => {}
         }
     }
+    wall_contacts::visit(model, state, 0.0, |walls, c| match walls.map(|w| wall(w as usize)) {
+        [true, false] => f(c.geometry.point, force_of(model, state, c).0),
+        [false, true] => f(c.geometry.point, -force_of(model, state, c).0),
+        _ => {}
+    });
 }

@@ -5,6 +5,7 @@ pub(crate) mod buffers;
 pub(crate) mod cross;
 pub(crate) mod groups;
 pub(crate) mod list;
+pub(crate) mod meets;
 pub(crate) mod merge;
 pub(crate) mod patch_search;
 pub(crate) mod patches;

@@ -10,4 +10,5 @@ pub(crate) mod periodic;
 pub(crate) mod round;
 pub(crate) mod separation;
 pub mod sheet;
+pub(crate) mod shell;
 pub mod surface;

@@ -4,8 +4,10 @@ use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::table::Kind;
 use crate::bond::kernel;
+use crate::contact::kind::Visited;
 use crate::engine::model::Model;
 use crate::engine::state::State;
+use crate::engine::wall_contacts;
 use crate::law::lag;
 use crate::measure;
 use nalgebra::{Matrix3, UnitQuaternion};
@@ -42,6 +44,24 @@ struct Link {
 
 const NOTHING: u32 = u32::MAX;
 
+impl Link {
+    /// A contact that joins two ends.
+    fn of(model: &Model, c: &Visited<'_>, ends: [u32; 2], arms: [Vec3; 2]) -> Link {
+        let g = &c.geometry;
+        let law = model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
+        let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
+        Link {
+            ends,
+            arms,
+            normal: g.normal,
+            stiffness: [pair(law.normal, law.tangential), pair(law.twisting, law.rolling)],
+            damping: [pair(law.damping, law.tangential_damping), Pair::default()],
+            lag: 0.5 * law.damping * c.inverse_mass,
+            now: [Pair::default(); 2],
+        }
+    }
+}
+
 /// The operator.
 pub(super) struct Operator {
     links: Vec<Link>,
@@ -76,6 +96,7 @@ impl Operator {
         let (motion, force) = (still.clone(), still);
         let mut operator = Operator { links: Vec::new(), bodies, walls, mounts, square: 0.0, motion, force };
         operator.add_contacts(model, state);
+        operator.add_wall_contacts(model, state);
         operator.add_bonds(model, state);
         operator
     }
@@ -106,23 +127,29 @@ impl Operator {
             if c.inverse_mass == 0.0 {
                 return;
             }
-            let g = &c.geometry;
-            let law =
-                model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
-            let other = moving(c.partner);
-            let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
-            links.push(Link {
-                ends: [c.body, other.map_or(NOTHING, |(number, _)| number)],
-                arms: [
-                    g.point - state.position(c.body as usize),
-                    other.map_or_else(Vec3::zeros, |(_, centre)| g.point - c.shift - centre),
-                ],
-                normal: g.normal,
-                stiffness: [pair(law.normal, law.tangential), pair(law.twisting, law.rolling)],
-                damping: [pair(law.damping, law.tangential_damping), Pair::default()],
-                lag: 0.5 * law.damping * c.inverse_mass,
-                now: [Pair::default(); 2],
-            });
+            let (g, other) = (&c.geometry, moving(c.partner));
+            let ends = [c.body, other.map_or(NOTHING, |(number, _)| number)];
+            let arms = [
+                g.point - state.position(c.body as usize),
+                other.map_or_else(Vec3::zeros, |(_, centre)| g.point - c.shift - centre),
+            ];
+            links.push(Link::of(model, c, ends, arms));
+        });
+    }
+
+    /// Contacts of walls with each other.
+    fn add_wall_contacts(&mut self, model: &Model, state: &State) {
+        wall_contacts::visit(model, state, 0.0, |walls, c| {
+            let [a, b] = walls.map(|w| w as usize);
+            let arm = |w: usize| c.geometry.point - model.walls.walls[w].centre - state.walls[w].offset;
+            // A wall that keeps its motion comes second, where there is one.
+            let [first, second] = if self.walls[a] == NOTHING { [b, a] } else { [a, b] };
+            self.links.push(Link::of(
+                model,
+                c,
+                [self.walls[first], self.walls[second]],
+                [arm(first), arm(second)],
+            ));
         });
     }
 

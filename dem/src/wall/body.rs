@@ -3,17 +3,15 @@
 //! The body takes part in the contacts of the grains as a wall of finite mass. It moves by the same scheme as clumps
 //! (`integrate/leapfrog.rs`, `integrate/rotation.rs`): kick by the forces of the step, then drift.
 //!
-//! Volume, centre and inertia of the enclosed solid are sums over the tetrahedra between a point and the triangles (e.g.
-//! Tonon, J. Math. Stat. 1, 2005); the triangles are first turned to look the same way by walking across their edges,
-//! because files need not order their vertices.
+//! Other walls and other bodies are touched by bodies of triangles (`shells.rs`).
 //!
-//! Limits: grains of all shapes touch the surface; infinite planes are touched by vertices of triangles, not by round shapes; other walls and other
-//! bodies are not touched (the step fails when two bodies come within each other's bounds).
+//! Limits: infinite planes are touched by vertices of triangles, not by round shapes; two round bodies do not touch each other (the step fails
+//! when they come within each other's bounds).
 
+use super::enclosed::{Enclosed, enclosed};
 use super::input::{Mount, RigidBody, WallShape};
 use super::mount;
 use super::state::{Foot, WallState};
-use super::triangulated::welded;
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::base::ledger::{Impulse, Ledger};
@@ -47,64 +45,6 @@ pub(crate) struct Body {
     /// Whether planes touch the vertices.
     stands: bool,
     mount: Option<Mount>,
-}
-
-/// Volume, centre and inertia about it per unit density of the solid that a closed surface encloses: [m³], [m],
-/// [m⁵]. `None` when an edge does not join exactly two triangles, or the volume is zero.
-pub fn enclosed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<(f64, Vec3, Matrix3<f64>)> {
-    let same = welded(vertices);
-    let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
-    let along = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
-    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    let mut edges: Vec<([u32; 2], usize)> =
-        welded.iter().enumerate().flat_map(|(k, t)| along(t).map(|e| (sorted(e), k))).collect();
-    edges.sort_unstable();
-    if !edges.chunk_by(|a, b| a.0 == b.0).all(|same| same.len() == 2) {
-        return None;
-    }
-    // Turn neighbours to run along their common edge in opposite directions.
-    let mut faces: Vec<Option<[u32; 3]>> = vec![None; welded.len()];
-    let mut open = Vec::new();
-    let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Matrix3::zeros());
-    let origin = *vertices.get(*welded.first()?.first()? as usize)?;
-    for seed in 0..welded.len() {
-        if faces[seed].is_some() {
-            continue;
-        }
-        faces[seed] = Some(welded[seed]);
-        open.push(seed);
-        let (mut v, mut f, mut s) = (0.0, Vec3::zeros(), Matrix3::zeros());
-        while let Some(k) = open.pop() {
-            let face = faces[k].unwrap_or(welded[k]);
-            let [a, b, c] = face.map(|v| vertices[v as usize] - origin);
-            let six = a.dot(&b.cross(&c));
-            let sum = a + b + c;
-            v += six / 6.0;
-            f += sum * (six / 24.0);
-            s += (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose())
-                * (six / 120.0);
-            for edge in along(&face) {
-                let at = edges.partition_point(|e| e.0 < sorted(edge));
-                let other = if edges[at].1 == k { edges[at + 1].1 } else { edges[at].1 };
-                if faces[other].is_none() {
-                    let t = welded[other];
-                    let same_way = along(&t).contains(&edge);
-                    faces[other] = Some(if same_way { [t[0], t[2], t[1]] } else { t });
-                    open.push(other);
-                }
-            }
-        }
-        let sign = if v < 0.0 { -1.0 } else { 1.0 };
-        volume += sign * v;
-        first += f * sign;
-        second += s * sign;
-    }
-    if volume <= 0.0 || !volume.is_finite() {
-        return None;
-    }
-    let centre = first / volume;
-    let about = second - centre * centre.transpose() * volume;
-    Some((volume, centre + origin, Matrix3::identity() * about.trace() - about))
 }
 
 impl Body {
@@ -253,6 +193,11 @@ impl Body {
         state.turned = true;
     }
 
+    /// Whether it is made of triangles.
+    pub fn stands(&self) -> bool {
+        self.stands
+    }
+
     /// Largest speed of a point of the body [m/s].
     pub fn speed(&self, state: &WallState) -> f64 {
         state.velocity.norm() + state.spin.norm() * self.reach
@@ -319,7 +264,7 @@ fn of_triangles(
         return Ok((centre, of_six(given)));
     }
     let missing = "its surface is not closed: give the centre and the inertia of the body";
-    let (volume, own, inertia) = enclosed(vertices, triangles).ok_or(missing)?;
+    let Enclosed { volume, centre: own, inertia, .. } = enclosed(vertices, triangles).ok_or(missing)?;
     let centre = input.centre.unwrap_or(own);
     let d = centre - own;
     let steiner = Matrix3::identity() * d.norm_squared() - d * d.transpose();

@@ -92,6 +92,9 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
         if !good {
             return Some("its mass must be positive, and its centre, inertia and velocities finite");
         }
+        if b.rounding.is_some_and(|r| !(r > 0.0 && r.is_finite())) {
+            return Some("the rounding of its corners must be positive, and finite");
+        }
         return mount(b);
     }
     None

@@ -112,6 +112,9 @@ pub struct RigidBody {
     pub fixed: [bool; 6],
     /// Springs and dashpots between the centre of mass and where it started.
     pub mount: Option<Mount>,
+    /// Radius that its corners and edges are rounded with where triangles touch other walls, within the surface given [m]; default: a fiftieth of
+    /// the smallest side of its bounds, or less where that is too large for its surface.
+    pub rounding: Option<f64>,
 }
 
 /// Linear springs and dashpots along the axes of the world, at rest at the start.

@@ -9,10 +9,12 @@
 
 pub mod body;
 pub(crate) mod check;
+mod enclosed;
 pub mod input;
 mod mount;
 pub mod servo;
 pub(crate) mod set;
+pub(crate) mod shells;
 pub mod state;
 pub(crate) mod triangulated;
 

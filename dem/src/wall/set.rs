@@ -184,6 +184,7 @@ impl Walls {
                     momentum: Vec3::zeros(),
                     acceleration: Vec3::zeros(),
                     feet: Vec::new(),
+                    meets: Vec::new(),
                 };
                 if let Some(body) = &w.body {
                     body.start(&mut state, gravity, dt);
@@ -290,7 +291,7 @@ impl Walls {
 }
 
 /// The patches of a shape without triangles.
-fn rounds(shape: &WallShape) -> Vec<Round> {
+pub(super) fn rounds(shape: &WallShape) -> Vec<Round> {
     match shape {
         WallShape::Triangles { .. } => Vec::new(),
         WallShape::Plane { point, normal } => {

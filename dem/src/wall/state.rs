@@ -4,6 +4,7 @@ use crate::base::Vec3;
 use crate::lanes::turn::Turn;
 use crate::lanes::{Real, V3};
 use crate::law::History;
+use crate::pairs::meets::Meet;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +31,7 @@ pub(crate) struct WallState {
     /// Angular velocity half a step ago [rad/s].
     pub spin: Vec3,
     pub open: bool,
-    /// Force of the grains on the wall in the last step [N], and its moment about the centre [N m].
+    /// Force of grains and other walls on the wall in the last step [N], and its moment about the centre [N m].
     pub force: Vec3,
     pub moment: Vec3,
     /// Principal frame and angular momentum of a rigid body.
@@ -39,6 +40,8 @@ pub(crate) struct WallState {
     /// Acceleration of its centre in the last step [m/s²].
     pub acceleration: Vec3,
     pub feet: Vec<Foot>,
+    /// Where a body of triangles touches other walls, by these and by what touches.
+    pub meets: Vec<Meet>,
 }
 
 /// Place and motion of a wall as formulas need them; see [`WallState`].

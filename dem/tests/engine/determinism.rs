@@ -173,8 +173,17 @@ pub fn mill(n: usize) -> ModelInput {
         spin: Vec3::new(1.0, 2.0, 0.5),
         fixed: [false; 6],
         mount: None,
+        rounding: Some(0.015),
     };
-    input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block, 0) });
+    let other = RigidBody { velocity: Vec3::new(-2.0, 0.0, -1.0), rounding: Some(0.015), ..body.clone() };
+    input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block.clone(), 0) });
+    // One that flies into it.
+    let WallShape::Triangles { vertices, triangles } = block else { return input };
+    let vertices = vertices.iter().map(|v| v + Vec3::new(0.115, 0.01, 0.005)).collect();
+    input.walls.push(WallInput {
+        body: Some(other),
+        ..WallInput::fixed(WallShape::Triangles { vertices, triangles }, 0)
+    });
     input
 }
 
@@ -190,14 +199,14 @@ fn walls_of_all_kinds() {
             if threads == 2 {
                 run.work = Work::new(&run.model, &run.state);
             }
-            let mut most = [0.0_f64; 4];
+            let mut most = [0.0_f64; 5];
             for _ in 0..80 {
                 run.steps(10);
-                for wall in [0, 1, 3] {
+                for wall in [0, 1, 3, 4] {
                     most[wall] = most[wall].max(run.state.wall_force(wall).0.norm());
                 }
             }
-            assert!([0, 1, 3].iter().all(|&w| most[w] > 1.0), "every wall must be touched: {most:?}");
+            assert!([0, 1, 3, 4].iter().all(|&w| most[w] > 1.0), "every wall must be touched: {most:?}");
             bits(&run)
         })
     };

@@ -40,6 +40,7 @@ mod seams;
 mod stability;
 mod tables;
 mod triangle_bodies;
+mod wall_contacts;
 mod wall_motion;
 mod walls;
 mod water;

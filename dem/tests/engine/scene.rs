@@ -60,6 +60,7 @@ pub fn free(mass: f64) -> RigidBody {
         spin: Vec3::zeros(),
         fixed: [false; 6],
         mount: None,
+        rounding: None,
     }
 }
 

@@ -217,10 +217,11 @@ fn refusals() {
     fails(moved, "no prescribed motion");
 
     let mut input = with(stone());
-    input.walls.push(good());
-    let mut second = cuboid(Vec3::new(0.0, 0.05, 0.3), Vec3::repeat(0.09), 1.0);
-    body_of(&mut second).velocity = -Vec3::z();
-    input.walls.push(second);
+    let round = |z: f64, velocity: Vec3| {
+        let shape = WallShape::Sphere { centre: Vec3::z() * z, radius: 0.1 };
+        WallInput { body: Some(RigidBody { velocity, ..free(1.0) }), ..WallInput::fixed(shape, 0) }
+    };
+    input.walls.extend([round(0.0, Vec3::zeros()), round(0.31, -Vec3::z())]);
     let mut run = Run::new(input);
     let error = loop {
         let surface = trackbed_dem::surface::NoSurface;
@@ -230,7 +231,7 @@ fn refusals() {
         assert!(run.state.time < 1.0);
     };
     assert!(matches!(error, StepError::WallsMeet { walls: [0, 1], .. }), "{error}");
-    // Their facing sides were 0.11 m apart and close at 1 m/s, gravity pulling both.
+    // Round bodies do not touch each other. They were 0.11 m apart and close at 1 m/s, gravity pulling both.
     assert!((run.state.time - 0.11).abs() < 1e-3, "{}", run.state.time);
 }
 

@@ -30,7 +30,7 @@ use nalgebra::{Rotation3, UnitQuaternion};
 pub(crate) const LENGTH: f64 = 2.0;
 
 /// Share of the sum of both radii above which an overlap has lost its meaning: the cores are about to meet.
-pub(super) const DEEPEST: f64 = 0.9;
+pub(crate) const DEEPEST: f64 = 0.9;
 
 /// Loss of distance over the sum of both radii after which a direction is looked for anew.
 const STALE: f64 = 0.05;

@@ -16,13 +16,15 @@ mod patch;
 mod round;
 mod scene;
 mod sheet;
+pub(crate) mod shell;
+pub(crate) mod shell_pass;
 mod side;
 mod sphere_box;
 
-pub(crate) use dilated::LENGTH;
+pub(crate) use dilated::{DEEPEST, LENGTH};
 pub(crate) use pair::Visited;
 pub(crate) use pass::{Kind, OnGround};
-pub(crate) use scene::{Now, Placed, PlaneView, Scene, Search, SheetView};
+pub(crate) use scene::{Now, Placed, PlaneView, Pose, Scene, Search, SheetView};
 pub(crate) use side::Renamed;
 
 use crate::contact::single::Setting;

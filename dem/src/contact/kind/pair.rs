@@ -88,6 +88,23 @@ impl Touch {
 /// The points in which a pair touches.
 pub(crate) type Touches = Vec<Touch>;
 
+/// Least number of contacts that carry the mass of a pair: so small where only ends of edges touch.
+const LEAST: f64 = 1e-9;
+
+/// Says how many contacts carry the mass of a pair together: by their weights where all have one stiffness.
+pub(super) fn share(laws: &Laws, found: &mut [Touch]) {
+    if found.iter().all(|t| t.edge == 0.0 && laws.edges(t.materials).is_none()) {
+        let sum = found.iter().map(|t| t.weight).sum::<f64>().max(LEAST);
+        return found.iter_mut().for_each(|t| t.share = sum);
+    }
+    let stiffness =
+        |t: &Touch| laws.stiffness(t.materials[0], t.materials[1], t.geometry.overlap, t.geometry.radius);
+    let sum: f64 = found.iter().map(|t| t.weight * stiffness(t)).sum();
+    // Edges weigh by their length.
+    let least = |t: &Touch| if t.edge > 0.0 { LEAST * t.edge } else { LEAST };
+    found.iter_mut().for_each(|t| t.share = (sum / stiffness(t)).max(least(t)));
+}
+
 /// One contact as measures see it.
 pub(crate) struct Visited<'a> {
     pub body: u32,

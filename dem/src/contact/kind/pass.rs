@@ -1,6 +1,6 @@
 //! What is done with the pairs of a kind, written once for all of them.
 
-use super::pair::{PairKind, Touch, Touches, View, Visited};
+use super::pair::{PairKind, Touch, Touches, View, Visited, share};
 use super::scene::{Now, Scene, Search};
 use super::sheet::{self, Met};
 use super::side::{First, Renamed, Second, Side, grown};
@@ -15,9 +15,6 @@ use crate::law::{ContactGeometry, Laws};
 use crate::pairs::cross::SurfaceBook;
 use crate::pairs::list::{PairList, PairName, PointMemory};
 use std::ops::Range;
-
-/// Least number of contacts that carry the mass of a pair: so small where only ends of edges touch.
-const LEAST: f64 = 1e-9;
 
 /// What the contacts of a block do besides the forces that go to slots.
 pub(crate) struct Books<'a> {
@@ -227,7 +224,9 @@ impl<K: PairKind> Kind for Of<K> {
                 };
                 parts.push(Self::seek(setting.laws, now, (b, name), &mut found, again));
             }
-            Self::share(setting.laws, &mut found);
+            if K::SHARED {
+                share(setting.laws, &mut found);
+            }
             for (m, (part, way)) in (k..end).zip(&parts) {
                 self.pair(setting, now, (b, m), (&found[part.clone()], way), list, &mut memory, books);
             }
@@ -253,7 +252,9 @@ impl<K: PairKind> Kind for Of<K> {
                     let touches = |a: &_, b: &_, found: &mut Touches| self.0.touches(a, b, found);
                     parts.push(Self::seek(laws, scene, (b, list.name(m)), &mut found, touches));
                 }
-                Self::share(laws, &mut found);
+                if K::SHARED {
+                    share(laws, &mut found);
+                }
             }
             let [i, other, j] = list.name(k);
             let other = other as usize;
@@ -360,23 +361,6 @@ impl<K: PairKind> Of<K> {
         (from..found.len(), way)
     }
 
-    /// Says how many contacts carry the mass of a pair together: by their weights where all have one stiffness.
-    fn share(laws: &Laws, found: &mut [Touch]) {
-        if !K::SHARED {
-            return;
-        }
-        if found.iter().all(|t| t.edge == 0.0 && laws.edges(t.materials).is_none()) {
-            let sum = found.iter().map(|t| t.weight).sum::<f64>().max(LEAST);
-            return found.iter_mut().for_each(|t| t.share = sum);
-        }
-        let stiffness =
-            |t: &Touch| laws.stiffness(t.materials[0], t.materials[1], t.geometry.overlap, t.geometry.radius);
-        let sum: f64 = found.iter().map(|t| t.weight * stiffness(t)).sum();
-        // Edges weigh by their length.
-        let least = |t: &Touch| if t.edge > 0.0 { LEAST * t.edge } else { LEAST };
-        found.iter_mut().for_each(|t| t.share = (sum / stiffness(t)).max(least(t)));
-    }
-
     /// Forces and memory of the `k`-th pair.
     fn pair(
         &self,
@@ -436,7 +420,7 @@ impl<K: PairKind> Of<K> {
         let other = other as usize;
         let (own, its) =
             (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
-        *books.friction += weigh(setting, materials, g, memory, weight);
+        *books.friction += weigh(setting.laws, materials, g, memory, weight);
         let ends = (&own, &its);
         let friction = Self::scar(now, b, [i, other as u32, j]).map(|s| s.friction);
         let history = &mut memory.history;
@@ -485,8 +469,8 @@ impl<K: PairKind> Of<K> {
 
 /// Gives a point another weight. What comes to it comes without tension and takes its share of that of the springs, so that their
 /// force stays; what goes takes its tension along. Returns the energy that is lost either way [J].
-fn weigh(
-    setting: &Setting<'_>,
+pub(super) fn weigh(
+    laws: &Laws,
     [a, b]: [u32; 2],
     g: &ContactGeometry,
     memory: &mut PointMemory,
@@ -497,7 +481,7 @@ fn weigh(
     if weight == before || history.is_fresh() {
         return 0.0;
     }
-    let (_, stored) = setting.laws.stored(a, b, g.overlap, g.radius, history);
+    let (_, stored) = laws.stored(a, b, g.overlap, g.radius, history);
     // A feature has weights of one sign.
     if weight.abs() < before.abs() {
         return stored * (before - weight);

@@ -1,4 +1,4 @@
-//! Dilated polyhedra on round walls: the sides of frusta of cones (cylinders among them), discs, spheres, and planes that move.
+//! Dilated polyhedra, and bodies of triangles, on round walls: the sides of frusta of cones (cylinders among them), discs, spheres, and planes that move.
 //!
 //! The corners and edges of the body press on the wall as they do on a plane, by what their distance lacks to the radius. Along an edge that is
 //! integrated between the places where the wall ends or the distance is the radius; on a side of a frustum these are roots of quadratic
@@ -42,53 +42,148 @@ pub(super) fn near(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, reach
     }
 }
 
+/// What touches a round patch, in the frame of the patch.
+pub(super) trait Presser {
+    /// A point amid it.
+    fn amid(&self) -> Vec3;
+
+    /// Radius that its corners and edges are rounded with [m].
+    fn reach(&self) -> f64;
+
+    /// Has its corners and edges press on a part of the patch with a number, `count` times.
+    fn press(&mut self, target: &impl Target, number: (u32, f64));
+
+    /// Has points with numbers press on it, `own` of the sum of radii `reach` theirs [m], with a weight.
+    fn bear(&mut self, points: impl Iterator<Item = (u32, Vec3)>, lengths: (f64, f64, f64));
+
+    /// Whether it has come through a patch.
+    fn through(&self, form: &Round) -> bool;
+
+    /// Notes that it has.
+    fn lose(&mut self, normal: &Vec3);
+}
+
 /// Where a body touches a round patch.
 pub(super) fn touches(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, found: &mut Touches) {
-    let (pose, reach) = (patch.pose(), body.radius);
-    let frame = Frame::new(&body.pose(), &pose);
-    let at = frame.way;
     if !near(body, patch, form, 0.0) {
         return;
     }
-    let view = View::everywhere(Vec3::z(), reach);
+    let pose = patch.pose();
+    let frame = Frame::new(&body.pose(), &pose);
+    let view = View::everywhere(Vec3::z(), body.radius);
     let whole = Whole { body, frame: &frame, of: (u64::MAX, &view), pose: &pose };
+    on(form, &mut OnRound { whole, found });
+}
+
+/// A dilated polyhedron or disk on a round patch.
+struct OnRound<'a> {
+    whole: Whole<'a>,
+    found: &'a mut Touches,
+}
+
+impl Presser for OnRound<'_> {
+    fn amid(&self) -> Vec3 {
+        self.whole.frame.way
+    }
+
+    fn reach(&self) -> f64 {
+        self.whole.body.radius
+    }
+
+    fn press(&mut self, target: &impl Target, number: (u32, f64)) {
+        self.whole.press(target, number, self.found);
+    }
+
+    fn bear(&mut self, points: impl Iterator<Item = (u32, Vec3)>, (own, reach, weight): (f64, f64, f64)) {
+        let Whole { body, pose, .. } = self.whole;
+        let back = Frame::new(pose, &body.pose());
+        let points = points.map(|(number, p)| (number, back.point(&p)));
+        points_on_body(body, points, (own / body.scale, reach / body.scale, weight), self.found);
+    }
+
+    fn through(&self, form: &Round) -> bool {
+        match form {
+            Round::Frustum { base, axis, height, radii, far: _ } => {
+                Side::new(base, axis, *height, *radii).meets_core(self.whole.frame, self.whole.body)
+            }
+            // Its corners say so.
+            _ => false,
+        }
+    }
+
+    fn lose(&mut self, normal: &Vec3) {
+        self.found.push(lost(self.whole.body.centre, *normal, self.whole.body.radius));
+    }
+}
+
+/// What something and a round patch do to each other.
+pub(super) fn on(form: &Round, presser: &mut impl Presser) {
+    let reach = presser.reach();
     match form {
         Round::Plane { point, normal } => {
-            let below = HalfSpace { point: *point, normal: *normal };
-            whole.press(&below, (SIDE, 1.0), found);
+            presser.press(&HalfSpace { point: *point, normal: *normal }, (SIDE, 1.0));
         }
-        Round::Frustum { base, axis, height, radii, far: _ } => {
-            let side = Side::new(base, axis, *height, *radii);
-            if side.meets_core(&frame, body) {
-                return found.push(lost(body.centre, *axis, reach));
+        Round::Frustum { far: true, .. } => {}
+        Round::Frustum { base, axis, height, radii, far: false } => {
+            if presser.through(form) {
+                return presser.lose(axis);
             }
-            whole.press(&side, (SIDE, 1.0), found);
+            presser.press(&Side::new(base, axis, *height, *radii), (SIDE, 1.0));
         }
         Round::Disc { centre, axis, radius } => {
-            let disc = Disc { centre, axis, radius: *radius };
-            whole.press(&disc, (SIDE, 1.0), found);
-            let rim = Circle { centre: *centre, axis: *axis, radius: *radius };
-            whole.press(&rim, (RIM, -1.0), found);
-            let back = Frame::new(&pose, &body.pose());
+            if presser.through(form) {
+                return presser.lose(axis);
+            }
+            presser.press(&Disc { centre, axis, radius: *radius }, (SIDE, 1.0));
+            presser.press(&Circle { centre: *centre, axis: *axis, radius: *radius }, (RIM, -1.0));
             let weight = std::f64::consts::TAU * radius / (POINTS as f64 * LENGTH * reach);
-            let reach = reach / body.scale;
             let x = helper(axis);
             let y = axis.cross(&x);
             let points = (0..POINTS).map(|k| {
                 let (sine, cosine) = libm::sincos(std::f64::consts::TAU * k as f64 / POINTS as f64);
-                (PRESSING + k as u32, back.point(&(centre + (x * cosine + y * sine) * *radius)))
+                (PRESSING + k as u32, centre + (x * cosine + y * sine) * *radius)
             });
-            points_on_body(body, points, (0.0, reach, weight), found);
+            presser.bear(points, (0.0, reach, weight));
         }
-        Round::Sphere { centre, radius } if (at - centre).norm() > *radius => {
-            let p = Frame::new(&pose, &body.pose()).point(centre);
-            let (own, reach) = (radius / body.scale, (radius + reach) / body.scale);
-            points_on_body(body, std::iter::once((PRESSING, p)), (own, reach, 1.0), found);
+        Round::Sphere { centre, radius } if (presser.amid() - centre).norm() > *radius => {
+            presser.bear(std::iter::once((PRESSING, *centre)), (*radius, radius + reach, 1.0));
         }
         Round::Sphere { centre, radius } => {
-            let bowl = Bowl { centre, radius: *radius };
-            whole.press(&bowl, (SIDE, 1.0), found);
+            presser.press(&Bowl { centre, radius: *radius }, (SIDE, 1.0));
         }
+    }
+}
+
+/// Whether a segment passes through a patch; never through a plane or a sphere, of which overlaps say so.
+pub(super) fn pierced(form: &Round, segment: &Segment) -> bool {
+    let within = |s: f64| segment.range[0] < s && s < segment.range[1];
+    match form {
+        Round::Frustum { base, axis, height, radii, .. } => {
+            let seen = Seen::new(segment, base, axis);
+            let mut places = Places::new();
+            let run = radii[1] - radii[0];
+            if *height > 0.0 {
+                seen.at([radii[0] + seen.z[0] * run / height, seen.z[1] * run / height], &mut places);
+                let between = |s: f64| (0.0..=*height).contains(&(seen.z[0] + s * seen.z[1]));
+                places.iter().any(|s| within(*s) && between(*s))
+            } else {
+                seen.at_height(0.0, &mut places);
+                let between = |s: f64| {
+                    let [c, b, a] = seen.square;
+                    let rho = (c + s * (b + s * a)).sqrt();
+                    radii[0].min(radii[1]) <= rho && rho <= radii[0].max(radii[1])
+                };
+                places.iter().any(|s| within(*s) && between(*s))
+            }
+        }
+        Round::Disc { centre, axis, radius } => {
+            let seen = Seen::new(segment, centre, axis);
+            let mut places = Places::new();
+            seen.at_height(0.0, &mut places);
+            let [c, b, a] = seen.square;
+            places.iter().any(|s| within(*s) && c + s * (b + s * a) <= radius * radius)
+        }
+        Round::Plane { .. } | Round::Sphere { .. } => false,
     }
 }
 

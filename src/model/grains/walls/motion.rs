@@ -130,6 +130,11 @@ pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> 
     }
     let round = !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh);
     let idle = round && b.inertia.is_none() && b.spin.is_some();
+    b.refuse(
+        [("rounding", round && b.rounding.is_some())],
+        "no such key for this kind of wall: its surface is round",
+    )?;
+    b.check("rounding", b.rounding, |r| r > 0.0, "a radius above 0")?;
     b.refuse([("spin", idle)], "no such key without `inertia`: a round shape does not turn then")?;
     b.check("mass", b.mass, |m| m > 0.0, "a mass above 0")?;
     let mut fixed = [false; 6];
@@ -152,6 +157,7 @@ pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> 
         spin: b.spin.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
         fixed,
         mount: mount(&b, fixed)?,
+        rounding: b.rounding.map(|r| r.si),
     }))
 }
 

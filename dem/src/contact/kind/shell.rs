@@ -1,0 +1,323 @@
+//! Walls that touch each other: bodies of triangles (`spatial/shell.rs`) with surfaces of triangles and round patches.
+//!
+//! The corners and edges of either press into the other, as those of dilated polyhedra into walls (`patch.rs`, `round.rs`): of a surface of
+//! triangles what a body with the same faces would do, hollow ones among them.
+//!
+//! Limits: as of polyhedra on walls; what comes through a surface ends the run.
+
+use super::dilated::{DEEPEST, Frame, length, lost, rounding, touch};
+use super::facet::{Closed, Rim, Tip};
+use super::pair::{Touch, Touches};
+use super::round::{self, Presser};
+use super::scene::Pose;
+use crate::base::Vec3;
+use crate::shape::dilated::part::{Bounds, View};
+use crate::shape::dilated::press::{self, Pressed, Segment, Target};
+use crate::spatial::bvh::Aabb;
+use crate::spatial::facet::{Facet, Share};
+use crate::spatial::round::Round;
+use crate::spatial::shell::Shell;
+
+/// Numbers of the parts of a triangle, as what presses and as what is pressed into: its face, its edges and its corners.
+const FACE: u32 = 0;
+const EDGE: u32 = 1;
+const TIP: u32 = 4;
+const PARTS: u32 = 8;
+
+/// Numbers of a round patch's own parts.
+const ROUND_PARTS: u32 = 128;
+
+/// What belongs to the second partner, where it presses.
+const TURNED: u32 = 1 << 31;
+
+/// What presses and what is pressed into: memory goes with these.
+pub(crate) type Name = [u32; 2];
+
+/// Where two walls touch; names ascend.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Met {
+    pub names: Vec<Name>,
+    pub touches: Touches,
+    /// Scratch of searches.
+    rows: [Vec<u32>; 2],
+}
+
+impl Met {
+    fn push(&mut self, name: Name, touch: Touch) {
+        self.names.push(name);
+        self.touches.push(touch);
+    }
+}
+
+/// A shell where it is.
+#[derive(Clone, Copy)]
+pub(crate) struct ShellNow<'a> {
+    pub shell: &'a Shell,
+    pub pose: Pose,
+}
+
+/// Finds where two shells touch.
+pub(crate) fn shells(a: &ShellNow<'_>, b: &ShellNow<'_>, found: &mut Met) {
+    found.names.clear();
+    found.touches.clear();
+    Pressing::new(a, b.pose, a.shell.radius + b.shell.radius, false).on_shell(b.shell, found);
+    Pressing::new(b, a.pose, a.shell.radius + b.shell.radius, true).on_shell(a.shell, found);
+}
+
+/// Finds where a shell touches round patches, in the frame `pose`.
+pub(crate) fn rounds(a: &ShellNow<'_>, amid: &Vec3, forms: &[Round], pose: Pose, found: &mut Met) {
+    found.names.clear();
+    found.touches.clear();
+    let pressing = Pressing::new(a, pose, a.shell.radius, false);
+    for (form, first) in forms.iter().zip((0..).step_by(ROUND_PARTS as usize)) {
+        let bounds = form.bounds();
+        if apart(&pressing.bounds(), &grown(&bounds, a.shell.radius)) {
+            continue;
+        }
+        let amid = pressing.frame.point(amid);
+        round::on(form, &mut OnRound { pressing: &pressing, amid, bounds, first, found: &mut *found });
+    }
+    // Whatever presses: parts of one patch come in the order in which they are asked for.
+    let mut order: Vec<usize> = (0..found.names.len()).collect();
+    order.sort_by_key(|k| found.names[*k]);
+    found.names = order.iter().map(|k| found.names[*k]).collect();
+    found.touches = order.iter().map(|k| found.touches[*k]).collect();
+}
+
+fn grown((low, high): &Aabb, by: f64) -> Aabb {
+    (low.map(|x| x - by), high.map(|x| x + by))
+}
+
+fn apart((low, high): &Aabb, (from, to): &Aabb) -> bool {
+    (0..3).any(|d| low[d] > to[d] || high[d] < from[d])
+}
+
+/// Bounds in another frame.
+fn seen(frame: &Frame, (low, high): &Aabb) -> Aabb {
+    // Of a plane they have no end.
+    let [low, high] = [low, high].map(|x| Vec3::from(x.map(|x| x.clamp(-1e18, 1e18))));
+    let middle = frame.point(&((low + high) * 0.5));
+    let half = frame.turn.matrix().abs() * ((high - low) * (0.5 * frame.scale));
+    ((middle - half).into(), (middle + half).into())
+}
+
+/// A shell whose corners and edges press on something.
+struct Pressing<'a> {
+    shell: &'a Shell,
+    /// Its own frame, and that of what it presses on.
+    own: Pose,
+    pose: Pose,
+    /// From the shell's frame to the other, and back.
+    frame: Frame,
+    back: Frame,
+    reach: f64,
+    turned: bool,
+    view: View,
+}
+
+/// A corner or an edge that presses.
+enum Feature {
+    Corner(Vec3),
+    Edge(Segment),
+}
+
+impl Feature {
+    fn on(&self, target: &impl Target, reach: f64) -> Option<Pressed> {
+        match self {
+            Feature::Corner(p) => press::corner(target, p, reach),
+            Feature::Edge(segment) => press::edge(target, segment, reach),
+        }
+    }
+
+    /// Whether it lies farther above or below a triangle's plane than a reach.
+    fn beside(&self, facet: &Facet, reach: f64) -> bool {
+        let height = |p: &Vec3| (p - facet.corners[0]).dot(&facet.normal);
+        match self {
+            Feature::Corner(p) => height(p).abs() > reach,
+            Feature::Edge(s) => {
+                let [a, b] = [height(&s.from), height(&(s.from + s.direction * s.range[1]))];
+                a.min(b) > reach || a.max(b) < -reach
+            }
+        }
+    }
+
+    /// Bounds of what is within a reach of it.
+    fn bounds(&self, reach: f64) -> Aabb {
+        let (a, b) = match self {
+            Feature::Corner(p) => (*p, *p),
+            Feature::Edge(s) => (s.from, s.from + s.direction * s.range[1]),
+        };
+        grown(&(a.inf(&b).into(), a.sup(&b).into()), reach)
+    }
+}
+
+impl<'a> Pressing<'a> {
+    fn new(of: &ShellNow<'a>, pose: Pose, reach: f64, turned: bool) -> Pressing<'a> {
+        let (frame, back) = (Frame::new(&of.pose, &pose), Frame::new(&pose, &of.pose));
+        let view = View::everywhere(Vec3::z(), reach);
+        Pressing { shell: of.shell, own: of.pose, pose, frame, back, reach, turned, view }
+    }
+
+    /// Bounds in the frame of what it presses on.
+    fn bounds(&self) -> Aabb {
+        seen(&self.frame, &self.shell.bounds)
+    }
+
+    /// Calls `f` with number, share and place of the corners and edges that may be within reach of bounds, in the frame of what they press on.
+    fn features(&self, within: &Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, f64, Feature)) {
+        let (low, high) = seen(&self.back, &grown(within, self.reach));
+        row.clear();
+        self.shell.tree.query(low, high, row);
+        for &t in row.iter() {
+            let Facet { corners, edges, tips, .. } = &self.shell.facets[t as usize];
+            let presses = |share: &Share| share.press > 0.0;
+            for (k, edge) in edges.iter().enumerate().filter(|(_, e)| presses(&e.share)) {
+                let from = self.frame.point(&corners[k]);
+                let to = self.frame.point(&corners[(k + 1) % 3]);
+                let around = Bounds::near([&from, &to], &self.view);
+                let direction = self.frame.turn * edge.direction;
+                let segment = Segment { from, direction, range: [0.0, edge.length], around };
+                f(t * PARTS + EDGE + k as u32, edge.share.press, Feature::Edge(segment));
+            }
+            for (k, tip) in tips.iter().enumerate().filter(|(_, t)| presses(t)) {
+                f(t * PARTS + TIP + k as u32, tip.press, Feature::Corner(self.frame.point(&corners[k])));
+            }
+        }
+    }
+
+    /// A contact of a corner or an edge, on what counts `count` times.
+    fn touch(&self, pressed: &Pressed, count: f64) -> Touch {
+        let weight = if pressed.edge { count * length(pressed, self.reach) } else { count };
+        let own = self.shell.radius;
+        let lengths = [own, self.reach, rounding(own, self.reach)];
+        touch(&self.pose, 0, pressed, weight, lengths, if self.turned { -1.0 } else { 1.0 })
+    }
+
+    /// That something has come through a surface.
+    fn lost(&self, p: &Vec3, normal: &Vec3) -> Touch {
+        lost(self.pose.centre + self.pose.orientation * p, self.pose.orientation * normal, self.reach)
+    }
+
+    fn on_shell(&self, target: &Shell, found: &mut Met) {
+        let [mut row, mut near] = std::mem::take(&mut found.rows);
+        self.features(&target.bounds, &mut row, |number, share, feature| {
+            let number = number | if self.turned { TURNED } else { 0 };
+            let (low, high) = feature.bounds(self.reach);
+            near.clear();
+            target.tree.query(low, high, &mut near);
+            for &t in &near {
+                let facet = &target.facets[t as usize];
+                if feature.beside(facet, self.reach) {
+                    continue;
+                }
+                let first = t * PARTS;
+                let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
+                    if let Some(pressed) = pressed {
+                        found.push([number, first + part], self.touch(&pressed, share * count));
+                    }
+                };
+                put(FACE, feature.on(&Closed(facet), self.reach), 1.0);
+                for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
+                    let rim = Rim(&facet.corners[k], edge);
+                    put(EDGE + k as u32, feature.on(&rim, self.reach), edge.share.count);
+                }
+                for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
+                    put(TIP + k as u32, feature.on(&Tip(&facet.corners[k]), self.reach), tip.count);
+                }
+                if let Feature::Edge(segment) = &feature
+                    && let Some(p) = pierced(facet, segment)
+                {
+                    found.push([number, first + PARTS - 1], self.lost(&p, &facet.normal));
+                }
+            }
+        });
+        found.rows = [row, near];
+    }
+}
+
+/// Where a segment passes through a triangle.
+fn pierced(facet: &Facet, segment: &Segment) -> Option<Vec3> {
+    let height = |p: &Vec3| (p - facet.corners[0]).dot(&facet.normal);
+    let to = segment.from + segment.direction * segment.range[1];
+    let [from, up] = [height(&segment.from), height(&to)];
+    if from * up >= 0.0 {
+        return None;
+    }
+    let p = segment.from + (to - segment.from) * (from / (from - up));
+    let inside = facet.edges.iter().zip(&facet.corners).all(|(e, corner)| (p - corner).dot(&e.side) < 0.0);
+    inside.then_some(p)
+}
+
+/// A shell on a round patch with bounds, whose first part has a number.
+struct OnRound<'a, 'b> {
+    pressing: &'b Pressing<'a>,
+    amid: Vec3,
+    bounds: Aabb,
+    first: u32,
+    found: &'b mut Met,
+}
+
+impl Presser for OnRound<'_, '_> {
+    fn amid(&self) -> Vec3 {
+        self.amid
+    }
+
+    fn reach(&self) -> f64 {
+        self.pressing.reach
+    }
+
+    fn press(&mut self, target: &impl Target, (part, count): (u32, f64)) {
+        let (pressing, found) = (self.pressing, &mut *self.found);
+        let [mut row, near] = std::mem::take(&mut found.rows);
+        pressing.features(&self.bounds, &mut row, |number, share, feature| {
+            if let Some(pressed) = feature.on(target, pressing.reach) {
+                found.push([number, self.first + part], pressing.touch(&pressed, share * count));
+            }
+        });
+        found.rows = [row, near];
+    }
+
+    fn bear(&mut self, points: impl Iterator<Item = (u32, Vec3)>, (own, reach, weight): (f64, f64, f64)) {
+        let (pressing, found) = (self.pressing, &mut *self.found);
+        let shell = pressing.shell;
+        let [mut row, near] = std::mem::take(&mut found.rows);
+        for (number, p) in points {
+            let p = pressing.back.point(&p);
+            let (low, high) = Feature::Corner(p).bounds(reach);
+            row.clear();
+            shell.tree.query(low, high, &mut row);
+            for &t in &row {
+                let facet = &shell.facets[t as usize];
+                let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
+                    let Some(pressed) = pressed else { return };
+                    let lengths = [own, reach, rounding(own, shell.radius)];
+                    let touch = touch(&pressing.own, 0, &pressed, weight * count, lengths, -1.0);
+                    let bound = (DEEPEST * shell.radius).max(touch.bound - own);
+                    found.push([TURNED | (self.first + number), t * PARTS + part], Touch { bound, ..touch });
+                };
+                put(FACE, press::corner(&Closed(facet), &p, reach), 1.0);
+                for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
+                    let rim = Rim(&facet.corners[k], edge);
+                    put(EDGE + k as u32, press::corner(&rim, &p, reach), edge.share.count);
+                }
+                for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
+                    put(TIP + k as u32, press::corner(&Tip(&facet.corners[k]), &p, reach), tip.count);
+                }
+            }
+        }
+        found.rows = [row, near];
+    }
+
+    fn through(&self, form: &Round) -> bool {
+        let mut through = false;
+        self.pressing.features(&self.bounds, &mut Vec::new(), |_, _, feature| {
+            through |= matches!(&feature, Feature::Edge(segment) if round::pierced(form, segment));
+        });
+        through
+    }
+
+    fn lose(&mut self, normal: &Vec3) {
+        let lost = self.pressing.lost(&self.amid, normal);
+        self.found.push([u32::MAX, self.first], lost);
+    }
+}

@@ -1,0 +1,117 @@
+//! What is done with the points in which two walls touch (`shell.rs`).
+
+use super::dilated::DEEPEST;
+use super::pair::{Visited, share};
+use super::pass::weigh;
+use super::shell::Met;
+use crate::base::Vec3;
+use crate::base::error::Partner;
+use crate::base::ledger::Ledger;
+use crate::bodies::block::PointMotion;
+use crate::bodies::sums::WallSum;
+use crate::contact::single;
+use crate::law::Laws;
+use crate::pairs::list::PointMemory;
+use crate::pairs::meets::Meet;
+use crate::spatial::patchwork::WallNow;
+
+/// Two walls that touch: the first is a body of triangles, the second has a number.
+pub(crate) struct Two<'a> {
+    pub walls: [&'a WallNow; 2],
+    pub other: u32,
+}
+
+impl Two<'_> {
+    fn materials(&self) -> [u32; 2] {
+        self.walls.map(|w| w.material)
+    }
+
+    /// Puts what was found under its laws.
+    fn settle(&self, laws: &Laws, found: &mut Met) {
+        let materials = self.materials();
+        found.touches.iter_mut().for_each(|t| t.under(laws, materials));
+        share(laws, &mut found.touches);
+    }
+
+    /// Motions at a point.
+    fn motions(&self, point: &Vec3) -> [PointMotion; 2] {
+        self.walls.map(|w| PointMotion::of_whole(&w.velocity, &w.spin, point - w.centre, w.inverse_mass))
+    }
+
+    /// Forces over a step of `dt` [s]: `old` is the memory of the pair, that of now is added to `new`. The sums are what the walls do to others.
+    /// Returns an overlap that is too large, and the bound of it [m].
+    pub fn forces(
+        &self,
+        (laws, dt): (&Laws, f64),
+        found: &mut Met,
+        (old, new): (&[Meet], &mut Vec<Meet>),
+        [first, second]: [&mut WallSum; 2],
+        ledger: &mut Ledger,
+    ) -> Option<[f64; 2]> {
+        self.settle(laws, found);
+        let mut deep = None;
+        for gone in old.iter().filter(|m| found.names.binary_search(&m.name).is_err()) {
+            let own = self.materials();
+            let materials = laws.edges(own).filter(|_| gone.memory.edge).unwrap_or(own);
+            let mut history = gone.memory.history;
+            ledger.dissipated_friction += gone.memory.weight * single::end(laws, materials, &mut history);
+        }
+        for (name, touch) in found.names.iter().zip(&found.touches) {
+            let g = &touch.geometry;
+            let mut memory = self.known(old, name).copied().unwrap_or(PointMemory::FRESH);
+            memory.edge = touch.edge > 0.0;
+            ledger.dissipated_friction += weigh(laws, touch.materials, g, &mut memory, touch.weight);
+            let [own, its] = self.motions(&g.point);
+            let ends = (&own, &its);
+            let f =
+                single::between(laws, touch.materials, None, g, ends, touch.share, &mut memory.history, dt);
+            let (w, force) = (touch.weight, f.force * touch.weight);
+            let couple = touch.couple * force.dot(&g.normal);
+            first.force -= force;
+            first.moment -= f.torque_a * w + couple;
+            second.force += force;
+            second.moment -= f.torque_b * w - couple;
+            ledger.dissipated_dashpot += f.dashpot * w;
+            ledger.dissipated_friction += f.friction * w;
+            if self.walls[1].driven {
+                let [a, b] = touch.materials;
+                let stiffness = w * laws.stiffness(a, b, g.overlap, g.radius);
+                second.stiffness += stiffness;
+                second.damping += w.signum() * (stiffness.abs() / own.inverse_mass()).sqrt();
+            }
+            if g.overlap > touch.bound && w > 0.0 && deep.is_none() {
+                // Of an edge that has come through, what it adds up to has no meaning.
+                deep = Some([g.overlap.min(touch.bound / DEEPEST), touch.bound]);
+            }
+            new.push(Meet { other: self.other, name: *name, memory });
+        }
+        deep
+    }
+
+    /// Memory of a point among that of the pair.
+    fn known<'a>(&self, of: &'a [Meet], name: &[u32; 2]) -> Option<&'a PointMemory> {
+        let at = of.binary_search_by_key(name, |m| m.name).ok()?;
+        Some(&of[at].memory)
+    }
+
+    /// Calls `f` with each contact; of what it is given `body` has no meaning.
+    pub fn visit(&self, laws: &Laws, found: &mut Met, known: &[Meet], f: &mut dyn FnMut(&Visited<'_>)) {
+        self.settle(laws, found);
+        for (name, touch) in found.names.iter().zip(&found.touches) {
+            let [own, its] = self.motions(&touch.geometry.point);
+            f(&Visited {
+                body: u32::MAX,
+                partner: Partner::Wall(self.other),
+                geometry: touch.geometry,
+                weight: touch.weight,
+                velocity: own.at_point() - its.at_point(),
+                inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
+                history: &self.known(known, name).unwrap_or(&PointMemory::FRESH).history,
+                spin: own.spin() - its.spin(),
+                materials: touch.materials,
+                friction: None,
+                shift: Vec3::zeros(),
+            });
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Walls that touch each other: bodies of triangles and all other walls of patches (`contact/kind/shell.rs`).
+
+use super::model::Model;
+use super::state::State;
+use crate::base::failure::Failure;
+use crate::base::ledger::Ledger;
+use crate::bodies::sums::WallSum;
+use crate::contact::kind::shell::{self, Met, ShellNow};
+use crate::contact::kind::shell_pass::Two;
+use crate::contact::kind::{Pose, Visited};
+use crate::pairs::meets::Meet;
+use crate::spatial::patchwork::WallNow;
+use crate::wall::shells::Form;
+
+/// Share of the radii of two walls that they may approach each other by in a step, so that nothing passes through a surface unseen.
+const LARGEST_STEP: f64 = 0.5;
+
+/// Scratch.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WallContacts {
+    /// What each wall does to others in a step; empty where none touches another.
+    pub sums: Vec<WallSum>,
+    now: Vec<WallNow>,
+    met: Met,
+    old: Vec<Meet>,
+}
+
+/// Finds where a pair touches, if it may.
+fn find(model: &Model, [a, b]: [u32; 2], now: &[WallNow], met: &mut Met) {
+    met.names.clear();
+    met.touches.clear();
+    let [own, other] = [a, b].map(|k| &now[k as usize]);
+    if own.open || other.open {
+        return;
+    }
+    let [first, second] = [a, b].map(|k| &model.walls.walls[k as usize]);
+    let bounded = !matches!(&model.shells.forms[b as usize], Form::Rounds(_));
+    let reach = model.shells.radius(a) + model.shells.radius(b);
+    if bounded
+        && second.body.is_some()
+        && (own.centre - other.centre).norm() > first.reach + second.reach + reach
+    {
+        return;
+    }
+    let pose = |wall: &WallNow| Pose { centre: wall.origin, orientation: wall.orientation, scale: 1.0 };
+    let Some(shell) = model.shells.shell(a) else { return };
+    let shell = ShellNow { shell, pose: pose(own) };
+    match &model.shells.forms[b as usize] {
+        Form::Shell(it) => shell::shells(&shell, &ShellNow { shell: it, pose: pose(other) }, met),
+        Form::Rounds(forms) => shell::rounds(&shell, &first.centre, forms, pose(other), met),
+        Form::Untouched => {}
+    }
+}
+
+/// Sums up what walls do to each other in a step.
+pub(crate) fn forces(
+    model: &Model,
+    state: &mut State,
+    work: &mut WallContacts,
+    ledger: &mut Ledger,
+) -> Option<Failure> {
+    let WallContacts { sums, now, met, old } = work;
+    sums.clear();
+    if model.shells.pairs.is_empty() {
+        return None;
+    }
+    sums.resize(state.walls.len(), WallSum::default());
+    model.walls.now(&state.walls, 0.0, now);
+    let (dt, mut failure) = (state.pace.kick(), None);
+    for pairs in model.shells.pairs.chunk_by(|p, q| p[0] == q[0]) {
+        let holder = pairs[0][0] as usize;
+        std::mem::swap(&mut state.walls[holder].meets, old);
+        state.walls[holder].meets.clear();
+        for &[a, b] in pairs {
+            find(model, [a, b], now, met);
+            let old = of(old, b);
+            if met.names.is_empty() && old.is_empty() {
+                continue;
+            }
+            let two = Two { walls: [a, b].map(|k| &now[k as usize]), other: b };
+            let new = &mut state.walls[holder].meets;
+            let [first, second] = sums.get_disjoint_mut([a as usize, b as usize]).expect("two walls");
+            let deep = two.forces((&model.laws, dt), met, (old, new), [first, second], ledger);
+            let speed = [a, b].map(|k| speed(model, state, k)).iter().sum::<f64>();
+            let most = LARGEST_STEP * (model.shells.radius(a) + model.shells.radius(b)) / state.pace.dt;
+            let deep = deep.map(|[overlap, bound]| Failure::Walls { walls: [a, b], overlap, bound });
+            let fast = (speed > most).then_some(Failure::Wall { wall: a, speed, bound: most });
+            failure = failure.or(fast).or(deep);
+        }
+    }
+    failure
+}
+
+/// Largest speed of a point of a wall [m/s].
+fn speed(model: &Model, state: &State, wall: u32) -> f64 {
+    let (wall, own) = (&model.walls.walls[wall as usize], &state.walls[wall as usize]);
+    own.velocity.norm() + own.spin.norm() * wall.reach
+}
+
+/// What belongs to one other wall of memory in order.
+fn of(meets: &[Meet], other: u32) -> &[Meet] {
+    let from = meets.partition_point(|m| m.other < other);
+    let to = meets.partition_point(|m| m.other <= other);
+    &meets[from..to]
+}
+
+/// Calls `f` with the two walls of each contact between walls, and the contact, as they were `back` seconds ago.
+pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut([u32; 2], &Visited<'_>)) {
+    if model.shells.pairs.is_empty() {
+        return;
+    }
+    let (mut now, mut met) = (Vec::new(), Met::default());
+    model.walls.now(&state.walls, back, &mut now);
+    for &[a, b] in &model.shells.pairs {
+        find(model, [a, b], &now, &mut met);
+        let two = Two { walls: [a, b].map(|k| &now[k as usize]), other: b };
+        two.visit(&model.laws, &mut met, of(&state.walls[a as usize].meets, b), &mut |c| f([a, b], c));
+    }
+}

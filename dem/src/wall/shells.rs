@@ -1,0 +1,134 @@
+//! Which walls touch each other, and with what: bodies of triangles all other walls, with rounded corners and edges.
+//!
+//! Limits: round bodies touch only bodies of triangles; walls of which neither can be pushed do not touch, nor does ground that is scarred.
+
+use super::enclosed::enclosed;
+use super::input::{WallInput, WallShape};
+use super::set::{Walls, rounds};
+use super::triangulated::welded;
+use crate::base::Vec3;
+use crate::base::error::ModelError;
+use crate::spatial::round::Round;
+use crate::spatial::shell::Shell;
+
+/// Radius that the corners and edges of a body are rounded with unless one is given, over the smallest side of its bounds.
+const ROUNDING: f64 = 0.02;
+
+/// How often that is halved at most where it is too large for the surface.
+const HALVED: i32 = 6;
+
+/// A wall as others touch it.
+#[derive(Clone, Debug)]
+pub(crate) enum Form {
+    /// Triangles.
+    Shell(Box<Shell>),
+    /// Other patches.
+    Rounds(Vec<Round>),
+    /// One that no wall touches.
+    Untouched,
+}
+
+/// The forms of all walls, and the pairs that touch: numbers of a body of triangles and another wall, ascending; of two such bodies the lower
+/// number comes first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shells {
+    pub forms: Vec<Form>,
+    pub pairs: Vec<[u32; 2]>,
+}
+
+impl Shells {
+    /// `input`: the walls as they were given.
+    ///
+    /// # Errors
+    /// The corners of a body cannot be rounded as asked.
+    pub fn new(input: &[WallInput], walls: &Walls) -> Result<Shells, ModelError> {
+        let free = |k: usize| walls.walls[k].body.as_ref().is_some_and(|b| b.inverse_mass > 0.0);
+        let shell = |k: usize| matches!(input[k].shape, WallShape::Triangles { .. });
+        let presses = |k: usize| shell(k) && input[k].body.is_some();
+        let mut pairs = Vec::new();
+        for a in 0..input.len() {
+            for b in a + 1..input.len() {
+                let scarred = input[a].scarring.is_some() || input[b].scarring.is_some();
+                if (presses(a) || presses(b)) && (free(a) || free(b)) && !scarred {
+                    pairs.push(if presses(a) { [a as u32, b as u32] } else { [b as u32, a as u32] });
+                }
+            }
+        }
+        pairs.sort_unstable();
+        let mut touched = vec![false; input.len()];
+        pairs.iter().flatten().for_each(|k| touched[*k as usize] = true);
+        let form = |k: usize| match &input[k].shape {
+            _ if !touched[k] => Ok(Form::Untouched),
+            WallShape::Triangles { vertices, triangles } => {
+                let shell = match &input[k].body {
+                    None => Shell::sharp(vertices, triangles, &welded(vertices)),
+                    Some(body) => rounded(vertices, triangles, body.rounding)
+                        .map_err(|problem| ModelError::Wall { wall: walls.name(k), problem })?,
+                };
+                Ok(Form::Shell(Box::new(shell)))
+            }
+            shape => Ok(Form::Rounds(rounds(shape))),
+        };
+        let forms = if pairs.is_empty() {
+            Vec::new()
+        } else {
+            (0..input.len()).map(form).collect::<Result<_, _>>()?
+        };
+        Ok(Shells { forms, pairs })
+    }
+
+    /// The surface of a body of triangles.
+    pub fn shell(&self, wall: u32) -> Option<&Shell> {
+        match self.forms.get(wall as usize) {
+            Some(Form::Shell(shell)) => Some(shell),
+            _ => None,
+        }
+    }
+
+    /// Corners, and lengths of edges [m], that can press at once where a pair lies flat on each other, within `reach` [m]; of the ground that a
+    /// body lies on as much as of the body.
+    pub fn flattest(&self, [a, b]: [u32; 2], reach: f64) -> [f64; 2] {
+        let own = self.shell(a).map_or([0.0; 2], |s| s.flattest(reach));
+        let other = match self.forms.get(b as usize) {
+            Some(Form::Shell(shell)) if shell.radius > 0.0 => shell.flattest(reach),
+            Some(Form::Shell(_)) => own,
+            Some(Form::Rounds(rounds)) => {
+                rounds.iter().fold([0.0_f64; 2], |[points, length], round| match round {
+                    Round::Disc { radius, .. } => [points, length.max(std::f64::consts::TAU * radius)],
+                    Round::Sphere { .. } => [points + 1.0, length],
+                    _ => [points, length],
+                })
+            }
+            _ => [0.0; 2],
+        };
+        [own[0] + other[0], own[1] + other[1]]
+    }
+
+    /// Radius that the corners and edges of a wall are rounded with [m].
+    pub fn radius(&self, wall: u32) -> f64 {
+        self.shell(wall).map_or(0.0, |s| s.radius)
+    }
+}
+
+/// The surface of a body, rounded.
+fn rounded(vertices: &[Vec3], triangles: &[[u32; 3]], given: Option<f64>) -> Result<Shell, &'static str> {
+    let same = welded(vertices);
+    // An open surface has no inside to go to.
+    let faces = enclosed(vertices, triangles).map(|e| e.faces);
+    let round = |radius: f64| match &faces {
+        Some(faces) => Shell::rounded(vertices, faces, &same, radius),
+        None => Some(Shell { radius, ..Shell::sharp(vertices, triangles, &same) }),
+    };
+    if let Some(radius) = given {
+        return round(radius).ok_or("`rounding` is too large for its surface: a triangle would vanish");
+    }
+    let used = || triangles.iter().flatten().map(|v| vertices[*v as usize]);
+    let high = used().fold(Vec3::repeat(f64::NEG_INFINITY), |h, v| h.sup(&v));
+    let low = used().fold(Vec3::repeat(f64::INFINITY), |l, v| l.inf(&v));
+    let smallest = (high - low).min();
+    (0..=HALVED)
+        .map(|k| ROUNDING * smallest * 0.5_f64.powi(k))
+        .filter(|radius| *radius > 0.0)
+        .find_map(round)
+        .ok_or("its corners and edges cannot be rounded by a share of its smallest side: give `rounding`")
+}
