@@ -16,6 +16,17 @@ use crate::wall::body::{self, Ground};
 use crate::wall::state::WallState;
 use nalgebra::UnitQuaternion;
 
+/// What grains and other walls felt from a wall.
+fn booked(work: &Work, wall: usize) -> WallSum {
+    let within = work.blocks.iter().map(|w| &w.patches.wall_sums);
+    let across = work.cross.iter().map(|w| &w.wall_sums);
+    let mut sum = WallSum::default();
+    for part in within.chain(across).chain([&work.wall_contacts.sums]).filter_map(|sums| sums.get(wall)) {
+        sum += part;
+    }
+    sum
+}
+
 /// Moves all walls of patches by one step; returns the largest speed of any point of them, and the first failure.
 pub(crate) fn advance(
     model: &Model,
@@ -28,20 +39,7 @@ pub(crate) fn advance(
     let mut fastest = 0.0_f64;
     let mut failure = None;
     for (k, wall) in model.walls.walls.iter().enumerate() {
-        let mut sum = WallSum::default();
-        for w in &work.blocks {
-            if let Some(part) = w.patches.wall_sums.get(k) {
-                sum += part;
-            }
-        }
-        for w in &work.cross {
-            if let Some(part) = w.wall_sums.get(k) {
-                sum += part;
-            }
-        }
-        if let Some(part) = work.wall_contacts.sums.get(k) {
-            sum += part;
-        }
+        let sum = booked(work, k);
         let own = &mut state.walls[k];
         own.force = -sum.force;
         own.moment = -sum.moment;

@@ -125,7 +125,7 @@ fn as_polyhedra_with_the_same_faces() {
     let hertz = Material { young: Some(1e8), poisson: 0.3, stiffness: f64::INFINITY, ..material() };
     for (name, shape) in walls {
         let mut random = Random::new(77);
-        let (mut worst, mut hits) = (0.0_f64, 0);
+        let (mut worst, mut met) = (0.0_f64, 0);
         for k in 0..3 {
             let law = if k == 2 { hertz } else { material() };
             let throw = Throw::at_random(&mut random, name == "pile");
@@ -161,14 +161,14 @@ fn as_polyhedra_with_the_same_faces() {
                 walls.step();
                 touched |= walls.state.wall_force(1).0.norm() > 0.0;
             }
-            hits += i32::from(touched);
+            met += i32::from(touched);
             let (v, w) = walls.state.wall_velocity(0);
             let off = (v - grains.state.velocity(0)).norm() / 0.8;
             let turn = (w - grains.state.spin(0)).norm() / throw.spin.norm();
             worst = worst.max(off).max(turn);
         }
-        println!("{name}: {hits} hits of 3, worst {worst:.1e}");
-        assert!(hits == 3 && worst < 1e-6, "{name}: {hits} hits, {worst:e}");
+        println!("{name}: {met} collisions of 3, worst {worst:.1e}");
+        assert!(met == 3 && worst < 1e-6, "{name}: {met} collisions, {worst:e}");
     }
 }
 
@@ -178,7 +178,7 @@ fn hollow_bodies_collide() {
     let laws = elastic().into_iter().chain([("rough springs", material())]);
     for (name, law) in laws {
         let mut random = Random::new(5);
-        let (mut worst, mut hits) = (0.0_f64, 0);
+        let (mut worst, mut met) = (0.0_f64, 0);
         for _ in 0..6 {
             let mut input = scene(law);
             let mut thrown = |at: Vec3, velocity: Vec3| {
@@ -202,13 +202,13 @@ fn hollow_bodies_collide() {
                     worst = worst.max(change.abs());
                 }
             }
-            hits += i32::from(touched);
+            met += i32::from(touched);
             let end = measure::momentum(&run.model, &run.state);
             let [drift, turn] = [end.linear - start.linear, end.angular - start.angular].map(|d| d.norm());
             assert!(drift < 1e-12 && turn < 1e-11, "{drift:e} {turn:e}");
         }
-        println!("{name}: {hits} hits of 6, energy {worst:.1e}");
-        assert!(hits >= 4 && worst < 2e-3, "{name}: {hits} hits, {worst:e}");
+        println!("{name}: {met} collisions of 6, energy {worst:.1e}");
+        assert!(met >= 4 && worst < 2e-3, "{name}: {met} collisions, {worst:e}");
     }
 }
 
@@ -324,9 +324,9 @@ fn a_dolphin_takes_its_share_of_a_berthing_pontoon() {
         }
         let k2 = (half.x * half.x + half.y * half.y) / 3.0;
         let share = k2 / (k2 + off * off);
-        let taken = most / (0.5 * mass * speed * speed);
-        println!("{off} m off its centre: {taken:.4} of its energy, formula {share:.4}");
-        assert!((taken / share - 1.0).abs() < 0.02, "{taken} {share}");
+        let absorbed = most / (0.5 * mass * speed * speed);
+        println!("{off} m off its centre: {absorbed:.4} of its energy, formula {share:.4}");
+        assert!((absorbed / share - 1.0).abs() < 0.02, "{absorbed} {share}");
         assert!(run.state.wall_velocity(0).0.y < 0.0 || off > 0.0);
     }
 }
