@@ -3,8 +3,10 @@
 use super::tests::{energy, placed, stones};
 use super::*;
 use crate::base::random::Random;
+use crate::contact::kind::patch::{on_facet, two};
 use crate::shape::dilated::{Dilated, Face};
 use crate::shape::{Shape, cuboid};
+use crate::spatial::facet::{Facet, facets};
 
 /// A placed core, and the normal and the corners with their numbers of each of its faces.
 type Solid<'a> = (&'a Placed<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
@@ -67,19 +69,25 @@ fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 2], close: 
     integral(f, [low, middle], close) + integral(f, [middle, high], close)
 }
 
-/// Energy of unit springs with which corners and edges of one press into the other.
-fn pressing(one: &Placed<'_>, other: &Solid<'_>, reach: f64) -> f64 {
-    let world = |c: usize| one.centre + one.orientation * one.core.corners[c] * one.scale;
-    let spring = |p: &Vec3| 0.5 * (reach - distance(other, p).0).max(0.0).powi(2);
-    let corners: f64 = (0..one.core.corners.len()).map(|c| spring(&world(c))).sum();
-    let edges: f64 = one
-        .core
-        .edges
+/// Corners in the world, and the two of each edge.
+type Skeleton = (Vec<Vec3>, Vec<[usize; 2]>);
+
+fn skeleton_of(body: &Placed<'_>) -> Skeleton {
+    let world = |c: &Vec3| body.centre + body.orientation * c * body.scale;
+    let edges = body.core.edges.iter().map(|edge| edge.ends.map(|e| e as usize));
+    (body.core.corners.iter().map(world).collect(), edges.collect())
+}
+
+/// Energy of unit springs with which corners and edges press into something convex, whose distance is given, and what is nearest.
+fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usize; 2]), reach: f64) -> f64 {
+    let spring = |p: &Vec3| 0.5 * (reach - distance(p).0).max(0.0).powi(2);
+    let of_corners: f64 = corners.iter().map(spring).sum();
+    let of_edges: f64 = edges
         .iter()
-        .map(|edge| {
-            let [a, b] = edge.ends.map(|e| world(e as usize));
+        .map(|ends| {
+            let [a, b] = ends.map(|e| corners[e]);
             let length = (b - a).norm();
-            let near = |s: f64| distance(other, &(a + (b - a) * s));
+            let near = |s: f64| distance(&(a + (b - a) * s));
             let at = |s: f64| near(s).0;
             // The distance changes by no more than the way along the edge.
             if at(0.5) > reach + 0.5 * length {
@@ -114,7 +122,7 @@ fn pressing(one: &Placed<'_>, other: &Solid<'_>, reach: f64) -> f64 {
             integral(&pressed, stretch, 1e-12 * reach * reach) * length / (LENGTH * reach)
         })
         .sum();
-    corners + edges
+    of_corners + of_edges
 }
 
 /// Energies of random pairs, thrown together in whatever way, flat on each other, or nearly so; from both sides to rounding.
@@ -168,7 +176,11 @@ fn energies(count: usize) {
             let (mut one, mut two) = (Touches::new(), Touches::new());
             DilatedDilated.touches(&a, &b, &mut one);
             DilatedDilated.touches(&b, &a, &mut two);
-            let exact = pressing(&a, &solid(&b), reach) + pressing(&b, &solid(&a), reach);
+            let into = |one: &Placed<'_>, other: &Placed<'_>| {
+                let other = solid(other);
+                pressing(&skeleton_of(one), &|p| distance(&other, p), reach)
+            };
+            let exact = into(&a, &b) + into(&b, &a);
             if exact == 0.0 {
                 assert!(one.is_empty() && two.is_empty());
                 continue;
@@ -195,4 +207,129 @@ fn energies_are_those_of_brute_force() {
 #[ignore = "some minutes"]
 fn energies_of_many_pairs_are_those_of_brute_force() {
     energies(100_000);
+}
+
+/// Distance of a point from a closed triangle, and what of it is nearest.
+fn from_triangle(corners: &[Vec3; 3], p: &Vec3) -> (f64, [usize; 2]) {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(&(c - a)).normalize();
+    let mut best = (f64::INFINITY, [0; 2]);
+    let mut above = true;
+    for k in 0..3 {
+        let (side, way) = (corners[(k + 1) % 3] - corners[k], p - corners[k]);
+        above &= normal.dot(&side.cross(&way)) >= 0.0;
+        let share = (way.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+        let away = (way - side * share).norm();
+        if away < best.0 {
+            let name = match share {
+                0.0 => [k; 2],
+                1.0 => [(k + 1) % 3; 2],
+                _ => [k, 3 + k],
+            };
+            best = (away, name);
+        }
+    }
+    let height = normal.dot(&(p - a));
+    if above && height.abs() <= best.0 { (height.abs(), [usize::from(height < 0.0), 9]) } else { best }
+}
+
+/// Energies of random stones that touch spheres, planes and triangles.
+fn energies_with_others(count: usize) {
+    let mut random = Random::new(29, 1);
+    let shapes = [stones(&mut random, 9, 0.06), stones(&mut random, 16, 0.08), stones(&mut random, 26, 0.05)];
+    let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
+    for name in ["sphere", "plane", "triangle"] {
+        let (mut worst, mut touched) = (0.0_f64, 0);
+        while touched < count {
+            let k = (random.uniform() * shapes.len() as f64) as usize;
+            let (turn, direction) = (random.orientation(), random.orientation() * Vec3::z());
+            let at = |s: f64| placed(&shapes[k], &cores[k], direction * s, turn, 0.9);
+            let own = at(0.0).radius;
+            let share = 0.3 + 0.69 * random.uniform();
+            let size = 0.05 + 0.3 * random.uniform();
+            let corners = [0, 1, 2].map(|_| random.orientation() * Vec3::x() * (3.0 * size));
+            let plane = PlaneView {
+                origin: Vec3::zeros(),
+                normal: random.orientation() * Vec3::z(),
+                velocity: Vec3::zeros(),
+                material: 0,
+                open: false,
+            };
+            if name == "plane" && plane.normal.dot(&direction) < 0.2 {
+                continue;
+            }
+            // Overlaps of up to seven tenths of the radius.
+            let apart = |body: &Placed<'_>| match name {
+                "sphere" => {
+                    let local = body.orientation.inverse() * -body.centre / body.scale;
+                    let inside = outside(body.core, &local) <= 0.0;
+                    if inside { -1.0 } else { distance(&solid(body), &Vec3::zeros()).0 - size }
+                }
+                "plane" => {
+                    let heights = skeleton_of(body).0.into_iter().map(|c| plane.normal.dot(&c));
+                    heights.fold(f64::INFINITY, f64::min)
+                }
+                _ => {
+                    let facet = &facets(&corners, &[[0, 1, 2]], &[0, 1, 2])[0];
+                    let world =
+                        Pose { centre: Vec3::zeros(), orientation: UnitQuaternion::identity(), scale: 1.0 };
+                    two_of(body, &world, facet)
+                }
+            };
+            let (mut low, mut high) = (0.0, 4.0);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if apart(&at(middle)) > share * own { high = middle } else { low = middle }
+            }
+            let body = at(high);
+            let mut found = Touches::new();
+            let (exact, reach) = match name {
+                "sphere" => {
+                    let sphere = Record::of(&Vec3::zeros(), size);
+                    SphereDilated.touches(&&sphere, &body, &mut found);
+                    let reach = size + own;
+                    (0.5 * (reach - distance(&solid(&body), &Vec3::zeros()).0).max(0.0).powi(2), reach)
+                }
+                "plane" => {
+                    DilatedPlane.touches(&body, &plane, &mut found);
+                    (pressing(&skeleton_of(&body), &|p| (plane.normal.dot(p), [0; 2]), own), own)
+                }
+                _ => {
+                    let facet = &facets(&corners, &[[0, 1, 2]], &[0, 1, 2])[0];
+                    let world =
+                        Pose { centre: Vec3::zeros(), orientation: UnitQuaternion::identity(), scale: 1.0 };
+                    on_facet(&body, &world, facet, &mut None, &mut found);
+                    let (stone, triangle) = (solid(&body), (corners.to_vec(), vec![[0, 1], [1, 2], [2, 0]]));
+                    let into = pressing(&skeleton_of(&body), &|p| from_triangle(&corners, p), own);
+                    (into + pressing(&triangle, &|p| distance(&stone, p), own), own)
+                }
+            };
+            if exact == 0.0 {
+                assert!(found.is_empty());
+                continue;
+            }
+            touched += 1;
+            worst = worst.max((energy(&found) - exact).abs() / (reach * reach));
+        }
+        println!("{name}: {touched} pairs, energies off by {worst:.1e} of reach²");
+        assert!(worst < 1e-9, "{name}: {worst:e}");
+    }
+}
+
+/// How far a body and a triangle are apart; less than nothing where they overlap.
+fn two_of(body: &Placed<'_>, pose: &Pose, facet: &Facet) -> f64 {
+    let apart = two(body, pose, facet).separation(Vec3::z(), f64::INFINITY);
+    apart.map_or(-1.0, |(_, apart)| apart)
+}
+
+#[test]
+fn energies_with_spheres_planes_and_triangles_are_those_of_brute_force() {
+    energies_with_others(300);
+}
+
+/// The same with 10⁵ pairs of each kind.
+#[test]
+#[ignore = "some minutes"]
+fn energies_of_many_pairs_with_others_are_those_of_brute_force() {
+    energies_with_others(100_000);
 }
