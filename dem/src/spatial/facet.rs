@@ -134,8 +134,10 @@ impl Around {
     fn press(&self, missing: f64) -> f64 {
         match self.borders[..] {
             [] => (missing / PEAK).clamp(0.0, 1.0),
+            // A needle's tip.
+            [a, b] if a.dot(&b) > 0.0 => 1.0,
             // A border that goes straight on, with nothing else to press.
-            [a, b] => (a.cross(&b).norm() / FULL).max(a.dot(&b)).clamp(0.0, 1.0),
+            [a, b] => (a.cross(&b).norm() / FULL).clamp(0.0, 1.0),
             _ => 1.0,
         }
     }

@@ -357,19 +357,19 @@ fn refusals_and_failures() {
         let mut run = Run::new(input);
         loop {
             match trackbed_dem::step(&run.model, &mut run.state, &mut run.work, &NoSurface, &[]) {
-                Err(e) => break e,
+                Err(e) => break (e, run.state.wall_offset(1).z),
                 Ok(()) => assert!(run.state.time < 1.0),
             }
         }
     };
     let thrown = |speed: f64| RigidBody { velocity: Vec3::z() * -speed, ..free(4.0) };
     let soft = Material { stiffness: 1e4, ..material() };
-    let error = fails(on_floor(soft, thrown(3.0), 0.02));
+    let (error, _) = fails(on_floor(soft, thrown(3.0), 0.02));
     assert!(matches!(error, StepError::WallsOverlap { walls: [1, 0], .. }), "{error}");
     assert!(error.to_string().contains("`rounding` too small"), "{error}");
-    let error = fails(on_floor(Material { stiffness: 1e3, ..material() }, thrown(400.0), 0.02));
+    let (error, _) = fails(on_floor(Material { stiffness: 1e3, ..material() }, thrown(400.0), 0.02));
     assert!(matches!(error, StepError::WallSpeed { wall: 1, .. }), "{error}");
-    // Edges that pass through an edge, or through a pile, where no corner touches and the mean overlap stays below the bound.
+    // Edges that pass through an edge, or through a pile, where no corner touches.
     let turned = |axis: Vec3, at: Vec3| {
         let WallShape::Triangles { vertices, triangles } = cuboid(Vec3::zeros(), Vec3::new(0.1, 0.1, 0.1))
         else {
@@ -386,13 +386,17 @@ fn refusals_and_failures() {
         radii: [0.04; 2],
         caps: [false; 2],
     };
-    for below in [low, pile] {
+    // The rounding, 4 mm, takes √2 of it off the edge.
+    let edge = 0.3 - 2.0_f64.sqrt() * (0.1 - 0.004);
+    for (below, top) in [(low, 2.0_f64.sqrt() * 0.1), (pile, 0.14)] {
         let mut input = scene(soft);
         input.walls.push(WallInput::fixed(below, 0));
         let fixed = [true, true, false, true, true, true];
         let above = turned(Vec3::y(), Vec3::new(0.013, 0.007, 0.3));
         input.walls.push(rigid(above, RigidBody { fixed, ..thrown(1.0) }));
-        let error = fails(input);
+        let (error, offset) = fails(input);
         assert!(matches!(error, StepError::WallsOverlap { walls: [1, 0], .. }), "{error}");
+        // Not after edge and edge, or edge and pile, have crossed, and not long before.
+        assert!((-1e-3..2e-3).contains(&(offset + edge - top)), "{offset} {}", top - edge);
     }
 }
