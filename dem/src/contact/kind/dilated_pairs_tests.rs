@@ -233,6 +233,85 @@ fn from_triangle(corners: &[Vec3; 3], p: &Vec3) -> (f64, [usize; 2]) {
     if above && height.abs() <= best.0 { (height.abs(), [usize::from(height < 0.0), 9]) } else { best }
 }
 
+/// What a stone touches: the origin is amid it.
+enum Other {
+    Sphere(f64),
+    Plane(PlaneView),
+    Triangle([Vec3; 3], Box<Facet>),
+}
+
+/// The frame of triangles.
+const WORLD: Pose = Pose {
+    centre: Vec3::new(0.0, 0.0, 0.0),
+    orientation: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0)),
+    scale: 1.0,
+};
+
+impl Other {
+    fn at_random(name: &str, random: &mut Random) -> Other {
+        let size = 0.05 + 0.3 * random.uniform();
+        match name {
+            "sphere" => Other::Sphere(size),
+            "plane" => Other::Plane(PlaneView {
+                origin: Vec3::zeros(),
+                normal: random.orientation() * Vec3::z(),
+                velocity: Vec3::zeros(),
+                material: 0,
+                open: false,
+            }),
+            _ => {
+                let corners = [0, 1, 2].map(|_| random.orientation() * Vec3::x() * (3.0 * size));
+                let facet = facets(&corners, &[[0, 1, 2]], &[0, 1, 2]).swap_remove(0);
+                Other::Triangle(corners, Box::new(facet))
+            }
+        }
+    }
+
+    /// How far a body's core is apart from it; less than nothing where they overlap.
+    fn apart(&self, body: &Placed<'_>) -> f64 {
+        match self {
+            Other::Sphere(size) => {
+                let local = body.orientation.inverse() * -body.centre / body.scale;
+                let inside = outside(body.core, &local) <= 0.0;
+                if inside { -1.0 } else { distance(&solid(body), &Vec3::zeros()).0 - size }
+            }
+            Other::Plane(plane) => {
+                let heights = skeleton_of(body).0.into_iter().map(|c| plane.normal.dot(&c));
+                heights.fold(f64::INFINITY, f64::min)
+            }
+            Other::Triangle(_, facet) => {
+                let apart = two(body, &WORLD, facet).separation(Vec3::z(), f64::INFINITY);
+                apart.map_or(-1.0, |(_, apart)| apart)
+            }
+        }
+    }
+
+    /// What a body finds, the energy by brute force, and the sum of both radii.
+    fn energies(&self, body: &Placed<'_>) -> (Touches, f64, f64) {
+        let (mut found, own) = (Touches::new(), body.radius);
+        match self {
+            Other::Sphere(size) => {
+                let sphere = Record::of(&Vec3::zeros(), *size);
+                SphereDilated.touches(&&sphere, body, &mut found);
+                let reach = size + own;
+                let overlap = (reach - distance(&solid(body), &Vec3::zeros()).0).max(0.0);
+                (found, 0.5 * overlap * overlap, reach)
+            }
+            Other::Plane(plane) => {
+                DilatedPlane.touches(body, plane, &mut found);
+                let exact = pressing(&skeleton_of(body), &|p| (plane.normal.dot(p), [0; 2]), own);
+                (found, exact, own)
+            }
+            Other::Triangle(corners, facet) => {
+                on_facet(body, &WORLD, facet, &mut None, &mut found);
+                let (stone, triangle) = (solid(body), (corners.to_vec(), vec![[0, 1], [1, 2], [2, 0]]));
+                let into = pressing(&skeleton_of(body), &|p| from_triangle(corners, p), own);
+                (found, into + pressing(&triangle, &|p| distance(&stone, p), own), own)
+            }
+        }
+    }
+}
+
 /// Energies of random stones that touch spheres, planes and triangles.
 fn energies_with_others(count: usize) {
     let mut random = Random::new(29, 1);
@@ -244,66 +323,18 @@ fn energies_with_others(count: usize) {
             let k = (random.uniform() * shapes.len() as f64) as usize;
             let (turn, direction) = (random.orientation(), random.orientation() * Vec3::z());
             let at = |s: f64| placed(&shapes[k], &cores[k], direction * s, turn, 0.9);
-            let own = at(0.0).radius;
+            // Overlaps of up to seven tenths of the radius.
             let share = 0.3 + 0.69 * random.uniform();
-            let size = 0.05 + 0.3 * random.uniform();
-            let corners = [0, 1, 2].map(|_| random.orientation() * Vec3::x() * (3.0 * size));
-            let plane = PlaneView {
-                origin: Vec3::zeros(),
-                normal: random.orientation() * Vec3::z(),
-                velocity: Vec3::zeros(),
-                material: 0,
-                open: false,
-            };
-            if name == "plane" && plane.normal.dot(&direction) < 0.2 {
+            let other = Other::at_random(name, &mut random);
+            if matches!(&other, Other::Plane(plane) if plane.normal.dot(&direction) < 0.2) {
                 continue;
             }
-            // Overlaps of up to seven tenths of the radius.
-            let apart = |body: &Placed<'_>| match name {
-                "sphere" => {
-                    let local = body.orientation.inverse() * -body.centre / body.scale;
-                    let inside = outside(body.core, &local) <= 0.0;
-                    if inside { -1.0 } else { distance(&solid(body), &Vec3::zeros()).0 - size }
-                }
-                "plane" => {
-                    let heights = skeleton_of(body).0.into_iter().map(|c| plane.normal.dot(&c));
-                    heights.fold(f64::INFINITY, f64::min)
-                }
-                _ => {
-                    let facet = &facets(&corners, &[[0, 1, 2]], &[0, 1, 2])[0];
-                    let world =
-                        Pose { centre: Vec3::zeros(), orientation: UnitQuaternion::identity(), scale: 1.0 };
-                    two_of(body, &world, facet)
-                }
-            };
             let (mut low, mut high) = (0.0, 4.0);
             for _ in 0..40 {
                 let middle = 0.5 * (low + high);
-                if apart(&at(middle)) > share * own { high = middle } else { low = middle }
+                if other.apart(&at(middle)) > share * at(0.0).radius { high = middle } else { low = middle }
             }
-            let body = at(high);
-            let mut found = Touches::new();
-            let (exact, reach) = match name {
-                "sphere" => {
-                    let sphere = Record::of(&Vec3::zeros(), size);
-                    SphereDilated.touches(&&sphere, &body, &mut found);
-                    let reach = size + own;
-                    (0.5 * (reach - distance(&solid(&body), &Vec3::zeros()).0).max(0.0).powi(2), reach)
-                }
-                "plane" => {
-                    DilatedPlane.touches(&body, &plane, &mut found);
-                    (pressing(&skeleton_of(&body), &|p| (plane.normal.dot(p), [0; 2]), own), own)
-                }
-                _ => {
-                    let facet = &facets(&corners, &[[0, 1, 2]], &[0, 1, 2])[0];
-                    let world =
-                        Pose { centre: Vec3::zeros(), orientation: UnitQuaternion::identity(), scale: 1.0 };
-                    on_facet(&body, &world, facet, &mut None, &mut found);
-                    let (stone, triangle) = (solid(&body), (corners.to_vec(), vec![[0, 1], [1, 2], [2, 0]]));
-                    let into = pressing(&skeleton_of(&body), &|p| from_triangle(&corners, p), own);
-                    (into + pressing(&triangle, &|p| distance(&stone, p), own), own)
-                }
-            };
+            let (found, exact, reach) = other.energies(&at(high));
             if exact == 0.0 {
                 assert!(found.is_empty());
                 continue;
@@ -314,12 +345,6 @@ fn energies_with_others(count: usize) {
         println!("{name}: {touched} pairs, energies off by {worst:.1e} of reach²");
         assert!(worst < 1e-9, "{name}: {worst:e}");
     }
-}
-
-/// How far a body and a triangle are apart; less than nothing where they overlap.
-fn two_of(body: &Placed<'_>, pose: &Pose, facet: &Facet) -> f64 {
-    let apart = two(body, pose, facet).separation(Vec3::z(), f64::INFINITY);
-    apart.map_or(-1.0, |(_, apart)| apart)
 }
 
 #[test]

@@ -129,6 +129,20 @@ impl Feature {
         }
     }
 
+    /// Calls `f` with each part of a triangle that it presses on, what it does there, and how often that counts.
+    fn on_parts(&self, facet: &Facet, reach: f64, mut f: impl FnMut(u32, &Pressed, f64)) {
+        let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
+            pressed.iter().for_each(|pressed| f(part, pressed, count));
+        };
+        put(FACE, self.on(&Closed(facet), reach), 1.0);
+        for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
+            put(EDGE + k as u32, self.on(&Rim(&facet.corners[k], edge), reach), edge.share.count);
+        }
+        for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
+            put(TIP + k as u32, self.on(&Tip(&facet.corners[k]), reach), tip.count);
+        }
+    }
+
     /// Whether it lies farther above or below a triangle's plane than a reach.
     fn beside(&self, facet: &Facet, reach: f64) -> bool {
         let height = |p: &Vec3| (p - facet.corners[0]).dot(&facet.normal);
@@ -211,19 +225,9 @@ impl<'a> Pressing<'a> {
                     continue;
                 }
                 let first = t * PARTS;
-                let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
-                    if let Some(pressed) = pressed {
-                        found.push([number, first + part], self.touch(&pressed, share * count));
-                    }
-                };
-                put(FACE, feature.on(&Closed(facet), self.reach), 1.0);
-                for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
-                    let rim = Rim(&facet.corners[k], edge);
-                    put(EDGE + k as u32, feature.on(&rim, self.reach), edge.share.count);
-                }
-                for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
-                    put(TIP + k as u32, feature.on(&Tip(&facet.corners[k]), self.reach), tip.count);
-                }
+                feature.on_parts(facet, self.reach, |part, pressed, count| {
+                    found.push([number, first + part], self.touch(pressed, share * count));
+                });
                 if let Feature::Edge(segment) = &feature
                     && let Some(p) = pierced(facet, segment)
                 {
@@ -282,27 +286,18 @@ impl Presser for OnRound<'_, '_> {
         let shell = pressing.shell;
         let [mut row, near] = std::mem::take(&mut found.rows);
         for (number, p) in points {
-            let p = pressing.back.point(&p);
-            let (low, high) = Feature::Corner(p).bounds(reach);
+            let corner = Feature::Corner(pressing.back.point(&p));
+            let (low, high) = corner.bounds(reach);
             row.clear();
             shell.tree.query(low, high, &mut row);
             for &t in &row {
                 let facet = &shell.facets[t as usize];
-                let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
-                    let Some(pressed) = pressed else { return };
+                corner.on_parts(facet, reach, |part, pressed, count| {
                     let lengths = [own, reach, rounding(own, shell.radius)];
-                    let touch = touch(&pressing.own, 0, &pressed, weight * count, lengths, -1.0);
+                    let touch = touch(&pressing.own, 0, pressed, weight * count, lengths, -1.0);
                     let bound = (DEEPEST * shell.radius).max(touch.bound - own);
                     found.push([TURNED | (self.first + number), t * PARTS + part], Touch { bound, ..touch });
-                };
-                put(FACE, press::corner(&Closed(facet), &p, reach), 1.0);
-                for (k, edge) in facet.edges.iter().enumerate().filter(|(_, e)| e.share.count != 0.0) {
-                    let rim = Rim(&facet.corners[k], edge);
-                    put(EDGE + k as u32, press::corner(&rim, &p, reach), edge.share.count);
-                }
-                for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
-                    put(TIP + k as u32, press::corner(&Tip(&facet.corners[k]), &p, reach), tip.count);
-                }
+                });
             }
         }
         found.rows = [row, near];
