@@ -14,8 +14,9 @@ use nalgebra::Matrix3;
 /// How far a corner goes at most, over the radius.
 const FARTHEST: f64 = 4.0;
 
-/// Share of the largest eigenvalue from which on normals differ: they do from a bend of eleven degrees on.
-const DISTINCT: f64 = 0.01;
+/// Share of the largest eigenvalue below which normals differ by rounding alone. All planes are moved by one radius, so that nearly flat ones do
+/// not meet far away.
+const DISTINCT: f64 = 1e-9;
 
 /// How many triangles' planes are looked along at most for the flattest side.
 const LOOKED_AT: usize = 512;

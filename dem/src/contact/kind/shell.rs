@@ -316,3 +316,7 @@ impl Presser for OnRound<'_, '_> {
         self.found.push([u32::MAX, self.first], lost);
     }
 }
+
+#[cfg(test)]
+#[path = "shell_tests.rs"]
+mod tests;
