@@ -329,10 +329,15 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     Ok(())
 }
 
-/// Refuses walls that touch each other by a law that cannot be spread along edges.
+/// Refuses walls that touch each other and are both rigid, or by a law that cannot be spread along edges.
 pub(crate) fn shells(walls: &Walls, shells: &Shells, laws: &Laws) -> Result<(), ModelError> {
     for &[a, b] in &shells.pairs {
         let [own, other] = [a, b].map(|k| walls.walls[k as usize].material);
+        if laws.rigid(own, other) {
+            let [a, b] = [a, b].map(|k| walls.name(k as usize));
+            let a = format!("the rigid body of {a}");
+            return Err(ModelError::RigidPair { a, b });
+        }
         let at = |overlap| laws.stiffness(own, other, overlap, 1.0);
         if at(1.0) != at(2.0) && laws.edges([own, other]).is_none() {
             let problem = "it is a rigid body of triangles that touches other walls, and the stiffness of such a contact grows with the overlap: only \

@@ -139,7 +139,7 @@ impl Model {
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
         let mut limit = timestep::limit(&bodies, &input, &laws, expected, &bonds, radii);
         let rigid = timestep::walls(&mut walls, &mut limit, &bodies, &input, &laws, expected, radii);
-        let rigid = rigid.min(timestep::shells(&walls, &mut limit, &shells, &laws));
+        let rigid = rigid.min(timestep::shells(&mut walls, &mut limit, &shells, &laws));
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
         let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));

@@ -458,7 +458,7 @@ pub(crate) fn walls(
 
 /// The same for walls that touch each other ([`Shells`]): the longest step [s] with which one may come to lie on another between two looks at
 /// what the contacts allow, as flat and as stiff as their corners and edges let it.
-pub(crate) fn shells(walls: &Walls, limit: &mut DtLimit, shells: &Shells, laws: &Laws) -> f64 {
+pub(crate) fn shells(walls: &mut Walls, limit: &mut DtLimit, shells: &Shells, laws: &Laws) -> f64 {
     let mut least = f64::INFINITY;
     for &[a, b] in &shells.pairs {
         let [own, other] = [a, b].map(|k| walls.walls[k as usize].material);
@@ -474,11 +474,15 @@ pub(crate) fn shells(walls: &Walls, limit: &mut DtLimit, shells: &Shells, laws: 
         let stiffness = corners * corner + length * edge;
         let ratio = laws.tangential_ratio(own, other) * if laws.rolls() { 2.0 } else { 1.0 };
         let zeta = laws.damping_ratio(own, other);
+        // A drive has to know the dashpots of what it presses.
+        let driven = &mut walls.walls[b as usize].damping;
+        *driven = driven.max(zeta);
         for k in [a, b] {
-            let Some(body) = &walls.walls[k as usize].body else { continue };
+            let body = walls.walls[k as usize].body.as_ref();
+            let Some(body) = body.filter(|b| b.fixed != 0b11_1111) else { continue };
             let dt = body.step_limit(stiffness, stiffness * ratio, zeta, f64::INFINITY);
             least = least.min(0.5 * dt);
-            if body.fixed != 0b11_1111 && dt < limit.dt {
+            if dt < limit.dt {
                 let partner = if k == a { other } else { own } as usize;
                 let (bonds, mass, wall, mount) = (0.0, body.mass, Some(k as usize), body.mount_frequency());
                 *limit = DtLimit { dt, body: 0, partner, stiffness, mass, bonds, wall, mount };

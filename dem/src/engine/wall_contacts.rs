@@ -7,7 +7,7 @@ use crate::base::ledger::Ledger;
 use crate::bodies::sums::WallSum;
 use crate::contact::kind::shell::{self, Met, ShellNow};
 use crate::contact::kind::shell_pass::Two;
-use crate::contact::kind::{Pose, Visited};
+use crate::contact::kind::{ContactNow, Pose};
 use crate::pairs::meets::Meet;
 use crate::spatial::patchwork::WallNow;
 use crate::wall::shells::Form;
@@ -27,19 +27,14 @@ pub(crate) struct WallContacts {
 
 /// Finds where a pair touches, if it may.
 fn find(model: &Model, [a, b]: [u32; 2], now: &[WallNow], met: &mut Met) {
-    met.names.clear();
-    met.touches.clear();
+    met.clear();
     let [own, other] = [a, b].map(|k| &now[k as usize]);
     if own.open || other.open {
         return;
     }
     let [first, second] = [a, b].map(|k| &model.walls.walls[k as usize]);
-    let bounded = !matches!(&model.shells.forms[b as usize], Form::Rounds(_));
     let reach = model.shells.radius(a) + model.shells.radius(b);
-    if bounded
-        && second.body.is_some()
-        && (own.centre - other.centre).norm() > first.reach + second.reach + reach
-    {
+    if second.body.is_some() && (own.centre - other.centre).norm() > first.reach + second.reach + reach {
         return;
     }
     let pose = |wall: &WallNow| Pose { centre: wall.origin, orientation: wall.orientation, scale: 1.0 };
@@ -105,7 +100,7 @@ fn of(meets: &[Meet], other: u32) -> &[Meet] {
 }
 
 /// Calls `f` with the two walls of each contact between walls, and the contact, as they were `back` seconds ago.
-pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut([u32; 2], &Visited<'_>)) {
+pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut([u32; 2], &ContactNow<'_>)) {
     if model.shells.pairs.is_empty() {
         return;
     }

@@ -3,7 +3,7 @@
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::Block;
-use crate::contact::kind::{KINDS, Placed, PlaneView, Scene, SheetView, Visited};
+use crate::contact::kind::{ContactNow, KINDS, Placed, PlaneView, Scene, SheetView, Visited};
 use crate::contact::single;
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -172,15 +172,17 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                 f(&Visited {
                     body: block.bodies[a],
                     partner: Partner::Body(second.bodies[c] as usize),
-                    geometry,
-                    weight: 1.0,
-                    velocity: ma.at_point() - mb.at_point(),
-                    inverse_mass: block.velocity[a][3] + second.velocity[c][3],
-                    history,
-                    spin: ma.spin() - mb.spin(),
-                    materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
-                    friction: None,
                     shift,
+                    contact: ContactNow {
+                        geometry,
+                        weight: 1.0,
+                        velocity: ma.at_point() - mb.at_point(),
+                        inverse_mass: block.velocity[a][3] + second.velocity[c][3],
+                        history,
+                        spin: ma.spin() - mb.spin(),
+                        materials: [block.spin[a][3] as u32, second.spin[c][3] as u32],
+                        friction: None,
+                    },
                 });
             }
         };
@@ -239,15 +241,17 @@ fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>))
         f(&Visited {
             body: p.bodies[i],
             partner: Partner::Body(q.bodies[j] as usize),
-            geometry: *geometry,
-            weight: 1.0,
-            velocity: ma.at_point() - mb.at_point(),
-            inverse_mass: p.velocity[i][3] + q.velocity[j][3],
-            history: &r.history,
-            spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
-            materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
-            friction: None,
             shift: Vec3::zeros(),
+            contact: ContactNow {
+                geometry: *geometry,
+                weight: 1.0,
+                velocity: ma.at_point() - mb.at_point(),
+                inverse_mass: p.velocity[i][3] + q.velocity[j][3],
+                history: &r.history,
+                spin: xyz(&p.spin[i]) - xyz(&q.spin[j]),
+                materials: [p.spin[i][3] as u32, q.spin[j][3] as u32],
+                friction: None,
+            },
         });
     });
 }
@@ -261,15 +265,17 @@ fn planes(state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visit
             f(&Visited {
                 body: block.bodies[a],
                 partner: Partner::Plane(k as usize),
-                geometry,
-                weight: 1.0,
-                velocity: block.motion(a, &geometry.point).at_point() - plane.velocity,
-                inverse_mass: block.velocity[a][3],
-                history: &history,
-                spin: xyz(&block.spin[a]),
-                materials: [block.spin[a][3] as u32, plane.material],
-                friction: None,
                 shift: Vec3::zeros(),
+                contact: ContactNow {
+                    geometry,
+                    weight: 1.0,
+                    velocity: block.motion(a, &geometry.point).at_point() - plane.velocity,
+                    inverse_mass: block.velocity[a][3],
+                    history: &history,
+                    spin: xyz(&block.spin[a]),
+                    materials: [block.spin[a][3] as u32, plane.material],
+                    friction: None,
+                },
             });
         }
     }
@@ -295,21 +301,23 @@ fn patch(
         f(&Visited {
             body: block.bodies[a],
             partner: partner.partner,
-            geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
-            weight: 1.0,
-            velocity,
-            inverse_mass: block.velocity[a][3] + partner.inverse_mass,
-            history: &pair.history,
-            spin: xyz(&block.spin[a]) - partner.spin,
-            materials: [block.spin[a][3] as u32, partner.material],
-            friction: None,
             shift: Vec3::zeros(),
+            contact: ContactNow {
+                geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
+                weight: 1.0,
+                velocity,
+                inverse_mass: block.velocity[a][3] + partner.inverse_mass,
+                history: &pair.history,
+                spin: xyz(&block.spin[a]) - partner.spin,
+                materials: [block.spin[a][3] as u32, partner.material],
+                friction: None,
+            },
         });
     }
 }
 
 /// Force that the next step will find of a contact, and the normal part of it [N].
-pub(super) fn force_of(model: &Model, state: &State, c: &Visited<'_>) -> (Vec3, f64) {
+pub(super) fn force_of(model: &Model, state: &State, c: &ContactNow<'_>) -> (Vec3, f64) {
     let mut history = *c.history;
     let ContactForce { force, normal, .. } = single::evaluate(
         &model.laws,
@@ -329,14 +337,14 @@ pub(super) fn force_of(model: &Model, state: &State, c: &Visited<'_>) -> (Vec3, 
 pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
-        let (force, normal_force) = force_of(model, state, c);
+        let (force, normal_force) = force_of(model, state, &c.contact);
         out.push(ContactRecord {
             a: c.body as usize,
             b: c.partner,
-            point: c.geometry.point,
-            normal: c.geometry.normal,
-            overlap: c.geometry.overlap,
-            radius: c.geometry.radius,
+            point: c.contact.geometry.point,
+            normal: c.contact.geometry.normal,
+            overlap: c.contact.geometry.overlap,
+            radius: c.contact.geometry.radius,
             normal_force,
             force,
             shift: c.shift,

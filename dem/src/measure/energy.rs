@@ -4,7 +4,7 @@ use super::contacts::visit;
 use crate::base::error::Partner;
 use crate::base::ledger::Impulse;
 use crate::bodies::table::Kind;
-use crate::contact::kind::Visited;
+use crate::contact::kind::{ContactNow, Visited};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::record::xyz;
@@ -104,13 +104,13 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
     let back = 0.5 * state.pace.last;
     visit(model, state, back, |c| {
         if counted(c) {
-            springs(model, c, back, e);
+            springs(model, &c.contact, back, e);
         }
     });
 }
 
 /// Adds the springs of a contact.
-fn springs(model: &Model, c: &Visited<'_>, back: f64, e: &mut Energies) {
+fn springs(model: &Model, c: &ContactNow<'_>, back: f64, e: &mut Energies) {
     // The spring belongs to the last full step: half a step of sliding brings it to the half step. Beyond what friction holds that is
     // work of friction, which the ledger has not booked yet.
     let n = &c.geometry.normal;

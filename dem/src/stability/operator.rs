@@ -4,7 +4,7 @@ use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::table::Kind;
 use crate::bond::kernel;
-use crate::contact::kind::Visited;
+use crate::contact::kind::ContactNow;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::wall_contacts;
@@ -46,7 +46,7 @@ const NOTHING: u32 = u32::MAX;
 
 impl Link {
     /// A contact that joins two ends.
-    fn of(model: &Model, c: &Visited<'_>, ends: [u32; 2], arms: [Vec3; 2]) -> Link {
+    fn of(model: &Model, c: &ContactNow<'_>, ends: [u32; 2], arms: [Vec3; 2]) -> Link {
         let g = &c.geometry;
         let law = model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
         let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
@@ -124,16 +124,16 @@ impl Operator {
         };
         measure::visit(model, state, 0.0, |c| {
             // Two that are both held.
-            if c.inverse_mass == 0.0 {
+            if c.contact.inverse_mass == 0.0 {
                 return;
             }
-            let (g, other) = (&c.geometry, moving(c.partner));
+            let (g, other) = (&c.contact.geometry, moving(c.partner));
             let ends = [c.body, other.map_or(NOTHING, |(number, _)| number)];
             let arms = [
                 g.point - state.position(c.body as usize),
                 other.map_or_else(Vec3::zeros, |(_, centre)| g.point - c.shift - centre),
             ];
-            links.push(Link::of(model, c, ends, arms));
+            links.push(Link::of(model, &c.contact, ends, arms));
         });
     }
 

@@ -46,15 +46,13 @@ impl Shells {
         let shell = |k: usize| matches!(input[k].shape, WallShape::Triangles { .. });
         let presses = |k: usize| shell(k) && input[k].body.is_some();
         let mut pairs = Vec::new();
-        for a in 0..input.len() {
-            for b in a + 1..input.len() {
-                let scarred = input[a].scarring.is_some() || input[b].scarring.is_some();
-                if (presses(a) || presses(b)) && (free(a) || free(b)) && !scarred {
-                    pairs.push(if presses(a) { [a as u32, b as u32] } else { [b as u32, a as u32] });
+        for a in (0..input.len()).filter(|a| presses(*a)) {
+            for b in (0..input.len()).filter(|b| *b != a && !(*b < a && presses(*b))) {
+                if (free(a) || free(b)) && input[b].scarring.is_none() {
+                    pairs.push([a as u32, b as u32]);
                 }
             }
         }
-        pairs.sort_unstable();
         let mut touched = vec![false; input.len()];
         pairs.iter().flatten().for_each(|k| touched[*k as usize] = true);
         let form = |k: usize| match &input[k].shape {

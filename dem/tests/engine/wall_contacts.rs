@@ -114,12 +114,14 @@ fn as_polyhedra_with_the_same_faces() {
         radii,
         caps,
     };
-    let walls: [(&str, Option<WallShape>); 6] = [
+    let walls: [(&str, Option<WallShape>); 8] = [
         ("octahedron", Some(octahedron(0.1))),
         ("pile", Some(frustum([0.06, 0.06], 1.0, [false; 2]))),
         ("short pile", Some(frustum([0.07, 0.07], 0.1, [true; 2]))),
         ("cone", Some(frustum([0.08, 0.03], 0.2, [false; 2]))),
         ("ball", Some(WallShape::Sphere { centre: Vec3::zeros(), radius: 0.08 })),
+        ("bowl", Some(WallShape::Sphere { centre: Vec3::zeros(), radius: 0.3 })),
+        ("plane", Some(WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() })),
         ("another block", None),
     ];
     let hertz = Material { young: Some(1e8), poisson: 0.3, stiffness: f64::INFINITY, ..material() };
@@ -128,7 +130,13 @@ fn as_polyhedra_with_the_same_faces() {
         let (mut worst, mut met) = (0.0_f64, 0);
         for k in 0..3 {
             let law = if k == 2 { hertz } else { material() };
-            let throw = Throw::at_random(&mut random, name == "pile");
+            let mut throw = Throw::at_random(&mut random, name == "pile");
+            match name {
+                // Outwards, from within.
+                "bowl" => throw.velocity = -throw.velocity,
+                "plane" => (throw.position.z, throw.velocity.z) = (0.12, -0.8),
+                _ => {}
+            }
             let still = Throw {
                 position: Vec3::zeros(),
                 orientation: UnitQuaternion::from_scaled_axis(random.vector()),
@@ -265,6 +273,26 @@ fn blocks_stand_on_each_other() {
     assert!((floor - 1.0).abs() < 1e-5);
 }
 
+/// A plate that a force drives presses a block onto a plane: both carry what they should.
+#[test]
+fn a_driven_plate_presses_a_block() {
+    let mut input = scene(Material { restitution: 0.3, ..material() });
+    input.gravity = Vec3::new(0.0, 0.0, -G);
+    // A plane that takes part as other walls do.
+    input.walls.push(WallInput::fixed(WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, 0));
+    input.walls.push(rigid(cuboid(Vec3::z() * 0.051, Vec3::new(0.1, 0.08, 0.05)), free(4.0)));
+    let servo =
+        trackbed_dem::Servo { direction: -Vec3::z(), force: vec![[0.0, 200.0]], max_speed: 0.2, gain: 0.5 };
+    let plate = WallShape::Plane { point: Vec3::z() * 0.11, normal: -Vec3::z() };
+    input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(plate, 0) });
+    let mut run = Run::new(input);
+    run.until(1.0);
+    let [below, block, above] = [0, 1, 2].map(|k| run.state.wall_force(k).0.z);
+    println!("plane {below:.6}, block {block:.6}, plate {above:.6} N");
+    assert!((above - 200.0).abs() < 1e-3 && (below + 200.0 + 4.0 * G).abs() < 1e-3);
+    assert!((block - 4.0 * G).abs() < 1e-3);
+}
+
 /// A belt of triangles carries a block along, and books what it does.
 #[test]
 fn a_belt_drags_a_block() {
@@ -362,6 +390,13 @@ fn refusals_and_failures() {
             }
         }
     };
+    match Model::new(on_floor(crate::scene::rigid(material()), free(4.0), 0.1)).map(|_| ()) {
+        Err(ModelError::RigidPair { a, b }) => {
+            assert!(a == "the rigid body of wall 1" && b == "wall 0", "{a} {b}")
+        }
+        other => panic!("{other:?}"),
+    }
+
     let thrown = |speed: f64| RigidBody { velocity: Vec3::z() * -speed, ..free(4.0) };
     let soft = Material { stiffness: 1e4, ..material() };
     let (error, _) = fails(on_floor(soft, thrown(3.0), 0.02));

@@ -9,9 +9,9 @@ use crate::shape::{Shape, cuboid};
 use crate::spatial::facet::{Facet, facets};
 
 /// A placed core, and the normal and the corners with their numbers of each of its faces.
-type Solid<'a> = (&'a Placed<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
+pub(super) type Solid<'a> = (&'a Placed<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
 
-fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
+pub(super) fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
     let face = |face: &Face| {
         let numbers = face.corners.iter().map(|c| *c as usize);
         let corners: Vec<_> = numbers.map(|c| (body.core.corners[c], c)).collect();
@@ -23,7 +23,7 @@ fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
 
 /// Distance of a point outside of a placed core: the least to any face that it lies above, and to any side of a face; and which face, side or
 /// corner that is.
-fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2]) {
+pub(super) fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2]) {
     let local = body.orientation.inverse() * (p - body.centre) / body.scale;
     let mut best = (f64::INFINITY, [0; 2]);
     for (f, (normal, corners)) in faces.iter().enumerate() {
@@ -53,7 +53,7 @@ fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2]) {
 
 /// ∫ f by four points of Gauss, halved until that changes nothing. A stretch over which the second part of `f` changes is halved first: what is
 /// nearest to one place and to another is nearest to all between them, as such regions are convex.
-fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 2], close: f64) -> f64 {
+pub(super) fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 2], close: f64) -> f64 {
     let rule = |a: f64, b: f64| {
         let (m, h) = (0.5 * (a + b), 0.5 * (b - a));
         let two = |x: f64, w: f64| w * (f(m - h * x).0 + f(m + h * x).0);

@@ -22,7 +22,7 @@ mod side;
 mod sphere_box;
 
 pub(crate) use dilated::{DEEPEST, LENGTH};
-pub(crate) use pair::Visited;
+pub(crate) use pair::{ContactNow, Visited};
 pub(crate) use pass::{Kind, OnGround};
 pub(crate) use scene::{Now, Placed, PlaneView, Pose, Scene, Search, SheetView};
 pub(crate) use side::Renamed;

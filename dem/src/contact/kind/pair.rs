@@ -109,20 +109,25 @@ pub(super) fn share(laws: &Laws, found: &mut [Touch]) {
 pub(crate) struct Visited<'a> {
     pub body: u32,
     pub partner: crate::base::error::Partner,
+    /// From the partner to its touched image [m].
+    pub shift: Vec3,
+    pub contact: ContactNow<'a>,
+}
+
+/// What a law needs to know of a contact, whatever touches: a first partner, such as a body, and a second one.
+pub(crate) struct ContactNow<'a> {
     pub geometry: ContactGeometry,
     /// Share of the law's force that acts here.
     pub weight: f64,
-    /// Velocity of the body relative to the partner at the contact point [m/s].
+    /// Velocity of the first partner relative to the second at the contact point [m/s].
     pub velocity: Vec3,
     /// Sum of the inverse masses of both [1/kg].
     pub inverse_mass: f64,
     pub history: &'a crate::law::History,
-    /// Spin of the body less that of its partner [rad/s].
+    /// Spin of the first partner less that of the second [rad/s].
     pub spin: Vec3,
     /// Materials of the two.
     pub materials: [u32; 2],
     /// Coefficient of friction, where it is not that of the materials.
     pub friction: Option<f64>,
-    /// From the partner to its touched image [m].
-    pub shift: Vec3,
 }

@@ -1,6 +1,6 @@
 //! What is done with the pairs of a kind, written once for all of them.
 
-use super::pair::{PairKind, Touch, Touches, View, Visited, share};
+use super::pair::{ContactNow, PairKind, Touch, Touches, View, Visited, share};
 use super::scene::{Now, Scene, Search};
 use super::sheet::{self, Met};
 use super::side::{First, Renamed, Second, Side, grown};
@@ -268,15 +268,17 @@ impl<K: PairKind> Kind for Of<K> {
                 f(&Visited {
                     body: scene.block(b).bodies[body],
                     partner: K::Second::partner(scene, other, j),
-                    geometry: touch.geometry,
-                    weight: touch.weight,
-                    velocity: own.at_point() - its.at_point(),
-                    inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
-                    history: &memory.unwrap_or(&PointMemory::FRESH).history,
-                    spin: own.spin() - its.spin(),
-                    materials: touch.materials,
-                    friction: Self::scar(scene, b, list.name(k)).map(|s| s.friction),
                     shift: *way,
+                    contact: ContactNow {
+                        geometry: touch.geometry,
+                        weight: touch.weight,
+                        velocity: own.at_point() - its.at_point(),
+                        inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
+                        history: &memory.unwrap_or(&PointMemory::FRESH).history,
+                        spin: own.spin() - its.spin(),
+                        materials: touch.materials,
+                        friction: Self::scar(scene, b, list.name(k)).map(|s| s.friction),
+                    },
                 });
             }
         }

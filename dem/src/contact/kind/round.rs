@@ -57,7 +57,7 @@ pub(super) trait Presser {
     fn bear(&mut self, points: impl Iterator<Item = (u32, Vec3)>, lengths: (f64, f64, f64));
 
     /// Whether it has come through a patch.
-    fn through(&self, form: &Round) -> bool;
+    fn through(&mut self, form: &Round) -> bool;
 
     /// Notes that it has.
     fn lose(&mut self, normal: &Vec3);
@@ -101,7 +101,7 @@ impl Presser for OnRound<'_> {
         points_on_body(body, points, (own / body.scale, reach / body.scale, weight), self.found);
     }
 
-    fn through(&self, form: &Round) -> bool {
+    fn through(&mut self, form: &Round) -> bool {
         match form {
             Round::Frustum { base, axis, height, radii, far: _ } => {
                 Side::new(base, axis, *height, *radii).meets_core(self.whole.frame, self.whole.body)

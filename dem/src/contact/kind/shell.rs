@@ -38,11 +38,34 @@ pub(crate) type Name = [u32; 2];
 pub(crate) struct Met {
     pub names: Vec<Name>,
     pub touches: Touches,
-    /// Scratch of searches.
+    /// Scratch of searches and of sorting.
     rows: [Vec<u32>; 2],
 }
 
 impl Met {
+    /// Forgets what was found.
+    pub fn clear(&mut self) {
+        self.names.clear();
+        self.touches.clear();
+    }
+
+    /// Puts points in the order of their names.
+    fn sort(&mut self) {
+        let order = &mut self.rows[0];
+        order.clear();
+        order.extend(0..self.names.len() as u32);
+        order.sort_unstable_by_key(|k| self.names[*k as usize]);
+        for to in 0..order.len() {
+            // What was put aside by a swap before.
+            let mut from = order[to] as usize;
+            while from < to {
+                from = order[from] as usize;
+            }
+            self.names.swap(to, from);
+            self.touches.swap(to, from);
+        }
+    }
+
     fn push(&mut self, name: Name, touch: Touch) {
         self.names.push(name);
         self.touches.push(touch);
@@ -56,18 +79,14 @@ pub(crate) struct ShellNow<'a> {
     pub pose: Pose,
 }
 
-/// Finds where two shells touch.
+/// Adds where two shells touch.
 pub(crate) fn shells(a: &ShellNow<'_>, b: &ShellNow<'_>, found: &mut Met) {
-    found.names.clear();
-    found.touches.clear();
     Pressing::new(a, b.pose, a.shell.radius + b.shell.radius, false).on_shell(b.shell, found);
     Pressing::new(b, a.pose, a.shell.radius + b.shell.radius, true).on_shell(a.shell, found);
 }
 
-/// Finds where a shell touches round patches, in the frame `pose`.
+/// Adds where a shell touches round patches, in the frame `pose`.
 pub(crate) fn rounds(a: &ShellNow<'_>, amid: &Vec3, forms: &[Round], pose: Pose, found: &mut Met) {
-    found.names.clear();
-    found.touches.clear();
     let pressing = Pressing::new(a, pose, a.shell.radius, false);
     for (form, first) in forms.iter().zip((0..).step_by(ROUND_PARTS as usize)) {
         let bounds = form.bounds();
@@ -77,11 +96,8 @@ pub(crate) fn rounds(a: &ShellNow<'_>, amid: &Vec3, forms: &[Round], pose: Pose,
         let amid = pressing.frame.point(amid);
         round::on(form, &mut OnRound { pressing: &pressing, amid, bounds, first, found: &mut *found });
     }
-    // Whatever presses: parts of one patch come in the order in which they are asked for.
-    let mut order: Vec<usize> = (0..found.names.len()).collect();
-    order.sort_by_key(|k| found.names[*k]);
-    found.names = order.iter().map(|k| found.names[*k]).collect();
-    found.touches = order.iter().map(|k| found.touches[*k]).collect();
+    // They were found patch by patch.
+    found.sort();
 }
 
 fn grown((low, high): &Aabb, by: f64) -> Aabb {
@@ -303,9 +319,9 @@ impl Presser for OnRound<'_, '_> {
         found.rows = [row, near];
     }
 
-    fn through(&self, form: &Round) -> bool {
+    fn through(&mut self, form: &Round) -> bool {
         let mut through = false;
-        self.pressing.features(&self.bounds, &mut Vec::new(), |_, _, feature| {
+        self.pressing.features(&self.bounds, &mut self.found.rows[0], |_, _, feature| {
             through |= matches!(&feature, Feature::Edge(segment) if round::pierced(form, segment));
         });
         through

@@ -1,11 +1,10 @@
 //! What is done with the points in which two walls touch (`shell.rs`).
 
 use super::dilated::DEEPEST;
-use super::pair::{Visited, share};
+use super::pair::{ContactNow, share};
 use super::pass::weigh;
 use super::shell::Met;
 use crate::base::Vec3;
-use crate::base::error::Partner;
 use crate::base::ledger::Ledger;
 use crate::bodies::block::PointMotion;
 use crate::bodies::sums::WallSum;
@@ -58,7 +57,7 @@ impl Two<'_> {
         }
         for (name, touch) in found.names.iter().zip(&found.touches) {
             let g = &touch.geometry;
-            let mut memory = self.known(old, name).copied().unwrap_or(PointMemory::FRESH);
+            let mut memory = known(old, name).copied().unwrap_or(PointMemory::FRESH);
             memory.edge = touch.edge > 0.0;
             ledger.dissipated_friction += weigh(laws, touch.materials, g, &mut memory, touch.weight);
             let [own, its] = self.motions(&g.point);
@@ -88,30 +87,27 @@ impl Two<'_> {
         deep
     }
 
-    /// Memory of a point among that of the pair.
-    fn known<'a>(&self, of: &'a [Meet], name: &[u32; 2]) -> Option<&'a PointMemory> {
-        let at = of.binary_search_by_key(name, |m| m.name).ok()?;
-        Some(&of[at].memory)
-    }
-
-    /// Calls `f` with each contact; of what it is given `body` has no meaning.
-    pub fn visit(&self, laws: &Laws, found: &mut Met, known: &[Meet], f: &mut dyn FnMut(&Visited<'_>)) {
+    /// Calls `f` with each contact.
+    pub fn visit(&self, laws: &Laws, found: &mut Met, memory: &[Meet], f: &mut dyn FnMut(&ContactNow<'_>)) {
         self.settle(laws, found);
         for (name, touch) in found.names.iter().zip(&found.touches) {
             let [own, its] = self.motions(&touch.geometry.point);
-            f(&Visited {
-                body: u32::MAX,
-                partner: Partner::Wall(self.other),
+            f(&ContactNow {
                 geometry: touch.geometry,
                 weight: touch.weight,
                 velocity: own.at_point() - its.at_point(),
                 inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
-                history: &self.known(known, name).unwrap_or(&PointMemory::FRESH).history,
+                history: &known(memory, name).unwrap_or(&PointMemory::FRESH).history,
                 spin: own.spin() - its.spin(),
                 materials: touch.materials,
                 friction: None,
-                shift: Vec3::zeros(),
             });
         }
     }
+}
+
+/// Memory of a point among that of the pair.
+fn known<'a>(of: &'a [Meet], name: &[u32; 2]) -> Option<&'a PointMemory> {
+    let at = of.binary_search_by_key(name, |m| m.name).ok()?;
+    Some(&of[at].memory)
 }

@@ -37,6 +37,7 @@ fn names_ascend() {
         let pose =
             at(random.orientation() * Vec3::x() * (0.7 + 0.6 * random.uniform()), random.orientation());
         let moved = ShellNow { shell: &shell, pose };
+        found.clear();
         if k % 2 == 0 {
             rounds(&moved, &Vec3::zeros(), &pile(), at(Vec3::zeros(), STILL), &mut found);
         } else {
@@ -62,6 +63,7 @@ fn what_has_come_too_deep() {
     let ball = [Round::Sphere { centre: Vec3::zeros(), radius: 2.0 }];
     for (depth, deep) in [(0.04, false), (0.05, true)] {
         let moved = ShellNow { shell: &shell, pose: at(Vec3::z() * (2.5 - depth), STILL) };
+        found.clear();
         rounds(&moved, &Vec3::zeros(), &ball, at(Vec3::zeros(), STILL), &mut found);
         assert!(!found.touches.is_empty() && lost_of(&found) == deep, "{depth}");
     }
@@ -79,6 +81,7 @@ fn what_has_come_too_deep() {
         for (height, crossed) in [(meet + 0.049, false), (meet - 0.04, true), (meet - 0.2, true)] {
             let moved =
                 ShellNow { shell: &shell, pose: at(Vec3::new(0.03, 0.02, height), turned(Vec3::y())) };
+            found.clear();
             match &below {
                 None => {
                     let other = ShellNow { shell: &shell, pose: at(Vec3::zeros(), turned(Vec3::x())) };
