@@ -63,7 +63,7 @@ fn shortest([low, high]: [f64; 2], at: &dyn Fn(f64) -> Vec3) -> Vec3 {
 /// Energy of unit springs along a line of some length, at a distance that is given over shares of it, with what is nearest: integrated by halves until
 /// that changes nothing, from as many pieces.
 fn along(length: f64, pieces: u32, reach: f64, at: &dyn Fn(f64) -> (f64, [usize; 2])) -> f64 {
-    // What does not press is told apart, so that ends of what does are found.
+    // What does not press has a name of its own, so that the ends of what does are found.
     let spring = |s: f64| match at(s) {
         (d, nearest) if d < reach => (0.5 * (reach - d).powi(2), nearest),
         _ => (0.0, [usize::MAX; 2]),
