@@ -96,8 +96,8 @@ pub struct RunArgs {
     /// Threads; default all cores. The results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
-    /// Where the steps of grains alone are computed in the run proper: spheres, planes and bonds on a CUDA device (not run on a
-    /// device yet), all else on the processor.
+    /// Where the steps of grains are computed in the run proper: spheres, clumps, planes, triangles and bonds on a CUDA device, all
+    /// else on the processor.
     #[arg(long, value_enum, default_value_t)]
     pub device: Place,
     /// Replace one key of the scene, as key.path=value; may be given again.

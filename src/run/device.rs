@@ -28,9 +28,8 @@ pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
         return Ok(());
     }
     let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
-    let grains = match (&job.grains, &job.solid) {
-        (Some(grains), None) => grains,
-        _ => return Err(refused("solids are not computed on a device, only on the processor".into())),
+    let Some(grains) = &job.grains else {
+        return Err(refused("solids alone are not computed on a device, only on the processor".into()));
     };
     // A scene whose grains are wrong is refused where they are made, with the keys to blame.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {

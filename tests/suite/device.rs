@@ -26,8 +26,9 @@ fn a_device_refuses_by_name() {
     let stones = fs::read_to_string(repository().join("inputs/ballast/box-polyhedra.toml")).unwrap();
     let stones = stones.replace("\"../", &format!("\"{inputs}/"));
     let stones = stones.replace("\"polyhedra-", &format!("\"{inputs}/ballast/polyhedra-"));
+    let solid = &COUPLED[..COUPLED.find("[[material]]").unwrap()];
     let cases: [(&str, &str, &[&str], &str); 4] = [
-        ("device_solid", COUPLED, &[], "solids are not"),
+        ("device_solid", solid, &[], "solids alone are not"),
         (
             "device_wall",
             GRAINS,
@@ -35,7 +36,7 @@ fn a_device_refuses_by_name() {
             "walls other than triangles and planes of steady velocity are not",
         ),
         ("device_wind", GRAINS, &["wind={ drag = 0.9 }"], "body forces other than gravity are not"),
-        ("device_stones", &stones, &[], "boxes and polyhedra are not"),
+        ("device_stones", &stones, &[], "scenes of boxes and polyhedra alone are not"),
     ];
     for (name, text, set, words) in cases {
         let (outcome, written) = on_device(name, text, set);
@@ -112,6 +113,32 @@ fn runs_on_a_stand_in_have_the_processors_bytes() {
         let (ours, theirs) = (results(Path::new(&device)), results(&out("processor")));
         assert!(ours.len() > 4 && ours.keys().eq(theirs.keys()), "{name}");
         ours.iter().for_each(|(file, bytes)| assert!(bytes == &theirs[file], "{name}: {file} differs"));
+    }
+}
+
+/// Coupled runs have the processor's bytes too, with every scheme of the exchange: spheres and clumps under a sleeper that the processor
+/// moves, on the faces of a solid.
+#[test]
+fn coupled_runs_on_a_stand_in_have_the_processors_bytes() {
+    let Some(libraries) = stand_in() else { return };
+    let folder = scene_folder("device_coupled", COUPLED);
+    let scene = folder.join("scene.toml").display().to_string();
+    for scheme in ["predicted", "stiffened", "lagged", "iterated"] {
+        let scheme = format!("coupling.scheme=\"{scheme}\"");
+        let set = [&scheme[..], "track.load.cycles=1", "output.checkpoint=2 ms"];
+        let out = |kind: &str| folder.join(&format!("{kind}_{}", &scheme[17..scheme.len() - 1]));
+        run(Path::new(&scene), &out("processor"), &set).good();
+        let device = out("device").display().to_string();
+        let mut arguments = vec!["run", &scene, "--quiet", "--out", &device];
+        set.iter().for_each(|s| arguments.extend(["--set", s]));
+        let begin = [&arguments[..], &["--device", "gpu"]].concat();
+        // It fails on the way, and goes on from its checkpoint.
+        let failed = with_libraries(libraries.path(), &[("STAND_IN_LAUNCHES", "900")], &begin);
+        assert_eq!(failed.code, 3, "{failed:?}");
+        with_libraries(libraries.path(), &[], &[&begin[..], &["--resume"]].concat()).good();
+        let (ours, theirs) = (results(Path::new(&device)), results(&out("processor")));
+        assert!(ours.len() > 4 && ours.keys().eq(theirs.keys()), "{scheme}");
+        ours.iter().for_each(|(file, bytes)| assert!(bytes == &theirs[file], "{scheme}: {file} differs"));
     }
 }
 

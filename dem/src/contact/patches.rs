@@ -50,6 +50,13 @@ pub(crate) struct PatchWork {
     pub wall_sums: Vec<WallSum>,
 }
 
+impl PatchWork {
+    /// Forces of the contacts with the surface that came last, in the order of the block's spheres.
+    pub fn forces(&self) -> &[PatchForce] {
+        &self.forces
+    }
+}
+
 /// Points closer than this fraction of the radius are one.
 const SAME: f64 = 1e-6;
 /// Least cosine between the normals of contacts that are one contact with a smooth surface: ten degrees.

@@ -5,7 +5,8 @@
 //! the engine adds it up.
 
 use super::bodies::Spheres;
-use super::layout::{LISTS, List, What, entry};
+use super::handed::Source;
+use super::layout::{LISTS, List, What, entry, parts_of};
 use super::walls::{Kept, Pairs};
 use crate::Vec3;
 use crate::bond::BondList;
@@ -138,6 +139,9 @@ pub(super) struct Lists {
     pub ways: Vec<[f64; 4]>,
     /// Pairs of spheres and triangles, at the end of the contacts.
     pub pairs: Pairs,
+    /// What the processor hands over, and the bodies that it needs to know for that: block, place and number, ascending.
+    pub handed: Vec<Source>,
+    pub watched: Vec<[u32; 3]>,
     /// Number of blocks.
     blocks: usize,
 }
@@ -260,15 +264,25 @@ impl Lists {
             |body: u32, what: What, of: u32, second: bool| all.push((body, entry(what, of, second)));
         // Across blocks the engine takes the formulas of clumps for all spheres, where there are clumps.
         let across = if spheres.clumps { What::Members } else { What::Spheres };
-        for (b, w) in work.blocks.iter().enumerate() {
+        // Those that the processor moves gather nothing here.
+        let here = |b: &usize| !work.members[*b].solid();
+        for (b, w) in work.blocks.iter().enumerate().filter(|(b, _)| here(b)) {
             for share in &w.shares.list {
                 let from = share.block as usize;
                 let (forces, record) = (&work.cross[from], share.record());
-                let (what, of) = match record.checked_sub(forces.images_at) {
-                    Some(beyond) => {
-                        (What::Images, self.from(List::Images, from) + (beyond / forces.width) as u32)
-                    }
-                    None => (across, self.from(List::Cross, from) + (record / forces.width) as u32),
+                let (what, of) = if record >= forces.images_at {
+                    let of = (record - forces.images_at) / forces.width;
+                    (What::Images, self.from(List::Images, from) + of as u32)
+                } else if record >= forces.kinds_at {
+                    (
+                        What::Handed,
+                        self.hand_over(
+                            Source::Pair { from, record, first: share.first() },
+                            [b as u32, share.place],
+                        ),
+                    )
+                } else {
+                    (across, self.from(List::Cross, from) + (record / forces.width) as u32)
                 };
                 put(self.body(b, share.place), what, of, !share.first());
             }
@@ -310,13 +324,30 @@ impl Lists {
             put(spheres.owner(self.pairs.ends[first as usize][0]), What::Walls, group as u32, false);
         }
         self.pairs.groups.push(self.pairs.ends.len() as u32);
+        for (b, (lists, members)) in state.lists.iter().zip(&work.members).enumerate() {
+            for pairs in lists.surface.pairs.chunk_by(|p, q| members.body(p.i) == members.body(q.i)) {
+                let place = members.body(pairs[0].i);
+                let of = self.hand_over(Source::Surface { block: b, place }, [b as u32, place]);
+                put(self.body(b, place), What::Handed, of, false);
+            }
+        }
+        self.watched.sort_unstable();
+        self.watched.dedup();
         self.sort(&all);
+    }
+
+    /// Notes what the processor hands over to a body (block, place); its number.
+    fn hand_over(&mut self, source: Source, [block, place]: [u32; 2]) -> u32 {
+        self.handed.push(source);
+        self.watched.push([block, place, self.body(block as usize, place)]);
+        self.handed.len() as u32 - 1
     }
 
     /// The other of the ends of an entry, if it has any.
     fn there(&self, entry: u32) -> u32 {
-        let (what, of, side) = (entry >> 1 & 7, (entry >> 4) as usize, 1 - (entry & 1) as usize);
-        if what == What::Walls as u32 {
+        let (of, what, second) = parts_of(entry);
+        let side = usize::from(!second);
+        if what == What::Walls as u32 || what == What::Handed as u32 {
             0
         } else if what == What::Bond as u32 {
             self.bond_ends[of][side]

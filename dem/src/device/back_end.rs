@@ -3,20 +3,22 @@
 use super::arrays::{Lists, Memory};
 use super::bodies::{Constants, Motion, Spheres};
 use super::books;
+use super::handed::Handed;
 use super::layout::{Count, Features, HELD_WIDTH, List, Number, Slot};
 use super::machine::{Call, Machine};
 use super::scope::{self, Unsupported};
 use super::text;
 use super::walls::{Triangles, placed};
 use crate::base::error::StepError;
+use crate::bodies::table::Kind;
 use crate::contact::planes;
 use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{bonds, neighbours, order, step};
-use crate::spatial::surface::{NoSurface, Surface, SurfaceContact};
+use crate::engine::{beside, bonds, neighbours, order, step};
+use crate::spatial::surface::{Surface, SurfaceContact};
 
 /// The text of the kernels for a model: C and CUDA at once.
 ///
@@ -51,6 +53,8 @@ pub struct Device<M> {
     bonds: usize,
     /// Whether the next step is the engine's to make.
     orphans: bool,
+    /// The processor's part of the steps.
+    handed: Handed,
 }
 
 /// Arrays that change places after each step.
@@ -99,6 +103,7 @@ impl<M: Machine> Device<M> {
             pairs: 0,
             bonds: 0,
             orphans: false,
+            handed: Handed::default(),
         };
         let law = text::law_constants(&model.laws, materials);
         let Triangles { shapes, names } = Triangles::of(model);
@@ -122,7 +127,7 @@ impl<M: Machine> Device<M> {
     }
 
     pub(super) fn buffer(&self, slot: Slot) -> usize {
-        self.call.buffers[slot as usize]
+        self.call.buffer(slot)
     }
 
     pub(super) fn put(&mut self, slot: Slot, numbers: &[f64]) -> Result<(), String> {
@@ -259,7 +264,13 @@ impl<M: Machine> Device<M> {
             (Slot::Action, 8 * pairs),
             (Slot::Couples, 4 * lists.ways.len()),
         ];
-        room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
+        room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))?;
+        if self.features.beside {
+            let width = self.features.picked_width();
+            let there = (&mut self.machine, &mut self.call);
+            self.handed.take_over(there, width, lists.handed, lists.watched)?;
+        }
+        Ok(())
     }
 
     /// Makes `state` whole.
@@ -309,39 +320,59 @@ impl<M: Machine> Device<M> {
     }
 
     /// Advances the state by one step. Its motion and the memory of its contacts stay on the device.
-    fn advance(
+    fn advance<S: Surface>(
         &mut self,
         model: &Model,
         state: &mut State,
+        surface: &S,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         let new_order = state.steps > 0 && state.steps.is_multiple_of(order::EVERY);
-        if new_order || !applied.is_empty() {
-            return self.by_processor(model, state, applied);
+        // Forces on bodies that the processor moves do not concern the device.
+        let solid = |k: usize| k < model.body_count() && model.body(k).kind == Kind::Solid;
+        if new_order || !applied.iter().all(|a| solid(a.body)) {
+            return self.by_processor(model, state, surface, applied);
+        }
+        let beside = self.features.beside;
+        if beside || !surface.is_empty() {
+            step::prepare(model, state, &mut self.work, surface, applied)?;
         }
         if neighbours::due(state) {
-            self.list(model, state)?;
+            self.list(model, state, surface)?;
         }
         if self.orphans {
-            return self.by_processor(model, state, applied);
+            return self.by_processor(model, state, surface, applied);
+        }
+        if beside {
+            let there = (&mut self.machine, &self.call);
+            let given = self.handed.hand_over(there, model, (state, &mut self.work), surface);
+            given.map_err(|e| failed(state, e))?;
         }
         let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
         if failed_there {
             // The arrays of the step before are there still: made again, the step says what has failed.
             self.ahead = true;
-            return self.by_processor(model, state, applied);
+            self.by_processor(model, state, surface, applied)?;
+            // The processor's contacts have been in this step twice: it is not one to go on from.
+            let again = || failed(state, "a step failed there that did not fail when made again".into());
+            return if beside { Err(again()) } else { Ok(()) };
         }
         self.exchange();
         self.ahead = true;
+        if beside {
+            beside::motion(model, state, &mut self.work);
+            let picked = self.handed.pick((&mut self.machine, &self.call), (state, &mut self.work));
+            picked.map_err(|e| failed(state, e))?;
+        }
         let all = books::add_up(&self.books, &self.features, &self.mass, model, state, &mut self.work);
         if bonds::looks_at_separation(state) {
             self.fetch(state)?;
         }
-        step::conclude(model, state, &mut self.work, all, 0.0)
+        step::conclude(model, state, &mut self.work, all, surface.max_speed())
     }
 
     /// Makes the near list anew: on the device, or on the processor.
-    fn list(&mut self, model: &Model, state: &mut State) -> Result<(), StepError> {
+    fn list<S: Surface>(&mut self, model: &Model, state: &mut State, surface: &S) -> Result<(), StepError> {
         if self.features.classes > 0 {
             neighbours::adapt(model, state);
             self.search(model, state).map_err(|e| failed(state, e))?;
@@ -349,24 +380,25 @@ impl<M: Machine> Device<M> {
             neighbours::made(state, &mut self.work);
         } else {
             self.fetch(state)?;
-            neighbours::update(model, state, &mut self.work, &NoSurface);
+            neighbours::update(model, state, &mut self.work, surface);
             self.take_lists(model, state).map_err(|e| failed(state, e))?;
         }
         Ok(())
     }
 
     /// Has the engine make a step.
-    fn by_processor(
+    fn by_processor<S: Surface>(
         &mut self,
         model: &Model,
         state: &mut State,
+        surface: &S,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         self.fetch(state)?;
         if self.found {
             self.work.follow(model, state);
         }
-        step::step(model, state, &mut self.work, &NoSurface, applied)?;
+        step::step(model, state, &mut self.work, surface, applied)?;
         self.take_over(model, state).map_err(|e| failed(state, e))
     }
 
@@ -421,8 +453,7 @@ impl<M: Machine> BackEnd for Device<M> {
         surface: &S,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
-        // A model with a material for such a surface is refused.
-        if surface.is_empty() { self.advance(model, state, applied) } else { Err(StepError::SurfaceMaterial) }
+        self.advance(model, state, surface, applied)
     }
 
     fn download(&mut self, _: &Model, state: &mut State) -> Result<(), StepError> {
@@ -430,7 +461,7 @@ impl<M: Machine> BackEnd for Device<M> {
     }
 
     fn surface_contacts(&self) -> &[SurfaceContact] {
-        &[]
+        self.work.surface_contacts()
     }
 }
 

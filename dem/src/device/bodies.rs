@@ -10,6 +10,7 @@ use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::lanes::V3;
 use crate::lanes::turn::Turn;
+use nalgebra::UnitQuaternion;
 
 /// Motion of all bodies: position and radius, velocity and inverse mass, spin and material; in models with clumps orientation and
 /// angular momentum too.
@@ -60,15 +61,19 @@ impl Motion {
         let mut at = 0;
         for (block, members) in state.blocks.iter_mut().zip(&mut work.members) {
             let n = block.bodies.len();
+            // What the processor moves is where it should be.
+            if members.solid() {
+                at += n;
+                continue;
+            }
             let lists =
                 [(&mut block.centre, &self.x), (&mut block.velocity, &self.v), (&mut block.spin, &self.w)];
             for (to, from) in lists {
                 to.iter_mut().zip(&from[at..at + n]).for_each(|(to, from)| to.0 = *from);
             }
             let turns = self.orientation.iter().zip(&self.momentum).skip(at);
-            for (to, ([i, j, k, s], [x, y, z, _])) in block.rotation.iter_mut().zip(turns) {
-                to.orientation = Turn { v: V3::new(*i, *j, *k), s: *s }.quaternion();
-                to.momentum = Vec3::new(*x, *y, *z);
+            for (to, (q, [x, y, z, _])) in block.rotation.iter_mut().zip(turns) {
+                *to = Rotation { orientation: quaternion(q), momentum: Vec3::new(*x, *y, *z) };
             }
             if members.rigid {
                 (0..n).for_each(|k| {
@@ -78,6 +83,11 @@ impl Motion {
             at += n;
         }
     }
+}
+
+/// An orientation as the engine has it.
+pub(super) fn quaternion([i, j, k, s]: &[f64; 4]) -> UnitQuaternion<f64> {
+    Turn { v: V3::new(*i, *j, *k), s: *s }.quaternion()
 }
 
 /// Constants of all bodies.
@@ -111,7 +121,8 @@ impl Constants {
                 let turns = members.rigid && members.kind[group].contains(&Kind::Clump);
                 let single = if by_four { 0 } else { How::SINGLE | How::fixed(fixed) };
                 let bit = |on: bool, of: u32| if on { of } else { 0 };
-                out.how.push(single | bit(turns, How::TURNS) | bit(members.rigid, How::ORIENTED));
+                let elsewhere = bit(members.solid(), How::ELSEWHERE);
+                out.how.push(single | bit(turns, How::TURNS) | bit(members.rigid, How::ORIENTED) | elsewhere);
                 out.inertia.push([body.mass, body.inertia.x]);
                 out.mass.push(if by_four { 1.0 / block.velocity[k].0[3] } else { body.mass });
                 if model.clumps {

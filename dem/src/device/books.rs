@@ -3,7 +3,7 @@
 use super::layout::{Booked, Features, WALL_BOOKED};
 use crate::base::Vec3;
 use crate::base::ledger::{Impulse, Ledger};
-use crate::bodies::sums::WallSum;
+use crate::bodies::sums::{Tally, WallSum};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::step::Collected;
@@ -22,32 +22,51 @@ pub(super) fn add_up(
     let dt = state.pace.kick();
     let impulse = model.gravity * dt;
     let mut all = Collected::default();
-    let sum = &mut all.sum;
+    let Collected { sum, fastest, failure } = &mut all;
     let mut fastest2 = 0.0_f64;
-    for ((b, all), mass) in books.chunks_exact(f.quantities()).enumerate().zip(mass) {
-        let of = |part: Booked| &all[f.booked(part)];
+    work.surface_contacts.clear();
+    for ((b, booked), mass) in books.chunks_exact(f.quantities()).enumerate().zip(mass) {
+        if f.beside && work.members[b].solid() {
+            let tally = &work.blocks[b].tally;
+            *sum += &tally.ledger;
+            *fastest = fastest.max(tally.fastest);
+            *failure = failure.or(work.cross[b].failure).or(tally.failure);
+            add_pairs(sum, work, b, [0.0; 2]);
+            continue;
+        }
+        let of = |part: Booked| &booked[f.booked(part)];
         let (spheres, planes, motion) = (of(Booked::Spheres), of(Booked::Planes), of(Booked::Motion));
         let mut spent = [spheres[2] + planes[0], spheres[3] + planes[1]];
         if f.walls > 0 {
             let q = of(Booked::Patches);
             spent = [spent[0] + q[0], spent[1] + q[1]];
             let sum = |q: &[f64]| WallSum { force: vector(q, 0), moment: vector(q, 3), ..WallSum::default() };
-            work.cross[b].clear_books();
+            if !f.beside {
+                work.cross[b].clear_books();
+            }
             let sums = &mut work.blocks[b].patches.wall_sums;
             sums.clear();
             sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
         }
-        // Of contacts within the block and with planes, then of those across.
-        for (to, own, across) in [
-            (&mut sum.dissipated_dashpot, spent[0], spheres[0]),
-            (&mut sum.dissipated_friction, spent[1], spheres[1]),
-        ] {
-            *to += own;
-            *to += across;
+        // Of contacts within the block, with planes and the surface, then of those across.
+        if f.beside {
+            let Tally { ledger, failure: wrong, .. } = &work.blocks[b].tally;
+            spent = [spent[0] + ledger.dissipated_dashpot, spent[1] + ledger.dissipated_friction];
+            sum.work_surface += ledger.work_surface;
+            sum.surface += &ledger.surface;
+            *failure = failure.or(work.cross[b].failure).or(*wrong);
         }
+        sum.dissipated_dashpot += spent[0];
+        sum.dissipated_friction += spent[1];
         sum.work_walls += planes[2] * dt;
         sum.walls.linear += vector(planes, 3) * dt;
         sum.walls.angular += vector(planes, 6) * dt;
+        if f.beside {
+            add_pairs(sum, work, b, [spheres[0], spheres[1]]);
+        } else {
+            sum.dissipated_dashpot += spheres[0];
+            sum.dissipated_friction += spheres[1];
+        }
         sum.gravity.linear += impulse * *mass;
         sum.gravity.angular += vector(motion, 0).cross(&impulse);
         fastest2 = fastest2.max(motion[3]);
@@ -67,8 +86,21 @@ pub(super) fn add_up(
             }
         }
     }
-    all.fastest = fastest2.sqrt();
+    *fastest = fastest.max(fastest2.sqrt());
     all
+}
+
+/// Adds what the processor's pairs of a block did, together with what contacts of spheres across took in dashpots and friction.
+fn add_pairs(sum: &mut Ledger, work: &mut Work, b: usize, [dashpot, friction]: [f64; 2]) {
+    let cross = &work.cross[b];
+    sum.dissipated_dashpot += dashpot + cross.dashpot;
+    sum.dissipated_friction += friction + cross.friction;
+    sum.work_walls += cross.work_walls;
+    sum.walls += &cross.walls;
+    sum.work_surface += cross.surface.work;
+    sum.surface += &cross.surface.impulse;
+    work.surface_contacts.extend_from_slice(&work.blocks[b].patches.contacts);
+    work.surface_contacts.extend_from_slice(&cross.surface.contacts);
 }
 
 fn vector(q: &[f64], k: usize) -> Vec3 {

@@ -35,8 +35,8 @@ table! {
         Ends = "ENDS": "ends",
         /// Where the entries of each body begin, and one past the last.
         Start = "START": "unsigned",
-        /// Sixteen times a contact or bond, plus twice what it is ([`What`]), plus one where the body is the second; and what it is with:
-        /// the other of the ends.
+        /// A contact, a bond or what is handed over, what it is ([`What`]), and whether the body is the second, as [`entry`] puts them
+        /// together; and what it is with: the other of the ends.
         Entries = "ENTRIES": "ends",
         /// Constants of the laws of each pair of materials.
         Law = "LAW": "const real",
@@ -104,6 +104,12 @@ table! {
         Books = "BOOKS": "real",
         /// Whether a step has failed.
         Flags = "FLAGS": "unsigned",
+        /// What the processor has worked out (`handed.rs`): where the forces of each entry begin, and one past the last; force and
+        /// torque of each. The bodies that it needs to know, and their motion.
+        HandedStart = "HANDED_START": "const unsigned",
+        Handed = "HANDED": "const four",
+        Watched = "WATCHED": "const unsigned",
+        Picked = "PICKED": "four",
         /// Of the search. One over the width of the cells and the largest radius of each class of size; the block of each body; point,
         /// with one where it is open, offset and normal of each plane.
         Grids = "GRIDS": "const real",
@@ -164,6 +170,7 @@ table! {
         FirstImage = "FIRST_IMAGE",
         Spheres = "SPHERE_COUNT",
         Planes = "PLANE_COUNT",
+        Watched = "WATCHED_COUNT",
         /// A power of two.
         Buckets = "BUCKETS",
         /// Of sums: where the list begins, its length, and where the sums of its stretches go.
@@ -173,7 +180,7 @@ table! {
     }
 }
 
-/// What an entry of a body is: at most eight kinds.
+/// What an entry of a body is: at most sixteen kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Spheres,
@@ -187,15 +194,25 @@ pub(super) enum What {
     Walls,
     /// A contact across a periodic border.
     Images,
+    /// What the processor hands over.
+    Handed,
 }
+
+/// Bits of an entry below what it is of.
+const ENTRY_SHIFT: u32 = 5;
 
 /// The entry of a body: contact or bond `of`, of which it may be the `second`.
 pub(super) fn entry(what: What, of: u32, second: bool) -> u32 {
-    of << 4 | (what as u32) << 1 | u32::from(second)
+    of << ENTRY_SHIFT | (what as u32) << 1 | u32::from(second)
+}
+
+/// What an entry is of, the number of a [`What`], and whether the body is the second.
+pub(super) fn parts_of(entry: u32) -> (usize, u32, bool) {
+    ((entry >> ENTRY_SHIFT) as usize, entry >> 1 & ((1 << (ENTRY_SHIFT - 1)) - 1), entry & 1 == 1)
 }
 
 /// How a body moves: by itself, with bits of fixed motions; turning, as clumps do and all of a group of four with one; in a block with
-/// orientations.
+/// orientations; not on the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct How;
 
@@ -203,6 +220,8 @@ impl How {
     pub const SINGLE: u32 = 1;
     pub const TURNS: u32 = 1 << 7;
     pub const ORIENTED: u32 = 1 << 8;
+    /// The processor moves it.
+    pub const ELSEWHERE: u32 = 1 << 9;
 
     /// Bits of fixed motions of a body that moves by itself.
     pub fn fixed(bits: u8) -> u32 {
@@ -303,11 +322,18 @@ pub(super) struct Features {
     pub walls: usize,
     /// Whether there are periodic borders.
     pub periodic: bool,
+    /// Whether the processor has a part in each step.
+    pub beside: bool,
     /// Classes of size in the search for neighbours; none where that is the processor's.
     pub classes: usize,
 }
 
 impl Features {
+    /// Records of four that state where a body is and how it moves.
+    pub fn picked_width(&self) -> usize {
+        if self.clumps { 4 } else { 3 }
+    }
+
     /// Numbers that a block books.
     pub fn quantities(&self) -> usize {
         Booked::ALL.iter().map(|(part, ..)| self.booked(*part).len()).sum()
@@ -411,7 +437,10 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("CLASSES", f.classes),
         ("STRETCH", STRETCH),
         // With spheres alone a step fits into the 128 registers that four blocks at once leave a thread, and is faster; larger steps would spill.
-        ("BLOCKS_AT_ONCE", if f.clumps || f.bonds || f.walls > 0 || f.periodic { 3 } else { 4 }),
+        ("BLOCKS_AT_ONCE", if f.clumps || f.bonds || f.walls > 0 || f.periodic || f.beside { 3 } else { 4 }),
+        ("ENTRY_SHIFT", ENTRY_SHIFT as usize),
+        ("PICKED_WIDTH", f.picked_width()),
+        ("ELSEWHERE", How::ELSEWHERE as usize),
         ("ACROSS", if f.clumps { What::Members } else { What::Spheres } as usize),
         ("WITHIN", What::Spheres as usize),
         ("WITHIN_TURNED", What::Members as usize),
@@ -421,7 +450,14 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
     for (name, value) in sizes {
         _ = writeln!(out, "#define {name} {value}u");
     }
-    for (name, on) in [("ROLL", f.roll), ("HELD", f.held), ("CLUMPS", f.clumps), ("PERIODIC", f.periodic)] {
+    let flags = [
+        ("ROLL", f.roll),
+        ("HELD", f.held),
+        ("CLUMPS", f.clumps),
+        ("PERIODIC", f.periodic),
+        ("BESIDE", f.beside),
+    ];
+    for (name, on) in flags {
         _ = writeln!(out, "#define {name} {}", u32::from(on));
     }
     let how = if f.clumps {

@@ -2,6 +2,7 @@
 
 use super::layout::{Arguments, Count, Number, Slot};
 use super::sizes;
+use crate::engine::beside;
 use crate::engine::model::Model;
 
 /// A launch: which array is where, and the numbers and counts.
@@ -17,6 +18,10 @@ impl Call {
     /// Buffers in their places, numbers and counts zero.
     pub(super) fn new() -> Call {
         Call { buffers: (0..Slot::COUNT).collect(), numbers: [0.0; Number::COUNT], counts: [0; Count::COUNT] }
+    }
+
+    pub(super) fn buffer(&self, slot: Slot) -> usize {
+        self.buffers[slot as usize]
     }
 
     pub(super) fn number(&mut self, which: Number, x: f64) {
@@ -80,8 +85,9 @@ pub trait Machine {
     fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String>;
 }
 
-/// The kernels of a step, and those of the search for neighbours.
+/// The kernels of a step; the same with the processor's part; and those with the search for neighbours.
 const STEP: [&str; 2] = ["bodies", "books"];
+const BESIDE: [&str; 3] = ["bodies", "books", "pick"];
 const ALL: [&str; 12] = [
     "bodies",
     "books",
@@ -99,5 +105,9 @@ const ALL: [&str; 12] = [
 
 /// The kernels that the text for a model has.
 pub fn kernels(model: &Model) -> &'static [&'static str] {
-    if sizes::covers(model) { &ALL } else { &STEP }
+    match (sizes::covers(model), beside::any(model)) {
+        (true, _) => &ALL,
+        (false, true) => &BESIDE,
+        (false, false) => &STEP,
+    }
 }

@@ -2,7 +2,9 @@
 //! recorded (`tape.rs`) and written out as text (`text`, a file a kind of force or motion) that a C compiler takes as well as CUDA's.
 //!
 //! Neighbours are searched there too where bodies meet each other and planes alone (`search.rs`), else on the processor; a step that fails
-//! there or that puts the bodies in a new order is made by the engine itself. Whatever the device cannot compute is refused by name ([`check`]).
+//! there or that puts the bodies in a new order is made by the engine itself. Contacts of spheres with a surface that another crate moves,
+//! contacts of bodies that are not made of spheres, and the motion of these are the processor's part of each step (`handed.rs`).
+//! Whatever the device cannot compute is refused by name ([`check`]).
 
 mod arrays;
 mod back_end;
@@ -10,6 +12,7 @@ mod bodies;
 mod books;
 #[cfg(feature = "cuda")]
 mod cuda;
+mod handed;
 mod layout;
 mod machine;
 mod scope;

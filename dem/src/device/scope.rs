@@ -1,5 +1,6 @@
 //! What a device computes: models with anything else are refused by name.
 
+use crate::bodies::table::Kind;
 use crate::engine::model::Model;
 use crate::shape::Shape;
 
@@ -15,7 +16,7 @@ pub struct Unsupported(pub &'static str);
 pub fn check(model: &Model) -> Result<(), Unsupported> {
     let shape = |k: usize| model.shape(k);
     let bodies = || 0..model.body_count();
-    let any_solid = bodies().any(|k| matches!(shape(k), Shape::Box { .. } | Shape::Polyhedron(_)));
+    let solid = |k: usize| model.body(k).kind == Kind::Solid;
     // Those about some axes take the solution of a system of equations.
     let about_some = |k: usize| {
         let fixed = model.body(k).fixed >> 3;
@@ -23,10 +24,11 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
     };
     let all = [
         (bodies().any(about_some), "clumps that are free to turn about some axes only"),
-        (any_solid, "boxes and polyhedra"),
+        (model.solids && bodies().all(solid), "scenes of boxes and polyhedra alone"),
+        (model.solids && !model.bonds.is_empty(), "bonds in scenes with boxes or polyhedra"),
+        (model.solids && model.periodic.is_some(), "boxes and polyhedra across periodic borders"),
         (!model.walls.triangulated(), "walls other than triangles and planes of steady velocity"),
         (model.walls.walls.iter().any(|w| w.servo.is_some()), "walls that a force drives"),
-        (model.surface_material.is_some(), "contacts with a solid"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
     ];
     match all.into_iter().find(|(there, _)| *there) {

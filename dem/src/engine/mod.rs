@@ -3,6 +3,7 @@
 pub(crate) mod applied;
 mod arrange;
 pub mod back_end;
+pub(crate) mod beside;
 mod block_work;
 pub(crate) mod bonds;
 pub(crate) mod candidates;

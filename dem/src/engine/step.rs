@@ -24,6 +24,7 @@ use crate::contact::prefetch::Prefetch;
 use crate::contact::single::Setting;
 use crate::contact::{dispatch, images, planes};
 use crate::integrate::leapfrog::{self, Drive};
+use crate::integrate::pace::Pace;
 use crate::law::scarring::Scar;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
 use crate::spatial::patchwork;
@@ -54,12 +55,26 @@ pub fn step<S: Surface>(
     if state.places.len() != model.bodies.len() || work.blocks.len() != state.blocks.len() {
         return Err(StepError::Mismatch { expected: model.bodies.len(), found: state.places.len() });
     }
-    if !surface.is_empty() && model.surface_material.is_none() {
-        return Err(StepError::SurfaceMaterial);
-    }
     if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
         state.reorder(model);
         work.arrange(model, state);
+    }
+    prepare(model, state, work, surface, applied)?;
+    neighbours::update(model, state, work, surface);
+    advance(model, state, work, surface);
+    collect(model, state, work, surface.max_speed())
+}
+
+/// Brings what acts on bodies from outside to where it is in this step: applied forces, walls, and the external surface.
+pub(crate) fn prepare<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+    applied: &[AppliedForce],
+) -> Result<(), StepError> {
+    if !surface.is_empty() && model.surface_material.is_none() {
+        return Err(StepError::SurfaceMaterial);
     }
     applied::place(model, state, applied, &mut work.applied)?;
     if !model.patches.is_empty() {
@@ -68,9 +83,18 @@ pub fn step<S: Surface>(
     if !model.sheet.is_empty() {
         sheet(model, state, work, surface)?;
     }
-    neighbours::update(model, state, work, surface);
-    advance(model, state, work, surface);
-    collect(model, state, work, surface.max_speed())
+    Ok(())
+}
+
+/// What drives all bodies in a step.
+pub(crate) fn drive(model: &Model, pace: Pace) -> Drive<'_> {
+    Drive {
+        gravity: model.gravity,
+        damping: model.damping,
+        bound: 0.5 * model.radii.0 / pace.dt,
+        bodies: &model.bodies,
+        pace,
+    }
 }
 
 /// Puts the triangles of the external surface where they are.
@@ -149,13 +173,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         planes: (&work.planes, work.plane_material),
         walls: model.walls.placed(walls),
         bonds: (bonded, bonds::parts(model, pace.last, bonds.fresh)),
-        drive: Drive {
-            gravity: model.gravity,
-            damping: model.damping,
-            bound: 0.5 * model.radii.0 / pace.dt,
-            bodies: &model.bodies,
-            pace,
-        },
+        drive: drive(model, pace),
         time: *time,
         scars,
         gone: *drift + *wall_drift,

@@ -302,7 +302,7 @@ fn clumps_that_turn_about_some_axes_are_refused() {
 }
 
 /// A square of triangles, `n` to a side, around a middle; `height` along the normal of each vertex.
-fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMut() -> f64) -> WallShape {
+pub(crate) fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMut() -> f64) -> WallShape {
     let normal = sides[0].cross(&sides[1]).normalize();
     let at = |k: u32| f64::from(k) / f64::from(n) - 0.5;
     let all = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j)));

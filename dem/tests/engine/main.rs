@@ -11,6 +11,7 @@ mod boxes;
 mod c_machine;
 mod determinism;
 mod device;
+mod device_beside;
 mod device_search;
 mod disks;
 mod extremes;

@@ -10,6 +10,7 @@ use crate::model::solid::SolidPart;
 use crate::progress::{Progress, Verbosity};
 use crate::run::checkpoint::Loaded;
 use crate::run::context::Run;
+use crate::run::device::{Place, Steps};
 use crate::run::from::END;
 use crate::run::initial;
 use crate::run::summary::{CouplingRecord, Summary};
@@ -124,32 +125,14 @@ fn couple<'b>(
         newton: solid.newton,
         grains,
     };
-    let mut work = coupling::step::Work::new(&model, &state, surface)
+    let steps = match run.device {
+        Place::Cpu => Steps::processor(dem::Work::new(&model.grains, &state.grains)),
+        Place::Gpu => Steps::device(&model.grains, &state.grains)?,
+    };
+    let mut work = coupling::step::Work::with_back_end(&model, &state, surface, steps)
         .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
         .map_err(|e| solid.failure(&e))?;
-    if let Some(reduction) = solid.reduction {
-        let cost = fem::reduction::Reduced::cost(body.model, work.surface.faces(), reduction);
-        let slower = cost.ok().filter(|c| c.reduced > c.full).map(|c| {
-            format!(
-                "solid.reduction: {} shapes make a step of the solid about {:.1} times as dear as without ({:.1} million numbers \
-                 read for {:.1}): the run is faster without it, or with kind = \"modes\"",
-                c.shapes,
-                c.reduced / c.full,
-                1e-6 * c.reduced,
-                1e-6 * c.full
-            )
-        });
-        if run.verbosity > Verbosity::Quiet {
-            slower.iter().for_each(|r| message::note(r));
-        }
-        summary.warnings.extend(slower);
-        let reduced =
-            fem::reduction::Reduced::new(body.model, work.surface.faces(), reduction).map_err(|e| {
-                Failure::from(run.document.error("solid.reduction", e.to_string(), "another choice"))
-            })?;
-        work.reduce(&model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
-        summary.model.reduction = work.reduction();
-    }
+    reduce(run, solid, &model, &mut work, summary)?;
     summary.model.solid_step = Some(model.window());
     progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
     let seats = solid.sleepers.as_ref().map(|bodies| Meshed {
@@ -159,7 +142,46 @@ fn couple<'b>(
         first_face: plan.ground_faces,
         work: seat_work,
     });
-    Ok(CoupledSystem { model, state, work, loads: &solid.loads, ground_faces: plan.ground_faces, seats })
+    Ok(CoupledSystem {
+        model,
+        state,
+        work,
+        changed: false,
+        loads: &solid.loads,
+        ground_faces: plan.ground_faces,
+        seats,
+    })
+}
+
+/// Takes the steps of the solid in the span of few shapes, where the scene says so.
+fn reduce(
+    run: &Run<'_>,
+    solid: &SolidPart,
+    model: &coupling::step::Model<'_>,
+    work: &mut coupling::step::Work<Steps>,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
+    let Some(reduction) = solid.reduction else { return Ok(()) };
+    let cost = fem::reduction::Reduced::cost(model.solid, work.surface.faces(), reduction);
+    let slower = cost.ok().filter(|c| c.reduced > c.full).map(|c| {
+        format!(
+            "solid.reduction: {} shapes make a step of the solid about {:.1} times as dear as without ({:.1} million numbers \
+             read for {:.1}): the run is faster without it, or with kind = \"modes\"",
+            c.shapes,
+            c.reduced / c.full,
+            1e-6 * c.reduced,
+            1e-6 * c.full
+        )
+    });
+    if run.verbosity > Verbosity::Quiet {
+        slower.iter().for_each(|r| message::note(r));
+    }
+    summary.warnings.extend(slower);
+    let reduced = fem::reduction::Reduced::new(model.solid, work.surface.faces(), reduction)
+        .map_err(|e| Failure::from(run.document.error("solid.reduction", e.to_string(), "another choice")))?;
+    work.reduce(model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
+    summary.model.reduction = work.reduction();
+    Ok(())
 }
 
 /// Displacement of the solid that its loads refer to, what its solver remembers, both states, and the work of loads on seats [J].

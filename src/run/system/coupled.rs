@@ -4,11 +4,13 @@ use super::{Applied, GrainsView, SolidView, System};
 use crate::failure::Failure;
 use crate::model::solid::SleeperBodies;
 use crate::run::checkpoint::Body;
+use crate::run::device::{Steps, failed};
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
+use trackbed_dem::BackEnd;
 use trackbed_fem as fem;
 
 /// Meshed sleepers of a running system.
@@ -46,7 +48,9 @@ pub struct CoupledSystem<'a> {
     /// Both states.
     pub state: coupling::step::State,
     /// Scratch and factors.
-    pub work: coupling::step::Work,
+    pub work: coupling::step::Work<Steps>,
+    /// Whether something has changed the grains that a device has taken over.
+    pub changed: bool,
     /// Loads on the solid.
     pub loads: &'a [crate::model::solid::NodalLoad],
     /// Faces of the surface that are the ground's.
@@ -93,6 +97,7 @@ impl TrackSystem for CoupledSystem<'_> {
         let grains = &mut self.state.grains;
         moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
         grains.forget_neighbours();
+        self.changed = true;
     }
 }
 
@@ -102,6 +107,10 @@ impl System for CoupledSystem<'_> {
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
+        // The processor steps the state itself.
+        if std::mem::take(&mut self.changed) && self.work.grains.elsewhere() {
+            self.work.grains.upload(&self.model.grains, &self.state.grains).map_err(failed)?;
+        }
         let (loads, seats) = (self.loads, self.seats.as_ref());
         let solid_load = |t: f64, load: &mut [f64]| {
             loads.iter().for_each(|l| l.add(t, load));

@@ -52,13 +52,15 @@ pub(crate) fn forces(
     out: &mut CrossForces,
 ) {
     let mut slots = &mut out.slots[out.kinds_at..];
+    // Summed apart from what contacts of spheres took, so that these may be computed elsewhere.
+    let (mut dashpot, mut friction) = (0.0, 0.0);
     for (kind, list) in KINDS.iter().zip(&mut lists.kinds) {
         let own;
         (own, slots) = slots.split_at_mut(3 * list.len());
         let mut books = Books {
             slots: own,
-            dashpot: &mut out.dashpot,
-            friction: &mut out.friction,
+            dashpot: &mut dashpot,
+            friction: &mut friction,
             work_walls: &mut out.work_walls,
             walls: &mut out.walls,
             wall_sums: &mut out.wall_sums,
@@ -68,4 +70,6 @@ pub(crate) fn forces(
         };
         kind.forces(setting, now, b, list, &mut books);
     }
+    out.dashpot += dashpot;
+    out.friction += friction;
 }

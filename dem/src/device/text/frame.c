@@ -186,11 +186,14 @@ DEVICE real in_turn(const real *list, const unsigned count, const unsigned strid
 //@PARTS
 KERNEL(bodies) {
     THREAD(i, BODIES)
+#if BESIDE
+    if (SINGLE[i] & ELSEWHERE) return;
+#endif
     const four x = OLD_X[i], v = OLD_V[i], w = OLD_W[i];
     sums s = {none(), none()};
     for (unsigned e = START[i]; e < START[i + 1]; ++e) {
         const ends entry = ENTRIES[e];
-        const unsigned c = entry.first >> 4, what = entry.first >> 1 & 7, there = entry.second;
+        const unsigned c = entry.first >> ENTRY_SHIFT, what = entry.first >> 1 & 15, there = entry.second;
         const int second = (int)(entry.first & 1);
 //@ENTRIES
     }

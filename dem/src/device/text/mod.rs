@@ -3,6 +3,7 @@
 
 mod bonds;
 mod clumps;
+mod handed;
 mod images;
 mod motion;
 mod patches;
@@ -14,6 +15,7 @@ mod spheres;
 use super::layout::{self, Features};
 use super::sizes::{classes, covers};
 use super::tape::{self, Recorded};
+use crate::engine::beside;
 use crate::engine::model::Model;
 use crate::law::{ContactLaw, FRESH, Laws, PairTable, with_law};
 use record::Part;
@@ -35,6 +37,7 @@ pub(super) fn features(model: &Model) -> Features {
         clumps: model.clumps,
         walls: model.walls.walls.len(),
         periodic: model.periodic.is_some(),
+        beside: beside::any(model),
         classes: if covers(model) { classes(model.radii) } else { 0 },
     }
 }
@@ -55,6 +58,9 @@ fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) ->
     }
     if f.walls > 0 {
         all.push(patches::part::<L, ROLL>(&law));
+    }
+    if f.beside {
+        all.push(handed::part());
     }
     all.push(motion::part(f));
     if f.held {

@@ -231,13 +231,13 @@ KERNEL(enter_partners) {
                 const unsigned other = ROWS[m], second = other < s;
                 if ((BLOCK[BODY(other)] == BLOCK[i]) != own) continue;
                 const unsigned of = second ? contact_of(p, OFFSETS[own * SPHERE_COUNT + other], own ? NAME(s) : s) : c++;
-                enter(entry + n, count++, of << 4 | what << 1 | second, own ? NAME(other) : other);
+                enter(entry + n, count++, of << ENTRY_SHIFT | what << 1 | second, own ? NAME(other) : other);
             }
         }
         n += count;
     }
     for (unsigned c = PLANES_OF(first); c < PLANES_OF(FIRST_OF(i + 1)); ++c) {
-        const ends with = {c << 4 | (ORIENTED(i) ? PLANE_TURNED : PLANE) << 1, ENDS[c].second};
+        const ends with = {c << ENTRY_SHIFT | (ORIENTED(i) ? PLANE_TURNED : PLANE) << 1, ENDS[c].second};
         entry[n++] = with;
     }
 }

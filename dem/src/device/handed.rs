@@ -1,0 +1,128 @@
+//! The processor's part of a step (`engine/beside.rs`), as the device gets it: forces that it adds up with its own, in their order.
+//! What the processor needs to know for that, the motion of the bodies that take part, comes back after each step.
+
+use super::bodies::quaternion;
+use super::layout::{Count, Slot};
+use super::machine::{Call, Machine};
+use crate::engine::beside;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::lanes::record::Record;
+use crate::spatial::surface::Surface;
+
+/// Where the forces of an entry come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The first or second partner of the pair whose slot begins with a record of a block.
+    Pair { from: usize, record: usize, first: bool },
+    /// The contacts of a body with the external surface.
+    Surface { block: usize, place: u32 },
+}
+
+/// What is handed over.
+#[derive(Default)]
+pub(super) struct Handed {
+    sources: Vec<Source>,
+    /// Block, place and number of the bodies that the processor needs to know.
+    watched: Vec<[u32; 3]>,
+    start: Vec<u32>,
+    /// Force and torque, in turn.
+    forces: Vec<[f64; 4]>,
+    picked: Vec<[f64; 4]>,
+}
+
+impl Handed {
+    /// Forces and torques of all entries, one after another.
+    fn collect(&mut self, work: &Work) {
+        let Handed { sources, start, forces, .. } = self;
+        start.clear();
+        forces.clear();
+        // Contacts with the surface lie in the order of the bodies.
+        let (mut at, mut block_at) = (0, usize::MAX);
+        for source in &*sources {
+            start.push(forces.len() as u32 / 2);
+            match *source {
+                Source::Pair { from, record, first } => {
+                    let slot = &work.cross[from].slots[record..];
+                    let sign = if first { 1.0 } else { -1.0 };
+                    forces.push(slot[0].0.map(|x| x * sign));
+                    forces.push(slot[if first { 1 } else { 2 }].0);
+                }
+                Source::Surface { block, place } => {
+                    if block != block_at {
+                        (at, block_at) = (0, block);
+                    }
+                    let own =
+                        work.blocks[block].patches.forces()[at..].iter().take_while(|f| f.body == place);
+                    for force in own {
+                        let (f, t) = (force.force(), force.torque());
+                        forces.extend([[f.x, f.y, f.z, 0.0], [t.x, t.y, t.z, 0.0]]);
+                        at += 1;
+                    }
+                }
+            }
+        }
+        start.push(forces.len() as u32 / 2);
+    }
+}
+
+impl Handed {
+    /// Notes the sources of forces, and whom the processor needs to know.
+    pub fn take_over<M: Machine>(
+        &mut self,
+        (machine, call): (&mut M, &mut Call),
+        width: usize,
+        sources: Vec<Source>,
+        watched: Vec<[u32; 3]>,
+    ) -> Result<(), String> {
+        let numbers: Vec<u32> = watched.iter().map(|[.., number]| *number).collect();
+        machine.put_counts(call.buffer(Slot::Watched), &numbers)?;
+        call.count(Count::Watched, numbers.len());
+        machine.reserve(call.buffer(Slot::Picked), 4 * width * numbers.len())?;
+        (self.sources, self.watched) = (sources, watched);
+        self.picked.resize(width * numbers.len(), [0.0; 4]);
+        Ok(())
+    }
+
+    /// Works the processor's forces out and hands them over.
+    pub fn hand_over<M: Machine, S: Surface>(
+        &mut self,
+        (machine, call): (&mut M, &Call),
+        model: &Model,
+        (state, work): (&mut State, &mut Work),
+        surface: &S,
+    ) -> Result<(), String> {
+        beside::forces(model, state, work, surface);
+        self.collect(work);
+        machine.put_counts(call.buffer(Slot::HandedStart), &self.start)?;
+        machine.put(call.buffer(Slot::Handed), self.forces.as_flattened())
+    }
+
+    /// Brings back where the bodies are that the processor needs to know.
+    pub fn pick<M: Machine>(
+        &mut self,
+        (machine, call): (&mut M, &Call),
+        (state, work): (&mut State, &mut Work),
+    ) -> Result<(), String> {
+        let Handed { watched, picked, .. } = self;
+        if watched.is_empty() {
+            return Ok(());
+        }
+        machine.launch("pick", watched.len(), call)?;
+        machine.get(call.buffer(Slot::Picked), picked.as_flattened_mut())?;
+        let width = picked.len() / watched.len();
+        for ([block, place, _], row) in watched.iter().zip(picked.chunks_exact(width)) {
+            let (block, k) = (*block as usize, *place as usize);
+            let (members, block) = (&mut work.members[block], &mut state.blocks[block]);
+            block.centre[k] = Record(row[0]);
+            block.velocity[k] = Record(row[1]);
+            block.spin[k] = Record(row[2]);
+            if members.rigid {
+                block.rotation[k].orientation = quaternion(&row[3]);
+                members.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);
+            }
+        }
+        Ok(())
+    }
+}

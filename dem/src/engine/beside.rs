@@ -1,0 +1,95 @@
+//! What a back end for spheres leaves to the processor in a step: contacts of spheres with the external surface, all contacts of bodies
+//! that are not made of spheres, and the motion of these. Everything that takes part is where the step begins.
+
+use super::model::Model;
+use super::state::State;
+use super::work::Work;
+use super::{applied, step};
+use crate::base::error::Partner;
+use crate::base::ledger::Ledger;
+use crate::bodies::part::Part;
+use crate::bodies::sums::Sums;
+use crate::contact::dispatch;
+use crate::contact::kind::{self, Now};
+use crate::contact::patches::{self, Against};
+use crate::contact::single::Setting;
+use crate::integrate::leapfrog;
+use crate::pairs::cross::Slots;
+use crate::spatial::patchwork;
+use crate::spatial::surface::Surface;
+use rayon::prelude::*;
+
+/// Whether a model has any of it.
+pub(crate) fn any(model: &Model) -> bool {
+    model.solids || model.surface_material.is_some()
+}
+
+/// Forces of these contacts: into the slots of their pairs, and of those with the surface into the scratch of the block; the near list is
+/// good. What blocks book begins anew.
+pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+    let setting = Setting { laws: &model.laws, simd: work.simd, dt: state.pace.kick() };
+    let gone = state.drift + state.wall_drift;
+    let State { blocks, lists, cross, planes, scars, .. } = &mut *state;
+    let (blocks, planes) = (&blocks[..], &planes[..]);
+    let Work { members, blocks: works, cross: slots, walls, sheet, parallel, .. } = work;
+    let members = &members[..];
+    let now = Now {
+        blocks: Part { first: 0, list: blocks },
+        members: Part { first: 0, list: members },
+        shapes: &model.shapes,
+        cores: &model.cores,
+        planes: (&model.planes, planes),
+        walls: patchwork::Walls { patches: &model.patches, walls },
+        sheet: model.sheet_at(sheet),
+        periodic: model.periodic.as_ref(),
+        scars,
+    };
+    let between = |(b, (pairs, out)): (usize, (&mut _, &mut crate::pairs::cross::CrossForces))| {
+        out.clear_books();
+        kind::forces(&setting, &now, b, pairs, out);
+    };
+    let own =
+        |(b, (list, w)): (usize, (&mut super::state::BlockLists, &mut super::block_work::BlockWork))| {
+            w.tally.ledger = Ledger::default();
+            w.tally.failure = None;
+            w.patches.contacts.clear();
+            if list.surface.is_empty() {
+                return;
+            }
+            w.tally.sums.clear();
+            w.tally.sums.resize(blocks[b].bodies.len(), Sums::default());
+            let against = Against {
+                surface,
+                material: |patch| model.patch_material(patch) as u32,
+                partner: Partner::Patch,
+                external: true,
+                gone,
+            };
+            let (pair, bodies) = (&mut list.surface, (&blocks[b], &members[b]));
+            let done = patches::contacts(&setting, &against, pair, bodies, &mut w.tally, &mut w.patches);
+            w.tally.ledger.work_surface += done.work;
+            w.tally.ledger.surface += &done.impulse;
+        };
+    if *parallel {
+        cross.par_iter_mut().zip(slots).enumerate().for_each(between);
+        lists.par_iter_mut().zip(works).enumerate().for_each(own);
+    } else {
+        cross.iter_mut().zip(slots).enumerate().for_each(between);
+        lists.iter_mut().zip(works).enumerate().for_each(own);
+    }
+}
+
+/// Moves the bodies that are not made of spheres under the forces in the slots of their pairs.
+pub(crate) fn motion(model: &Model, state: &mut State, work: &mut Work) {
+    let drive = step::drive(model, state.pace);
+    let Work { members, blocks: works, cross, applied, simd, .. } = work;
+    let slots = Slots { own: Part { first: 0, list: &cross[..] }, beyond: &[] };
+    let blocks = state.blocks.iter_mut().zip(members).zip(works).enumerate();
+    for (b, ((block, members), w)) in blocks.filter(|(_, ((_, members), _))| members.solid()) {
+        let tally = &mut w.tally;
+        tally.sums.clear();
+        tally.sums.resize(block.bodies.len(), Sums::default());
+        dispatch::gather(*simd, &w.shares, &mut tally.sums, slots);
+        leapfrog::advance(*simd, &drive, block, members, tally, applied::of_block(applied, b));
+    }
+}
