@@ -27,7 +27,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("crushing", crushing),
         ("several", yielding),
     ] {
-        for scene in [Scene::Spheres, Scene::All, Scene::Loose, Scene::Clumps, Scene::Walls, Scene::Borders] {
+        for scene in [
+            Scene::Spheres,
+            Scene::All,
+            Scene::Loose,
+            Scene::Clumps,
+            Scene::Walls,
+            Scene::Borders,
+            Scene::Ground,
+        ] {
             let text = device::source(&Model::new(scene.input(material)?)?)?;
             let file = format!("{name}{}.cu", scene.suffix());
             std::fs::write(Path::new(&folder).join(&file), &text)?;
@@ -48,6 +56,8 @@ enum Scene {
     Clumps,
     Walls,
     Borders,
+    /// Clumps on a surface whose contacts the processor works out.
+    Ground,
 }
 
 impl Scene {
@@ -59,6 +69,7 @@ impl Scene {
             Scene::Clumps => "_clumps",
             Scene::Walls => "_walls",
             Scene::Borders => "_borders",
+            Scene::Ground => "_ground",
         }
     }
 
@@ -74,6 +85,7 @@ impl Scene {
         match self {
             Scene::Spheres => return Ok(input),
             Scene::Loose => (),
+            Scene::Ground => input.surface_material = Some(0),
             Scene::Borders => input.periodic = [Some([-1.0, 1.0]), None, None],
             _ => bonded(&mut input),
         }
