@@ -274,13 +274,8 @@ impl Lists {
                     let of = (record - forces.images_at) / forces.width;
                     (What::Images, self.from(List::Images, from) + of as u32)
                 } else if record >= forces.kinds_at {
-                    (
-                        What::Handed,
-                        self.hand_over(
-                            Source::Pair { from, record, first: share.first() },
-                            [b as u32, share.place],
-                        ),
-                    )
+                    debug_assert!(share.first());
+                    (What::Handed, self.hand_over(Source::Pair { from, record }, [b as u32, share.place]))
                 } else {
                     (across, self.from(List::Cross, from) + (record / forces.width) as u32)
                 };

@@ -14,8 +14,8 @@ use crate::spatial::surface::Surface;
 /// Where the forces of an entry come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The first or second partner of the pair whose slot begins with a record of a block.
-    Pair { from: usize, record: usize, first: bool },
+    /// The pair whose slot begins with a record of a block: spheres come first in all kinds of pairs that they are in.
+    Pair { from: usize, record: usize },
     /// The contacts of a body with the external surface.
     Surface { block: usize, place: u32 },
 }
@@ -43,11 +43,8 @@ impl Handed {
         for source in &*sources {
             start.push(forces.len() as u32 / 2);
             match *source {
-                Source::Pair { from, record, first } => {
-                    let slot = &work.cross[from].slots[record..];
-                    let sign = if first { 1.0 } else { -1.0 };
-                    forces.push(slot[0].0.map(|x| x * sign));
-                    forces.push(slot[if first { 1 } else { 2 }].0);
+                Source::Pair { from, record } => {
+                    forces.extend(work.cross[from].slots[record..][..2].iter().map(|r| r.0));
                 }
                 Source::Surface { block, place } => {
                     if block != block_at {

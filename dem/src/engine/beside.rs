@@ -1,21 +1,19 @@
 //! What a back end for spheres leaves to the processor in a step: contacts of spheres with the external surface, all contacts of bodies
 //! that are not made of spheres, and the motion of these. Everything that takes part is where the step begins.
 
+use super::block_work::BlockWork;
 use super::model::Model;
-use super::state::State;
+use super::state::{BlockLists, State};
 use super::work::Work;
-use super::{applied, step};
-use crate::base::error::Partner;
+use super::{applied, candidates, step};
 use crate::base::ledger::Ledger;
 use crate::bodies::part::Part;
 use crate::bodies::sums::Sums;
 use crate::contact::dispatch;
-use crate::contact::kind::{self, Now};
-use crate::contact::patches::{self, Against};
+use crate::contact::kind;
 use crate::contact::single::Setting;
 use crate::integrate::leapfrog;
-use crate::pairs::cross::Slots;
-use crate::spatial::patchwork;
+use crate::pairs::cross::{Cross, CrossForces, Slots};
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
@@ -33,43 +31,23 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
     let (blocks, planes) = (&blocks[..], &planes[..]);
     let Work { members, blocks: works, cross: slots, walls, sheet, parallel, .. } = work;
     let members = &members[..];
-    let now = Now {
-        blocks: Part { first: 0, list: blocks },
-        members: Part { first: 0, list: members },
-        shapes: &model.shapes,
-        cores: &model.cores,
-        planes: (&model.planes, planes),
-        walls: patchwork::Walls { patches: &model.patches, walls },
-        sheet: model.sheet_at(sheet),
-        periodic: model.periodic.as_ref(),
-        scars,
-    };
-    let between = |(b, (pairs, out)): (usize, (&mut _, &mut crate::pairs::cross::CrossForces))| {
+    let bodies = (Part { first: 0, list: blocks }, Part { first: 0, list: members });
+    let now = candidates::now_of(model, bodies, planes, (walls, sheet), scars);
+    let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossForces))| {
         out.clear_books();
         kind::forces(&setting, &now, b, pairs, out);
     };
-    let own =
-        |(b, (list, w)): (usize, (&mut super::state::BlockLists, &mut super::block_work::BlockWork))| {
-            w.tally.ledger = Ledger::default();
-            w.tally.failure = None;
-            w.patches.contacts.clear();
-            if list.surface.is_empty() {
-                return;
-            }
+    let own = |(b, (list, w)): (usize, (&mut BlockLists, &mut BlockWork))| {
+        w.tally.ledger = Ledger::default();
+        w.tally.failure = None;
+        w.patches.contacts.clear();
+        if !list.surface.is_empty() {
             w.tally.sums.clear();
             w.tally.sums.resize(blocks[b].bodies.len(), Sums::default());
-            let against = Against {
-                surface,
-                material: |patch| model.patch_material(patch) as u32,
-                partner: Partner::Patch,
-                external: true,
-                gone,
-            };
-            let (pair, bodies) = (&mut list.surface, (&blocks[b], &members[b]));
-            let done = patches::contacts(&setting, &against, pair, bodies, &mut w.tally, &mut w.patches);
-            w.tally.ledger.work_surface += done.work;
-            w.tally.ledger.surface += &done.impulse;
-        };
+            let bodies = (&blocks[b], &members[b]);
+            step::on_surface(model, &setting, (surface, gone), &mut list.surface, bodies, w);
+        }
+    };
     if *parallel {
         cross.par_iter_mut().zip(slots).enumerate().for_each(between);
         lists.par_iter_mut().zip(works).enumerate().for_each(own);

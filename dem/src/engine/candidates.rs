@@ -6,14 +6,17 @@ use super::hulls::Hulls;
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
+use crate::bodies::block::Block;
 use crate::bodies::members::Members;
 use crate::bodies::part::Part;
 use crate::bond::Held;
 use crate::contact::kind::{KINDS, Now, Search};
 use crate::lanes::record::{Record, xyz};
+use crate::law::scarring::Scar;
 use crate::pairs::cross::ImageName;
 use crate::pairs::patch_search as patches;
 use crate::shape::cuboid;
+use crate::shape::plane::PlaneMotion;
 use crate::spatial::cells::Cells;
 use crate::spatial::patchwork::{WallNow, Walls};
 use crate::spatial::periodic::Space;
@@ -303,18 +306,30 @@ pub(crate) fn now<'a>(
     model: &'a Model,
     state: &'a State,
     members: &'a [Members],
+    standing: (&'a [WallNow], &'a [SheetFacet]),
+) -> Now<'a> {
+    let bodies = (Part { first: 0, list: &state.blocks[..] }, Part { first: 0, list: members });
+    now_of(model, bodies, &state.planes, standing, &state.scars)
+}
+
+/// The same of parts of a state.
+pub(crate) fn now_of<'a>(
+    model: &'a Model,
+    (blocks, members): (Part<'a, Block>, Part<'a, Members>),
+    planes: &'a [PlaneMotion],
     (walls, sheet): (&'a [WallNow], &'a [SheetFacet]),
+    scars: &'a [Scar],
 ) -> Now<'a> {
     Now {
-        blocks: Part { first: 0, list: &state.blocks },
-        members: Part { first: 0, list: members },
+        blocks,
+        members,
         shapes: &model.shapes,
         cores: &model.cores,
-        planes: (&model.planes, &state.planes),
+        planes: (&model.planes, planes),
         walls: Walls { patches: &model.patches, walls },
         sheet: model.sheet_at(sheet),
         periodic: model.periodic.as_ref(),
-        scars: &state.scars,
+        scars,
     }
 }
 

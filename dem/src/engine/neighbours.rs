@@ -13,14 +13,13 @@ use super::state::{BlockLists, State};
 use super::walls;
 use super::work::Work;
 use crate::bodies::part::Part;
-use crate::contact::kind::{KINDS, Now};
+use crate::contact::kind::KINDS;
 use crate::lanes::V3;
 use crate::lanes::record::xyz;
 use crate::pairs::cross::{self, Cross, ImageName};
 use crate::pairs::patch_search as patches;
 use crate::pairs::reach;
 use crate::shape::cuboid;
-use crate::spatial::patchwork::Walls;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
@@ -128,17 +127,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     let Work { members, blocks: works, merging: pool, parallel, walls: standing, sheet, .. } = &mut *work;
     let (members, pool) = (&*members, &*pool);
     let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
-    let now = Now {
-        blocks: Part { first: 0, list: blocks },
-        members: Part { first: 0, list: members },
-        shapes: &model.shapes,
-        cores: &model.cores,
-        planes: (&model.planes, planes),
-        walls: Walls { patches: &model.patches, walls: standing },
-        sheet: model.sheet_at(sheet),
-        periodic: model.periodic.as_ref(),
-        scars,
-    };
+    let bodies = (Part { first: 0, list: blocks }, Part { first: 0, list: members });
+    let now = candidates::now_of(model, bodies, planes, (standing, sheet), scars);
 
     let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {
         let mut merging = pool.take();

@@ -7,7 +7,7 @@ use super::model::Model;
 use super::state::State;
 use super::threads::{self, Bodies, Lists, One};
 use super::work::Work;
-use super::{applied, neighbours, order, scarring, wall_contacts, walls};
+use super::{applied, candidates, neighbours, order, scarring, wall_contacts, walls};
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
@@ -17,7 +17,7 @@ use crate::bodies::sums::{Sums, Tally, WallSum};
 use crate::body_force::Seen;
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
-use crate::contact::kind::{self, Now};
+use crate::contact::kind;
 use crate::contact::patches::{self, Against};
 use crate::contact::planes::PlaneNow;
 use crate::contact::prefetch::Prefetch;
@@ -27,7 +27,7 @@ use crate::integrate::leapfrog::{self, Drive};
 use crate::integrate::pace::Pace;
 use crate::law::scarring::Scar;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
-use crate::spatial::patchwork;
+use crate::pairs::patches::PatchList;
 use crate::spatial::surface::Surface;
 use crate::wall::set::PlacedWalls;
 
@@ -140,26 +140,13 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, scars, .. } = state;
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
-    let triangles = model.sheet_at(&work.sheet);
-    let patchwork = patchwork::Walls { patches: &model.patches, walls: &work.walls };
+    let standing = (&work.walls[..], &work.sheet[..]);
     // Contacts between blocks: they read their own block and later ones, and write slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
         out.clear_books();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
         if !pairs.kinds.is_empty() {
-            let planes = (&model.planes[..], motions);
-            let (shapes, cores) = (&model.shapes[..], &model.cores[..]);
-            let now = Now {
-                blocks,
-                members,
-                shapes,
-                cores,
-                planes,
-                walls: patchwork,
-                sheet: triangles,
-                periodic: model.periodic.as_ref(),
-                scars,
-            };
+            let now = candidates::now_of(model, (blocks, members), motions, standing, scars);
             kind::forces(&setting, &now, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
@@ -266,20 +253,32 @@ impl<S: Surface> Shared<'_, S> {
             patches::contacts(&setting, &against, &mut lists.walls, own, tally, &mut work.patches);
         }
         if !lists.surface.is_empty() {
-            let against = Against {
-                surface: self.surface,
-                material: |patch| model.patch_material(patch) as u32,
-                partner: Partner::Patch,
-                external: true,
-                gone: self.gone,
-            };
-            let own = (block, members);
-            let done =
-                patches::contacts(&setting, &against, &mut lists.surface, own, tally, &mut work.patches);
-            tally.ledger.work_surface += done.work;
-            tally.ledger.surface += &done.impulse;
+            let (surface, own) = ((self.surface, self.gone), (block, members));
+            on_surface(model, &setting, surface, &mut lists.surface, own, work);
         }
     }
+}
+
+/// Contacts of a block's spheres with the external surface, and what that did; `gone`: bound on the way that anything has come towards
+/// anything since the near list was made [m].
+pub(crate) fn on_surface<S: Surface>(
+    model: &Model,
+    setting: &Setting<'_>,
+    (surface, gone): (&S, f64),
+    list: &mut PatchList,
+    own: (&Block, &Members),
+    work: &mut BlockWork,
+) {
+    let against = Against {
+        surface,
+        material: |patch| model.patch_material(patch) as u32,
+        partner: Partner::Patch,
+        external: true,
+        gone,
+    };
+    let done = patches::contacts(setting, &against, list, own, &mut work.tally, &mut work.patches);
+    work.tally.ledger.work_surface += done.work;
+    work.tally.ledger.surface += &done.impulse;
 }
 
 /// Adds up what the blocks report, in block order, and moves on in time.

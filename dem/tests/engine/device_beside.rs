@@ -1,7 +1,7 @@
 //! Steps that a device shares with the processor: spheres and clumps on a surface that moves, among blocks that the processor moves.
 
 use crate::c_machine::{TestMachine, device_is_there};
-use crate::device::{STEPS, gas, mesh, smooth, turning, with_clumps};
+use crate::device::{STEPS, changed, fails_alike, gas, mesh, smooth, turning, with_clumps};
 use crate::scene::{block, body, stone};
 use std::sync::Arc;
 use trackbed_dem::device::{Device, source};
@@ -243,11 +243,7 @@ fn a_changed_part_is_seen() {
             (&blocks, "picked[3] = OLD_ORIENTATION[i];", "picked[3] = NEW_ORIENTATION[i];"),
             (&blocks, "if (SINGLE[i] & ELSEWHERE) return;", "if (i == 5) return;"),
         ] {
-            let change = |text: String| {
-                assert!(text.contains(from), "{from}");
-                text.replacen(from, to, 1)
-            };
-            let differs = compare(input.clone(), change).differs;
+            let differs = compare(input.clone(), changed(from, to)).differs;
             println!("{from} -> {to}: {differs:?}");
             assert!(differs.is_some(), "{from} -> {to}");
         }
@@ -259,28 +255,9 @@ fn a_changed_part_is_seen() {
 fn a_failing_step_says_what_the_engine_says() {
     if device_is_there() {
         for body in [3, FIRST + 1] {
-            let model = Model::new(among_blocks(gas([stone(), smooth()], Vec::new()))).expect("a good input");
-            let text = source(&model).expect("a model for a device");
-            let (mut ours, mut theirs) = (State::new(&model), State::new(&model));
-            let (mut work, ground) = (Work::new(&model, &theirs), Ground::new());
-            let mut device = Device::new(TestMachine::new(&text, &model), &model, &ours).expect("memory");
-            for k in 1.. {
-                if k == 40 {
-                    device.download(&model, &mut ours).expect("a device that responds");
-                    for state in [&mut ours, &mut theirs] {
-                        state.set_velocity(&model, body, Vec3::new(0.0, 0.0, -300.0), Vec3::zeros());
-                    }
-                    device.upload(&model, &ours).expect("memory");
-                }
-                let one = step(&model, &mut theirs, &mut work, &ground, &[]);
-                assert_eq!(device.step(&model, &mut ours, &ground, &[]), one, "step {k}");
-                if let Err(e) = one {
-                    println!("step {k}: {e}");
-                    assert!(e.to_string().contains(&format!("body {body} ")), "{e}");
-                    break;
-                }
-                assert!(k < 400, "no step has failed");
-            }
+            let input = among_blocks(gas([stone(), smooth()], Vec::new()));
+            let words = fails_alike(input, (body, Vec3::z() * -300.0), &Ground::new());
+            assert!(words.contains(&format!("body {body} ")), "{words}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The search for neighbours on a device: the lists, their order and the memory of their contacts are the engine's.
 
 use crate::c_machine::{TestMachine, device_is_there};
-use crate::device::{STEPS, compare_events, gas, smooth, turning, with_clumps};
+use crate::device::{STEPS, changed, compare_events, gas, smooth, turning, with_clumps};
 use crate::scene::{Random, sphere, stone};
 use trackbed_dem::device::{Device, kernels, source};
 use trackbed_dem::surface::NoSurface;
@@ -98,11 +98,7 @@ fn a_changed_search_is_seen() {
             ("if (!in_row(p, y, size, inverse, from_x, to_x, cy, cz)) continue;", ""),
             ("if (still && OLD_V[there].w == 0.0) continue;", ""),
         ] {
-            let change = |text: String| {
-                assert!(text.contains(from), "{from}");
-                text.replacen(from, to, 1)
-            };
-            let (differs, ..) = compare_events(input.clone(), STEPS, change, events);
+            let (differs, ..) = compare_events(input.clone(), STEPS, changed(from, to), events);
             println!("{from} -> {to}: {differs:?}");
             assert!(differs.is_some(), "{from} -> {to}");
         }
